@@ -1,20 +1,21 @@
-//! Which faces share which edges.
+//! Adjacency of faces across edges.
 
 use crate::{FaceIdx, Mesh, VertexIdx};
 
 /// An edge seen from one of its faces: the edge from corner `edge` of `face` to the next corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FaceEdge {
-    /// The face.
+    /// Face that the edge belongs to.
     pub face: FaceIdx,
-    /// The corner that the edge starts at: 0, 1 or 2.
+    /// Corner at the start of the edge: 0, 1 or 2.
     pub edge: u8,
 }
 
-/// The neighbors of every face of a mesh across its three edges.
+/// Neighbors of every face of a mesh across its three edges.
 ///
-/// Two faces are neighbors if they are the only two at an edge and go through it in opposite directions. An edge of one
-/// face, of three or more, or of two that go through it in the same direction is a border.
+/// Two faces are neighbors if they are the only two at an edge and traverse it in opposite directions. Every other
+/// edge is a border: an edge of one face, of three or more faces, or of two faces that traverse it in the same
+/// direction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Adjacency {
     across: Vec<[Option<FaceEdge>; 3]>,
@@ -23,7 +24,7 @@ pub struct Adjacency {
 impl Adjacency {
     /// Finds the neighbors of all faces.
     ///
-    /// A face that names a vertex twice has no neighbors.
+    /// A face that contains a vertex twice has no neighbors.
     #[must_use]
     pub fn new(mesh: &Mesh) -> Self {
         let mut across = Self::alone(mesh.faces().len());
@@ -37,7 +38,8 @@ impl Adjacency {
         across
     }
 
-    /// Neighbors across edges, where two faces are also neighbors if they go through their edge in the same direction.
+    /// Adjacency that ignores winding: two faces at an edge are neighbors even if they traverse it in the same
+    /// direction.
     pub(crate) fn of_any_winding(n_faces: usize, edges: &[SortedEdge]) -> Self {
         let mut across = Self::alone(n_faces);
         for group in edges.chunk_by(|a, b| a.ends == b.ends) {
@@ -48,8 +50,8 @@ impl Adjacency {
         across
     }
 
-    /// Neighbors across edges of any winding, where as many faces as possible are neighbors at every edge, two by two,
-    /// first those that go through it in opposite directions.
+    /// Adjacency that pairs up as many faces as possible at every edge. Faces that traverse the edge in opposite
+    /// directions are paired first.
     pub(crate) fn paired(n_faces: usize, edges: &[SortedEdge]) -> Self {
         let mut across = Self::alone(n_faces);
         for group in edges.chunk_by(|a, b| a.ends == b.ends) {
@@ -59,7 +61,7 @@ impl Adjacency {
                 across.join(a.of, b.of);
             }
             let n_opposite = ahead.len().min(back.len());
-            // One of the two is empty.
+            // One of the two remainders is empty.
             for rest in [&ahead[n_opposite..], &back[n_opposite..]] {
                 for pair in rest.chunks_exact(2) {
                     across.join(pair[0].of, pair[1].of);
@@ -69,7 +71,7 @@ impl Adjacency {
         across
     }
 
-    /// Faces without neighbors.
+    /// Adjacency without any neighbors.
     fn alone(n_faces: usize) -> Self {
         let across = vec![[None; 3]; n_faces];
         Self { across }
@@ -80,30 +82,30 @@ impl Adjacency {
         self.set(b, Some(a));
     }
 
-    /// The edge as the face on its other side sees it; `None` at a border.
+    /// Returns the same edge as seen from the neighboring face; `None` at a border.
     ///
     /// # Panics
     ///
-    /// If there is no such face or edge.
+    /// If the face or the edge does not exist.
     #[inline]
     #[must_use]
     pub fn across(&self, from: FaceEdge) -> Option<FaceEdge> {
         self.across[from.face.index()][usize::from(from.edge)]
     }
 
-    /// Says what is across an edge, seen from one side.
+    /// Sets the neighbor of an edge, on one side only.
     pub(crate) fn set(&mut self, from: FaceEdge, to: Option<FaceEdge>) {
         self.across[from.face.index()][usize::from(from.edge)] = to;
     }
 
-    /// The edges across the three edges of a face, as the faces there have them.
+    /// The three edges of a face as seen from the neighboring faces.
     pub(crate) fn around(&self, face: FaceIdx) -> [Option<FaceEdge>; 3] {
         self.across[face.index()]
     }
 
-    /// For each face the number of its component, the set of faces that can be reached over neighbors.
+    /// Connected component of each face. A component is a set of faces connected through neighbors.
     ///
-    /// Components are numbered from 0 in the order of their lowest faces.
+    /// Components are numbered from 0 in the order of their lowest face index.
     #[must_use]
     pub fn components(&self) -> Vec<u32> {
         const UNSEEN: u32 = u32::MAX;
@@ -129,9 +131,9 @@ impl Adjacency {
         labels
     }
 
-    /// For each corner, `3 * face + corner`, the lowest corner of its fan.
+    /// Lowest corner of the fan of each corner, where corners are numbered `3 * face + corner`.
     ///
-    /// A fan is a set of corners at one vertex whose faces follow each other around it as neighbors.
+    /// A fan is a set of corners at one vertex whose faces are connected around the vertex through neighbors.
     pub(crate) fn fans(&self, mesh: &Mesh) -> Vec<usize> {
         let mut fans: Vec<usize> = (0..3 * self.across.len()).collect();
         for (face, across) in self.across.iter().enumerate() {
@@ -142,7 +144,7 @@ impl Adjacency {
                 let [from, until] = [edge, (edge + 1) % 3];
                 let other = to.face.index();
                 let [there, next] = [usize::from(to.edge), (usize::from(to.edge) + 1) % 3];
-                // Faces of the same winding go through their edge in opposite directions.
+                // Faces with equal winding traverse their edge in opposite directions.
                 let opposite = mesh.faces()[face][from] != mesh.faces()[other][there];
                 let ends = if opposite {
                     [next, there]
@@ -159,17 +161,17 @@ impl Adjacency {
     }
 }
 
-/// An edge of a face, ready to be sorted.
+/// An edge of a face, in a form that can be sorted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct SortedEdge {
-    /// The lower and the higher vertex.
+    /// The lower and the higher vertex index.
     pub(crate) ends: [VertexIdx; 2],
     pub(crate) of: FaceEdge,
-    /// Whether the face goes from the lower to the higher vertex.
+    /// Whether the face traverses the edge from the lower to the higher vertex.
     pub(crate) forward: bool,
 }
 
-/// The edges of all faces that name three different vertices, those with the same ends together.
+/// Edges of all faces with three different vertices, sorted so that edges with equal ends are adjacent.
 pub(crate) fn sorted_edges(mesh: &Mesh) -> Vec<SortedEdge> {
     let mut edges = Vec::with_capacity(mesh.faces().len() * 3);
     for (face, corners) in (0..).map(FaceIdx).zip(mesh.faces()) {
@@ -189,21 +191,22 @@ pub(crate) fn sorted_edges(mesh: &Mesh) -> Vec<SortedEdge> {
     edges
 }
 
-/// Whether a face names a vertex twice.
+/// Returns whether a face contains a vertex twice.
 pub(crate) fn names_twice([a, b, c]: [VertexIdx; 3]) -> bool {
     a == b || b == c || c == a
 }
 
-/// Makes one set of two: in `parents` every element names a lower one of its set, and the lowest itself.
+/// Unites two sets of a disjoint-set forest. Every parent is lower than its child, and the lowest element of a set is
+/// its root.
 pub(crate) fn unite(parents: &mut [usize], a: usize, b: usize) {
     let (a, b) = (root(parents, a), root(parents, b));
     parents[a.max(b)] = a.min(b);
 }
 
-/// The lowest element of a set.
+/// Root of a set, which is its lowest element.
 pub(crate) fn root(parents: &mut [usize], mut element: usize) -> usize {
     while parents[element] != element {
-        // Halves the path for the next time.
+        // Halve the path for later searches.
         parents[element] = parents[parents[element]];
         element = parents[element];
     }

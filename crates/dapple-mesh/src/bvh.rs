@@ -1,4 +1,4 @@
-//! Which face a ray meets first, and which point of a mesh is nearest.
+//! Ray casting and nearest-point queries on a mesh.
 
 mod build;
 mod tree;
@@ -11,43 +11,43 @@ use glam::DVec3;
 use tree::Tree;
 use triangle::{Corners, Probe, nearest_weights};
 
-/// A half line.
+/// A half-line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// The position where the ray begins.
+    /// Start of the ray.
     pub origin: DVec3,
-    /// The direction of the ray, of length 1, so that a parameter along it is a distance.
+    /// Direction of length 1, so that ray parameters are distances.
     pub direction: DVec3,
 }
 
-/// Where a ray meets a mesh.
+/// Intersection of a ray with a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayHit {
-    /// How far along the ray, above zero.
+    /// Distance along the ray, greater than zero.
     pub distance: f64,
-    /// The face.
+    /// Face that was hit.
     pub face: FaceIdx,
-    /// The weights of its corners, which sum to 1.
+    /// Barycentric weights of the corners, which sum to 1.
     pub weights: [f64; 3],
 }
 
-/// The point of a mesh nearest to a position.
+/// Point of a mesh that is nearest to a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestPoint {
-    /// The point.
+    /// Position of the point.
     pub position: DVec3,
-    /// Its distance from the position, squared.
+    /// Squared distance from the queried position.
     pub distance_sq: f64,
-    /// Its face.
+    /// Face that contains the point.
     pub face: FaceIdx,
-    /// The weights of the corners of the face, which sum to 1.
+    /// Barycentric weights of the corners, which sum to 1.
     pub weights: [f64; 3],
 }
 
-/// A hierarchy of boxes around the faces of a mesh (a bounding volume hierarchy), for rays and nearest points.
+/// A bounding volume hierarchy over the faces of a mesh, for ray casting and nearest-point queries.
 ///
-/// Answers are those of a search through all faces, to the last bit; of several faces at one distance it is the one with
-/// the lowest index. Faces are seen from both sides, and those without an area are never met by a ray.
+/// Results equal those of a search through all faces, bit for bit. Among faces at the same distance, the one with the
+/// lowest index is returned. Faces are two-sided; rays never hit a face without an area.
 ///
 /// # Examples
 ///
@@ -63,12 +63,12 @@ pub struct NearestPoint {
 #[derive(Clone)]
 pub struct Bvh {
     tree: Tree,
-    /// The corners of the faces in the order of the tree.
+    /// Corners of the faces, in the order of the tree.
     corners: Vec<Corners>,
 }
 
 impl Ray {
-    /// The point at a distance from the origin.
+    /// Point at a distance from the origin.
     #[inline]
     #[must_use]
     pub fn at(&self, distance: f64) -> DVec3 {
@@ -77,7 +77,7 @@ impl Ray {
 }
 
 impl Bvh {
-    /// Builds the hierarchy; the mesh may be empty.
+    /// Builds the hierarchy. The mesh may be empty.
     #[must_use]
     pub fn new(mesh: &Mesh) -> Self {
         let faces = (0..mesh.faces().len() as u32).map(FaceIdx);
@@ -90,7 +90,7 @@ impl Bvh {
         }
     }
 
-    /// The nearest face on a ray, at a distance above zero and at most `limit`.
+    /// Returns the nearest face hit by a ray, at a distance above zero and at most `limit`.
     #[must_use]
     pub fn first_hit(&self, ray: &Ray, limit: f64) -> Option<RayHit> {
         let (ray, shift) = self.near_ray(ray);
@@ -110,7 +110,7 @@ impl Bvh {
         best
     }
 
-    /// Whether a face is on a ray at a distance above zero and below `limit`.
+    /// Returns whether a ray hits any face at a distance above zero and below `limit`.
     #[must_use]
     pub fn is_blocked(&self, ray: &Ray, limit: f64) -> bool {
         let (ray, shift) = self.near_ray(ray);
@@ -121,13 +121,13 @@ impl Bvh {
                 let hit = self.meet(&probe, shift, slot);
                 hit.is_some_and(|hit| hit.distance < limit)
             });
-            // No box is nearer than this, so that the search ends.
+            // No box is nearer than minus infinity, so the search ends.
             blocked.then_some(f64::NEG_INFINITY)
         });
         blocked
     }
 
-    /// The point of the mesh nearest to a position; nothing for an empty mesh and for a position that is not finite.
+    /// Returns the point of the mesh nearest to a position; `None` for an empty mesh or a position that is not finite.
     #[must_use]
     pub fn nearest_point(&self, position: DVec3) -> Option<NearestPoint> {
         if !position.is_finite() {
@@ -146,7 +146,7 @@ impl Bvh {
         best
     }
 
-    /// The nearest point of one face.
+    /// Nearest point of one face.
     fn nearest_of(&self, slot: u32, position: DVec3) -> NearestPoint {
         let corners = self.corners[slot as usize].positions();
         let weights = nearest_weights(corners, position);
@@ -159,8 +159,9 @@ impl Bvh {
         }
     }
 
-    /// The ray from its point nearest to the middle of the mesh, from which distances are about the size of the mesh, so
-    /// that rounding is small beside the margin of the boxes; and how far that is along the ray.
+    /// Moves the origin of a ray to its point nearest to the center of the mesh, and returns the distance of the move.
+    /// Distances from the new origin are about the size of the mesh, so that rounding stays well below the margin of
+    /// the boxes.
     fn near_ray(&self, ray: &Ray) -> (Ray, f64) {
         let shift = (self.tree.middle() - ray.origin).dot(ray.direction);
         let origin = ray.at(shift);
@@ -168,7 +169,7 @@ impl Bvh {
         (Ray { origin, direction }, shift)
     }
 
-    /// The hit of one face, if it is at a distance above zero.
+    /// Intersects the ray with one face; `None` unless the distance is above zero.
     fn meet(&self, probe: &Probe, shift: f64, slot: u32) -> Option<RayHit> {
         let (distance, weights) = probe.meet(&self.corners[slot as usize])?;
         let distance = distance + shift;

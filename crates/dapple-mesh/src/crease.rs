@@ -1,21 +1,21 @@
-//! Normals of corners, which are smooth across blunt edges and split at sharp ones.
+//! Corner normals that are smooth across blunt edges and split at sharp ones.
 //!
-//! Reference: our own; it is what modelling programs call automatic smoothing by an angle.
+//! Reference: our own; modeling programs call it automatic smoothing by an angle.
 
 use crate::adjacency::{Adjacency, FaceEdge};
 use crate::{FaceIdx, Mesh};
 use glam::DVec3;
 
-/// The angle of an edge, in radians, above which it is shaded as a crease by default: 30 degrees.
+/// Default crease angle in radians: 30 degrees. Edges with a larger angle between their faces are shaded as creases.
 pub const CREASE: f64 = core::f64::consts::FRAC_PI_6;
 
 impl Mesh {
-    /// The unit normals of the corners of all faces, split at creases: edges at which the directions of the two faces
+    /// Unit normals of the corners of all faces, split at creases. A crease is an edge whose faces have normals that
     /// differ by more than `crease`, in radians.
     ///
-    /// The corners at a vertex whose faces follow each other without a crease between them have one normal: the sum of
-    /// those of their faces, weighted by area; zero where there is none. Edges of one face, or of three or more, are
-    /// creases, too.
+    /// Corners at a vertex whose faces are connected without a crease share one normal: the area-weighted sum of the
+    /// normals of these faces, normalized, or zero if the sum is zero. Edges of one face, or of three or more faces,
+    /// are also creases.
     ///
     /// # Examples
     ///
@@ -29,13 +29,14 @@ impl Mesh {
     #[must_use]
     pub fn corner_normals(&self, crease: f64) -> Vec<[DVec3; 3]> {
         let cos = libm::cos(crease);
-        // As long as twice the areas.
+        // Face normals, with lengths of twice the areas.
         let normals: Vec<DVec3> = (0..self.faces.len() as u32)
             .map(|face| {
                 let [a, b, c] = self.corners(FaceIdx(face));
                 (b - a).cross(c - a)
             })
             .collect();
+        // Separate neighbors at creases.
         let mut adjacency = Adjacency::new(self);
         for face in (0..self.faces.len() as u32).map(FaceIdx) {
             for edge in 0..3 {
@@ -49,6 +50,7 @@ impl Mesh {
                 }
             }
         }
+        // Sum the face normals of each fan.
         let fans = adjacency.fans(self);
         let mut sums = vec![DVec3::ZERO; fans.len()];
         for (corner, &fan) in fans.iter().enumerate() {
@@ -85,7 +87,7 @@ mod tests {
             let smooth = mesh.corner_normals(core::f64::consts::PI);
             for (face, corners) in mesh.faces().iter().zip(smooth) {
                 for (vertex, corner) in face.iter().zip(corners) {
-                    // Sums of the same vectors in the same order.
+                    // Both are sums of the same vectors in the same order.
                     assert_eq!(corner, normals[vertex.index()]);
                 }
             }

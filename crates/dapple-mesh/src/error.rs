@@ -1,42 +1,42 @@
-//! Why a mesh, a file or a request was refused.
+//! Errors of meshes, mesh files and queries.
 
 dapple_raster::error! {
-    /// Why a mesh could not be made, read, or used.
+    /// Error of creating, reading or using a mesh.
     MeshError,
-    /// The limit that was broken.
+    /// The limit that was violated.
     MeshErrorKind with Range {
-        /// There are more or fewer things than needed.
+        /// A count is too large or too small.
         Count {
-            /// The name of the counted things.
+            /// Name of the counted items.
             what: &'static str,
-            /// How many there are.
+            /// Number of items.
             count: usize,
-            /// How many were needed, as text.
+            /// Required number, as text.
             needed: &'static str,
         } => "there are {count} {what}, but {needed} are needed";
-        /// A position has a part that is NaN, infinite, or above 1e30.
+        /// A coordinate of a position is NaN, infinite, or above 1e30 in absolute value.
         Position {
-            /// The vertex.
+            /// Index of the vertex.
             vertex: usize,
-            /// The part.
+            /// Value of the coordinate.
             value: f64,
         } => "a part of the position of vertex {vertex} is {value}, but it must be between -1e30 and 1e30";
-        /// A face names a vertex that there is not.
+        /// A face refers to a vertex that does not exist.
         Corner {
-            /// The face.
+            /// Index of the face.
             face: usize,
-            /// The vertex that it names.
+            /// Index of the missing vertex.
             vertex: u32,
-            /// How many vertices there are.
+            /// Number of vertices.
             count: usize,
         } => "face {face} names vertex {vertex}, but there are only {count}";
-        /// The mesh has defects that [`Mesh::repair`](crate::Mesh::repair) mends.
+        /// The mesh has defects that [`Mesh::repair`](crate::Mesh::repair) fixes.
         Defects {
-            /// Faces without an area.
+            /// Number of faces without an area.
             degenerate: usize,
-            /// Faces with the same three vertices as an earlier one.
+            /// Number of faces with the same three vertices as an earlier face.
             duplicate: usize,
-            /// Edges whose two faces go around different sides.
+            /// Number of edges whose two faces have inconsistent winding.
             winding: usize,
         } =>
             "the mesh has {degenerate} faces without an area, {duplicate} duplicate faces and \

@@ -1,15 +1,15 @@
-//! The numbers of vertices and faces.
+//! Indices of vertices and faces.
 
-/// The number of a vertex of a mesh, from 0.
+/// Index of a vertex of a mesh, starting at 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct VertexIdx(pub u32);
 
-/// The number of a face of a mesh, from 0.
+/// Index of a face of a mesh, starting at 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FaceIdx(pub u32);
 
 impl VertexIdx {
-    /// The number as an index into a column.
+    /// Returns the index as `usize`, for use with slices.
     #[inline]
     #[must_use]
     pub const fn index(self) -> usize {
@@ -18,7 +18,7 @@ impl VertexIdx {
 }
 
 impl FaceIdx {
-    /// The number as an index into a column.
+    /// Returns the index as `usize`, for use with slices.
     #[inline]
     #[must_use]
     pub const fn index(self) -> usize {

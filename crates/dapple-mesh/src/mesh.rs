@@ -1,17 +1,18 @@
-//! Triangles that share vertices.
+//! Triangle meshes with shared vertices.
 
 use crate::{MeshError, MeshErrorKind, VertexIdx};
 use glam::DVec3;
 
-/// The largest absolute value of a part of a position, 1e30: squares and their sums stay finite.
+/// Maximum absolute value of a coordinate, 1e30: squares and their sums stay finite.
 pub const POSITION_MAX: f64 = 1e30;
-/// The most vertices and the most faces: indices and twice their number fit 32 bits.
+/// Maximum number of vertices and of faces: indices and twice their number fit 32 bits.
 const COUNT_MAX: usize = 1 << 31;
 
 /// A triangle mesh: positions of vertices, and three vertices for each face.
 ///
-/// A face goes around its outside counterclockwise. Nothing else is promised: a mesh may be empty or open, in several
-/// pieces, and have defects, which [`report`](Self::report) counts and [`repair`](Self::repair) mends.
+/// Faces are counterclockwise seen from outside. There are no other guarantees: a mesh may be empty or open, have
+/// several pieces, and have defects. [`report`](Self::report) counts the defects and [`repair`](Self::repair) fixes
+/// them.
 ///
 /// # Examples
 ///
@@ -29,12 +30,12 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// The mesh with these positions and, for each face, the numbers of its three vertices.
+    /// Creates a mesh from positions and, for each face, the indices of its three vertices.
     ///
     /// # Errors
     ///
-    /// [`MeshErrorKind::Position`] if a part of a position is not finite or beyond 1e30, [`MeshErrorKind::Corner`] if a
-    /// face names no vertex, [`MeshErrorKind::Count`] past 2^31 vertices or faces.
+    /// [`MeshErrorKind::Position`] if a coordinate is not finite or beyond 1e30, [`MeshErrorKind::Corner`] if a face
+    /// refers to a missing vertex, [`MeshErrorKind::Count`] past 2^31 vertices or faces.
     pub fn new(positions: Vec<DVec3>, faces: &[[u32; 3]]) -> Result<Self, MeshError> {
         for (what, count) in [("vertices", positions.len()), ("faces", faces.len())] {
             if count > COUNT_MAX {
@@ -47,7 +48,7 @@ impl Mesh {
             }
         }
         for (vertex, position) in positions.iter().enumerate() {
-            // NaN is not at most anything.
+            // A comparison with NaN is `None`, which is rejected.
             let refused = |part: &f64| !matches!(part.abs().partial_cmp(&POSITION_MAX), Some(order) if order.is_le());
             if let Some(value) = position.to_array().into_iter().find(refused) {
                 return Err(MeshError::new(MeshErrorKind::Position { vertex, value }));
@@ -67,35 +68,36 @@ impl Mesh {
         Ok(Self { positions, faces })
     }
 
-    /// The positions of the vertices, in the order of [`VertexIdx`].
+    /// Positions of the vertices, in the order of [`VertexIdx`].
     #[must_use]
     pub fn positions(&self) -> &[DVec3] {
         &self.positions
     }
 
-    /// The vertices of the faces, in the order of [`FaceIdx`](crate::FaceIdx).
+    /// Vertices of the faces, in the order of [`FaceIdx`](crate::FaceIdx).
     #[must_use]
     pub fn faces(&self) -> &[[VertexIdx; 3]] {
         &self.faces
     }
 
-    /// The corners of a face.
+    /// Positions of the corners of a face.
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// If the face does not exist.
     #[must_use]
     pub fn corners(&self, face: crate::FaceIdx) -> [DVec3; 3] {
         self.faces[face.index()].map(|vertex| self.positions[vertex.index()])
     }
 
-    /// The unit normals of the vertices: the sum of those of their faces, weighted by area; zero where there is none.
+    /// Unit normals of the vertices: area-weighted sums of the normals of their faces, normalized; zero if the sum is
+    /// zero.
     #[must_use]
     pub fn vertex_normals(&self) -> Vec<DVec3> {
         let mut normals = vec![DVec3::ZERO; self.positions.len()];
         for face in &self.faces {
             let [a, b, c] = face.map(|vertex| self.positions[vertex.index()]);
-            // As long as twice the area.
+            // The length is twice the area.
             let normal = (b - a).cross(c - a);
             for vertex in face {
                 normals[vertex.index()] += normal;
@@ -177,7 +179,7 @@ mod tests {
     #[test]
     fn vertex_normals_are_weighted_by_area_and_zero_where_nothing_is() {
         assert_eq!(plane(2, 2).vertex_normals(), vec![DVec3::Z; 9], "flat");
-        // At the first corner all three sides have both or one of their triangles.
+        // At the first corner, all three sides have one or two of their triangles.
         let normal = cube().vertex_normals()[0];
         assert!(normal.max_element() < 0.0, "outward");
         let alone = mesh(

@@ -1,7 +1,7 @@
-//! The content of a mesh file: a mesh, its columns, and one material whose textures travel as encoded bytes.
+//! Content of a mesh file: a mesh, its vertex and corner attributes, and one material with encoded textures.
 //!
-//! Colors are linear light. Texture coordinates have v down: (0, 0) is the top left corner of the first row of the
-//! texture, as in glTF; the readers and writers of formats in which v goes up turn it over.
+//! Colors are in linear light. The v axis of texture coordinates points down: (0, 0) is the top left corner of the
+//! first row of the texture, as in glTF. Readers and writers of formats whose v axis points up flip it.
 
 use crate::mesh::POSITION_MAX;
 use crate::{Mesh, MeshError, MeshErrorKind};
@@ -9,16 +9,17 @@ use dapple_color::{LinearRgb, LinearRgba};
 use glam::{DVec2, DVec3};
 use std::collections::BTreeSet;
 
-/// How far a corner may lie out of the unit square of its face by rounding.
+/// Tolerance of rounding for a corner outside of the unit square of its face, in texture coordinates.
 const UV_SLACK: f64 = 1e-4;
-/// The first bytes of every PNG file.
+/// Signature of PNG files.
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
-/// The first bytes of every JPEG file.
+/// Signature of JPEG files.
 const JPEG: &[u8] = b"\xff\xd8\xff";
 
-/// A mesh with everything that a file says about its looks.
+/// A mesh with all attributes of its appearance that a file contains.
 ///
-/// The fields are free to change; [`check`](Self::check) says whether they fit together, and every writer asks it.
+/// The fields may be changed freely; [`check`](Self::check) verifies that they are consistent, and every writer calls
+/// it.
 ///
 /// # Examples
 ///
@@ -33,78 +34,79 @@ const JPEG: &[u8] = b"\xff\xd8\xff";
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Model {
-    /// The triangles. A mesh without faces is a cloud of points, which may have normals and colors.
+    /// Triangles. A mesh without faces is a point cloud, which may have normals and colors.
     pub mesh: Mesh,
-    /// A color for each vertex, linear.
+    /// Color of each vertex, linear.
     pub colors: Option<Vec<LinearRgba>>,
-    /// A texture coordinate for each corner of each face, v down; 0 to 1 is once the texture.
+    /// Texture coordinates of each corner of each face, v down; the range 0 to 1 covers the texture once.
     pub uvs: Option<Vec<[DVec2; 3]>>,
-    /// A normal for each vertex; zero where there is none.
+    /// Normal of each vertex; zero if undefined.
     pub normals: Option<Vec<DVec3>>,
-    /// A normal for each corner of each face, which may differ at a crease; they go before those of the vertices.
+    /// Normal of each corner of each face, which may differ at a crease. Corner normals take precedence over vertex
+    /// normals.
     pub corner_normals: Option<Vec<[DVec3; 3]>>,
-    /// The material of all faces; that of the first unit square, if there are `tiles`.
+    /// Material of all faces; the material of the first unit square if there are `tiles`.
     pub material: Material,
-    /// The materials of unit squares of texture coordinates, where each has textures of its own (UDIM), in the order of
-    /// their numbers. Empty where all faces share one texture.
+    /// Materials of unit squares of texture coordinates, if each square has separate textures (UDIM), ordered by
+    /// number. Empty if all faces share one texture.
     pub tiles: Vec<TileMaterial>,
-    /// Parts of a file that a reader left out, since the file contradicts itself or a model has no place for them, in words
-    /// for people; no writer writes it.
+    /// Descriptions of parts of a file that a reader skipped, because the file is contradictory or a model cannot
+    /// represent them. Writers ignore this field.
     pub left_out: Vec<String>,
 }
 
-/// The material of the faces in a unit square of texture coordinates.
+/// Material of the faces in a unit square of texture coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TileMaterial {
-    /// The number of the square, as [`Model::unit_squares`] has it.
+    /// UDIM number of the square, as in [`Model::unit_squares`].
     pub number: u32,
-    /// The material, whose textures cover the square.
+    /// Material whose textures cover the square.
     pub material: Material,
 }
 
-/// The look of a surface: the metallic-roughness material of glTF 2.0.
+/// Appearance of a surface: the metallic-roughness material of glTF 2.0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    /// The factor of the base color, linear; white by default.
+    /// Factor of the base color, linear [default: white].
     pub base_color_factor: LinearRgba,
-    /// The base color, which the file codes as sRGB.
+    /// Base color texture, encoded as sRGB.
     pub base_color: Option<EncodedImage>,
-    /// The normals in the tangent frame of the texture coordinates, green up.
+    /// Normal map in the tangent frame of the texture coordinates, green up.
     pub normal: Option<EncodedImage>,
-    /// Roughness in green and metalness in blue.
+    /// Texture with roughness in green and metalness in blue.
     pub metallic_roughness: Option<EncodedImage>,
-    /// Ambient occlusion in red; it may be the image of metalness and roughness, which then holds all three.
+    /// Texture with ambient occlusion in red. It may be the metallic-roughness image, which then packs all three.
     pub occlusion: Option<EncodedImage>,
-    /// What the alpha of the base color does.
+    /// Interpretation of the alpha of the base color.
     pub alpha: AlphaMode,
-    /// Whether textures may be shown by the coarser levels of a mipmap; true by default. Where pieces of a texture lie
-    /// close to each other, those mix pieces that are far apart on the mesh.
+    /// Whether textures may use coarser mipmap levels [default: true]. Where islands of an atlas are close together,
+    /// coarse levels mix islands that are far apart on the mesh.
     pub mipmaps: bool,
-    /// Whether the back of a face is seen, too; false by default.
+    /// Whether faces are visible from the back as well [default: false].
     pub double_sided: bool,
 }
 
-/// What alpha does, that of the texture of the base color times that of its factor.
+/// Interpretation of alpha, which is the alpha of the base color texture times the alpha of its factor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum AlphaMode {
-    /// Nothing: all is opaque. A factor that is not opaque blends.
+    /// Alpha is ignored and the surface is opaque. A factor that is not opaque blends.
     #[default]
     Opaque,
-    /// It cuts: what has an alpha of at least one half is opaque, and the rest is not there.
+    /// Alpha of at least one half is opaque, and lower alpha is fully transparent.
     Mask,
-    /// It blends what is there with what lies behind.
+    /// Alpha blends the surface with the background.
     Blend,
 }
 
-/// The bytes of an image file. They are not decoded; only their first ones are looked at.
+/// Bytes of an image file, not decoded. Only the signature is inspected.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EncodedImage {
     format: ImageFormat,
     bytes: Vec<u8>,
 }
 
-/// The format of an [`EncodedImage`].
+/// Format of an [`EncodedImage`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ImageFormat {
@@ -115,10 +117,10 @@ pub enum ImageFormat {
 }
 
 impl Model {
-    /// What [`left_out`](Self::left_out) has where faces have several materials, of which a model keeps the first.
+    /// Entry of [`left_out`](Self::left_out) for faces with several materials, of which a model keeps the first.
     pub const FURTHER_MATERIALS: &str = "the materials of faces but the first";
 
-    /// The normals of the corners of all faces, or else those of their vertices; nothing if there are neither.
+    /// Normals of the corners of all faces, derived from vertex normals if necessary; `None` without any normals.
     #[must_use]
     pub fn normals_of_corners(&self) -> Option<Vec<[DVec3; 3]>> {
         if self.corner_normals.is_some() {
@@ -133,14 +135,14 @@ impl Model {
         )
     }
 
-    /// The numbers of the unit squares of texture coordinates with faces, in order: 1001 + u + 10 v for the whole parts of
-    /// u and v, v up, as UDIM numbers tiles. Empty if a face lies in several, as it does where a texture repeats, or
-    /// beyond the ten columns of UDIM.
+    /// UDIM numbers of the unit squares of texture coordinates that contain faces, in ascending order: 1001 + u + 10
+    /// v, with the integer parts of u and v, v up. Empty if a face spans several squares, as with repeating textures,
+    /// or lies beyond the ten columns of UDIM.
     #[must_use]
     pub fn unit_squares(&self) -> Vec<u32> {
         let mut squares = BTreeSet::new();
         for corners in self.uvs.iter().flatten() {
-            // In the mean of the corners no rounding leads to a neighbor.
+            // The mean of the corners is inside of the square despite rounding.
             let mean = corners.iter().sum::<DVec2>() / 3.0;
             let square = DVec2::new(mean.x.floor(), (1.0 - mean.y).floor());
             let least = DVec2::new(square.x, -square.y);
@@ -158,12 +160,13 @@ impl Model {
         squares.into_iter().collect()
     }
 
-    /// Whether the columns have the lengths of the mesh and only numbers that a file can hold.
+    /// Checks that the attributes have the lengths of the mesh and contain only numbers that a file can represent.
     ///
     /// # Errors
     ///
-    /// [`MeshErrorKind::Count`] if a column is longer or shorter than the mesh; [`MeshErrorKind::Range`] if a part of a
-    /// color is not finite, or one of a normal or a texture coordinate is not between -1e30 and 1e30.
+    /// [`MeshErrorKind::Count`] if the length of an attribute does not match the mesh; [`MeshErrorKind::Range`] if a
+    /// component of a color is not finite, or a component of a normal or texture coordinate is not between -1e30 and
+    /// 1e30.
     pub fn check(&self) -> Result<(), MeshError> {
         let (vertices, faces) = (self.mesh.positions().len(), self.mesh.faces().len());
         if let Some(colors) = &self.colors {
@@ -195,7 +198,7 @@ impl Model {
 }
 
 impl From<Mesh> for Model {
-    /// The mesh, and nothing else.
+    /// Creates a model of a mesh without attributes.
     fn from(mesh: Mesh) -> Self {
         Self {
             mesh,
@@ -220,11 +223,11 @@ impl Default for Material {
 }
 
 impl EncodedImage {
-    /// The image in these bytes, whose beginning says which format it has.
+    /// Wraps encoded bytes; their signature determines the format.
     ///
     /// # Errors
     ///
-    /// [`MeshErrorKind::Image`] if they begin neither as a PNG nor as a JPEG file.
+    /// [`MeshErrorKind::Image`] if the bytes have neither a PNG nor a JPEG signature.
     pub fn new(bytes: Vec<u8>) -> Result<Self, MeshError> {
         let format = if bytes.starts_with(PNG) {
             ImageFormat::Png
@@ -236,13 +239,13 @@ impl EncodedImage {
         Ok(Self { format, bytes })
     }
 
-    /// The format.
+    /// Format of the image.
     #[must_use]
     pub fn format(&self) -> ImageFormat {
         self.format
     }
 
-    /// The bytes, as a file has them.
+    /// Encoded bytes, as in a file.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
@@ -250,7 +253,7 @@ impl EncodedImage {
 }
 
 impl ImageFormat {
-    /// The extension of a file of this format.
+    /// File extension of this format.
     #[must_use]
     pub fn extension(self) -> &'static str {
         match self {
@@ -259,7 +262,7 @@ impl ImageFormat {
         }
     }
 
-    /// The media type: `image/png` or `image/jpeg`.
+    /// Media type: `image/png` or `image/jpeg`.
     #[must_use]
     pub fn media_type(self) -> &'static str {
         match self {
@@ -360,7 +363,7 @@ mod tests {
             model.unit_squares()
         };
         let at = |u: f64, v: f64| [[u, v], [u + 1.0, v], [u + 1.0, v + 1.0], [u, v + 1.0]];
-        // Here v goes down: the square above the first is at -1.
+        // The v axis points down here: the square above the first is at -1.
         assert_eq!(squares(at(0.0, 0.0)), [1001]);
         assert_eq!(squares(at(1.0, 0.0)), [1002]);
         assert_eq!(squares(at(0.0, -1.0)), [1011]);

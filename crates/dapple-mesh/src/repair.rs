@@ -1,62 +1,64 @@
-//! One way to mend what can be mended.
+//! Repair of mesh defects.
 //!
-//! The steps, in their order:
+//! The steps, in order:
 //!
-//! 1. Vertices at the same position become one, the first. Two sides of a sheet become one thereby.
-//! 2. Faces that name a vertex twice are dropped, and of faces with the same vertices all but the first; where twice
-//!    their area is at most 2^-40 times the square of the longest edge, they cancel in pairs.
-//! 3. Other faces without an area are mended so that their neighbors stay neighbors. In a *needle* the shortest edge
-//!    is at most 2^-40 times the longest: its two vertices become one, the first. In a *cap* a corner lies on the opposite,
-//!    longest edge. Another face there, if there is one, is split at that corner, and the cap is dropped, which together
-//!    is the flip of the edge; without another face the cap is only dropped, and leaves the same border. A flip
-//!    that gives a longer edge and yet a face without an area is not made; where only such are left, caps whose shortest
-//!    edge is at most 2^-20 times the longest are taken for needles. Steps 2 and 3 take turns until nothing is left; when
-//!    they change nothing more, and after 64 turns, the faces without an area that are left are dropped.
-//! 4. Faces are turned over so that all of a piece go around the same side, by a breadth-first flood over edges of two
-//!    faces from the lowest face, the lower of the next faces first. A piece that is closed keeps the side that makes its
-//!    volume positive; any other, the one that turns over the smaller area, and in doubt that of its lowest face.
-//! 5. Where that leaves edges whose faces disagree, because there is only one side, as on a Möbius strip, the piece is
-//!    cut along them: every vertex there is split into one for each fan of its faces.
-//! 6. Vertices that no face names are dropped.
+//! 1. Vertices at the same position are merged into the first one. This also merges the two sides of a sheet.
+//! 2. Faces that contain a vertex twice are dropped. Of faces with the same vertices, all except the first are
+//!    dropped; if twice their area is at most 2^-40 times the square of the longest edge, they cancel in pairs.
+//! 3. Other faces without an area are removed so that their neighbors stay connected. In a *needle* the shortest edge
+//!    is at most 2^-40 times the longest: its two vertices are merged into the first one. In a *cap* a corner lies on
+//!    the opposite, longest edge. If another face shares this edge, it is split at that corner and the cap is dropped,
+//!    which together is an edge flip. Without another face the cap is only dropped, which leaves the same border. A
+//!    flip that gives a longer edge and still a face without an area is not made. Where only such flips remain, caps
+//!    whose shortest edge is at most 2^-20 times the longest are treated as needles. Steps 2 and 3 alternate until no
+//!    such face is left. When they change nothing more, and after 64 turns, the remaining faces without an area are
+//!    dropped.
+//! 4. Faces are flipped so that the winding of each piece is consistent, by a breadth-first flood across edges of two
+//!    faces. It starts at the lowest face and visits lower faces first. A closed piece gets the winding with a
+//!    positive volume. An open piece gets the winding that flips the smaller area, or keeps the winding of its lowest
+//!    face on a tie.
+//! 5. Edges whose faces still disagree exist only on one-sided pieces, such as a Möbius strip. The piece is cut along
+//!    them: every vertex there is split into one vertex per fan of its faces.
+//! 6. Unused vertices are dropped.
 //!
-//! Step 3 leaves no crack in a closed mesh with a few such faces, as tests show; where many lie on top of each other, it
-//! may.
+//! Step 3 leaves no crack in a closed mesh with a few such faces, as tests show. Where many of them overlap, it may.
 //!
-//! The result has no face or is a [`Surface`](crate::Surface), and repairing it again changes nothing. Non-manifold
-//! edges and vertices stay (but for the cuts): an edge of three faces is a border, and at a vertex of two fans nothing
-//! needs to know.
+//! The result has no face or is a valid [`Surface`](crate::Surface), and repairing it again changes nothing.
+//! Non-manifold edges and vertices stay, except for the cuts: an edge of three faces is a border, and a vertex of two
+//! fans needs no special treatment.
 
 mod faces;
 mod winding;
 
 use crate::{FaceIdx, Mesh, MeshReport, VertexIdx};
 
-/// The changes that [`Mesh::repair`] made.
+/// Changes made by [`Mesh::repair`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Repair {
-    /// The report of the mesh before the repair.
+    /// Report of the mesh before the repair.
     pub before: MeshReport,
-    /// The report of the repaired mesh.
+    /// Report of the repaired mesh.
     pub after: MeshReport,
-    /// For each vertex now the vertex before that it was.
+    /// Original vertex of each vertex of the result.
     pub vertex_before: Vec<VertexIdx>,
-    /// For each face now the face before that it was, or that it is a part of.
+    /// Original face of each face of the result; a part of a split face refers to the whole face.
     pub face_before: Vec<FaceIdx>,
-    /// How many faces were turned over.
+    /// Number of flipped faces.
     pub turned_faces: usize,
-    /// Along how many edges a piece with only one side was cut.
+    /// Number of edges along which one-sided pieces were cut.
     pub cut_edges: usize,
 }
 
 impl Mesh {
-    /// The mesh without duplicate vertices, unused vertices, degenerate and duplicate faces, and with consistent winding.
+    /// Returns the mesh without duplicate vertices, unused vertices, degenerate faces and duplicate faces, and with
+    /// consistent winding.
     ///
-    /// The result has no face, or [`Surface::new`](crate::Surface::new) takes it. Vertices and faces keep their order. A
-    /// mesh that needs nothing stays as it is, and so does one that was repaired. Only cuts in a piece with one side
-    /// leave duplicate vertices.
+    /// The result has no face, or [`Surface::new`](crate::Surface::new) accepts it. Vertices and faces keep their
+    /// order. A mesh without defects and a repaired mesh stay unchanged. Only cuts in a one-sided piece leave
+    /// duplicate vertices.
     ///
-    /// Two vertices at one position become one, which closes seams, and makes one sheet of two that coincide.
+    /// Vertices at the same position are merged. This closes seams, and turns two coinciding sheets into one.
     ///
     /// # Examples
     ///
@@ -89,7 +91,7 @@ impl Mesh {
     }
 }
 
-/// A mesh under repair, and where its parts come from.
+/// A mesh under repair, with the origins of its vertices and faces.
 struct Draft {
     mesh: Mesh,
     vertex_before: Vec<VertexIdx>,
@@ -97,7 +99,7 @@ struct Draft {
 }
 
 impl Draft {
-    /// The mesh with one vertex at each position; the others are still there, but unused.
+    /// Redirects all faces to the first vertex at each position; the other vertices remain unused.
     fn new(mesh: &Mesh) -> Self {
         let mut draft = Self {
             vertex_before: (0..mesh.positions().len() as u32).map(VertexIdx).collect(),
@@ -108,14 +110,14 @@ impl Draft {
         draft
     }
 
-    /// Gives the corners of all faces other vertices.
+    /// Replaces the vertices of all faces by `vertices`.
     fn rename(&mut self, vertices: &[u32]) {
         for corner in self.mesh.faces.as_flattened_mut() {
             *corner = VertexIdx(vertices[corner.index()]);
         }
     }
 
-    /// Keeps the marked faces, in their order.
+    /// Keeps the marked faces, in order.
     fn keep_faces(&mut self, keep: &[bool]) {
         let mut marks = keep.iter().copied();
         self.mesh.faces.retain(|_| marks.next() == Some(true));
@@ -123,7 +125,7 @@ impl Draft {
         self.face_before.retain(|_| marks.next() == Some(true));
     }
 
-    /// Drops the vertices that no face names.
+    /// Drops the vertices without a face.
     fn drop_unused(&mut self) {
         let mut names = vec![None; self.mesh.positions.len()];
         for corner in self.mesh.faces.as_flattened() {

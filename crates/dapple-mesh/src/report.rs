@@ -1,49 +1,50 @@
-//! Defects of a mesh, counted.
+//! Counting of mesh defects.
 
 use crate::adjacency::{Adjacency, names_twice, sorted_edges};
 use crate::triangle::area_vector;
 use crate::{FaceIdx, Mesh, VertexIdx};
 
-/// Counts of everything about a mesh that may be in the way.
+/// Counts of the elements and defects of a mesh.
 ///
-/// An edge is a pair of vertices that follow each other in a face. Faces that name a vertex twice have no edges here and
-/// are in no fan; all other faces count, also those without an area and duplicates.
+/// An edge is a pair of consecutive vertices of a face. Faces that contain a vertex twice contribute no edges and no
+/// fans. All other faces count, including duplicates and faces without an area.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MeshReport {
-    /// Vertices.
+    /// Number of vertices.
     pub vertices: usize,
-    /// Faces.
+    /// Number of faces.
     pub faces: usize,
     /// Pieces: sets of faces that are joined by edges of exactly two faces, whichever way these go through them. A face
     /// that names a vertex twice is a piece of its own; faces that share only a vertex, or an edge with a third face, are
     /// not joined by it.
     pub components: usize,
-    /// Edges of exactly one face.
+    /// Number of edges with exactly one face.
     pub boundary_edges: usize,
-    /// Edges of three or more faces.
+    /// Number of edges with three or more faces.
     pub non_manifold_edges: usize,
-    /// Vertices whose faces do not follow each other around them, over edges of exactly two faces, in one open or closed
-    /// fan. The ends of a non-manifold edge are always among them; a vertex that no face names is not.
+    /// Number of vertices whose faces do not form a single open or closed fan across edges of exactly two faces. The
+    /// ends of a non-manifold edge always count; unused vertices do not.
     pub non_manifold_vertices: usize,
-    /// Edges of exactly two faces that go through them in the same direction.
+    /// Number of edges whose two faces traverse them in the same direction.
     pub winding_edges: usize,
-    /// Faces that name a vertex twice, or have no area: twice the area is at most 2^-50 times the square of the longest
-    /// edge, where rounding drowns the normal, or that edge is shorter than 1e-60.
+    /// Number of faces that contain a vertex twice or have no area. A face has no area if twice its area is at most
+    /// 2^-50 times the square of its longest edge, where rounding dominates the normal, or if that edge is shorter
+    /// than 1e-60.
     pub degenerate_faces: usize,
-    /// Faces with the same three vertices, in any order, as an earlier one.
+    /// Number of faces with the same three vertices as an earlier face, in any order.
     pub duplicate_faces: usize,
     /// Faces at the same three positions as an earlier one that go around the other side: both sides of a sheet. Others
     /// at the same positions do not count.
     pub back_to_back_faces: usize,
-    /// Vertices at the same position as an earlier one.
+    /// Number of vertices at the position of an earlier vertex.
     pub duplicate_vertices: usize,
-    /// Vertices that no face names.
+    /// Number of vertices without a face.
     pub unused_vertices: usize,
 }
 
 impl Mesh {
-    /// Counts what may be in the way of an algorithm.
+    /// Counts the defects that algorithms may not handle.
     ///
     /// # Examples
     ///
@@ -60,7 +61,7 @@ impl Mesh {
         self.report_and_adjacency().0
     }
 
-    /// The report, and which faces are neighbors, also across edges where windings differ.
+    /// Report, and adjacency regardless of winding.
     pub(crate) fn report_and_adjacency(&self) -> (MeshReport, Adjacency) {
         let first_at_position = self.first_at_position();
         let mut report = MeshReport {
@@ -85,12 +86,12 @@ impl Mesh {
         (report, adjacency)
     }
 
-    /// Whether a face names a vertex twice or has no area.
+    /// Returns whether a face contains a vertex twice or has no area.
     pub(crate) fn is_degenerate(&self, face: FaceIdx) -> bool {
         names_twice(self.faces()[face.index()]) || area_vector(self.corners(face)).is_none()
     }
 
-    /// All faces, each with its vertices in rising order, and those with the same vertices together in rising order.
+    /// All faces with their vertices in ascending order, sorted so that faces with equal vertices are adjacent.
     pub(crate) fn faces_by_vertices(&self) -> Vec<([VertexIdx; 3], FaceIdx)> {
         let set = |mut corners: [VertexIdx; 3]| {
             corners.sort_unstable();
@@ -102,7 +103,7 @@ impl Mesh {
         faces
     }
 
-    /// Counts the faces that go around the other side than the first one at the same positions.
+    /// Counts the faces with a winding opposite to the first face at the same positions.
     fn back_to_back_faces(&self, first_at_position: &[u32]) -> usize {
         let mut faces = Vec::with_capacity(self.faces().len());
         for (face, &corners) in (0..).map(FaceIdx).zip(self.faces()) {
@@ -110,7 +111,7 @@ impl Mesh {
             if names_twice(corners) {
                 continue;
             }
-            // From the lowest on, the order of the other two says which side the face goes around.
+            // Starting at the lowest vertex, the order of the other two determines the winding.
             while corners[0] > corners[1].min(corners[2]) {
                 corners.rotate_left(1);
             }
@@ -126,12 +127,12 @@ impl Mesh {
         faces.chunk_by(|a, b| a.0 == b.0).map(others).sum()
     }
 
-    /// For each vertex the first one at the same position.
+    /// For each vertex, the first vertex at the same position.
     pub(crate) fn first_at_position(&self) -> Vec<u32> {
         let positions = self.positions();
         let order = |&a: &u32, &b: &u32| {
             let [p, q] = [a, b].map(|vertex| positions[vertex as usize].to_array());
-            // Positions are never NaN, so that those that do not differ are equal; so are zeros of both signs.
+            // Positions are never NaN, so incomparable positions do not occur; zeros of both signs are equal.
             p.partial_cmp(&q)
                 .unwrap_or(core::cmp::Ordering::Equal)
                 .then(a.cmp(&b))
@@ -147,7 +148,7 @@ impl Mesh {
         first
     }
 
-    /// Counts what is found at edges and around vertices, and gives which faces are neighbors.
+    /// Counts the defects at edges and vertices, and returns the adjacency.
     fn count_edges(&self, report: &mut MeshReport) -> Adjacency {
         let edges = sorted_edges(self);
         for group in edges.chunk_by(|a, b| a.ends == b.ends) {
@@ -160,6 +161,7 @@ impl Mesh {
         let adjacency = Adjacency::of_any_winding(self.faces().len(), &edges);
         let last = adjacency.components().into_iter().max();
         report.components = last.map_or(0, |last| last as usize + 1);
+        // Count the fans of each vertex by their lowest corners.
         let mut used = vec![false; self.positions().len()];
         let mut n_fans = vec![0_u32; self.positions().len()];
         let fans = adjacency.fans(self);

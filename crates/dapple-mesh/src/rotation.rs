@@ -2,9 +2,9 @@
 
 use glam::{DQuat, DVec3};
 
-/// The rotation by `angle` radians about a unit `axis`, counterclockwise as seen from the tip of the axis.
+/// Rotation by `angle` radians about a unit `axis`, counterclockwise when looking from the tip of the axis.
 ///
-/// Its bits are the same on every platform; those of the constructors of `glam` differ.
+/// The result has the same bits on every platform, unlike the constructors of `glam`.
 ///
 /// # Examples
 ///

@@ -1,13 +1,13 @@
-//! A mesh that can be walked on: every face laid out flat, and how its neighbors continue it.
+//! Surfaces: every face is unfolded into its own plane, with transitions to the planes of its neighbors.
 //!
-//! Every face has a plane with the first corner at the origin and the second on the positive x axis. Planes of neighbors
-//! are joined by the rigid motion that lays the other face beside this one, unfolded about their edge.
+//! The plane of a face has the first corner at the origin and the second on the positive x axis. The transition to a
+//! neighbor is the rigid motion that unfolds it about the shared edge.
 //!
-//! All is worked out from differences of positions, so that needles and flat triangles down to the limit that
-//! [`MeshReport::degenerate_faces`](crate::MeshReport::degenerate_faces) states have unit axes at right angles and turns
-//! that are right to a few roundings; their places are right to a few roundings of their longest edge.
+//! All quantities are computed from differences of positions. Needles and flat triangles down to the limit of
+//! [`MeshReport::degenerate_faces`](crate::MeshReport::degenerate_faces) therefore have orthonormal axes, and
+//! rotations that are accurate to a few roundings. Positions are accurate to a few roundings of their longest edge.
 //!
-//! Reference: our own; unfolding over edges is what Greg Turk, SIGGRAPH 1991, doi 10.1145/127719.122749, walks by.
+//! Reference: our own; Greg Turk, SIGGRAPH 1991, doi 10.1145/127719.122749, moves points by unfolding across edges.
 
 mod flat;
 
@@ -17,9 +17,9 @@ use flat::fold;
 pub(crate) use flat::{EdgeTransition, FaceFrame};
 use glam::{DVec2, DVec3};
 
-/// A mesh whose faces are laid out flat, so that points on it have a place and paths can be followed.
+/// A mesh with planar coordinates in every face, for points on the surface and paths across it.
 ///
-/// Borders (see [`Adjacency`]) are where paths end; the mesh need not be closed or in one piece.
+/// Paths end at borders (see [`Adjacency`]). The mesh may be open or have several pieces.
 #[derive(Clone, Debug)]
 pub struct Surface {
     mesh: Mesh,
@@ -29,25 +29,25 @@ pub struct Surface {
     area: f64,
 }
 
-/// A point on a surface: a face and a place in its plane.
+/// A point on a surface: a face and coordinates in its plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SurfacePoint {
-    /// The face.
+    /// Face that contains the point.
     pub face: FaceIdx,
-    /// The place in the plane of the face: the first corner is at the origin, the second on the positive x axis, and the
-    /// third has a positive y. In units of the mesh.
+    /// Coordinates in the plane of the face, in units of the mesh. The first corner is at the origin, the second is on
+    /// the positive x axis, and the third has a positive y.
     pub flat: DVec2,
 }
 
 impl Surface {
-    /// Lays out a mesh.
+    /// Computes the planes of all faces of a mesh.
     ///
     /// # Errors
     ///
-    /// [`MeshErrorKind::Defects`] if there are faces without an area, duplicate faces, or edges whose two faces go around
-    /// different sides: [`Mesh::repair`] mends them. [`MeshErrorKind::NoArea`] for a mesh without faces.
+    /// [`MeshErrorKind::Defects`] if there are faces without an area, duplicate faces, or edges with inconsistent
+    /// winding: [`Mesh::repair`] fixes them. [`MeshErrorKind::NoArea`] for a mesh without faces.
     pub fn new(mesh: Mesh) -> Result<Self, MeshError> {
-        // Where no windings differ, the neighbors are those of `Adjacency::new`.
+        // With consistent winding, this adjacency equals `Adjacency::new`.
         let (report, adjacency) = mesh.report_and_adjacency();
         let (degenerate, duplicate, winding) = (
             report.degenerate_faces,
@@ -62,13 +62,14 @@ impl Surface {
             }));
         }
         let faces = || (0..mesh.faces().len() as u32).map(FaceIdx);
-        // The report has found that all faces have an area.
+        // The report has verified that all faces have an area.
         let mut flats: Vec<FaceFrame> = faces()
             .filter_map(|face| FaceFrame::new(mesh.corners(face)))
             .collect();
         if flats.is_empty() {
             return Err(MeshError::new(MeshErrorKind::NoArea));
         }
+        // Compute the transition across every edge.
         for face in faces() {
             let corners = mesh.corners(face);
             for edge in 0..3 {
@@ -95,43 +96,43 @@ impl Surface {
         })
     }
 
-    /// The mesh.
+    /// The underlying mesh.
     #[must_use]
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
-    /// Which faces share which edges.
+    /// Adjacency of the faces.
     #[must_use]
     pub fn adjacency(&self) -> &Adjacency {
         &self.adjacency
     }
 
-    /// The area of all faces, in squared units of the mesh.
+    /// Total area of all faces, in squared units of the mesh.
     #[must_use]
     pub fn area(&self) -> f64 {
         self.area
     }
 
-    /// The area of a face.
+    /// Area of a face, in squared units of the mesh.
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// If the face does not exist.
     #[must_use]
     pub fn face_area(&self, face: FaceIdx) -> f64 {
         self.flats[face.index()].area()
     }
 
-    /// For each face the number of its component, the set of faces that can be walked to from it.
+    /// Connected component of each face; walks never leave a component.
     ///
-    /// Components are numbered from 0 in the order of their lowest faces.
+    /// Components are numbered from 0 in the order of their lowest face index.
     #[must_use]
     pub fn components(&self) -> Vec<u32> {
         self.adjacency.components()
     }
 
-    /// The areas of the components, in squared units of the mesh.
+    /// Areas of the components, in squared units of the mesh.
     ///
     /// # Examples
     ///
@@ -155,11 +156,11 @@ impl Surface {
         areas
     }
 
-    /// The unit normal of a face.
+    /// Unit normal of a face.
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// If the face does not exist.
     #[inline]
     #[must_use]
     pub fn face_normal(&self, face: FaceIdx) -> DVec3 {
@@ -167,11 +168,11 @@ impl Surface {
         flat.x.cross(flat.y)
     }
 
-    /// Where a point is in space.
+    /// Position of a point in space.
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// If the face does not exist.
     #[inline]
     #[must_use]
     pub fn position(&self, point: SurfacePoint) -> DVec3 {
@@ -179,11 +180,11 @@ impl Surface {
         flat.origin + flat.x * point.flat.x + flat.y * point.flat.y
     }
 
-    /// The unit normal of the smooth surface at a point: those of the corners, mixed.
+    /// Unit normal of the smooth surface at a point, interpolated between the vertex normals.
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// If the face does not exist.
     #[must_use]
     pub fn normal(&self, point: SurfacePoint) -> DVec3 {
         let [a, b, c] = self.weights(point);
@@ -192,12 +193,12 @@ impl Surface {
         (na * a + nb * b + nc * c).normalize_or(self.face_normal(point.face))
     }
 
-    /// The weights of the three corners of the face that give the point; they sum to 1, and are at least 0 inside, but for
-    /// roundings of the longest edge over the height of the face.
+    /// Barycentric weights of a point, which sum to 1. Inside of the face they are at least 0, up to rounding of the
+    /// longest edge relative to the height of the face.
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// If the face does not exist.
     #[must_use]
     pub fn weights(&self, point: SurfacePoint) -> [f64; 3] {
         let flat = &self.flats[point.face.index()];
@@ -206,11 +207,11 @@ impl Surface {
         [1.0 - b - c, b, c]
     }
 
-    /// The point of a face with these weights of its corners.
+    /// Point of a face with these barycentric weights.
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// If the face does not exist.
     #[must_use]
     pub fn point(&self, face: FaceIdx, [_, b, c]: [f64; 3]) -> SurfacePoint {
         let flat = &self.flats[face.index()];
@@ -220,11 +221,11 @@ impl Surface {
         }
     }
 
-    /// The point of the plane of a face that is nearest to a position.
+    /// Orthogonal projection of a position to the plane of a face.
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// If the face does not exist.
     #[inline]
     #[must_use]
     pub fn project(&self, face: FaceIdx, position: DVec3) -> SurfacePoint {
@@ -236,11 +237,11 @@ impl Surface {
         }
     }
 
-    /// The part of a vector in the plane of a face, in the coordinates of that plane.
+    /// Orthogonal projection of a vector to the plane of a face, in coordinates of the plane.
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// If the face does not exist.
     #[inline]
     #[must_use]
     pub fn flatten(&self, face: FaceIdx, vector: DVec3) -> DVec2 {
@@ -248,11 +249,11 @@ impl Surface {
         DVec2::new(vector.dot(flat.x), vector.dot(flat.y))
     }
 
-    /// A vector in the plane of a face, in space.
+    /// Converts a vector from the plane of a face to space.
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// If the face does not exist.
     #[inline]
     #[must_use]
     pub fn lift(&self, face: FaceIdx, vector: DVec2) -> DVec3 {

@@ -1,40 +1,40 @@
-//! The one rule for which triangles have an area.
+//! The common rule that decides whether a triangle has an area.
 //!
-//! A triangle is *degenerate* if twice its area is at most 2^-50 times the square of its longest edge, or if that edge is
-//! shorter than 1e-60. The first bound is where rounding drowns the normal: the cross product of two edges is off by up
-//! to a quarter of it. The second keeps squares of areas above the smallest number. Every other triangle has a unit
-//! normal, and edges and heights whose squares and reciprocals are finite.
+//! A triangle is *degenerate* if twice its area is at most 2^-50 times the square of its longest edge, or if that edge
+//! is shorter than 1e-60. Below the first bound, rounding dominates the normal: the error of the cross product of two
+//! edges is up to a quarter of the bound. The second bound keeps squares of areas above the smallest `f64`. Every
+//! other triangle has a unit normal, and edges and heights whose squares and reciprocals are finite.
 //!
-//! The rule gives the same answer for the three corners in any order, to the last bit.
+//! The result does not depend on the order of the corners, bit for bit.
 
 use glam::DVec3;
 
-/// Twice the area over the square of the longest edge, at or below which a triangle is degenerate: 2^-50.
+/// Maximum ratio of twice the area to the square of the longest edge at which a triangle is degenerate: 2^-50.
 const FLATNESS_MIN: f64 = 4.0 * f64::EPSILON;
-/// The shortest longest edge that a triangle with an area has, in units of the mesh.
+/// Minimum length of the longest edge of a triangle with an area, in units of the mesh.
 const LENGTH_MIN: f64 = 1e-60;
-/// The largest height over the longest edge of a face that counts as thin: 2^-40.
+/// Maximum ratio of the height to the longest edge of a thin face: 2^-40.
 pub(crate) const THIN_MAX: f64 = 4096.0 * f64::EPSILON;
 
-/// The kinds of triangles by shape.
+/// Classification of triangles by shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shape {
     /// A triangle with an area.
     Fair,
-    /// Degenerate, and the edge from this corner to the next is the shortest, and short beside the longest.
+    /// Degenerate. The edge that starts at this corner is the shortest, and much shorter than the longest.
     Needle { shortest: usize },
-    /// Degenerate, and the corner that is not on this longest edge lies on the edge, well within it.
+    /// Degenerate. The corner opposite to this longest edge lies on it, well between its ends.
     Cap { longest: usize },
 }
 
-/// The normal of a triangle as long as twice its area, or nothing if it is degenerate.
+/// Normal of a triangle with a length of twice its area; `None` if it is degenerate.
 ///
-/// Exchanging two corners changes the sign and no bit more.
+/// Exchanging two corners changes only the sign.
 pub(crate) fn area_vector(corners: [DVec3; 3]) -> Option<DVec3> {
     let (corners, odd) = sorted(corners);
     let lengths_sq = edge_lengths_sq(corners);
     let edge = first_longest(lengths_sq);
-    // The two shorter edges give the most precise product.
+    // The two shorter edges give the most accurate product.
     let [a, b, tip] = [0, 1, 2].map(|step| corners[(edge + step) % 3]);
     let vector = (a - tip).cross(b - tip);
     let long_enough = lengths_sq[edge] >= LENGTH_MIN * LENGTH_MIN;
@@ -45,7 +45,7 @@ pub(crate) fn area_vector(corners: [DVec3; 3]) -> Option<DVec3> {
     Some(if odd { -vector } else { vector })
 }
 
-/// The shape of a triangle; in a needle the shortest edge is at most `thin` times the longest.
+/// Shape of a triangle. The shortest edge of a needle is at most `thin` times the longest.
 pub(crate) fn shape(corners: [DVec3; 3], thin: f64) -> Shape {
     if area_vector(corners).is_some() {
         return Shape::Fair;
@@ -61,23 +61,23 @@ pub(crate) fn shape(corners: [DVec3; 3], thin: f64) -> Shape {
     }
 }
 
-/// Whether twice the area of a triangle is at most 2^-40 times the square of its longest edge, or it is degenerate.
+/// Returns whether a triangle is degenerate, or twice its area is at most 2^-40 times the square of its longest edge.
 pub(crate) fn is_thin(corners: [DVec3; 3]) -> bool {
     let lengths_sq = edge_lengths_sq(corners);
     let longest_sq = lengths_sq[first_longest(lengths_sq)];
     area_vector(corners).is_none_or(|vector| vector.length() <= THIN_MAX * longest_sq)
 }
 
-/// The squared lengths of the edges from each corner to the next.
+/// Squared lengths of the edges, each from a corner to the next.
 pub(crate) fn edge_lengths_sq([a, b, c]: [DVec3; 3]) -> [f64; 3] {
     [b - a, c - b, a - c].map(DVec3::length_squared)
 }
 
-/// The corners in the order of their coordinates, and whether that exchanged an odd number of pairs.
+/// Corners in lexicographic order, and whether the permutation is odd.
 fn sorted(mut corners: [DVec3; 3]) -> ([DVec3; 3], bool) {
     let mut odd = false;
     for [i, j] in [[0, 1], [1, 2], [0, 1]] {
-        // Arrays are compared part by part.
+        // Arrays compare lexicographically.
         if corners[j].to_array() < corners[i].to_array() {
             corners.swap(i, j);
             odd = !odd;
@@ -86,7 +86,7 @@ fn sorted(mut corners: [DVec3; 3]) -> ([DVec3; 3], bool) {
     (corners, odd)
 }
 
-/// The first of the largest numbers.
+/// Index of the first maximum.
 fn first_longest(lengths_sq: [f64; 3]) -> usize {
     let mut longest = 0;
     for edge in 1..3 {

@@ -1,43 +1,43 @@
-//! Straight paths over a surface.
+//! Straight paths (geodesics) on a surface.
 //!
-//! A path goes straight through a face; at an edge the next face is unfolded into the plane of the last one, and the path
-//! goes on in it. Reference: Greg Turk, "Generating Textures on Arbitrary Surfaces Using Reaction-Diffusion", SIGGRAPH
-//! 1991, doi 10.1145/127719.122749, section 3.1, where points that repel each other are moved so; on a vertex a path has
-//! no straight continuation, and goes on in one of the faces there.
+//! A path is straight within a face. At an edge, the next face is unfolded into the plane of the last one, and the
+//! path continues in it. Reference: Greg Turk, "Generating Textures on Arbitrary Surfaces Using Reaction-Diffusion",
+//! SIGGRAPH 1991, doi 10.1145/127719.122749, section 3.1, which moves mutually repelling points in this way. At a
+//! vertex there is no straight continuation, and the path continues in one of the faces there.
 //!
-//! Every face on the way moves the end by at most a few roundings of the distance and of the size of the face, and turns
-//! the direction by a few roundings: 16 faces or fewer by less than 2^-46 of both.
+//! Every face on the path moves the end by at most a few roundings of the distance and of the size of the face, and
+//! rotates the direction by a few roundings. For up to 16 faces, the sum is below 2^-46 of both.
 
 use crate::surface::EdgeTransition;
 use crate::{Surface, SurfacePoint};
 use glam::DVec2;
 
-/// The most edges that one path crosses, which no path on a sensible mesh comes near to.
+/// Maximum number of edges that a path crosses, far more than on any sensible mesh.
 const CROSSINGS_MAX: u32 = 1 << 16;
 
-/// The end of a path.
+/// Result of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Walk {
-    /// The end of the path.
+    /// End of the path.
     pub point: SurfacePoint,
-    /// The unit direction at the end, in the plane of the last face: the first one, carried along.
+    /// Unit direction at the end, in the plane of the last face: the initial direction, transported along the path.
     pub direction: DVec2,
-    /// How much of the distance is left because the path met a border, with the sign of the distance: zero if it did not.
+    /// Distance left because the path reached a border, with the sign of the distance; zero otherwise.
     pub left: f64,
 }
 
 impl Surface {
-    /// Goes straight from a point in a face along a unit direction in the plane of the face, for a distance in units of
-    /// the mesh.
+    /// Walks straight from a point along a unit direction in the plane of its face, for a distance in units of the
+    /// mesh.
     ///
-    /// A path ends early at a border of the mesh, and after 65,536 edges. A vector that is to be carried along keeps its
-    /// angle to `direction`. A negative distance goes backward; the direction at the end points forward all the same. If
-    /// the point, the direction or the distance is not finite, the path ends where it begins, with all of the distance
+    /// The path ends early at a border of the mesh, and after 65,536 edges. A vector transported along the path keeps
+    /// its angle to `direction`. A negative distance walks backward; the direction at the end still points forward. If
+    /// the point, the direction or the distance is not finite, the path ends at its start and the whole distance is
     /// left.
     ///
     /// # Panics
     ///
-    /// If there is no such face.
+    /// If the face does not exist.
     ///
     /// # Examples
     ///
@@ -57,7 +57,7 @@ impl Surface {
     #[must_use]
     pub fn walk(&self, from: SurfacePoint, direction: DVec2, distance: f64) -> Walk {
         let flat = from.flat + direction * distance;
-        // A face is convex: what ends in it has not left it. This is so for most short paths.
+        // A face is convex, so a path that ends in it has not left it. This is the case for most short paths.
         if self.flat(from.face).contains(flat) {
             return Walk {
                 point: SurfacePoint { flat, ..from },
@@ -68,7 +68,7 @@ impl Surface {
         self.walk_far(from, direction, distance)
     }
 
-    /// Walks where the path may leave its face.
+    /// Walks a path that may leave its face.
     fn walk_far(&self, from: SurfacePoint, direction: DVec2, distance: f64) -> Walk {
         let walk = Walk {
             point: from,
@@ -93,7 +93,7 @@ impl Surface {
         }
     }
 
-    /// Goes the distance that is left.
+    /// Walks the remaining distance.
     #[inline]
     fn forward(&self, mut walk: Walk) -> Walk {
         let mut entered = None;
@@ -101,6 +101,7 @@ impl Surface {
             let Some(fold) = self.leave_face(&mut walk, entered) else {
                 break;
             };
+            // Continue in the plane of the next face.
             walk.point.face = fold.to.face;
             walk.point.flat = fold.turn.rotate(walk.point.flat) + fold.shift;
             walk.direction = fold.turn.rotate(walk.direction);
@@ -109,9 +110,9 @@ impl Surface {
         walk
     }
 
-    /// Goes on to the end of the path, or to the edge through which it leaves its face, other than the one it came by.
+    /// Moves to the end of the path, or to the edge where it leaves the face. The edge by which it entered is ignored.
     ///
-    /// Gives what is across that edge, or nothing at the end and at a border.
+    /// Returns the transition across the exit edge; `None` at the end of the path and at a border.
     #[inline]
     fn leave_face(&self, walk: &mut Walk, entered: Option<u8>) -> Option<EdgeTransition> {
         let flat = self.flat(walk.point.face);
@@ -122,10 +123,10 @@ impl Surface {
         for edge in 0..3_u8 {
             let [a, b] = [edge, (edge + 1) % 3].map(|corner| corners[usize::from(corner)]);
             let along = b - a;
-            // A point that rounding has put outside of the edge is on it.
+            // Clamp a start point that rounding moved outside of the edge.
             let side = along.perp_dot(from - a).max(0.0);
             let rate = -along.perp_dot(walk.direction);
-            // The product keeps the division for edges that are near enough.
+            // Compare products first; divide only for edges that are near enough.
             if rate * nearest > side && Some(edge) != entered {
                 nearest = side / rate;
                 exit = Some(edge);

@@ -1,25 +1,26 @@
-//! Where the boxes of the hierarchy are split.
+//! Construction of the bounding volume hierarchy.
 //!
-//! The tree is built from the top: every box is split where the surface area heuristic, evaluated at the borders of 16
-//! bins along each axis, expects the least work. Reference: Ingo Wald, "On fast Construction of SAH-based Bounding Volume
-//! Hierarchies", IEEE Symposium on Interactive Ray Tracing 2007, doi 10.1109/RT.2007.4342588.
+//! The tree is built top-down. Every box is split where the surface area heuristic, evaluated at the borders of 16
+//! bins along each axis, predicts the lowest cost. Reference: Ingo Wald, "On fast Construction of SAH-based Bounding
+//! Volume Hierarchies", IEEE Symposium on Interactive Ray Tracing 2007, doi 10.1109/RT.2007.4342588.
 
 use super::tree::Node;
 use core::ops::Range;
 use glam::DVec3;
 
-/// The number of bins along an axis; Wald found no gain from more.
+/// Number of bins along an axis; Wald found no gain from more.
 const BINS: usize = 16;
-/// The most triangles that a leaf may hold where a split would cost more.
+/// Maximum number of triangles in a leaf whose split would cost more than the leaf.
 const LEAF_MAX: usize = 8;
-/// The price of a step into a box, in tests of a triangle.
+/// Cost of visiting a box, relative to the cost of testing a triangle.
 const STEP_COST: f64 = 1.0;
-/// From this depth on boxes are split in two equal halves, so that the tree has a bounded depth whatever the mesh is.
+/// At this depth and below, boxes are split into equal halves, which bounds the depth of the tree for every mesh.
 const DEPTH_SAH_MAX: u32 = 48;
-/// One more than [`DEPTH_SAH_MAX`] and the 31 halvings of 2^31 triangles: no path through the tree is longer.
+/// Stack size of a traversal: one more than [`DEPTH_SAH_MAX`] plus the 31 halvings of 2^31 triangles, the longest
+/// path.
 pub(crate) const STACK: usize = 80;
 
-/// A box along the axes.
+/// An axis-aligned bounding box.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bounds {
     low: DVec3,
@@ -51,14 +52,14 @@ impl Bounds {
         self.low * 0.5 + self.high * 0.5
     }
 
-    /// Half the area of the surface, in the unit of the caller; zero for no box.
+    /// Half the surface area, in squared units of the mesh; zero for an empty box.
     fn area(&self) -> f64 {
         let side = (self.high - self.low).max(DVec3::ZERO);
         side.x * side.y + side.y * side.z + side.z * side.x
     }
 }
 
-/// A tree that grows.
+/// Hierarchy under construction.
 pub(crate) struct Builder {
     bounds: Vec<Bounds>,
     middles: Vec<DVec3>,
@@ -67,15 +68,15 @@ pub(crate) struct Builder {
     margin: f64,
 }
 
-/// A split of a range of triangles.
+/// A split of a range of triangles in two.
 struct Split {
     axis: usize,
-    /// The bins before this one go to the first half.
+    /// Bins below this one belong to the first half.
     bin: usize,
     cost: f64,
 }
 
-/// From a place along an axis to a bin.
+/// Mapping from a coordinate along an axis to a bin.
 #[derive(Clone, Copy)]
 struct Binning {
     low: f64,
@@ -84,7 +85,7 @@ struct Binning {
 
 impl Binning {
     fn bin(self, place: f64) -> usize {
-        // The cast takes NaN and what is below zero to zero.
+        // The cast maps NaN and negative values to zero.
         (((place - self.low) * self.bins_per_unit) as usize).min(BINS - 1)
     }
 }
@@ -101,7 +102,7 @@ impl Builder {
         }
     }
 
-    /// The nodes, the root first, and the order of the triangles in their leaves.
+    /// Returns the nodes, root first, and the order of the triangles in the leaves.
     pub(crate) fn build(mut self) -> (Vec<Node>, Vec<u32>) {
         let all = 0..self.order.len();
         if all.is_empty() {
@@ -127,10 +128,10 @@ impl Builder {
         (self.nodes, self.order)
     }
 
-    /// A node that holds a range of triangles.
+    /// Leaf node for a range of triangles.
     fn leaf(&self, range: Range<usize>) -> Node {
         let bounds = self.bounds_of(range.clone());
-        // Rounding to `f32` moves a number by at most one place, and one more makes up for it.
+        // Rounding to `f32` moves a bound by at most one representable number; the step outward compensates for it.
         let low = (bounds.low - self.margin).to_array();
         let high = (bounds.high + self.margin).to_array();
         Node {
@@ -148,13 +149,15 @@ impl Builder {
         })
     }
 
-    /// Puts a range in an order of two halves, and says where the second begins; nothing if it should stay a leaf.
+    /// Partitions a range into two halves and returns the start of the second one; `None` if the range should stay a
+    /// leaf.
     fn split(&mut self, range: Range<usize>, depth: u32) -> Option<usize> {
         let count = range.len();
         if count <= 1 {
             return None;
         }
         let half = range.start + count / 2;
+        // Bound the centers of the triangles.
         let middles = range
             .clone()
             .map(|at| self.middles[self.order[at] as usize]);
@@ -162,6 +165,7 @@ impl Builder {
             let (low, high) = (point, point);
             sum.and(&Bounds { low, high })
         });
+        // Split at the median where the tree is already deep.
         if depth >= DEPTH_SAH_MAX {
             return (count > LEAF_MAX).then_some(half);
         }
@@ -170,6 +174,7 @@ impl Builder {
             let bins_per_unit = BINS as f64 / (spread.high[axis] - low);
             Binning { low, bins_per_unit }
         });
+        // Find the cheapest split, or keep a leaf.
         let whole = self.bounds_of(range.clone()).area();
         let best = self.best_split(range.clone(), &binnings);
         let Some(best) = best.filter(|_| whole > 0.0) else {
@@ -178,6 +183,7 @@ impl Builder {
         if count <= LEAF_MAX && STEP_COST + best.cost / whole >= count as f64 {
             return None;
         }
+        // Partition the triangles at the border between two bins.
         let binning = binnings[best.axis];
         let mut first = Vec::with_capacity(count);
         let mut second = Vec::new();
@@ -195,8 +201,9 @@ impl Builder {
         Some(middle)
     }
 
-    /// The border between two bins with triangles on both sides that has the least cost.
+    /// Finds the split between two bins with the lowest cost and with triangles on both sides.
     fn best_split(&self, range: Range<usize>, binnings: &[Binning; 3]) -> Option<Split> {
+        // Sort the triangles into bins.
         let mut bins = [[(Bounds::NONE, 0_usize); BINS]; 3];
         for &index in &self.order[range] {
             let middle = self.middles[index as usize];
@@ -212,12 +219,14 @@ impl Builder {
                 *bounds = bounds.and(&bin.0);
                 *count += bin.1;
             };
+            // Accumulate the bins from the right.
             let mut after = [(Bounds::NONE, 0); BINS];
             let mut sum = (Bounds::NONE, 0);
             for bin in (1..BINS).rev() {
                 grow(&mut sum, &bins[bin]);
                 after[bin] = sum;
             }
+            // Accumulate the bins from the left, and evaluate every border.
             let mut before = (Bounds::NONE, 0);
             for bin in 1..BINS {
                 grow(&mut before, &bins[bin - 1]);

@@ -1,11 +1,11 @@
-//! The hierarchy against a search through all faces.
+//! Tests of the hierarchy against a search through all faces.
 
 use super::{Bvh, NearestPoint, Probe, Ray, RayHit};
 use crate::{FaceIdx, Mesh};
 use glam::DVec3;
 
-/// Numbers from 0 to 1: the high bits of a multiplicative congruential generator by L'Ecuyer, Mathematics of Computation
-/// 68, 1999.
+/// Random numbers from 0 to 1: the high bits of a multiplicative congruential generator by L'Ecuyer, Mathematics of
+/// Computation 68, 1999.
 struct Numbers(u64);
 
 impl Numbers {
@@ -24,7 +24,7 @@ fn bvh(positions: Vec<DVec3>, faces: &[[u32; 3]]) -> Bvh {
     Bvh::new(&Mesh::new(positions, faces).unwrap())
 }
 
-/// Small triangles everywhere, every seventh twice and every ninth without an area.
+/// Small random triangles. Every seventh is duplicated, and every ninth has no area.
 fn soup(count: u32) -> Bvh {
     let mut numbers = Numbers(12_345);
     let mut positions = Vec::new();
@@ -59,7 +59,7 @@ fn flat_grid(side: u32) -> Bvh {
     bvh(positions, &triangles)
 }
 
-/// The oracle: the nearest of all triangles, of several at one distance the one with the lowest index.
+/// Oracle: the nearest hit among all triangles; the one with the lowest index on a tie.
 fn first_of_all(bvh: &Bvh, ray: &Ray, limit: f64) -> Option<RayHit> {
     let (ray, shift) = bvh.near_ray(ray);
     let probe = Probe::new(&ray);
@@ -72,7 +72,7 @@ fn first_of_all(bvh: &Bvh, ray: &Ray, limit: f64) -> Option<RayHit> {
     })
 }
 
-/// Compares the hierarchy and the oracle, and says how many rays had a hit.
+/// Compares the hierarchy with the oracle, and returns the number of rays with a hit.
 fn compare(bvh: &Bvh, rays: impl Iterator<Item = Ray>) -> u32 {
     let mut found = 0;
     for (index, ray) in rays.enumerate() {
@@ -97,7 +97,7 @@ fn bvh_finds_what_a_search_through_all_triangles_finds() {
     let bvh = soup(1200);
     let mut numbers = Numbers(777);
     let rays = (0..4000).map(|index| {
-        // From inside, from around, and from far away.
+        // Origins inside of the mesh, around it, and far away.
         let origin = numbers.point() * [0.9, 3.0, 1e4][index % 3];
         let direction = (numbers.point() - origin).normalize();
         Ray { origin, direction }
@@ -111,7 +111,7 @@ fn bvh_finds_the_lowest_index_along_the_axes_and_edges_of_a_grid() {
     let bvh = flat_grid(12);
     let mut numbers = Numbers(99);
     let rays = (0..600).map(|index| {
-        // Many go exactly through vertices and edges, where up to six triangles are at one distance.
+        // Many rays pass exactly through vertices and edges, where up to six triangles are at the same distance.
         let place = ((numbers.point() + 1.0) * 12.0).floor() * 0.5;
         let axis = [DVec3::NEG_Y, DVec3::X, DVec3::new(0.6, -0.8, 0.0)][index % 3];
         let origin = DVec3::new(place.x, if index % 3 == 1 { 0.0 } else { 1.0 }, place.z);
@@ -135,7 +135,8 @@ fn bvh_holds_triangles_that_cannot_be_told_apart() {
 
 #[test]
 fn bvh_has_a_bounded_depth_when_every_triangle_is_half_as_far() {
-    // Bins along an axis hold one or two of these at a time, so that an unbounded tree would be a list.
+    // Bins along an axis separate one or two of these triangles at a time, so that a tree without a depth limit would
+    // be a list.
     let mut positions = Vec::new();
     for power in 0..180 {
         let x = libm::exp2(90.0 - f64::from(power));
@@ -175,7 +176,7 @@ fn closed_mesh_lets_no_ray_through_its_edges_and_vertices() {
     let mut numbers = Numbers(3);
     for index in 0..3000 {
         let triangle = triangles[index % 8].map(|corner| corners[corner as usize]);
-        // A vertex, a middle of an edge, or any place of an edge, moved inward by more than rounding.
+        // Target a vertex, the midpoint of an edge, or a random point of an edge, moved inward by more than rounding.
         let part = [0.0, 0.5, numbers.next()][index % 3];
         let target = triangle[0].lerp(triangle[1], part) * (1.0 - 1e-12);
         let origin = numbers.point().normalize() * 5.0;
@@ -185,7 +186,7 @@ fn closed_mesh_lets_no_ray_through_its_edges_and_vertices() {
     }
 }
 
-/// The oracle: the nearest of all points of all faces.
+/// Oracle: the nearest point of all faces.
 fn nearest_of_all(bvh: &Bvh, position: DVec3) -> Option<NearestPoint> {
     let points = (0..bvh.corners.len() as u32).map(|slot| bvh.nearest_of(slot, position));
     points.min_by(|a, b| {
@@ -199,7 +200,7 @@ fn nearest_point_is_that_of_a_search_through_all_faces() {
     let mut numbers = Numbers(4242);
     for bvh in [soup(900), flat_grid(9)] {
         for index in 0..1500 {
-            // From inside, from around, from far away, and places that several faces share.
+            // Positions inside, around and far away, and positions where several faces meet.
             let position = numbers.point() * [0.9, 3.0, 1e4, 0.0][index % 4];
             let position = if index % 3 == 0 {
                 position.round()
@@ -227,7 +228,7 @@ fn nearest_point_of_a_face_is_not_farther_than_any_other() {
             for step_c in 0..=12 - step_b {
                 let [b, c] = [step_b, step_c].map(|step| f64::from(step) / 12.0);
                 let other = corners[0] * (1.0 - b - c) + corners[1] * b + corners[2] * c;
-                // Some roundings of numbers of size 1.
+                // Tolerance: a few roundings of numbers of size 1.
                 assert!(
                     point.distance_sq < other.distance_squared(position) + 1e-13,
                     "{corners:?}"

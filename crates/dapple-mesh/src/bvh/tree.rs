@@ -1,26 +1,26 @@
-//! A hierarchy of boxes around triangles, for rays and for nearest points.
+//! Traversal of the bounding volume hierarchy for rays and nearest points.
 //!
-//! Boxes are kept in `f32`, rounded outward, with a margin of 1e-9 of the size of the mesh: far more than the rounding of
-//! a ray's distance to a triangle, so that the nearest triangle is, to the last bit, the one that a search through all
-//! triangles finds. `build` says how the boxes are chosen.
+//! Boxes are stored in `f32`, rounded outward, with a margin of 1e-9 of the size of the mesh. The margin is far larger
+//! than the rounding of a distance between a ray and a triangle. Therefore the result equals that of a search through
+//! all triangles, bit for bit. The module `build` describes how the boxes are chosen.
 
 use super::Ray;
 use super::build::{Bounds, Builder, STACK};
 use core::ops::Range;
 use glam::DVec3;
 
-/// A box, and either its two children or its triangles.
+/// A box with either two children or triangles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
     pub(crate) low: [f32; 3],
     pub(crate) high: [f32; 3],
-    /// The first of two neighboring children, or the first triangle.
+    /// Index of the first of two adjacent children, or of the first triangle.
     pub(crate) first: u32,
-    /// The number of triangles; zero for a box with children.
+    /// Number of triangles; zero for an inner node.
     pub(crate) count: u32,
 }
 
-/// The tree, and the order in which its leaves hold the triangles.
+/// The tree, and the order of the triangles in its leaves.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
     nodes: Vec<Node>,
@@ -29,7 +29,7 @@ pub(crate) struct Tree {
 }
 
 impl Tree {
-    /// The tree of the boxes of triangles, in the order of their indices.
+    /// Builds the tree from the bounds of the triangles, in the order of their indices.
     pub(crate) fn new(bounds: Vec<Bounds>) -> Self {
         let middle = bounds.iter().fold(Bounds::NONE, Bounds::and).middle();
         let (nodes, order) = Builder::new(bounds).build();
@@ -40,19 +40,19 @@ impl Tree {
         }
     }
 
-    /// The indices of the triangles in the order of the leaves.
+    /// Indices of the triangles, in the order of the leaves.
     pub(crate) fn order(&self) -> &[u32] {
         &self.order
     }
 
-    /// The middle of the box around everything.
+    /// Center of the bounds of the whole mesh.
     pub(crate) fn middle(&self) -> DVec3 {
         self.middle
     }
 
-    /// Visits the leaves that a ray meets between two distances, mostly the nearer before the farther.
+    /// Visits the leaves whose boxes a ray intersects between two distances, roughly from near to far.
     ///
-    /// `leaf` gets the places of triangles in [`order`](Self::order), and may bring the end of the search nearer.
+    /// `leaf` receives a range of indices into [`order`](Self::order), and may return a shorter end of the search.
     pub(crate) fn visit(
         &self,
         ray: &Ray,
@@ -61,7 +61,7 @@ impl Tree {
         mut leaf: impl FnMut(Range<u32>) -> Option<f64>,
     ) {
         let slabs = Slabs::new(ray, start);
-        // A box that is not met is infinitely far, which must be past the end.
+        // A box that is missed has an infinite distance, which must be greater than the end.
         end = end.min(f64::MAX);
         let Some(root) = self.nodes.first() else {
             return;
@@ -77,6 +77,7 @@ impl Tree {
                         end = end.min(nearer);
                     }
                 } else {
+                    // Enter the nearer child, and push the farther one on the stack.
                     let [a, b] = [node.first, node.first + 1];
                     let [near_a, near_b] =
                         [a, b].map(|child| slabs.enter(&self.nodes[child as usize], end));
@@ -103,9 +104,10 @@ impl Tree {
 }
 
 impl Tree {
-    /// Visits the leaves whose boxes are nearer to a position than a squared distance, mostly the nearer before the farther.
+    /// Visits the leaves whose boxes are nearer to a position than a squared distance, roughly from near to far.
     ///
-    /// `leaf` gets the places of triangles in [`order`](Self::order), and gives the squared distance that still counts.
+    /// `leaf` receives a range of indices into [`order`](Self::order), and returns the new limit of the squared
+    /// distance.
     pub(crate) fn visit_near(
         &self,
         position: DVec3,
@@ -124,6 +126,7 @@ impl Tree {
                 if node.count > 0 {
                     limit_sq = leaf(node.first..node.first + node.count);
                 } else {
+                    // Enter the nearer child, and push the farther one on the stack.
                     let [a, b] = [node.first, node.first + 1]
                         .map(|child| (child, self.nodes[child as usize].distance_sq(position)));
                     let [first, second] = if b.1 < a.1 { [b, a] } else { [a, b] };
@@ -145,7 +148,8 @@ impl Tree {
 }
 
 impl Node {
-    /// The squared distance of a position from the box; zero inside. The margin of the box is far more than its rounding.
+    /// Squared distance from a position to the box; zero inside. The margin of the box is far larger than the
+    /// rounding.
     #[inline]
     fn distance_sq(&self, position: DVec3) -> f64 {
         let mut sum = 0.0;
@@ -159,7 +163,7 @@ impl Node {
     }
 }
 
-/// A ray for tests against many boxes.
+/// A ray prepared for intersection tests with many boxes (slab method).
 struct Slabs {
     origin: [f64; 3],
     inverse: [f64; 3],
@@ -168,8 +172,8 @@ struct Slabs {
 
 impl Slabs {
     fn new(ray: &Ray, start: f64) -> Self {
-        // A ray along a slab gets a finite inverse, so that no product is NaN. The triangles are inside of the slab by the
-        // margin, so a ray within a side of it may count as outside.
+        // A ray parallel to a slab gets a finite inverse, so that no product is NaN. The triangles are inside of the
+        // slab by the margin, so a ray on its boundary may count as outside.
         let inverse = |part: f64| if part == 0.0 { f64::MAX } else { 1.0 / part };
         Self {
             origin: ray.origin.to_array(),
@@ -178,7 +182,7 @@ impl Slabs {
         }
     }
 
-    /// How far along the ray a box begins, or infinity if it is not met before `end`.
+    /// Distance at which the ray enters a box, or infinity if it does not intersect the box before `end`.
     #[inline]
     fn enter(&self, node: &Node, end: f64) -> f64 {
         let (mut near, mut far) = (self.start, end);
@@ -187,7 +191,7 @@ impl Slabs {
             let low = (f64::from(node.low[axis]) - origin) * inverse;
             let high = (f64::from(node.high[axis]) - origin) * inverse;
             let (first, last) = if high < low { (high, low) } else { (low, high) };
-            // Comparisons and not `max` and `min`, which take care of NaN at a price.
+            // Comparisons are faster than `max` and `min`, which handle NaN.
             near = if first > near { first } else { near };
             far = if last < far { last } else { far };
         }

@@ -1,15 +1,15 @@
-//! Rays and triangles, and the nearest point of a triangle.
+//! Ray-triangle intersection, and the nearest point of a triangle.
 //!
 //! Reference: Sven Woop, Carsten Benthin and Ingo Wald, "Watertight Ray/Triangle Intersection", Journal of Computer
-//! Graphics Techniques 2(1), 2013. Space is sheared so that the ray is an axis, and the signs of three areas in the plane
-//! across say whether it goes through. Two triangles compute the area of an edge that they share from the same numbers, so
-//! no ray gets between them. The distance is a mean of those of the corners, so it is never outside of the triangle's box
-//! by more than rounding.
+//! Graphics Techniques 2(1), 2013. Space is sheared so that the ray becomes an axis. The signs of three areas in the
+//! plane across it decide whether the ray hits the triangle. Two triangles compute the area of a shared edge from the
+//! same numbers, so no ray passes between them. The distance is a weighted mean of the distances of the corners. It is
+//! therefore outside of the bounds of the triangle only by rounding.
 
 use super::Ray;
 use glam::DVec3;
 
-/// The corners of a triangle.
+/// Corners of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Corners([[f64; 3]; 3]);
 
@@ -23,11 +23,11 @@ impl Corners {
     }
 }
 
-/// A ray with the shear that makes it an axis.
+/// A ray, with the shear that maps it to an axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Probe {
     origin: [f64; 3],
-    /// The axes of space: two across the ray, and the one that the ray is closest to.
+    /// Axes of space: two across the ray, then the dominant axis of its direction.
     axes: [usize; 3],
     shear: [f64; 3],
 }
@@ -55,10 +55,11 @@ impl Probe {
         }
     }
 
-    /// The distance along the ray, of any sign, and the weights of the corners.
+    /// Signed distance along the ray, and the barycentric weights of the hit.
     #[inline]
     pub(crate) fn meet(&self, corners: &Corners) -> Option<(f64, [f64; 3])> {
         let [a, b, c] = corners.0.map(|corner| self.sheared(corner));
+        // Signed areas opposite to the corners; mixed signs mean a miss.
         let areas = [
             c[0] * b[1] - c[1] * b[0],
             a[0] * c[1] - a[1] * c[0],
@@ -67,15 +68,16 @@ impl Probe {
         if areas.iter().any(|&area| area < 0.0) && areas.iter().any(|&area| area > 0.0) {
             return None;
         }
+        // Interpolate the depth.
         let whole = areas[0] + areas[1] + areas[2];
         let weights = areas.map(|area| area / whole);
         let depth = weights[0] * a[2] + weights[1] * b[2] + weights[2] * c[2];
         let distance = depth * self.shear[2];
-        // Also false for a triangle that is seen from its edge, whose weights are not numbers.
+        // Not finite for a triangle seen edge-on, whose weights are NaN.
         distance.is_finite().then_some((distance, weights))
     }
 
-    /// A point with the ray as the third axis; the first two are zero on the ray.
+    /// Transforms a point so that the ray is the third axis; on the ray, the first two coordinates are zero.
     #[inline]
     fn sheared(&self, point: [f64; 3]) -> [f64; 3] {
         let [x, y, z] = self.axes.map(|axis| point[axis] - self.origin[axis]);
@@ -83,42 +85,50 @@ impl Probe {
     }
 }
 
-/// The weights of the corners that give the point of a triangle nearest to a position.
+/// Barycentric weights of the point of a triangle nearest to a position.
 ///
-/// Reference: Christer Ericson, "Real-Time Collision Detection", 2005, section 5.1.5: the corner, edge or inside whose Voronoi
-/// region holds the position. A triangle without an area counts as its longest edge or its corner.
+/// Reference: Christer Ericson, "Real-Time Collision Detection", 2005, section 5.1.5: the nearest feature is the
+/// corner, edge or interior whose Voronoi region contains the position. A triangle without an area counts as its
+/// longest edge or its corner.
 pub(crate) fn nearest_weights([a, b, c]: [DVec3; 3], position: DVec3) -> [f64; 3] {
     let (ab, ac) = (b - a, c - a);
+    // Voronoi region of corner a
     let from_a = position - a;
     let (d1, d2) = (ab.dot(from_a), ac.dot(from_a));
     if d1 <= 0.0 && d2 <= 0.0 {
         return [1.0, 0.0, 0.0];
     }
+    // Voronoi region of corner b
     let from_b = position - b;
     let (d3, d4) = (ab.dot(from_b), ac.dot(from_b));
     if d3 >= 0.0 && d4 <= d3 {
         return [0.0, 1.0, 0.0];
     }
+    // Voronoi region of edge ab
     let of_c = d1 * d4 - d3 * d2;
     if of_c <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
         let part = d1 / (d1 - d3);
         return [1.0 - part, part, 0.0];
     }
+    // Voronoi region of corner c
     let from_c = position - c;
     let (d5, d6) = (ab.dot(from_c), ac.dot(from_c));
     if d6 >= 0.0 && d5 <= d6 {
         return [0.0, 0.0, 1.0];
     }
+    // Voronoi region of edge ac
     let of_b = d5 * d2 - d1 * d6;
     if of_b <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
         let part = d2 / (d2 - d6);
         return [1.0 - part, 0.0, part];
     }
+    // Voronoi region of edge bc
     let of_a = d3 * d6 - d5 * d4;
     if of_a <= 0.0 && d4 >= d3 && d5 >= d6 {
         let part = (d4 - d3) / ((d4 - d3) + (d5 - d6));
         return [0.0, 1.0 - part, part];
     }
+    // Interior
     let whole = of_a + of_b + of_c;
     [of_a / whole, of_b / whole, of_c / whole]
 }

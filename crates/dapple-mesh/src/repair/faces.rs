@@ -1,4 +1,4 @@
-//! Faces that are no use: duplicates, and those without an area.
+//! Removal of duplicate faces and faces without an area.
 
 use super::Draft;
 use crate::adjacency::{Adjacency, FaceEdge, names_twice, root, sorted_edges, unite};
@@ -6,11 +6,11 @@ use crate::triangle::{Shape, THIN_MAX, area_vector, edge_lengths_sq, is_thin, sh
 use crate::{FaceIdx, Mesh, VertexIdx};
 use std::collections::BinaryHeap;
 
-/// How often faces without an area are mended before the rest is dropped.
+/// Maximum number of turns of mending before the remaining faces without an area are dropped.
 const TURNS_MAX: usize = 64;
-/// The most flips in one turn, for each face of the mesh. Flips make edges shorter as a rule, but not always.
+/// Maximum number of flips in one turn, per face of the mesh. Flips usually shorten edges, but not always.
 const FLIPS_MAX: usize = 4;
-/// The shortest over the longest edge, at or below which a cap that cannot be flipped is taken for a needle: 2^-20.
+/// Maximum ratio of the shortest to the longest edge at which a cap that cannot be flipped counts as a needle: 2^-20.
 const STUCK_MAX: f64 = 1.0 / 1_048_576.0;
 
 impl Draft {
@@ -39,10 +39,10 @@ impl Draft {
         self.keep_faces(&keep);
     }
 
-    /// Drops faces that name a vertex twice, and duplicates.
+    /// Drops faces that contain a vertex twice, and duplicates.
     ///
-    /// Of duplicates with hardly an area two cancel each other, so that the faces around them are neighbors afterward. Of
-    /// others one stays, since both may be all there is of a sheet.
+    /// Two thin duplicates cancel each other, so that the faces around them become neighbors. Of other duplicates one
+    /// stays, since both may be all that is left of a sheet.
     fn drop_useless(&mut self) {
         let faces = self.mesh.faces.iter();
         let mut keep: Vec<bool> = faces.map(|&corners| !names_twice(corners)).collect();
@@ -55,9 +55,9 @@ impl Draft {
         self.keep_faces(&keep);
     }
 
-    /// Makes one vertex of the shortest edge of every needle, and says whether there are any.
+    /// Merges the vertices of the shortest edge of every needle, and returns whether there was any.
     ///
-    /// In a needle that edge is at most `thin` times the longest.
+    /// In a needle, this edge is at most `thin` times the longest one.
     fn weld_needles(&mut self, thin: f64) -> bool {
         let mut parents: Vec<usize> = (0..self.mesh.positions.len()).collect();
         let mut welded = false;
@@ -77,8 +77,8 @@ impl Draft {
         welded
     }
 
-    /// Flips the longest edges of caps, the longest of all first, drops caps that have no neighbor there, and says
-    /// whether it did anything.
+    /// Flips the longest edges of caps, longest first, and drops caps without a neighbor there. Returns whether the
+    /// mesh changed.
     fn flip_caps(&mut self, caps: Vec<Cap>) -> bool {
         let edges = sorted_edges(&self.mesh);
         let mut across = Adjacency::paired(self.mesh.faces.len(), &edges);
@@ -89,16 +89,18 @@ impl Draft {
             let Some(cap) = open.pop() else {
                 break;
             };
-            // A flip may have changed the face since.
+            // An earlier flip may have changed or removed the face.
             if !keep[cap.of.face.index()] || Cap::new(&self.mesh, cap.of.face) != Some(cap) {
                 continue;
             }
+            // Without a neighbor, only drop the cap.
             let Some(to) = across.across(cap.of) else {
                 keep[cap.of.face.index()] = false;
                 detach(&mut across, cap.of.face);
                 changed = true;
                 continue;
             };
+            // If both faces have the same vertices, drop both and connect their neighbors.
             if self.third(to) == self.third(cap.of) {
                 keep[cap.of.face.index()] = false;
                 keep[to.face.index()] = false;
@@ -118,7 +120,7 @@ impl Draft {
         changed
     }
 
-    /// Whether a flip makes a shorter edge, or leaves no face without an area; other flips could go on forever.
+    /// Returns whether a flip gives a shorter edge or only faces with an area; other flips could repeat forever.
     fn gains(&self, cap: &Cap, to: FaceEdge) -> bool {
         let corner = |vertex: VertexIdx| self.mesh.positions[vertex.index()];
         let [tip, third] = [self.third(cap.of), self.third(to)].map(corner);
@@ -129,8 +131,8 @@ impl Draft {
                 .all(|corners| area_vector(corners).is_some())
     }
 
-    /// The faces across the other two edges of a cap, and of its neighbor: at the start of the edge as the neighbor goes
-    /// through it, and at the end.
+    /// Neighbors across the other two edges of a cap and of its neighbor: first at the start of the shared edge, as
+    /// the neighbor traverses it, then at its end.
     fn sides(&self, cap: FaceEdge, to: FaceEdge, across: &Adjacency) -> [[Option<FaceEdge>; 2]; 2] {
         let after = |at: FaceEdge, steps| across.across(step(at, steps));
         let [past_end, past_start] = [1, 2].map(|steps| after(to, steps));
@@ -140,9 +142,10 @@ impl Draft {
         [cap_sides, [past_start, past_end]]
     }
 
-    /// Splits the neighbor of a cap at the corner of the cap that lies on their edge; the cap becomes one of the parts.
+    /// Splits the neighbor of a cap at the corner of the cap on their shared edge. The cap becomes one of the two
+    /// parts.
     ///
-    /// The parts go around the same side as the neighbor.
+    /// Both parts have the winding of the neighbor.
     fn flip(&mut self, cap: FaceEdge, to: FaceEdge, across: &mut Adjacency) {
         let tip = self.third(cap);
         let [start, end, third] = [0, 1, 2].map(|steps| self.vertex(step(to, steps)));
@@ -159,18 +162,18 @@ impl Draft {
         join(across, Some(of(one, 1)), Some(of(two, 2)));
     }
 
-    /// The vertex that an edge of a face starts at.
+    /// Vertex at the start of an edge of a face.
     fn vertex(&self, at: FaceEdge) -> VertexIdx {
         self.mesh.faces[at.face.index()][usize::from(at.edge)]
     }
 
-    /// The vertex of the face that is not on the edge.
+    /// Vertex of the face opposite to the edge.
     fn third(&self, at: FaceEdge) -> VertexIdx {
         self.vertex(step(at, 2))
     }
 }
 
-/// A cap and its longest edge; longer ones are greater, and of equal ones the lower face.
+/// A cap and its longest edge, ordered by length; on a tie the lower face is greater.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cap {
     length_sq: f64,
@@ -209,7 +212,7 @@ impl PartialOrd for Cap {
     }
 }
 
-/// The edge of the same face some steps on.
+/// Edge of the same face, `steps` later.
 fn step(at: FaceEdge, steps: u8) -> FaceEdge {
     FaceEdge {
         edge: (at.edge + steps) % 3,
@@ -217,7 +220,7 @@ fn step(at: FaceEdge, steps: u8) -> FaceEdge {
     }
 }
 
-/// Makes neighbors of two edges; one without the other has a border.
+/// Makes two edges neighbors; an edge whose counterpart is `None` becomes a border.
 fn join(across: &mut Adjacency, a: Option<FaceEdge>, b: Option<FaceEdge>) {
     for (from, to) in [(a, b), (b, a)] {
         if let Some(from) = from {
@@ -226,7 +229,7 @@ fn join(across: &mut Adjacency, a: Option<FaceEdge>, b: Option<FaceEdge>) {
     }
 }
 
-/// Says that nothing is across the edges of a face.
+/// Turns all edges of a face into borders, on both sides.
 fn detach(across: &mut Adjacency, face: FaceIdx) {
     for (edge, to) in (0..).zip(across.around(face)) {
         across.set(FaceEdge { face, edge }, None);

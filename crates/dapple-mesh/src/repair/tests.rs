@@ -7,7 +7,7 @@ use crate::Surface;
 use crate::test_meshes::{cube, mesh, plane, ring, tetrahedron};
 use glam::DVec3;
 
-/// The mesh with its corners put together from several meshes.
+/// Union of several meshes.
 fn union(meshes: &[Mesh]) -> Mesh {
     let (mut positions, mut faces) = (Vec::new(), Vec::new());
     for mesh in meshes {
@@ -22,7 +22,7 @@ fn union(meshes: &[Mesh]) -> Mesh {
     Mesh::new(positions, &faces).expect("the meshes are valid")
 }
 
-/// The mesh with some faces turned over.
+/// Mesh with some faces flipped.
 fn turned(mesh: &Mesh, which: impl Fn(usize) -> bool) -> Mesh {
     let over = |(face, [a, b, c]): (usize, &[VertexIdx; 3])| {
         if which(face) {
@@ -35,7 +35,7 @@ fn turned(mesh: &Mesh, which: impl Fn(usize) -> bool) -> Mesh {
     Mesh::new(mesh.positions().to_vec(), &faces).expect("the mesh is valid")
 }
 
-/// Six times the volume inside of a closed mesh.
+/// Six times the volume of a closed mesh.
 fn volume(mesh: &Mesh) -> f64 {
     let part = |[a, b, c]: [DVec3; 3]| a.dot(b.cross(c));
     mesh.faces()
@@ -128,7 +128,7 @@ fn repair_turns_closed_meshes_outward_and_open_ones_to_the_larger_side() {
             .face_normal(FaceIdx(0));
         let over = (0..4).filter(|&face| which(face)).count();
         assert_eq!(repair.turned_faces, over.min(4 - over), "the fewer faces");
-        // Of two equal parts that of the first face stays, which is turned over here.
+        // The two parts have equal area, so the winding of the first face applies, which is flipped here.
         assert_eq!(
             up.z,
             if over >= 2 { -1.0 } else { 1.0 },
@@ -177,7 +177,7 @@ fn repair_cuts_a_moebius_strip_once() {
 
 #[test]
 fn repair_cuts_a_projective_plane() {
-    // The six vertices of the hemi-icosahedron, every two of which are neighbors.
+    // The six vertices of the hemi-icosahedron, all pairs of which are connected.
     let faces = [
         [0, 1, 2],
         [0, 2, 3],
@@ -204,7 +204,7 @@ fn repair_cuts_a_projective_plane() {
 
 #[test]
 fn repair_flips_a_cap_and_leaves_no_crack() {
-    // A square whose diagonal meets a vertex in its middle on one side only; the cap between is flat.
+    // A square whose diagonal has a vertex at its midpoint on one side only; the cap in between is flat.
     let corners = [
         [0.0, 0.0, 0.0],
         [2.0, 0.0, 0.0],
@@ -239,7 +239,7 @@ fn repair_flips_a_cap_and_leaves_no_crack() {
 
 #[test]
 fn repair_mends_a_chain_of_caps_and_leaves_no_crack() {
-    // The upper and the lower half of a square meet along a line that only the upper one divides, in n parts.
+    // The two halves of a square meet along a line that only the upper half divides, into n parts.
     for n in [2, 3, 4, 50] {
         let line = (0..=n).map(|part| [f64::from(part), 0.0, 0.0]);
         let ends = [[f64::from(n), -1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
@@ -258,7 +258,7 @@ fn repair_mends_a_chain_of_caps_and_leaves_no_crack() {
             (5, 1),
             "no crack in {n}"
         );
-        // Sums of small whole and half numbers are exact but for the roots in the lengths of edges.
+        // Sums of small integers and halves are exact, except for the square roots of edge lengths.
         assert!(
             (area(&after) - 1.5 * f64::from(n)).abs() < 1e-12,
             "the area of {n}"
@@ -268,7 +268,7 @@ fn repair_mends_a_chain_of_caps_and_leaves_no_crack() {
 
 #[test]
 fn repair_welds_a_needle_and_leaves_no_crack() {
-    // A square from four triangles around its middle, one of which was torn open by 1e-17.
+    // A square of four triangles around its center, one of which is displaced by 1e-17.
     let corners = [
         [-1.0, -1.0, 0.0],
         [1.0, -1.0, 0.0],
@@ -288,7 +288,7 @@ fn repair_welds_a_needle_and_leaves_no_crack() {
     let (after, repair) = mesh(&corners, &faces).repair();
     assert_eq!((repair.before.degenerate_faces, repair.after.faces), (2, 4));
     assert_eq!((repair.after.boundary_edges, repair.after.vertices), (4, 5));
-    // A few roundings of the area.
+    // Tolerance: a few roundings of the area.
     assert!((area(&after) - 4.0).abs() < 1e-14, "the square");
 }
 

@@ -1,4 +1,4 @@
-//! Which side the faces of a piece go around, and the cuts in pieces that have only one.
+//! Consistent winding of the faces of each piece, and cuts in one-sided pieces.
 
 use super::Draft;
 use crate::adjacency::{Adjacency, FaceEdge, sorted_edges};
@@ -7,7 +7,8 @@ use crate::{FaceIdx, VertexIdx};
 use glam::DVec3;
 
 impl Draft {
-    /// Turns faces over so that the two faces of an edge go through it in opposite directions, and counts those turned.
+    /// Flips faces so that the two faces of an edge traverse it in opposite directions, and returns the number of
+    /// flipped faces.
     pub(super) fn turn_faces(&mut self) -> usize {
         let n_faces = self.mesh.faces.len();
         let adjacency = Adjacency::of_any_winding(n_faces, &sorted_edges(&self.mesh));
@@ -22,7 +23,7 @@ impl Draft {
         count
     }
 
-    /// The faces of the piece of a seed, and whether each is to be turned over to agree with the seed.
+    /// Collects the piece of a seed face, and whether each face must be flipped to agree with the seed.
     fn flood(&self, seed: FaceIdx, adjacency: &Adjacency, seen: &mut [bool]) -> Piece {
         seen[seed.index()] = true;
         let mut faces = vec![(seed, false)];
@@ -36,7 +37,7 @@ impl Draft {
                 .zip(around)
                 .filter_map(|(edge, to)| to.map(|to| (to, FaceEdge { face, edge })))
                 .collect();
-            // The order of the corners must not matter, since turning a face over changes it.
+            // The order must not depend on the order of corners, which flipping changes.
             ways.sort_unstable_by_key(|(to, _)| to.face);
             for (to, from) in ways {
                 if !seen[to.face.index()] {
@@ -48,13 +49,14 @@ impl Draft {
         Piece { faces, closed }
     }
 
-    /// The vertex that an edge of a face starts at.
+    /// Vertex at the start of an edge of a face.
     fn start(&self, at: FaceEdge) -> VertexIdx {
         self.mesh.faces[at.face.index()][usize::from(at.edge)]
     }
 
-    /// Turns the marked faces of a piece over, or the others; gives how many were turned.
+    /// Flips either the marked or the other faces of a piece; returns the number of flipped faces.
     fn turn_piece(&mut self, piece: &Piece) -> usize {
+        // Sum the signed volume, and the areas of marked and unmarked faces.
         let origin = self.mesh.corners(piece.faces[0].0)[0];
         let (mut volume, mut balance) = (0.0, [0.0; 2]);
         for &(face, turned) in &piece.faces {
@@ -64,6 +66,7 @@ impl Draft {
             volume += if turned { -part } else { part };
             balance[usize::from(turned)] += area_vector(corners).map_or(0.0, DVec3::length);
         }
+        // Decide whether to flip the unmarked faces instead.
         let others = if piece.closed && volume != 0.0 {
             volume < 0.0
         } else {
@@ -72,7 +75,7 @@ impl Draft {
         let mut count = 0;
         for &(face, turned) in &piece.faces {
             if turned != others {
-                // The first corner stays, so that sums over the corners keep their order.
+                // Keep the first corner, so that sums over the corners keep their order.
                 self.mesh.faces[face.index()].swap(1, 2);
                 count += 1;
             }
@@ -80,11 +83,12 @@ impl Draft {
         count
     }
 
-    /// Splits the vertices of edges whose two faces disagree, one for each fan, and counts these edges.
+    /// Splits the vertices of edges whose two faces disagree into one vertex per fan, and returns the number of such
+    /// edges.
     ///
-    /// That is enough: the two faces of such an edge are in different fans at both of its ends, since neighbors that agree
-    /// all around a vertex lead from one to the other only if these agree. Afterwards a vertex that was split has one fan,
-    /// so that an edge of three faces that becomes one of two by it has two that agree.
+    /// One pass is enough. The two faces of such an edge are in different fans at both ends, because faces connected
+    /// by agreeing neighbors around a vertex agree with each other. After the split each of these vertices has one
+    /// fan. An edge of three faces that becomes an edge of two therefore has two faces that agree.
     pub(super) fn cut(&mut self) -> usize {
         let mut split = vec![false; self.mesh.positions.len()];
         let mut count = 0;
@@ -104,7 +108,7 @@ impl Draft {
         count
     }
 
-    /// Gives every fan of a marked vertex but the first a vertex of its own, in the order of their lowest corners.
+    /// Gives every fan of a marked vertex except the first a new vertex, in the order of their lowest corners.
     fn split(&mut self, marked: &[bool]) {
         let fans = Adjacency::new(&self.mesh).fans(&self.mesh);
         let mut taken = vec![false; marked.len()];
@@ -129,10 +133,10 @@ impl Draft {
     }
 }
 
-/// Faces that hang together over edges of two faces.
+/// Faces connected across edges of two faces.
 struct Piece {
-    /// The faces in the order of the flood, and whether they go around another side than the first.
+    /// Faces in the order of the flood, and whether their winding is opposite to that of the first face.
     faces: Vec<(FaceIdx, bool)>,
-    /// Whether all edges have two faces.
+    /// Whether every edge has two faces.
     closed: bool,
 }

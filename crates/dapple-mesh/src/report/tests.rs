@@ -1,10 +1,10 @@
-//! Reports beside naive counts.
+//! Tests of reports against naive counts.
 
 use super::*;
 use crate::test_meshes::{cube, mesh, plane, ring, soup, tetrahedron};
 use proptest::prelude::*;
 
-/// The edges of a face as pairs of vertices, none if it names one twice.
+/// Directed edges of a face; none if it contains a vertex twice.
 fn directed(face: [VertexIdx; 3]) -> Vec<[VertexIdx; 2]> {
     let [a, b, c] = face;
     if a == b || b == c || c == a {
@@ -14,7 +14,7 @@ fn directed(face: [VertexIdx; 3]) -> Vec<[VertexIdx; 2]> {
     }
 }
 
-/// The faces with an edge, in either direction, and whether they go from the first to the second vertex.
+/// Faces at an edge, and whether they traverse it from the first to the second vertex.
 fn faces_at(mesh: &Mesh, [a, b]: [VertexIdx; 2]) -> Vec<(usize, bool)> {
     let at = |(face, corners): (usize, &[VertexIdx; 3])| {
         let edges = directed(*corners);
@@ -24,7 +24,7 @@ fn faces_at(mesh: &Mesh, [a, b]: [VertexIdx; 2]) -> Vec<(usize, bool)> {
     mesh.faces().iter().enumerate().filter_map(at).collect()
 }
 
-/// The number of sets that chains of joined items make.
+/// Number of connected components of items.
 fn count_sets(items: &[usize], joined: impl Fn(usize, usize) -> bool) -> usize {
     let mut left = items.to_vec();
     let mut count = 0;
@@ -41,7 +41,7 @@ fn count_sets(items: &[usize], joined: impl Fn(usize, usize) -> bool) -> usize {
     count
 }
 
-/// The report by comparing everything with everything.
+/// Naive report that compares all pairs.
 fn naive_report(mesh: &Mesh) -> MeshReport {
     let (positions, faces) = (mesh.positions(), mesh.faces());
     let vertices: Vec<VertexIdx> = (0..positions.len() as u32).map(VertexIdx).collect();
@@ -82,7 +82,7 @@ fn naive_report(mesh: &Mesh) -> MeshReport {
         report.duplicate_faces += usize::from((0..face).any(|other| set(face) == set(other)));
         let [a, b, c] = corners.map(|vertex| positions[vertex.index()]);
         let longest = (b - a).length().max((c - b).length()).max((a - c).length());
-        // The product of the two shorter edges, in the order that the rule uses.
+        // Product of the two shorter edges, in the order of the implementation.
         let flat = area_vector([a, b, c])
             .is_none_or(|vector| vector.length() <= 8e-16 * longest * longest);
         report.degenerate_faces += usize::from(directed(corners).is_empty() || flat);
@@ -100,7 +100,7 @@ fn naive_report(mesh: &Mesh) -> MeshReport {
     report
 }
 
-/// Whether the first face at the same places as one goes around the other side.
+/// Whether the first face at the same positions has the opposite winding.
 fn is_back_to_back(mesh: &Mesh, face: usize) -> bool {
     let at = mesh.positions();
     let place = |vertex: VertexIdx| at.iter().position(|&other| other == at[vertex.index()]);
@@ -157,7 +157,8 @@ fn report_counts_every_defect() {
     let want = MeshReport {
         vertices: 7,
         faces: 6,
-        // The two equal faces have two edges in common, the edge 01 joins nothing, and the last face names 3 twice.
+        // The two equal faces share two edges, the edge 01 connects no faces, and the last face contains vertex 3
+        // twice.
         components: 5,
         boundary_edges: 6,
         non_manifold_edges: 1,
@@ -213,7 +214,7 @@ proptest! {
 #[test]
 fn both_sides_of_a_sheet_are_back_to_back() {
     let square = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
-    // The vertices of the other side are at the same places.
+    // The other side uses separate vertices at the same positions.
     let both = [square, square].concat();
     for (faces, count) in [
         (&[[0, 1, 2], [0, 2, 3]][..], 0),

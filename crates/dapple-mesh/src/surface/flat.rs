@@ -1,37 +1,37 @@
-//! Faces laid out flat, and what lies across their edges.
+//! Planes of faces, and transitions across their edges.
 
 use crate::adjacency::FaceEdge;
 use crate::triangle::area_vector;
 use glam::{DVec2, DVec3};
 
-/// A face in its own plane.
+/// A face in its plane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FaceFrame {
-    /// The first corner.
+    /// Position of the first corner.
     pub(crate) origin: DVec3,
-    /// The unit vector toward the second corner.
+    /// Unit vector toward the second corner.
     pub(crate) x: DVec3,
-    /// The unit vector across it in the plane of the face, toward the third corner.
+    /// Unit vector in the plane, orthogonal to `x`, on the side of the third corner.
     pub(crate) y: DVec3,
-    /// The second corner is at `[width, 0]`.
+    /// Length of the first edge: the second corner is at `[width, 0]`.
     pub(crate) width: f64,
-    /// The third corner.
+    /// Third corner in the plane.
     pub(crate) apex: DVec2,
-    /// The faces across the three edges.
+    /// Transitions across the three edges; `None` at a border.
     pub(crate) across: [Option<EdgeTransition>; 3],
 }
 
-/// The motion that takes the plane of a face to that of the face across an edge.
+/// Rigid motion from the plane of a face to the plane of a neighbor.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EdgeTransition {
     pub(crate) to: FaceEdge,
-    /// Cosine and sine of the turn, and the shift after it, from this plane into the other one.
+    /// Rotation as cosine and sine, followed by a shift, from this plane to the other one.
     pub(crate) turn: DVec2,
     pub(crate) shift: DVec2,
 }
 
 impl FaceFrame {
-    /// The face in its plane, or nothing if it has no area.
+    /// Computes the plane of a face; `None` if it has no area.
     pub(super) fn new(corners: [DVec3; 3]) -> Option<Self> {
         let [a, b, c] = corners;
         let vector = area_vector(corners)?;
@@ -41,7 +41,7 @@ impl FaceFrame {
         Some(Self {
             origin: a,
             x,
-            // In a flat triangle the normal is not quite at a right angle to x, but this axis is.
+            // The normal of a flat triangle is not exactly orthogonal to x, but this axis is.
             y: vector.cross(x).normalize(),
             width,
             apex: DVec2::new(up.dot(x), vector.length() / width),
@@ -49,13 +49,13 @@ impl FaceFrame {
         })
     }
 
-    /// The corners in the plane.
+    /// Corners in the plane.
     #[inline]
     pub(crate) fn corners(&self) -> [DVec2; 3] {
         [DVec2::ZERO, DVec2::new(self.width, 0.0), self.apex]
     }
 
-    /// Whether a place is in the face or on its edges, but for rounding; not so for one that is not finite.
+    /// Returns whether a point is in the face or on its edges, up to rounding; false if it is not finite.
     #[inline]
     pub(crate) fn contains(&self, at: DVec2) -> bool {
         let right = DVec2::new(self.width, 0.0);
@@ -69,10 +69,10 @@ impl FaceFrame {
     }
 }
 
-/// The rigid motion of the plane that takes an edge of one face to where the other face has it.
+/// Transition that maps an edge in the plane of one face to the same edge in the plane of the other.
 ///
-/// `along` is the edge in space; its directions in both planes give the turn. Those between the corners as they are in
-/// the planes would be less precise for short edges of needles.
+/// `along` is the edge as a vector in space; its directions in both planes determine the rotation. Differences of
+/// planar corners would be less precise for the short edges of needles.
 pub(super) fn fold(
     here: &FaceFrame,
     edge: u8,
@@ -84,7 +84,7 @@ pub(super) fn fold(
     let (a, b) = (direction(here), direction(there));
     let turn = DVec2::new(a.dot(b), a.perp_dot(b)).normalize();
     let from = here.corners()[usize::from(edge)];
-    // The other face goes through the edge in the other direction.
+    // The other face traverses the edge in the opposite direction.
     let from_there = there.corners()[(usize::from(to.edge) + 1) % 3];
     EdgeTransition {
         to,

@@ -1,11 +1,11 @@
-//! Faces laid out flat, and unfolded.
+//! Tests of planes and transitions.
 
 use super::*;
 use crate::test_meshes::{cube, mesh, plane, ring, soup, surface, tetrahedron};
 use crate::{MeshErrorKind, VertexIdx};
 use proptest::prelude::*;
 
-/// Checks that axes are unit vectors at right angles, that turns are turns, and that neighbors agree about their edge.
+/// Checks that axes are orthonormal, that rotations have length 1, and that neighbors agree about their edge.
 fn check_tables(surface: &Surface) {
     for (face, flat) in (0..).map(FaceIdx).zip(&surface.flats) {
         let corners = surface.mesh.corners(face);
@@ -18,7 +18,7 @@ fn check_tables(surface: &Surface) {
             flat.y.length_squared(),
             1.0 + flat.x.dot(flat.y),
         ];
-        // A few roundings of unit vectors.
+        // Tolerance: a few roundings of unit vectors.
         assert!(
             axes.iter().all(|part| (part - 1.0).abs() < 1e-15),
             "axes {axes:?}"
@@ -29,7 +29,7 @@ fn check_tables(surface: &Surface) {
         );
         for (corner, place) in corners.iter().zip(flat.corners()) {
             let position = surface.position(SurfacePoint { face, flat: place });
-            // A few roundings of the size of the face.
+            // Tolerance: a few roundings of the size of the face.
             assert!(
                 (position - corner).length() <= 1e-15 * size,
                 "corner {corner} of {flat:?}"
@@ -47,7 +47,7 @@ fn check_tables(surface: &Surface) {
             let other = usize::from(fold.to.edge);
             for (from, to) in [(edge, (other + 1) % 3), ((edge + 1) % 3, other)] {
                 let moved = fold.turn.rotate(flat.corners()[from]) + fold.shift;
-                // A few roundings of the sizes of the two faces.
+                // Tolerance: a few roundings of the sizes of the two faces.
                 assert!(
                     (moved - there.corners()[to]).length() <= 2e-15 * reach,
                     "edge {edge} of {flat:?}"
@@ -190,7 +190,7 @@ fn surface_areas_sum_over_components() {
     let both = surface(Mesh::new(positions, &faces).expect("valid"));
     let want = [0, 1, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1];
     assert_eq!(both.components(), want, "in the order of the lowest faces");
-    // Areas of halves of unit squares are exact but for a rounding each.
+    // Tolerance: areas of half unit squares are exact up to one rounding each.
     for (got, want) in both.component_areas().into_iter().zip([2.0, 6.0]) {
         assert!((got - want).abs() < 1e-14, "{got} for {want}");
     }
@@ -203,7 +203,7 @@ fn surface_normals_mix_those_of_the_corners() {
     assert_eq!(cube.face_normal(FaceIdx(0)), DVec3::NEG_Z, "the bottom");
     let middle = cube.point(FaceIdx(0), [0.0, 0.5, 0.5]);
     assert!(cube.normal(middle).z < 0.0, "outward");
-    // A rounding or two of a unit vector.
+    // Tolerance: one or two roundings of a unit vector.
     assert!(
         (cube.normal(middle).length() - 1.0).abs() < 1e-15,
         "unit length"
@@ -253,7 +253,7 @@ proptest! {
         let surface = surface(tetrahedron());
         let point = surface.point(FaceIdx(face), [1.0 - b - c, b, c]);
         let [a_back, b_back, c_back] = surface.weights(point);
-        // A few roundings of numbers around 1; the edges are 2.8 long.
+        // Tolerance: a few roundings of numbers near 1; the edges have length 2.8.
         prop_assert!((a_back - (1.0 - b - c)).abs().max((b_back - b).abs()).max((c_back - c).abs()) < 1e-14);
         let position = surface.position(point);
         prop_assert!((surface.project(FaceIdx(face), position).flat - point.flat).length() < 1e-14);

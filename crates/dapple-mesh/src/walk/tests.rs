@@ -1,4 +1,4 @@
-//! Walks whose ends are known from unrolling the surface.
+//! Walks with known ends, from unrolling the surface.
 
 mod limits;
 
@@ -7,10 +7,10 @@ use crate::FaceIdx;
 use crate::test_meshes::{cube, plane, ring, surface, tetrahedron};
 use glam::DVec3;
 
-/// What 16 faces may add to the place and the direction, in parts of the distance and the size of a face: 2^-46.
+/// Error bound of 16 faces for position and direction, relative to the distance and the size of a face: 2^-46.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// The point of a face below a position, and a direction along a vector.
+/// Point of a face below a position, and a direction along a vector.
 fn start(
     surface: &Surface,
     face: u32,
@@ -25,7 +25,7 @@ fn start(
     )
 }
 
-/// Whether the point of a walk is in its face, but for rounding.
+/// Whether the end of a walk is inside of its face, up to rounding.
 fn is_inside(surface: &Surface, point: SurfacePoint) -> bool {
     let corners = surface.flat(point.face).corners();
     (0..3).all(|edge| {
@@ -97,7 +97,7 @@ fn walk_around_a_cube_returns_after_four_sides() {
         (walk.direction - direction).length() < ROUNDING,
         "direction"
     );
-    // Across the diagonals of six sides, a closed path of length 3 sqrt 2 through the middles of their edges.
+    // Across the diagonals of six sides: a closed path of length 3 sqrt 2 through the midpoints of their edges.
     let (from, direction) = start(&cube, 4, [0.5, 0.0, 0.0], [1.0, 0.0, 1.0]);
     let walk = cube.walk(from, direction, 3.0 * libm::sqrt(2.0));
     assert!(
@@ -108,7 +108,8 @@ fn walk_around_a_cube_returns_after_four_sides() {
 
 #[test]
 fn walk_on_a_tetrahedron_follows_the_unrolled_lattice() {
-    // The plane tiled with triangles rolls up to the tetrahedron; shifts by twice an edge lead to the same point.
+    // The tetrahedron unrolls to a tiling of the plane by triangles; shifts by two edge lengths lead to the same
+    // point.
     let tetrahedron = surface(tetrahedron());
     let edge = libm::sqrt(8.0);
     let from = tetrahedron.point(FaceIdx(0), [0.3, 0.4, 0.3]);
@@ -130,10 +131,10 @@ fn walk_on_a_tetrahedron_follows_the_unrolled_lattice() {
 fn walk_around_a_corner_of_a_cube_turns_a_vector_by_a_right_angle() {
     let cube = surface(cube());
     let (first, mut heading) = start(&cube, 5, [0.25, 0.0, 0.25], [-1.0, 0.0, 0.0]);
-    // The vector that is carried, seen from the heading: at first the heading itself.
+    // The transported vector relative to the heading; initially the heading itself.
     let mut vector = DVec2::X;
     let mut point = first;
-    // A path with square turns around the corner closes after three legs.
+    // A path with right-angle turns around the corner closes after three legs.
     for _ in 0..3 {
         let walk = cube.walk(point, heading, 0.5);
         point = walk.point;
@@ -192,7 +193,7 @@ fn walk_over_vertices_of_closed_meshes_ends_on_them() {
                     face: FaceIdx(face),
                     flat: from,
                 };
-                // Along the edge and on past the vertex at its end; away from the face at its start.
+                // Along the edge past the vertex at its end, and away from the face at its start.
                 for (direction, distance) in [
                     (to - from, 2.5),
                     (from - to, 0.75),

@@ -12,7 +12,7 @@ fn repair_of_files_gives_surfaces() {
         env!("CARGO_MANIFEST_DIR"),
         "/../../../shared/data/meshes/degenerate"
     );
-    // Faces, components and open edges afterward.
+    // Expected numbers of faces, components and open edges.
     let want = [
         ("cube", 12, 1, 0),
         ("degenerate_edge", 1, 1, 3),
@@ -39,7 +39,7 @@ fn repair_of_files_gives_surfaces() {
     }
 }
 
-/// The triangles of an OBJ file, polygons as fans.
+/// Triangles of an OBJ file, polygons as fans.
 #[expect(clippy::disallowed_methods, reason = "reads test data")]
 fn read(path: &str) -> Option<Mesh> {
     let text = std::fs::read_to_string(path).ok()?;
@@ -69,9 +69,9 @@ fn read(path: &str) -> Option<Mesh> {
     Mesh::new(positions, &faces).ok()
 }
 
-/// Puts a vertex on an edge for one of its faces only, with a cap between the parts and the other face.
+/// Inserts a vertex on an edge of one face only, with a cap between the parts and the face on the other side.
 ///
-/// `part` says where: 0 at the start of the edge, 1 at its end.
+/// `part` is the position along the edge, from 0 to 1.
 fn crack(mesh: &Mesh, face: usize, edge: usize, part: f64) -> Mesh {
     let mut positions = mesh.positions().to_vec();
     let mut faces: Vec<[u32; 3]> = mesh
@@ -92,7 +92,7 @@ fn crack(mesh: &Mesh, face: usize, edge: usize, part: f64) -> Mesh {
 fn repair_of_flat_faces_on_each_other_leaves_no_crack() {
     let near = 1.0 - 1e-16;
     let found: [&[(usize, usize, f64)]; 3] = [
-        // Two caps that would be flipped back and forth.
+        // Two caps whose flips could alternate forever.
         &[
             (11, 1, 0.5),
             (3, 0, 0.5),
@@ -102,7 +102,7 @@ fn repair_of_flat_faces_on_each_other_leaves_no_crack() {
             (2, 2, 0.5),
             (2, 0, 1e-9),
         ],
-        // Four faces on the longest edge of caps.
+        // Four faces at the longest edge of caps.
         &[
             (0, 0, 0.75),
             (5, 2, near),
@@ -152,7 +152,7 @@ proptest! {
             let counts = [repair.after.boundary_edges, repair.after.non_manifold_edges, repair.after.components];
             prop_assert_eq!(counts, [0, 0, 1]);
             let [before, after] = [closed, after].map(|mesh| Surface::new(mesh).expect("no defects").area());
-            // Vertices move by a few roundings of numbers around 1.
+            // Tolerance: vertices move by a few roundings of numbers near 1.
             prop_assert!((before - after).abs() < 1e-12);
         }
     }

@@ -1,4 +1,4 @@
-//! Walks to borders, over needles, with bad numbers, and on any mesh.
+//! Walks to borders, across needles, with invalid numbers, and on arbitrary meshes.
 
 use super::{ROUNDING, is_inside, start};
 use crate::test_meshes::{cube, mesh, plane, ring, sheet, soup, surface, tetrahedron};
@@ -92,7 +92,7 @@ fn walk_ends_after_many_edges() {
     };
     for distance in [1e6, 1e30, f64::MAX] {
         let walk = prism.walk(from, DVec2::X, distance);
-        // Two edges for each unit.
+        // Two edges per unit of distance.
         assert!(
             walk.left > 0.0 && (walk.left - (distance - 32768.0)).abs() <= 1.0 + 1e-16 * distance,
             "{}",
@@ -104,7 +104,7 @@ fn walk_ends_after_many_edges() {
 
 #[test]
 fn walk_crosses_needles_as_if_they_were_not_there() {
-    // Ten squares as narrow as 1e-12 between two wide ones.
+    // Ten squares with a width of 1e-12 between two wide ones.
     let across = |column: u32| match column {
         0 => -1.0,
         12 => 1.0,
@@ -120,11 +120,11 @@ fn walk_crosses_needles_as_if_they_were_not_there() {
         let off = sheet.position(walk.point)
             - sheet.position(from)
             - sheet.lift(from.face, direction) * 1.2;
-        // 24 faces or a few more.
+        // 24 faces or slightly more.
         assert!(off.length() < 2.0 * ROUNDING * 4.0, "{along:?}: {off}");
         assert_eq!(walk.left, 0.0, "no border");
     }
-    // Along the needles, where it takes a path forever to leave one.
+    // Along the needles, where a path stays in one face for a long distance.
     let (from, direction) = start(&sheet, 8, [3.2e-12, 0.1, 0.0], [1e-13, 1.0, 0.0]);
     assert_eq!(
         sheet.walk(from, direction, 2.0).left,
@@ -183,7 +183,7 @@ proptest! {
         let gone = distance - there.left;
         let back = surface.walk(there.point, -there.direction, gone);
         prop_assert!(is_inside(&surface, there.point));
-        // Next to a vertex a path may pass on either side of it, and there and back are different paths.
+        // Near a vertex a path may pass on either side of it, so the way back may differ.
         let off = surface.position(back.point) - surface.position(from);
         prop_assert!(off.length() < 8.0 * ROUNDING * (distance + 3.0), "{}", off);
         let turned = surface.lift(from.face, direction) + surface.lift(back.point.face, back.direction);
@@ -211,8 +211,8 @@ proptest! {
                 let walk = surface.walk(from, DVec2::new(x, y), distance);
                 prop_assert!(walk.left * distance >= 0.0 && walk.left.abs() <= distance.abs());
                 prop_assert!(walk.point.flat.is_finite() && walk.direction.is_finite());
-                // Near the tip of a spike a path may cross all the edges that it can, 65,536, with a few roundings of
-                // the largest part of a position at each.
+                // Near the tip of a spike a path may cross the maximum of 65,536 edges, with a few roundings of the
+                // largest coordinate at each.
                 let largest = surface.mesh().positions().iter().map(|at| at.abs().max_element()).fold(1.0, f64::max);
                 let corners = surface.flat(walk.point.face).corners();
                 for edge in 0..3 {
