@@ -1,19 +1,19 @@
-//! Vertex colors of the formats other than glTF: coded as sRGB.
+//! Vertex colors in formats other than glTF, which are encoded as sRGB.
 
 use dapple_color::{Code, LinearRgb, LinearRgba};
 
-/// The coding of a component of a color as a number. Numbers out of range are clamped, and NaN is 0.
+/// Encoding of a color component as a number. Values out of range are clamped, and NaN becomes 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Coding {
-    /// Whole numbers from 0 to 255.
+    /// Integers from 0 to 255.
     Byte,
-    /// Whole numbers from 0 to 65535.
+    /// Integers from 0 to 65535.
     Short,
     /// Fractions from 0 to 1, rounded to 16 bits.
     Unit,
 }
 
-/// The color of red, green, blue and alpha, of which alpha is linear.
+/// Decodes red, green and blue from sRGB, and alpha as linear.
 pub(crate) fn decode(parts: [f64; 4], codings: [Coding; 4]) -> LinearRgba {
     let linear = |i: usize| match codings[i] {
         Coding::Byte => code::<u8>(parts[i], 255.0).linear_from_srgb(),
@@ -23,7 +23,7 @@ pub(crate) fn decode(parts: [f64; 4], codings: [Coding; 4]) -> LinearRgba {
     let alpha = match codings[3] {
         Coding::Byte => code::<u8>(parts[3], 255.0).to_unit(),
         Coding::Short => code::<u16>(parts[3], 65535.0).to_unit(),
-        // NaN is 0 here, too.
+        // The last `max` turns NaN into 0.
         Coding::Unit => (parts[3] as f32).clamp(0.0, 1.0).max(0.0),
     };
     LinearRgba {

@@ -1,4 +1,4 @@
-//! Reading and writing models at paths: the only module that touches files.
+//! Reading and writing models by path. No other module accesses files.
 
 #![expect(
     clippy::disallowed_methods,
@@ -12,19 +12,19 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Component, Path};
 
-/// The largest number of bytes that are read of a file, and of all files beside it. The length of a device or a pipe is
-/// unknown, and a small file may name a large one many times.
+/// Maximum number of bytes that are read from a file, and from all files that it refers to. The length of a device or
+/// a pipe is unknown, and a small file may refer to a large one many times.
 const BYTES_MAX: u64 = 1 << 32;
 
-/// Reads a mesh file, in the format of [`FORMATS`](crate::FORMATS) with the ending of its path.
+/// Reads a mesh file. The extension of its path determines the format in [`FORMATS`](crate::FORMATS).
 ///
-/// Materials, buffers and textures are read from regular files in the same folder and the folders in it, never from
-/// outside of it, and up to 4 GiB in total.
+/// Materials, buffers and textures are read only from regular files in the same folder and its subfolders, up to 4 GiB
+/// in total.
 ///
 /// # Errors
 ///
-/// [`MeshIoErrorKind::Io`] if the file cannot be read or has more than 4 GiB; [`MeshIoErrorKind::Format`] if no format
-/// has its ending; and the errors of the reader of the format.
+/// [`MeshIoErrorKind::Io`] if the file cannot be read or is larger than 4 GiB; [`MeshIoErrorKind::Format`] if no
+/// format has this extension; and the errors of the reader of the format.
 pub fn read_model(path: impl AsRef<Path>) -> Result<Model, MeshIoError> {
     let path = path.as_ref();
     let format = format_of(path)?;
@@ -33,13 +33,13 @@ pub fn read_model(path: impl AsRef<Path>) -> Result<Model, MeshIoError> {
     format.read(&bytes, &mut |name| resolve(path, name, &mut left))
 }
 
-/// Reads a mesh file and encodes it again with the second image of each pair in place of the first, and nothing else
-/// changed, as one file with the [written ending](MeshFormat::written_ending) of its format; `None` if the format holds
-/// no images.
+/// Reads a mesh file and encodes it again with the first image of each pair replaced by the second. Nothing else
+/// changes. The result is one file with the [written extension](MeshFormat::written_ending) of its format; `None` if
+/// the format does not contain images.
 ///
 /// # Errors
 ///
-/// The errors of [`read_model`] about files, and those of [`MeshFormat::replace_images`].
+/// The errors of [`read_model`] about files, and the errors of [`MeshFormat::replace_images`].
 pub fn replace_images(
     path: impl AsRef<Path>,
     replaced: &[(EncodedImage, EncodedImage)],
@@ -51,16 +51,16 @@ pub fn replace_images(
     format.replace_images(&bytes, &mut |name| resolve(path, name, &mut left), replaced)
 }
 
-/// Writes a mesh file, in the format of [`FORMATS`](crate::FORMATS) that is written with the ending of its path.
+/// Writes a mesh file. The extension of its path determines the format in [`FORMATS`](crate::FORMATS).
 ///
-/// A file is written under a temporary name, flushed to the disk and then renamed, so that no program ever sees half of
-/// it, and a power cut leaves the old or the new one. Files to which it refers, such as materials and textures, are
-/// written beside it first, under the same stem.
+/// The file is written under a temporary name, flushed to the disk and then renamed. Other programs never see a
+/// partial file, and a power cut leaves the old or the new one. Files that it refers to, such as materials and
+/// textures, are written to the same folder first, with the same stem.
 ///
 /// # Errors
 ///
-/// [`MeshIoErrorKind::Io`] if a file cannot be written; [`MeshIoErrorKind::Format`] if no format is written with this
-/// ending; and the errors of the writer of the format.
+/// [`MeshIoErrorKind::Io`] if a file cannot be written; [`MeshIoErrorKind::Format`] if no writable format has this
+/// extension; and the errors of the writer of the format.
 pub fn write_model(path: impl AsRef<Path>, model: &Model) -> Result<(), MeshIoError> {
     let path = path.as_ref();
     let ending = ending(path);
@@ -77,7 +77,7 @@ pub fn write_model(path: impl AsRef<Path>, model: &Model) -> Result<(), MeshIoEr
     main.map_or(Ok(()), |main| replace(path, &main.bytes))
 }
 
-/// The format with the ending of a path.
+/// Returns the format for the extension of a path.
 fn format_of(path: &Path) -> Result<&'static MeshFormat, MeshIoError> {
     MeshFormat::of_path(path).ok_or_else(|| {
         let (name, known) = (ending(path), readable_endings().collect::<Vec<_>>());
@@ -86,14 +86,14 @@ fn format_of(path: &Path) -> Result<&'static MeshFormat, MeshIoError> {
     })
 }
 
-/// The error of an ending with which no format is written.
+/// Error for an extension without a writable format.
 pub(crate) fn unwritable(name: String) -> MeshIoError {
     let known = writable_endings().collect::<Vec<_>>().join(", ");
     let known = format!("{known} to write");
     MeshIoError::new(MeshIoErrorKind::Format { name, known })
 }
 
-/// The content of a file, by its name in another file, if it is in the folder of that file or deeper.
+/// Reads a file that another file refers to, if it is in the folder of that file or a subfolder.
 fn resolve(path: &Path, name: &str, left: &mut u64) -> Option<Vec<u8>> {
     let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
     let name = Path::new(name);
@@ -101,7 +101,7 @@ fn resolve(path: &Path, name: &str, left: &mut u64) -> Option<Vec<u8>> {
         return None;
     }
     let path = path.with_file_name("").join(name);
-    // A pipe or a device may never end.
+    // Reading a pipe or a device might never end.
     let file = dapple_image::open_regular(&path).ok()?;
     let bytes = read_at_most(&path, Ok(file), *left).ok()?;
     *left -= bytes.len() as u64;
@@ -127,7 +127,7 @@ fn failed(path: &Path, error: &io::Error) -> MeshIoError {
     })
 }
 
-/// Replaces the content of the file at `path` with `bytes`, at once and for good: see [`dapple_image::replace`].
+/// Atomically replaces the content of the file at `path` with `bytes`: see [`dapple_image::replace`].
 fn replace(path: &Path, bytes: &[u8]) -> Result<(), MeshIoError> {
     dapple_image::replace(path, bytes).map_err(|error| {
         let cause = std::error::Error::source(&error);

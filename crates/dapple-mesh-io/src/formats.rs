@@ -1,6 +1,6 @@
-//! The table of formats, one line for each: source of reading and writing by path, errors and help texts.
+//! Table of formats. Reading and writing by path, errors and help texts are derived from it.
 //!
-//! A format is a file of this folder with a [`MeshFormat`]; adding one takes that file and two lines here.
+//! A format is a module of this folder with a [`MeshFormat`]. A new format needs that module and two lines here.
 
 #[cfg(feature = "gltf")]
 pub mod gltf;
@@ -23,66 +23,66 @@ pub static FORMATS: &[MeshFormat] = &[
     stl::STL,
 ];
 
-/// A format of mesh files.
+/// A mesh file format.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshFormat {
     name: &'static str,
-    /// The endings without the dot, in lower case.
+    /// File extensions without the dot, in lower case.
     endings: &'static [&'static str],
     read: fn(&[u8], &mut FileResolver<'_>) -> Result<Model, MeshIoError>,
     writer: Option<Writer>,
 }
 
-/// The writer of a format.
+/// Writer of a format.
 #[derive(Clone, Copy, Debug)]
 struct Writer {
-    /// The ending of written files, one of the endings of the format.
+    /// Extension of written files, one of the extensions of the format.
     ending: &'static str,
     material: MaterialPlace,
-    /// Whether colors of vertices are written.
+    /// Whether vertex colors are written.
     has_colors: bool,
-    /// Encodes the files, the main one last.
+    /// Encodes the files, the main file last.
     files: fn(&Model, &str) -> Result<Vec<NamedFile>, MeshIoError>,
-    /// Encodes the file that was read, with other images in place of some.
+    /// Encodes the file that was read with some images replaced.
     replace_images: Option<ReplaceImages>,
 }
 
-/// A function that takes a file, the files beside it, and pairs of an image and its replacement.
+/// Function that takes the bytes of a file, a resolver, and pairs of an image and its replacement.
 type ReplaceImages = fn(
     &[u8],
     &mut FileResolver<'_>,
     &[(EncodedImage, EncodedImage)],
 ) -> Result<Vec<u8>, MeshIoError>;
 
-/// The place where a writer puts the material of a model, with its textures.
+/// Location of the material of a model, with its textures, in written files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MaterialPlace {
-    /// The material is left out; [colors of vertices](MeshFormat::has_colors) may be written.
+    /// The material is omitted; [vertex colors](MeshFormat::has_colors) may be written.
     Nowhere,
-    /// The material is in the file of the mesh.
+    /// The material is part of the mesh file.
     Inside,
-    /// The material is in separate files beside the mesh.
+    /// The material is in separate files in the same folder.
     Beside,
 }
 
-/// A function that returns the content of another file by the name that a file has for it; `None` if there is no such
+/// Function that returns the content of a file by the name that another file uses for it; `None` if there is no such
 /// file.
 ///
-/// It is an argument of readers of formats with several files. A name is as in the file, with slashes and without
-/// percent codes. It may be a path to anywhere, so a caller that opens files has to check it first.
+/// Readers of formats with several files take it as an argument. The name is passed as in the file, with slashes and
+/// without percent-encoding. It may be a path to anywhere, so a caller that opens files must check it first.
 pub type FileResolver<'a> = dyn FnMut(&str) -> Option<Vec<u8>> + 'a;
 
-/// The name and the content of a file that is to be written.
+/// Name and content of a file to write.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NamedFile {
-    /// The name, without a folder.
+    /// File name, without a folder.
     pub name: String,
-    /// The content.
+    /// Content of the file.
     pub bytes: Vec<u8>,
 }
 
 impl MeshFormat {
-    /// The format with the ending of a path, in lower or upper case.
+    /// Returns the format for the extension of a path, ignoring case.
     #[must_use]
     pub fn of_path(path: impl AsRef<Path>) -> Option<&'static Self> {
         let ending = ending(path.as_ref());
@@ -90,52 +90,53 @@ impl MeshFormat {
         formats.find(|format| format.endings.contains(&ending.as_str()))
     }
 
-    /// The name of the format, such as `glTF`.
+    /// Name of the format, such as `glTF`.
     #[must_use]
     pub fn name(&self) -> &'static str {
         self.name
     }
 
-    /// The endings of the names of files that are read, without the dot and in lower case.
+    /// Extensions of readable files, without the dot and in lower case.
     #[must_use]
     pub fn endings(&self) -> &'static [&'static str] {
         self.endings
     }
 
-    /// The ending of the names of files that are written; `None` if the format is only read.
+    /// Extension of written files; `None` if the format is read-only.
     #[must_use]
     pub fn written_ending(&self) -> Option<&'static str> {
         self.writer.map(|writer| writer.ending)
     }
 
-    /// The place of the material, with its textures, in a written model.
+    /// Location of the material, with its textures, in written files.
     #[must_use]
     pub fn material_place(&self) -> MaterialPlace {
         self.writer
             .map_or(MaterialPlace::Nowhere, |writer| writer.material)
     }
 
-    /// Whether the colors of vertices are in a written model.
+    /// Returns whether vertex colors are written.
     #[must_use]
     pub fn has_colors(&self) -> bool {
         self.writer.is_some_and(|writer| writer.has_colors)
     }
 
-    /// Reads a file from its bytes, and files to which it refers through `beside`.
+    /// Reads a model from the bytes of a file. `resolve` returns the content of files that it refers to.
     ///
     /// # Errors
     ///
-    /// The errors of the function `read` of the module of the format.
+    /// The errors of the function `read` in the module of the format.
     pub fn read(&self, bytes: &[u8], resolve: &mut FileResolver<'_>) -> Result<Model, MeshIoError> {
         (self.read)(bytes, resolve)
     }
 
-    /// Encodes a file of this format with the second image of each pair in place of the first, and nothing else changed,
-    /// as one file with [`written_ending`](Self::written_ending); `None` if the format holds no images.
+    /// Encodes a file of this format again with the first image of each pair replaced by the second. Nothing else
+    /// changes. The result is one file with [`written_ending`](Self::written_ending); `None` if the format does not
+    /// contain images.
     ///
     /// # Errors
     ///
-    /// The errors of the function `replace_images` of the module of the format.
+    /// The errors of the function `replace_images` in the module of the format.
     pub fn replace_images(
         &self,
         bytes: &[u8],
@@ -148,13 +149,13 @@ impl MeshFormat {
             .transpose()
     }
 
-    /// Encodes the files of a model, named after `stem`. The main one is the last; files to which it refers come before
-    /// it.
+    /// Encodes the files of a model, named after `stem`. The main file is the last one; files that it refers to come
+    /// first.
     ///
     /// # Errors
     ///
-    /// [`MeshIoErrorKind::Format`](crate::MeshIoErrorKind::Format) if the format is only read; and the errors of the
-    /// function `write` of the module of the format.
+    /// [`MeshIoErrorKind::Format`](crate::MeshIoErrorKind::Format) if the format is read-only; and the errors of the
+    /// function `write` in the module of the format.
     pub fn write(&self, model: &Model, stem: &str) -> Result<Vec<NamedFile>, MeshIoError> {
         let Some(writer) = self.writer else {
             return Err(crate::files::unwritable(self.endings[0].to_owned()));
@@ -163,23 +164,23 @@ impl MeshFormat {
     }
 }
 
-/// The endings of all files that can be read, in the order of [`FORMATS`].
+/// Extensions of all readable files, in the order of [`FORMATS`].
 pub fn readable_endings() -> impl Iterator<Item = &'static str> {
     FORMATS.iter().flat_map(|format| format.endings).copied()
 }
 
-/// The endings of all files that can be written, in the order of [`FORMATS`].
+/// Extensions of all writable files, in the order of [`FORMATS`].
 pub fn writable_endings() -> impl Iterator<Item = &'static str> {
     FORMATS.iter().filter_map(MeshFormat::written_ending)
 }
 
-/// The ending of a path in lower case, without the dot; empty if there is none.
+/// Extension of a path in lower case, without the dot; empty if there is none.
 pub(crate) fn ending(path: &Path) -> String {
     let ending = path.extension().unwrap_or_default().to_string_lossy();
     ending.to_ascii_lowercase()
 }
 
-/// The only file of a format that needs no other files.
+/// The single file of a format that does not refer to other files.
 fn alone(stem: &str, ending: &str, bytes: Vec<u8>) -> Vec<NamedFile> {
     let name = format!("{stem}.{ending}");
     vec![NamedFile { name, bytes }]

@@ -4,20 +4,20 @@ use super::text::{content, in_range, parse, words};
 use crate::MeshIoError;
 use glam::DVec3;
 
-/// A line that is not empty, with its words.
+/// A non-empty line, split into words.
 pub(crate) struct Line<'a> {
     format: &'static str,
-    /// The number of the line, from 1; of several joined lines, the last.
+    /// Line number, starting at 1; of several joined lines, the last.
     number: usize,
     /// The whole line.
     text: &'a [u8],
-    /// The words before a comment; at least one.
+    /// Words before a comment; at least one.
     pub(crate) words: Vec<&'a [u8]>,
 }
 
-/// The lines of a text without comments, which begin with `#`, and without empty lines.
+/// Lines of a text without comments, which start with `#`, and without empty lines.
 ///
-/// Fails for a text that is not in ASCII or UTF-8.
+/// Fails if the text is neither ASCII nor UTF-8.
 pub(crate) fn lines<'a>(
     format: &'static str,
     bytes: &'a [u8],
@@ -37,8 +37,8 @@ pub(crate) fn lines<'a>(
 }
 
 impl Line<'_> {
-    /// The first word, which must be ASCII: a keyword with another byte, such as one joined to its numbers by a no-break
-    /// space, would be skipped as unknown, and all later indices would be off by one.
+    /// The first word, which must be ASCII. A keyword with another byte, such as one joined to its numbers by a
+    /// no-break space, would be skipped as unknown, and all later indices would be off by one.
     pub(crate) fn keyword(&self) -> Result<&[u8], MeshIoError> {
         let word = self.words[0];
         if word.is_ascii() {
@@ -63,13 +63,13 @@ impl Line<'_> {
         in_range(self.number(at)?).map_err(|why| self.error(why))
     }
 
-    /// Parses three words from an index on as a position or normal.
+    /// Parses three words, starting at an index, as a position or normal.
     pub(crate) fn position(&self, at: usize) -> Result<DVec3, MeshIoError> {
         let [x, y, z] = [at, at + 1, at + 2].map(|at| self.part(at));
         Ok(DVec3::new(x?, y?, z?))
     }
 
-    /// Parses three words from an index on as numbers of any size.
+    /// Parses three words, starting at an index, as numbers without a limit.
     pub(crate) fn vector(&self, at: usize) -> Result<DVec3, MeshIoError> {
         Ok(DVec3::new(
             self.number(at)?,
@@ -78,7 +78,7 @@ impl Line<'_> {
         ))
     }
 
-    /// All words after the first, including those after `#`: a name may contain it.
+    /// All words after the first, including those after `#`, which a name may contain.
     pub(crate) fn name_words(&self) -> Vec<&[u8]> {
         words(self.text).skip(1).collect()
     }
@@ -89,7 +89,7 @@ impl Line<'_> {
         self.words.extend(next.words);
     }
 
-    /// An error in the line, with its number.
+    /// Error about the line, with its number.
     pub(crate) fn error(&self, why: impl core::fmt::Display) -> MeshIoError {
         MeshIoError::file(self.format, format!("line {}: {why}", self.number))
     }

@@ -1,73 +1,75 @@
 //! Triangulation of polygons and strips.
 //!
-//! Readers first make each polygon a fan of triangles around its first corner, since a file may name vertices before it
-//! has them. [`Polygons`] remembers which faces belong to one polygon, and turns the fans of concave ones into the
-//! triangles of ear clipping once all positions are known. A fan whose corners all turn to the same side stays.
+//! Readers first convert each polygon to a fan of triangles around its first corner, since a file may refer to
+//! vertices before it defines them. [`Polygons`] records which faces belong to one polygon. Once all positions are
+//! known, it replaces the fans of concave polygons by ear clipping. Fans of convex polygons stay.
 //!
 //! Ear clipping follows Gary Meisters, *Polygons Have Ears*, American Mathematical Monthly 82(6), 1975, in the
-//! projection of the polygon along the axis that is nearest to its normal (the normal of Martin Newell). Every corner is
-//! kept, also one on a straight side: its vertex may belong to a neighbor, from which the polygon would tear off. This
-//! is why none of the crates for triangulation serves here; they drop such corners.
+//! projection of the polygon along the axis nearest to its normal (Martin Newell's normal). Every corner is kept,
+//! including corners on a straight side: their vertices may belong to a neighbor, and dropping them would open a
+//! crack. Existing triangulation crates drop such corners.
 
 use core::cmp::Ordering;
 use core::ops::Range;
 use glam::{DVec2, DVec3};
 use std::collections::VecDeque;
 
-/// Tests of pairs of corners in all polygons of a file, after which concave ones stay fans. A polygon seldom takes more
-/// than a hundred for each corner, but a hostile one takes a number that grows with the square of their count.
+/// Maximum number of tests of corner pairs over all polygons of a file; concave polygons beyond it stay fans. A
+/// polygon seldom takes more than a hundred tests per corner, but a hostile one takes a number quadratic in its
+/// corners.
 const TESTS_MAX: usize = 1 << 28;
 
-/// The polygons with more than three corners of a file whose faces are fans of triangles.
+/// Polygons with more than three corners, as ranges of faces that are fans.
 #[derive(Default)]
 pub(crate) struct Polygons {
     fans: Vec<Range<usize>>,
 }
 
-/// New triangles for the faces of concave polygons, as corners of the polygons.
+/// Triangulations of concave polygons, as corner indices of the polygons.
 #[derive(Default)]
 pub(crate) struct Ears {
     polygons: Vec<(Range<usize>, Vec<[u32; 3]>)>,
-    /// The number of polygons that cross themselves.
+    /// Number of self-intersecting polygons.
     n_crossing: usize,
-    /// Whether there were too many tests.
+    /// Whether the number of tests exceeded the limit.
     is_cut_short: bool,
 }
 
-/// Sine of the angle below which a turn to the right counts as straight: corners on a straight side are rounded in files.
+/// Sine of the angle below which a right turn counts as straight: files contain rounded corners on straight sides.
 const STRAIGHT: f64 = 1.0 / (1 << 20) as f64;
 
-/// The corners of a polygon in its plane, counterclockwise, as a ring from which ears are cut.
+/// Corners of a polygon in its plane, counterclockwise, as a linked ring from which ears are cut.
 struct Ring {
     at: Vec<DVec2>,
     next: Vec<u32>,
     before: Vec<u32>,
-    /// The corners that may lie in an ear, by x: those at which the polygon does not turn left at first.
+    /// Corners that may lie inside of an ear, sorted by x: those without a left turn in the initial polygon.
     reflex: Vec<u32>,
-    /// For each of them, an index at or after it up to which all are cut off or turn left by now.
+    /// For each entry of `reflex`, a later index, such that all entries before it are cut or turn left now. An entry
+    /// that refers to itself is live.
     live: Vec<u32>,
-    /// For each corner, its index in `reflex`; `u32::MAX` if it is not there.
+    /// Index of each corner in `reflex`; `u32::MAX` if it is not there.
     rank: Vec<u32>,
     is_cut: Vec<bool>,
     tests_left: usize,
 }
 
-/// The strictness of the test of an ear.
+/// Strictness of the ear test.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Ear {
-    /// It has an area, and no corner inside or on its sides.
+    /// The ear has a positive area, and no corner inside or on its sides.
     Proper,
-    /// It is not turned over by more than rounding, and has no corner inside.
+    /// The ear does not turn right by more than rounding, and has no corner inside.
     Weak,
 }
 
-/// The triangles around the first corner of a polygon.
+/// Triangle fan around the first corner of a polygon.
 pub(crate) fn fan<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
     let pairs = corners.iter().skip(1).zip(corners.iter().skip(2));
     pairs.map(|(&b, &c)| [corners[0], b, c])
 }
 
-/// The triangles of a strip: each corner makes one with the two before it, and every second has the opposite direction.
+/// Triangles of a strip. Each corner forms a triangle with the two before it; every second triangle is reversed.
 pub(crate) fn strip<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
     let triangles = corners.windows(3).enumerate();
     triangles.map(|(i, w)| {
@@ -79,14 +81,14 @@ pub(crate) fn strip<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
     })
 }
 
-/// The corners of a polygon that became a fan.
+/// Corners of a polygon that was converted to a fan.
 fn corners_of<T: Copy>(fan: &[[T; 3]]) -> Vec<T> {
     let first = fan.iter().take(1).flat_map(|face| face[..2].to_vec());
     first.chain(fan.iter().map(|face| face[2])).collect()
 }
 
 impl Polygons {
-    /// Adds the fan of a polygon to faces.
+    /// Appends the fan of a polygon to `faces`.
     pub(crate) fn push<T: Copy>(&mut self, corners: &[T], faces: &mut Vec<[T; 3]>) {
         let first = faces.len();
         faces.extend(fan(corners));
@@ -95,7 +97,7 @@ impl Polygons {
         }
     }
 
-    /// Triangulates the concave polygons among faces, whose corners have vertices at these positions.
+    /// Triangulates the concave polygons among `faces`. `vertex` maps a corner to its index in `positions`.
     pub(crate) fn ears<T: Copy>(
         self,
         faces: &[[T; 3]],
@@ -106,7 +108,7 @@ impl Polygons {
         for range in self.fans {
             let corners = corners_of(&faces[range.clone()]).into_iter();
             let corners = corners.map(|corner| positions.get(vertex(corner) as usize).copied());
-            // A corner without a vertex is an error elsewhere.
+            // A missing vertex is reported elsewhere.
             let Some(corners) = corners.collect::<Option<Vec<_>>>() else {
                 continue;
             };
@@ -132,7 +134,7 @@ impl Polygons {
 }
 
 impl Ears {
-    /// Replaces the fans of concave polygons in a column with the corners of faces.
+    /// Replaces the fans of concave polygons in a column of face corners.
     pub(crate) fn apply<T: Copy>(&self, faces: &mut [[T; 3]]) {
         for (range, triangles) in &self.polygons {
             let faces = &mut faces[range.clone()];
@@ -143,7 +145,7 @@ impl Ears {
         }
     }
 
-    /// The entry of [`Model::left_out`](dapple_mesh::Model::left_out) about polygons that stay fans.
+    /// Entries of [`Model::left_out`](dapple_mesh::Model::left_out) about polygons that stay fans.
     pub(crate) fn left_out(&self) -> impl Iterator<Item = String> {
         let crossing = match self.n_crossing {
             0 => None,
@@ -158,8 +160,8 @@ impl Ears {
     }
 }
 
-/// The corners in the projection along the axis nearest to the normal, with the first at zero and so that the area is
-/// not negative.
+/// Projects the corners along the axis nearest to the normal. The first corner becomes the origin, and the orientation
+/// is chosen so that the area is not negative.
 fn in_plane(corners: &[DVec3]) -> Vec<DVec2> {
     let first = corners[0];
     let from_first = |at: usize| corners[at % corners.len()] - first;
@@ -184,18 +186,18 @@ fn in_plane(corners: &[DVec3]) -> Vec<DVec2> {
     corners.iter().map(project).collect()
 }
 
-/// Twice the area of a triangle, which is positive counterclockwise.
+/// Twice the signed area of a triangle, positive if counterclockwise.
 fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// Whether the way from `a` over `b` to `c` turns right by more than rounding.
+/// Returns whether the path from `a` through `b` to `c` turns right by more than rounding.
 fn turns_right(a: DVec2, b: DVec2, c: DVec2) -> bool {
     let sides = (b - a).length_squared() * (c - b).length_squared();
     area(a, b, c) < -STRAIGHT * sides.sqrt()
 }
 
-/// Whether no corner of a polygon turns right, and no triangle of its fan is turned over. Then it is convex.
+/// Returns whether a polygon is convex: no corner turns right, and no triangle of its fan is reversed.
 fn turns_left(at: &[DVec2]) -> bool {
     let n = at.len();
     let is_left = |i: usize| !turns_right(at[i], at[(i + 1) % n], at[(i + 2) % n]);
@@ -206,7 +208,7 @@ fn turns_left(at: &[DVec2]) -> bool {
 impl Ring {
     fn new(at: Vec<DVec2>, tests_left: usize) -> Self {
         let n = at.len();
-        // Every corner of a polygon has a number below 2^32, since its face has.
+        // Corner indices are below 2^32, since a face stores them.
         let numbers = |shift: usize| (0..n).map(|i| ((i + shift) % n) as u32).collect();
         let mut ring = Self {
             next: numbers(1),
@@ -224,7 +226,7 @@ impl Ring {
         for (rank, &corner) in (0..).zip(&reflex) {
             ring.rank[corner as usize] = rank;
         }
-        // One more, which stands for the end.
+        // Sentinel for the end
         ring.live = (0..=reflex.len() as u32).collect();
         ring.reflex = reflex;
         ring
@@ -234,19 +236,19 @@ impl Ring {
         self.at[corner as usize]
     }
 
-    /// The corner with its neighbors.
+    /// A corner with its two neighbors.
     fn triangle(&self, corner: u32) -> [u32; 3] {
         let at = corner as usize;
         [self.before[at], corner, self.next[at]]
     }
 
-    /// Twice the area of the triangle of a corner with its neighbors.
+    /// Twice the signed area of a corner and its neighbors.
     fn area(&self, corner: u32) -> f64 {
         let [a, b, c] = self.triangle(corner).map(|corner| self.at(corner));
         area(a, b, c)
     }
 
-    /// The triangles of the polygon; `None` if it crosses itself, or no tests are left.
+    /// Triangulates the polygon; `None` if it intersects itself, or no tests are left.
     fn triangles(&mut self) -> Option<Vec<[u32; 3]>> {
         if self.crosses()? {
             return None;
@@ -258,8 +260,8 @@ impl Ring {
         let mut n_before = 0;
         while triangles.len() < n - 3 {
             let Some(corner) = queue.pop_front() else {
-                // What was refused may be an ear since others are gone. Only a polygon that touches itself has no
-                // proper one.
+                // Rejected corners may be ears after others were cut. Only a polygon that touches itself has no proper
+                // ear.
                 if triangles.len() == n_before {
                     match wanted {
                         Ear::Proper => wanted = Ear::Weak,
@@ -276,7 +278,7 @@ impl Ring {
             let [before, _, next] = self.triangle(corner);
             triangles.push([before, corner, next]);
             self.cut(corner);
-            // The next ear is not beside this one, which would make a fan of slivers.
+            // Skip the neighbor: cutting adjacent ears would make a fan of slivers.
             if queue.front() == Some(&next) {
                 queue.pop_front();
             }
@@ -290,7 +292,7 @@ impl Ring {
         (!turns_right(a, b, c)).then_some(triangles)
     }
 
-    /// Cuts the triangle of a corner off.
+    /// Cuts off the triangle of a corner.
     fn cut(&mut self, corner: u32) {
         let [before, _, next] = self.triangle(corner);
         self.is_cut[corner as usize] = true;
@@ -310,7 +312,7 @@ impl Ring {
         Some(())
     }
 
-    /// Whether a corner can be cut off; `None` if that takes too many tests.
+    /// Returns whether a corner is an ear; `None` if the test limit is reached.
     fn is_ear(&mut self, corner: u32, wanted: Ear) -> Option<bool> {
         self.count_test()?;
         let ear = self.triangle(corner);
@@ -323,6 +325,7 @@ impl Ring {
             return Some(false);
         }
         let [least, most] = [a.min(b).min(c), a.max(b).max(c)];
+        // Test the live reflex corners whose x is in the range of the ear.
         let first = self
             .reflex
             .partition_point(|&other| self.at(other).x < least.x);
@@ -350,7 +353,7 @@ impl Ring {
         Some(true)
     }
 
-    /// The first index from another on of a corner that may still lie in an ear.
+    /// First live index of `reflex`, starting at `from`.
     fn live(&mut self, from: usize) -> usize {
         let mut at = from;
         while self.live[at] as usize != at {
@@ -361,14 +364,14 @@ impl Ring {
         at
     }
 
-    /// Takes a corner from those that may lie in an ear.
+    /// Removes a corner from the live corners.
     fn pass_over(&mut self, corner: u32) {
         if let Some(live) = self.live.get_mut(self.rank[corner as usize] as usize) {
             *live = self.rank[corner as usize] + 1;
         }
     }
 
-    /// Whether the polygon goes into a triangle from another corner at the place of one of its corners.
+    /// Returns whether the polygon enters a triangle from another corner that coincides with one of its corners.
     fn enters(&self, other: u32, [a, b, c]: [DVec2; 3]) -> bool {
         let at = self.at(other);
         let [from, to] = match at {
@@ -381,7 +384,7 @@ impl Ring {
         is_between(before) || is_between(next)
     }
 
-    /// Whether two sides cross at a point inside of both; `None` if that takes too many tests.
+    /// Returns whether two sides cross in their interiors; `None` if the test limit is reached.
     fn crosses(&mut self) -> Option<bool> {
         let ends = |side: u32| {
             let ends = [side, self.next[side as usize]];
@@ -390,7 +393,7 @@ impl Ring {
         let mut sides: Vec<_> = (0..self.at.len() as u32).map(ends).collect();
         let least = |[a, b]: &[DVec2; 2]| a.min(*b);
         sides.sort_by(|a, b| by_x(least(a), least(b)));
-        // Sides whose ranges of x overlap.
+        // Test pairs of sides whose x ranges overlap.
         for (i, &[a, b]) in sides.iter().enumerate() {
             let (lower, upper) = (a.min(b), a.max(b));
             for &[c, d] in &sides[i + 1..] {
@@ -413,7 +416,7 @@ impl Ring {
     }
 }
 
-/// The order of two points by x. All are finite.
+/// Order of two points by x. All coordinates are finite.
 fn by_x(a: DVec2, b: DVec2) -> Ordering {
     a.x.total_cmp(&b.x)
 }

@@ -1,19 +1,21 @@
-//! Positions in single precision, and the origin of those that need one.
+//! Positions in single precision, and the origin of meshes that need one.
 
 use glam::DVec3;
 
-/// The part of the extent of a mesh by which rounding of its positions to single precision may move a vertex; beyond it,
-/// positions are written relative to an origin.
+/// Maximum displacement of a vertex by rounding to `f32`, relative to the extent of the mesh. Beyond it, positions are
+/// written relative to an origin.
 const MOVE_MAX: f64 = 1.0 / (1 << 20) as f64;
-/// The ratio of the largest coordinate to the extent up to which an origin would gain less than four bits.
+/// Ratio of the largest coordinate to the extent up to which an origin would gain less than four bits.
 const FAR: f64 = 16.0;
-/// The largest coordinate of a mesh with an origin, so that the sum of both stays below the limit of positions.
+/// Largest coordinate of a mesh with an origin, so that the sum of both stays below the limit of positions.
 const COORDINATE_MAX: f64 = 1e29;
-/// The largest number that is written, so that rounding never exceeds the limit of [`Model::check`](dapple_mesh::Model::check).
+/// Largest number that is written, so that rounding never exceeds the limit of
+/// [`Model::check`](dapple_mesh::Model::check).
 const PART_MAX: f32 = 1e30f32.next_down();
 
-/// The origin of a mesh whose positions are too far from zero for single precision: its center, rounded to a multiple
-/// of a power of two below its extent, from which differences lose few bits or none.
+/// Origin of a mesh whose positions are too far from zero for single precision; `None` if none is needed. It is the
+/// center of the mesh, rounded to a multiple of a power of two below the extent, so that differences lose few bits or
+/// none.
 pub(crate) fn origin(positions: &[DVec3]) -> Option<DVec3> {
     let first = *positions.first()?;
     let grow = |[least, most]: [DVec3; 2], at: &DVec3| [least.min(*at), most.max(*at)];
@@ -28,11 +30,11 @@ pub(crate) fn origin(positions: &[DVec3]) -> Option<DVec3> {
     if moved.fold(0.0, f64::max) <= MOVE_MAX * extent {
         return None;
     }
-    // The power of two has the exponent of the extent, and no fraction.
+    // Power of two with the exponent of the extent
     let step = f64::from_bits(extent.to_bits() & f64::INFINITY.to_bits());
     Some((least.midpoint(most)).map(|part| {
         let steps = part / step;
-        // Larger numbers are whole already.
+        // Larger numbers are already integers.
         if steps.abs() < (1u64 << 52) as f64 {
             (steps + 0.5).floor() * step
         } else {
@@ -41,7 +43,7 @@ pub(crate) fn origin(positions: &[DVec3]) -> Option<DVec3> {
     }))
 }
 
-/// A number in single precision, within the limit of positions.
+/// Rounds to single precision within the limit of positions.
 pub(crate) fn narrow(part: f64) -> f32 {
     (part as f32).clamp(-PART_MAX, PART_MAX)
 }

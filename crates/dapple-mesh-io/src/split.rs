@@ -1,12 +1,12 @@
-//! Splitting of vertices, for formats that have normals only for vertices.
+//! Vertex splitting, for formats that have normals only for vertices.
 
 use dapple_mesh::{Mesh, MeshError, Model, VertexIdx};
 use glam::DVec3;
 use std::borrow::Cow;
 
-/// The model with vertex normals in place of corner normals.
+/// Converts corner normals of a model to vertex normals.
 ///
-/// A vertex becomes several where its corners have different normals. Vertices keep their numbers, and further ones
+/// A vertex is split where its corners have different normals. Vertices keep their indices, and additional ones
 /// follow.
 ///
 /// # Errors

@@ -15,9 +15,9 @@ pub struct MeshReport {
     pub vertices: usize,
     /// Number of faces.
     pub faces: usize,
-    /// Pieces: sets of faces that are joined by edges of exactly two faces, whichever way these go through them. A face
-    /// that names a vertex twice is a piece of its own; faces that share only a vertex, or an edge with a third face, are
-    /// not joined by it.
+    /// Number of connected components. Faces are connected across edges of exactly two faces, regardless of winding. A
+    /// face that contains a vertex twice is a separate component. Sharing only a vertex, or an edge with a third face,
+    /// does not connect faces.
     pub components: usize,
     /// Number of edges with exactly one face.
     pub boundary_edges: usize,
@@ -34,8 +34,8 @@ pub struct MeshReport {
     pub degenerate_faces: usize,
     /// Number of faces with the same three vertices as an earlier face, in any order.
     pub duplicate_faces: usize,
-    /// Faces at the same three positions as an earlier one that go around the other side: both sides of a sheet. Others
-    /// at the same positions do not count.
+    /// Number of faces at the same three positions as an earlier face with opposite winding: the two sides of a sheet.
+    /// Faces at the same positions with equal winding do not count.
     pub back_to_back_faces: usize,
     /// Number of vertices at the position of an earlier vertex.
     pub duplicate_vertices: usize,

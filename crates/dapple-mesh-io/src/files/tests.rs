@@ -1,4 +1,4 @@
-//! Models in a folder.
+//! Tests of models in a folder.
 
 use super::*;
 use crate::test_meshes::cube;
@@ -128,7 +128,7 @@ fn names_in_a_file_do_not_lead_out_of_its_folder() {
 fn only_regular_files_are_read_beside_a_file() {
     let folder = folder("regular");
     let path = folder.join("a.gltf");
-    // A pipe without a writer never ends.
+    // Opening a pipe without a writer would block.
     let made = std::process::Command::new("mkfifo")
         .arg(folder.join("pipe"))
         .status();

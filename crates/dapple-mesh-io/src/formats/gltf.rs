@@ -2,23 +2,25 @@
 //!
 //! Reference: The Khronos Group, *glTF 2.0 Specification*, 2021 (ISO/IEC 12113:2022).
 //!
-//! All triangles of the default scene become one mesh, with the transforms of their nodes applied; without a scene all
-//! nodes count, and each of the copies of their meshes by `EXT_mesh_gpu_instancing`. Triangle strips and fans become
-//! triangles, point primitives only vertices; lines and animations are left out. Skins and morph targets are applied as
-//! the file has them without an animation. Primitives of
-//! one node with the same attributes share their vertices. Where only some primitives have colors or texture
-//! coordinates, the others become white and zero; normals are kept only if all have them. The material is the first
-//! that a primitive has. Textures are copied unchanged if they are PNG or JPEG and use the same texture coordinates as
-//! the base color, whose `KHR_texture_transform` is applied to the corners. All else that a file has and a
-//! [`Material`](dapple_mesh::Material) lacks, such as a cutoff of alpha other than one half, is listed in
+//! All triangles of the default scene become one mesh, with the transforms of their nodes applied. Without a scene,
+//! all nodes are used. Each copy by `EXT_mesh_gpu_instancing` is included. Triangle strips and fans become triangles,
+//! and point primitives become vertices without faces; lines and animations are omitted. Skins and morph targets are
+//! applied in the pose without animation. Primitives of one node with the same attributes share their vertices. If
+//! only some primitives have colors or texture coordinates, the others become white and zero; normals are kept only if
+//! all primitives have them. The material is the first one used by a primitive.
+//!
+//! Textures are copied unchanged if they are PNG or JPEG and use the same texture coordinates as the base color, whose
+//! `KHR_texture_transform` is applied to the corners. Everything else in a file that a
+//! [`Material`](dapple_mesh::Material) cannot represent, such as an alpha cutoff other than one half, is listed in
+//! [`Model::left_out`].
 //! [`Model::left_out`].
 //!
-//! At a seam of the texture a glTF file has two vertices at one position; [`Mesh::repair`](dapple_mesh::Mesh::repair)
+//! At a seam of the texture, a glTF file has two vertices at one position; [`Mesh::repair`](dapple_mesh::Mesh::repair)
 //! merges them. Texture coordinates belong to corners and are not affected;
-//! [`Repair::face_before`](dapple_mesh::Repair) maps faces to those before the repair.
+//! [`Repair::face_before`](dapple_mesh::Repair) maps faces to the original faces.
 //!
-//! The reader is ours since the crate `gltf` panics at files that pass its validation (a test shows one), does not
-//! support instancing, and reads no data URIs without an image library; tests use it as a second reader of written
+//! The crate `gltf` is not used as the reader: it panics on files that pass its validation (a test has one), does not
+//! support instancing, and reads no data URIs without an image library. Tests use it as a second reader of written
 //! files.
 
 mod accessor;
@@ -48,7 +50,7 @@ use std::borrow::Cow;
 
 const FORMAT: &str = "glTF";
 
-/// The entry of the table of formats.
+/// Entry in the table of formats.
 pub(super) const GLTF: MeshFormat = MeshFormat {
     name: FORMAT,
     endings: &["glb", "gltf"],
@@ -62,8 +64,8 @@ pub(super) const GLTF: MeshFormat = MeshFormat {
     }),
 };
 
-/// Extensions that a file may require: instancing and transforms of textures are supported, and the others do not matter here, or only add types of
-/// accessors, all of which are read.
+/// Extensions that a file may require. Instancing and texture transforms are supported. The others do not affect the
+/// model, or only add accessor types, all of which are read.
 const EXTENSIONS: [&str; 6] = [
     "EXT_mesh_gpu_instancing",
     "KHR_texture_transform",
@@ -76,11 +78,11 @@ const EXTENSIONS: [&str; 6] = [
 /// A document with its buffers.
 struct Source<'a> {
     document: Document,
-    /// The bytes of each buffer; `None` if they are missing, which is an error only where they are used.
+    /// Bytes of each buffer; `None` if they are missing, which is an error only where they are used.
     buffers: Vec<Option<Cow<'a, [u8]>>>,
 }
 
-/// Reads a GLB file, or a glTF file that needs no other file.
+/// Reads a GLB file, or a glTF file that refers to no other file.
 ///
 /// # Errors
 ///
@@ -103,14 +105,14 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
     read_with(bytes, &mut |_| None)
 }
 
-/// Reads a glTF or GLB file, and its buffers and textures through `beside`.
+/// Reads a glTF or GLB file. `resolve` returns its buffers and textures.
 ///
 /// # Errors
 ///
-/// The errors of [`read`]. A missing texture is no error.
+/// The errors of [`read`]. A missing texture is not an error.
 pub fn read_with(bytes: &[u8], resolve: &mut FileResolver<'_>) -> Result<Model, MeshIoError> {
     let container = Container::read(bytes)?;
-    // Other versions have other types in the same places, so the version has to be checked first.
+    // Check the version first: other versions have other types for the same properties.
     let Head { asset } = parse(container.json)?;
     if !asset.version.starts_with("2.") {
         return Err(unsupported(format!("glTF {}", asset.version)));
@@ -141,7 +143,7 @@ pub fn read_with(bytes: &[u8], resolve: &mut FileResolver<'_>) -> Result<Model, 
 }
 
 fn parse<T: DeserializeOwned>(json: &[u8]) -> Result<T, MeshIoError> {
-    // A whole number may be written as `1.0`, which few files do.
+    // Rare files write an integer as `1.0`.
     let with_fractions = || {
         let mut value = serde_json::from_slice(json).ok()?;
         without_fractions(&mut value);
@@ -152,13 +154,13 @@ fn parse<T: DeserializeOwned>(json: &[u8]) -> Result<T, MeshIoError> {
         .map_err(|error| wrong(error.to_string()))
 }
 
-/// Turns numbers such as `1.0` into whole ones.
+/// Converts numbers such as `1.0` to integers.
 fn without_fractions(value: &mut Value) {
     match value {
         Value::Array(items) => items.iter_mut().for_each(without_fractions),
         Value::Object(entries) => entries.values_mut().for_each(without_fractions),
         Value::Number(number) => {
-            // Up to 2^53 they are exact.
+            // Integers up to 2^53 are exact.
             let whole = number
                 .as_f64()
                 .filter(|number| (0.0..9e15).contains(number));
@@ -179,7 +181,7 @@ fn wrong(why: impl Into<String>) -> MeshIoError {
 }
 
 impl Source<'_> {
-    /// The bytes of a buffer view.
+    /// Bytes of a buffer view.
     fn view(&self, index: usize) -> Result<&[u8], MeshIoError> {
         let view = self.document.buffer_views.get(index);
         let buffer = view.and_then(|view| self.buffers.get(view.buffer));
@@ -193,7 +195,7 @@ impl Source<'_> {
         bytes.ok_or_else(|| wrong(format!("there are no bytes for buffer view {index}")))
     }
 
-    /// The error of a buffer without bytes, with the file that it names.
+    /// Error for a buffer without bytes, with the name of its file.
     fn missing(&self, buffer: usize) -> MeshIoError {
         let uri = self.document.buffers.get(buffer);
         let uri = uri.and_then(|buffer| buffer.uri.as_deref());
@@ -207,7 +209,7 @@ impl Source<'_> {
         wrong(format!("the bytes of buffer {buffer} are missing{file}"))
     }
 
-    /// The bytes of an image, in any format.
+    /// Bytes of an image, in any format.
     fn image_bytes(&self, image: &Image, resolve: &mut FileResolver<'_>) -> Option<Vec<u8>> {
         match (&image.uri, image.buffer_view) {
             (Some(uri), _) if uri.starts_with("data:") => container::data(uri),

@@ -1,20 +1,22 @@
-//! OBJ, the format of Wavefront, with its materials in MTL.
+//! The OBJ format of Wavefront, with materials in MTL.
 //!
-//! Reference: Wavefront, *Advanced Visualizer Manual*, appendix B1 (Object Files) and B2 (MTL). Colors of vertices
-//! follow `v x y z`, as many programs write them. Wavefront's v goes up, so that v becomes 1 - v on the way in and out.
+//! Reference: Wavefront, *Advanced Visualizer Manual*, appendix B1 (Object Files) and B2 (MTL). Vertex colors follow
+//! `v x y z`, as many programs write them. The v axis of OBJ points up, so v becomes 1 - v when reading and writing.
 //!
-//! All faces become one mesh, whatever their objects, groups and materials, since a texture is to continue across
-//! these; the material is the first that a face has. Normals, which OBJ gives to corners, become those of vertices if
-//! no vertex has two, and stay with the corners otherwise; where a corner has none, all are left out. Texture
-//! coordinates and normals that corners name but the file lacks are left out, too, and listed in [`Model::left_out`].
-//! Lines, points and free-form surfaces are left out, and listed there. Of a material its `Kd` (linear, and only without a
-//! texture, since with one it is seldom meant), `d`, `map_Kd` and `norm` are read and written. The options `-s` and `-o`
-//! of a texture are applied to the texture coordinates. A texture whose name has `<UDIM>` or `<UVTILE>`, or the number of a
-//! unit square whose files all exist, is one for each unit square: see [`Model::tiles`]. A texture that is missing, or neither PNG nor JPEG, is left out
-//! and listed, as are other textures and options.
+//! All faces become one mesh, regardless of objects, groups and materials, so that a texture can continue across them.
+//! The material is the first one used by a face. Corner normals become vertex normals if no vertex has two different
+//! ones; if a corner has no normal, all normals are omitted. Corners may refer to texture coordinates and normals that
+//! the file lacks; these are omitted and listed in [`Model::left_out`]. Lines, points and free-form surfaces are
+//! omitted and listed as well.
 //!
-//! The reader is ours because of its guarantees: all bits of `f64`, errors that name their line, a list of omitted
-//! parts, and a limit of memory whatever the file says.
+//! Of a material, `Kd`, `d`, `map_Kd` and `norm` are read and written. `Kd` is linear, and used only without a
+//! texture, since it is rarely meaningful with one. The texture options `-s` and `-o` are applied to the texture
+//! coordinates. A texture whose name contains `<UDIM>` or `<UVTILE>`, or the number of a unit square whose files all
+//! exist, is one texture per unit square: see [`Model::tiles`]. A texture that is missing, or neither PNG nor JPEG, is
+//! omitted and listed, as are other textures and options.
+//!
+//! Our own reader guarantees all bits of `f64`, errors with line numbers, a list of omitted parts, and bounded memory
+//! for any input.
 
 mod mtl;
 mod write;
@@ -40,7 +42,7 @@ use std::collections::BTreeSet;
 
 const FORMAT: &str = "OBJ";
 
-/// The entry of the table of formats.
+/// Entry in the table of formats.
 pub(super) const OBJ: MeshFormat = MeshFormat {
     name: FORMAT,
     endings: &["obj"],
@@ -54,29 +56,29 @@ pub(super) const OBJ: MeshFormat = MeshFormat {
     }),
 };
 
-/// The index of a texture coordinate or normal for a corner without one.
+/// Index of a texture coordinate or normal that a corner does not have.
 const NONE: u32 = u32::MAX;
-/// The index of a texture coordinate or normal that cannot exist, such as one that is too large.
+/// Index of a texture coordinate or normal that cannot exist, such as one that is too large.
 const MISSING: u32 = u32::MAX - 1;
 
-/// The indices of the position, texture coordinate and normal of a corner.
+/// Indices of the position, texture coordinate and normal of a corner.
 type Corner = [u32; 3];
 
 #[derive(Default)]
 struct Draft {
     positions: Vec<DVec3>,
-    /// The colors, one for each position up to the last that has one; others are white.
+    /// Colors of the vertices, up to the last vertex that has one; the others are white.
     colors: Vec<LinearRgba>,
     uvs: Vec<DVec2>,
     normals: Vec<DVec3>,
     faces: Vec<[Corner; 3]>,
     polygons: Polygons,
     libraries: Vec<String>,
-    /// The kinds of elements that have no place in a model.
+    /// Kinds of skipped elements, which a model cannot represent.
     skipped: BTreeSet<&'static str>,
-    /// The name of the material in use, and whether a face uses it.
+    /// Name of the current material, and whether a face uses it.
     material: Option<(String, bool)>,
-    /// Whether another material is in use than the first of a face, and whether a face uses one.
+    /// Whether the current material differs from the first used one, and whether a face uses such a material.
     others: [bool; 2],
 }
 
@@ -84,8 +86,8 @@ struct Draft {
 ///
 /// # Errors
 ///
-/// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) with the line if the bytes are not an OBJ file; and the
-/// errors of [`Mesh::new`] and [`Model::check`].
+/// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) with the line number if the bytes are not an OBJ file; and
+/// the errors of [`Mesh::new`] and [`Model::check`].
 ///
 /// # Examples
 ///
@@ -99,12 +101,12 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
     read_with(bytes, &mut |_| None)
 }
 
-/// Reads an OBJ file, and its MTL files and textures through `beside`.
+/// Reads an OBJ file. `resolve` returns its MTL files and textures.
 ///
 /// # Errors
 ///
-/// The errors of [`read`]. In other files, only a text that is not ASCII or UTF-8, a keyword that is not ASCII, and a `Kd`
-/// beyond single precision are errors.
+/// The errors of [`read`]. In other files, only text that is neither ASCII nor UTF-8, a keyword that is not ASCII, and
+/// a `Kd` outside of the range of `f32` are errors.
 pub fn read_with(bytes: &[u8], resolve: &mut FileResolver<'_>) -> Result<Model, MeshIoError> {
     let mut draft = Draft::default();
     let text = joined(content(FORMAT, bytes)?);
@@ -126,8 +128,8 @@ pub fn read_with(bytes: &[u8], resolve: &mut FileResolver<'_>) -> Result<Model, 
     Ok(model)
 }
 
-/// Joins lines that end with a backslash to the next one, except in comments, where it is often the end of a path. A
-/// joined line is followed by as many line ends as it had before, so that all other lines keep their numbers.
+/// Joins lines that end with a backslash to the next one, except comments, where it is often the end of a path. A
+/// joined line is padded with newlines, so that all other lines keep their numbers.
 fn joined(bytes: &[u8]) -> Cow<'_, [u8]> {
     let continued = |pair: &[u8]| pair[0] == b'\\' && matches!(pair[1], b'\n' | b'\r');
     if !bytes.windows(2).any(continued) {
@@ -139,7 +141,7 @@ fn joined(bytes: &[u8]) -> Cow<'_, [u8]> {
         let content = line.trim_ascii_end();
         let is_comment = n_joined == 0 && line.starts_with(b"#");
         match content.strip_suffix(b"\\") {
-            // The backslash is the last byte before the end of the line.
+            // The backslash is the last byte before the newline.
             Some(start)
                 if !is_comment && matches!(line[content.len()..], [b'\n'] | [b'\r', b'\n']) =>
             {
@@ -187,7 +189,7 @@ impl Draft {
     }
 
     fn add_vertex(&mut self, line: &Line<'_>) -> Result<(), MeshIoError> {
-        // `v x y z w` has a weight that only free-form surfaces need.
+        // The weight in `v x y z w` is only used by free-form surfaces.
         if line.words.len() >= 7 {
             let color = line.vector(4)?;
             let parts = [color.x, color.y, color.z, 1.0];
@@ -215,7 +217,8 @@ impl Draft {
         Ok(())
     }
 
-    /// The indices of a corner from 0; the numbers in the file count from 1, or from -1 backward from the last.
+    /// Zero-based indices of a corner. Numbers in the file start at 1; negative numbers count backward from the last
+    /// item.
     fn corner(&self, word: &[u8]) -> Option<Corner> {
         let counts = [self.positions.len(), self.uvs.len(), self.normals.len()];
         let mut corner = [NONE; 3];
@@ -236,7 +239,7 @@ impl Draft {
         parts.next().is_none().then_some(corner)
     }
 
-    /// Fails for a face with a vertex that the file does not have.
+    /// Fails if a face refers to a missing vertex.
     fn check_vertices(&self, text: &[u8]) -> Result<(), MeshIoError> {
         let count = self.positions.len();
         let missing = |corner: &&Corner| corner[0] as usize >= count;
@@ -246,7 +249,7 @@ impl Draft {
         let Some((face, corner)) = first.next() else {
             return Ok(());
         };
-        // Vertices may follow the faces, so the line is searched only now.
+        // Vertices may follow the faces, so find the line only now.
         let mut n_faces = 0;
         for line in lines(FORMAT, text)?.filter(|line| line.words[0] == b"f") {
             n_faces += line.words.len().saturating_sub(3);
@@ -257,7 +260,7 @@ impl Draft {
         Ok(())
     }
 
-    /// Removes texture coordinates and normals that corners name but the file lacks, and returns a list of them.
+    /// Removes references to texture coordinates and normals that the file lacks, and returns entries for `left_out`.
     fn take_away_missing(&mut self) -> Vec<String> {
         let mut left_out = Vec::new();
         for (i, count, what) in [
@@ -294,12 +297,12 @@ impl Draft {
             .map(|face| face.map(|corner| corner[0]))
             .collect();
         let uvs = self.face_uvs();
-        // The vertices of all corners were checked before normals are spread over them.
+        // All vertex indices were checked before normals are assigned to vertices.
         let count = self.positions.len();
         let mesh = Mesh::new(core::mem::take(&mut self.positions), &faces)?;
         let corner_normals = self.corner_normals();
         let normals = self.vertex_normals(count, corner_normals.as_deref());
-        // Only creases need corner normals.
+        // Corner normals are only needed at creases.
         let corner_normals = corner_normals.filter(|_| normals.is_none());
         if !self.colors.is_empty() {
             self.colors.resize(count, WHITE);
@@ -318,7 +321,7 @@ impl Draft {
         Ok(model)
     }
 
-    /// The texture coordinates of the corners, zero where there are none, or `None` if no corner has one.
+    /// Texture coordinates of the corners, zero where missing; `None` if no corner has any.
     fn face_uvs(&self) -> Option<Vec<[DVec2; 3]>> {
         if self.faces.iter().flatten().all(|corner| corner[1] == NONE) {
             return None;
@@ -327,7 +330,7 @@ impl Draft {
         Some(self.faces.iter().map(|face| face.map(uv)).collect())
     }
 
-    /// The normals of the corners of all faces, if each corner has one.
+    /// Corner normals of all faces, if every corner has one.
     fn corner_normals(&self) -> Option<Vec<[DVec3; 3]>> {
         if self.faces.is_empty() {
             return None;
@@ -337,8 +340,7 @@ impl Draft {
         self.faces.iter().map(of_face).collect()
     }
 
-    /// The normals of the vertices, if no vertex has two at its corners; for a cloud of points, in the order of the
-    /// file.
+    /// Vertex normals, if no vertex has two different ones at its corners; for a point cloud, in file order.
     fn vertex_normals(
         &self,
         count: usize,
@@ -360,10 +362,10 @@ impl Draft {
     }
 }
 
-/// The color of vertices without one, if others have colors.
+/// Color of vertices without a color, if others have one.
 const WHITE: LinearRgba = LinearRgba::opaque(LinearRgb::WHITE);
 
-/// The rest of a line as a name, which may contain spaces.
+/// Rest of a line as a name, which may contain spaces.
 fn name(line: &Line<'_>) -> String {
     joined_words(&line.name_words())
 }
@@ -378,7 +380,7 @@ fn index(number: i64, count: usize) -> Option<u32> {
     } else {
         i64::try_from(count).ok()? + number
     };
-    // Zero is no valid number, and would become one past the last.
+    // Zero is not a valid number; it would become one past the last item.
     u32::try_from(from_zero)
         .ok()
         .filter(|&index| number != 0 && index != NONE)

@@ -2,11 +2,11 @@
 //!
 //! Reference: the manual of Geomview, `http://www.geomview.org/docs/html/OFF.html`.
 //!
-//! All headers of three dimensions are read: `OFF` with the letters `ST`, `C` and `N` before it, in this order, for
-//! texture coordinates, colors and normals of the vertices, and none at all, which means `OFF`. The counts may follow
-//! the header on its line, even without a space. Colors are three or four numbers, 0 to 255 if a vertex has only whole
-//! ones and else 0 to 1; those of faces are left out, and listed in [`Model::left_out`]. A vertex is on one line; a face may continue over several. The
-//! four-dimensional, n-dimensional and binary variants are errors.
+//! All three-dimensional headers are read: `OFF` with the optional prefixes `ST`, `C` and `N`, in this order, for
+//! texture coordinates, colors and normals of the vertices. A missing header means `OFF`. The counts may follow the
+//! header on its line, even without a space. Colors are three or four numbers, from 0 to 255 if the vertex has only
+//! integers, else from 0 to 1. Face colors are omitted and listed in [`Model::left_out`]. A vertex is on one line; a
+//! face may span several lines. The four-dimensional, n-dimensional and binary variants are errors.
 
 use super::MeshFormat;
 use crate::MeshIoError;
@@ -20,7 +20,7 @@ use glam::{DVec2, DVec3};
 
 const FORMAT: &str = "OFF";
 
-/// The entry of the table of formats.
+/// Entry in the table of formats.
 pub(super) const OFF: MeshFormat = MeshFormat {
     name: FORMAT,
     endings: &["off"],
@@ -28,7 +28,7 @@ pub(super) const OFF: MeshFormat = MeshFormat {
     writer: None,
 };
 
-/// The columns of the vertices, according to the header.
+/// Vertex attributes that the header declares.
 #[derive(Clone, Copy, Default)]
 struct Header {
     texture: bool,
@@ -36,7 +36,7 @@ struct Header {
     normal: bool,
 }
 
-/// The columns of the vertices.
+/// Attributes of the vertices.
 #[derive(Default)]
 struct Vertices {
     positions: Vec<DVec3>,
@@ -49,8 +49,8 @@ struct Vertices {
 ///
 /// # Errors
 ///
-/// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) with the line if the bytes are not an OFF file; and the
-/// errors of [`Mesh::new`] and [`Model::check`].
+/// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) with the line number if the bytes are not an OFF file; and
+/// the errors of [`Mesh::new`] and [`Model::check`].
 ///
 /// # Examples
 ///
@@ -81,7 +81,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
     let mut has_colors = false;
     for _ in 0..n_faces {
         let mut line = lines.next().ok_or_else(|| ended("faces", n_faces))?;
-        // A polygon may continue over several lines, and its color is on the last of them.
+        // A polygon may span several lines, and its color is on the last of them.
         let count = polygon_count(&line)?;
         while line.words.len() <= count {
             let more = lines.next();
@@ -136,7 +136,7 @@ fn strip<'a>(word: &'a [u8], prefix: &[u8]) -> (&'a [u8], bool) {
         .map_or((word, false), |rest| (rest, true))
 }
 
-/// The numbers of vertices and faces; the number of edges, which follows, is not used.
+/// Numbers of vertices and faces; the number of edges, which follows, is ignored.
 fn counts_of(line: Option<&Line<'_>>) -> Result<[u64; 2], MeshIoError> {
     let line = line.ok_or_else(|| MeshIoError::file(FORMAT, "there are no counts"))?;
     let count = |at: usize| line.words.get(at).copied().and_then(parse::<u64>);
@@ -153,12 +153,12 @@ fn ended(what: &str, count: u64) -> MeshIoError {
     )
 }
 
-/// The number of corners of the polygon that begins on a line.
+/// Number of corners of the polygon that starts on a line.
 fn polygon_count(line: &Line<'_>) -> Result<usize, MeshIoError> {
     parse(line.words[0]).ok_or_else(|| line.error("the number of corners of a face is needed"))
 }
 
-/// The vertex of a corner, a number from 0.
+/// Zero-based vertex index of a corner.
 fn corner(line: &Line<'_>, word: &[u8], n_vertices: u64) -> Result<u32, MeshIoError> {
     let corner: u32 =
         parse(word).ok_or_else(|| line.error("a corner is not the number of a vertex"))?;
@@ -178,7 +178,7 @@ impl Vertices {
             at += 3;
         }
         if header.color {
-            // Three numbers or four, and then perhaps texture coordinates.
+            // Three or four color components, then optional texture coordinates
             let end = line.words.len()
                 - if header.texture {
                     2.min(line.words.len())
@@ -190,7 +190,7 @@ impl Vertices {
             at += count;
         }
         if header.texture {
-            // Here v goes up.
+            // The v axis of OFF points up.
             let v = 1.0 - line.part(at + 1)?;
             self.uvs.push(DVec2::new(line.part(at)?, v));
         }
@@ -210,7 +210,7 @@ impl Vertices {
     }
 }
 
-/// The color in three or four numbers, starting at a word.
+/// Color of three or four components, starting at a word.
 fn color(line: &Line<'_>, at: usize, count: usize) -> Result<LinearRgba, MeshIoError> {
     let whole = line
         .words

@@ -1,19 +1,23 @@
-//! PLY, the polygon file format of Stanford.
+//! PLY, the Stanford polygon file format.
 //!
 //! Reference: Greg Turk, *The PLY Polygon File Format* (1994), as distributed with the models of the Stanford 3D
 //! Scanning Repository.
 //!
-//! Text and binary files of both byte orders are read, with any scalar type for any property. Of the element `vertex`:
-//! `x y z`, `nx ny nz`, `red green blue alpha` (also with `diffuse_` before or as `r g b a`) and `s t`, `u v` or
-//! `texture_u texture_v`. Of the element `face`: the list `vertex_indices` or `vertex_index`, and `texcoord` with two
-//! numbers for each corner, which takes precedence over those of vertices. Of the element `tristrips`: the list
-//! `vertex_indices`, in which -1 ends a strip. All other elements are listed in [`Model::left_out`], and other properties
-//! skipped. The comment `TextureFile` names the texture of the base color, as many programs write it. Colors are coded as sRGB:
-//! 0 to 255, for `ushort` 0 to 65535, and for `float` and `double` 0 to 1. As in OBJ, v goes up in the file, so that v
-//! becomes 1 - v.
+//! Text files and binary files of both byte orders are read, with any scalar type for any property. The following
+//! properties are used:
 //!
-//! The reader is ours because of its guarantees: any scalar type for any property, errors that name their line, and a
-//! limit of memory whatever the header says.
+//! - Element `vertex`: `x y z`, `nx ny nz`, `red green blue alpha` (also with the prefix `diffuse_`, or as `r g b a`),
+//!   and `s t`, `u v` or `texture_u texture_v`.
+//! - Element `face`: the list `vertex_indices` or `vertex_index`, and `texcoord` with two numbers per corner, which
+//!   takes precedence over texture coordinates of vertices.
+//! - Element `tristrips`: the list `vertex_indices`, where -1 ends a strip.
+//!
+//! All other elements are listed in [`Model::left_out`], and other properties are skipped. The comment `TextureFile`
+//! names the base color texture, as many programs write it. Colors are encoded as sRGB: 0 to 255, for `ushort` 0 to
+//! 65535, and for `float` and `double` 0 to 1. As in OBJ, the v axis of the file points up, so v becomes 1 - v.
+//!
+//! Our own reader guarantees any scalar type for any property, errors with line numbers, and bounded memory for any
+//! header.
 
 mod body;
 mod header;
@@ -38,7 +42,7 @@ use header::{Element, Header, Kind, Scalar};
 
 const FORMAT: &str = "PLY";
 
-/// The entry of the table of formats.
+/// Entry in the table of formats.
 pub(super) const PLY: MeshFormat = MeshFormat {
     name: FORMAT,
     endings: &["ply"],
@@ -52,7 +56,7 @@ pub(super) const PLY: MeshFormat = MeshFormat {
     }),
 };
 
-/// The columns of a vertex, and the names of properties for each.
+/// Vertex attributes, and the property names of each.
 const COLUMNS: [&[&str]; 12] = [
     &["x"],
     &["y"],
@@ -67,12 +71,12 @@ const COLUMNS: [&[&str]; 12] = [
     &["s", "u", "texture_u"],
     &["t", "v", "texture_v"],
 ];
-/// The names of the list of corners of a face or a strip.
+/// Property names of the corner list of a face or a strip.
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 #[derive(Default)]
 struct Draft {
-    /// The number of vertices in the header, also if faces come before them.
+    /// Number of vertices in the header, known even if faces precede them.
     n_vertices: u64,
     positions: Vec<DVec3>,
     normals: Vec<DVec3>,
@@ -84,7 +88,7 @@ struct Draft {
     left_out: Vec<String>,
 }
 
-/// The column for a property of a vertex, and the coding of a color in it.
+/// Attribute of a vertex property, and the encoding of a color in it.
 struct Target {
     column: usize,
     coding: Coding,
@@ -94,8 +98,8 @@ struct Target {
 ///
 /// # Errors
 ///
-/// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) if the bytes are not a PLY file, or have fewer elements than
-/// the header says, with the line in the header and in a body of text; and the errors of [`Mesh::new`] and
+/// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) if the bytes are not a PLY file, or have fewer elements
+/// than the header states, with the line number in the header and in a text body; and the errors of [`Mesh::new`] and
 /// [`Model::check`].
 ///
 /// # Examples
@@ -110,11 +114,11 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
     read_with(bytes, &mut |_| None)
 }
 
-/// Reads a PLY file, and its texture through `beside`.
+/// Reads a PLY file. `resolve` returns its texture.
 ///
 /// # Errors
 ///
-/// The errors of [`read`]. A missing texture is no error, but listed in [`Model::left_out`].
+/// The errors of [`read`]. A missing texture is not an error, and is listed in [`Model::left_out`].
 pub fn read_with(bytes: &[u8], resolve: &mut FileResolver<'_>) -> Result<Model, MeshIoError> {
     let bytes = content(FORMAT, bytes)?;
     let (header, rest) = Header::read(bytes)?;
@@ -150,10 +154,10 @@ pub fn read_with(bytes: &[u8], resolve: &mut FileResolver<'_>) -> Result<Model, 
     Ok(model)
 }
 
-/// Skips an element that is not used.
+/// Skips the data of an unused element.
 fn pass_over(element: &Element, body: &mut Body<'_>) -> Result<(), MeshIoError> {
     let mut list = Vec::new();
-    // Without properties there is nothing to read, whatever the count.
+    // Without properties there is no data, regardless of the count.
     let count = if element.properties.is_empty() {
         0
     } else {
@@ -168,7 +172,7 @@ fn pass_over(element: &Element, body: &mut Body<'_>) -> Result<(), MeshIoError> 
 }
 
 impl Draft {
-    /// Lists an element that is not used.
+    /// Lists an unused element in `left_out`.
     fn skip(&mut self, element: &Element) {
         if element.count > 0 && !element.properties.is_empty() {
             let name = shown(&element.name);
@@ -194,7 +198,7 @@ impl Draft {
             return Err(MeshIoError::file(FORMAT, why));
         }
         let (mut row, mut codings) = ([0.0; COLUMNS.len()], [Coding::Unit; 4]);
-        // The alpha of a color without alpha.
+        // Default alpha of a color without alpha
         row[9] = 1.0;
         for target in targets
             .iter()
@@ -296,7 +300,7 @@ impl Draft {
         Ok(())
     }
 
-    /// The vertex with a number.
+    /// Vertex index from a number in the file.
     fn vertex(&self, number: f64, body: &Body<'_>) -> Result<u32, MeshIoError> {
         let vertex = number as u32;
         if f64::from(vertex) == number && u64::from(vertex) < self.n_vertices {
@@ -310,7 +314,7 @@ impl Draft {
         let ears = self
             .polygons
             .ears(&self.faces, &self.positions, |vertex| vertex);
-        // Other counts are an error of the model.
+        // Mismatched counts are an error of the model.
         if self.face_uvs.len() == self.faces.len() {
             ears.apply(&mut self.face_uvs);
         }
@@ -331,7 +335,7 @@ impl Draft {
     }
 }
 
-/// The column for a property.
+/// Attribute of a property.
 fn target(name: &str, kind: Kind) -> Option<Target> {
     let column = COLUMNS.iter().position(|names| names.contains(&name))?;
     let Kind::Scalar(scalar) = kind else {

@@ -1,12 +1,12 @@
-//! STL, the format of 3D printing: triangles without anything else.
+//! STL, the format of 3D printing: triangles without attributes.
 //!
 //! Reference: 3D Systems, *Stereolithography Interface Specification* (1989), as Marshall Burns describes it in *Automated
 //! Fabrication* (1993), section 6.5.
 //!
-//! Binary and text files are read; all solids of a text become one mesh. A file has no vertices but corners, so that
-//! corners at one position become one vertex. Normals of faces are not read, since positions determine them; attributes
-//! of faces, which some programs use for colors, are listed in [`Model::left_out`]. Binary files are written, and text
-//! where single precision would move a vertex of a mesh far from zero.
+//! Binary and text files are read; all solids of a text file become one mesh. STL has no shared vertices, so corners
+//! at the same position are merged into one vertex. Face normals are ignored, since positions determine them. Face
+//! attributes, which some programs use for colors, are listed in [`Model::left_out`]. Files are written as binary, or
+//! as text if `f32` would move the vertices of a mesh far from the origin.
 
 use super::{MaterialPlace, MeshFormat, Writer, alone};
 use crate::line::{Line, lines};
@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 
 const FORMAT: &str = "STL";
 
-/// The entry of the table of formats.
+/// Entry in the table of formats.
 pub(super) const STL: MeshFormat = MeshFormat {
     name: FORMAT,
     endings: &["stl"],
@@ -33,16 +33,16 @@ pub(super) const STL: MeshFormat = MeshFormat {
     }),
 };
 
-/// The number of bytes before the first face of a binary file: a text and the number of faces.
+/// Number of bytes before the first face of a binary file: a text and the number of faces.
 const HEAD: usize = 84;
-/// The number of bytes of a face of a binary file: a normal, three positions, and two bytes of attributes.
+/// Number of bytes per face of a binary file: a normal, three positions, and two bytes of attributes.
 const FACE: usize = 50;
 
-/// The faces so far, whose corners at one position are one vertex.
+/// Faces read so far; corners at the same position share a vertex.
 #[derive(Default)]
 struct Draft {
     positions: Vec<DVec3>,
-    /// The vertex at each position.
+    /// Vertex at each position.
     vertices: BTreeMap<[u64; 3], u32>,
     faces: Vec<[u32; 3]>,
 }
@@ -51,7 +51,8 @@ struct Draft {
 ///
 /// # Errors
 ///
-/// [`MeshIoErrorKind::File`] if the bytes are not an STL file, with the line of a text; and the errors of [`Mesh::new`].
+/// [`MeshIoErrorKind::File`] if the bytes are not an STL file, with the line number in a text; and the errors of
+/// [`Mesh::new`].
 ///
 /// # Examples
 ///
@@ -68,9 +69,9 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
     }
 }
 
-/// Encodes the mesh as a binary STL file, with numbers rounded to `f32`; or as text, with the shortest digits of `f64`,
-/// if that would move a vertex by more than 2^-20 of the extent of the mesh, because it is far from zero. Colors, texture
-/// coordinates and the material are left out.
+/// Encodes the mesh as a binary STL file, with values rounded to `f32`. If that would move a vertex by more than 2^-20
+/// of the extent, because the mesh is far from the origin, the file is text with the shortest digits of `f64`. Colors,
+/// texture coordinates and the material are omitted.
 ///
 /// # Errors
 ///
@@ -87,7 +88,7 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
         return Ok(text(&model.mesh).into_bytes());
     }
     let mut file = Vec::with_capacity(bytes);
-    // It must not begin with `solid`, which text does.
+    // A binary file must not start with `solid`, which marks text.
     file.extend(b"dapple");
     file.resize(HEAD - 4, b' ');
     file.extend((n_faces as u32).to_le_bytes());
@@ -101,8 +102,8 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
     Ok(file)
 }
 
-/// The faces of a binary file; `None` if it is text. Binary files may begin with the word of text, so that the number of
-/// bytes goes before it.
+/// Faces of a binary file; `None` if it is text. Binary files may start with the keyword of text, so the length is
+/// checked first.
 fn binary(bytes: &[u8]) -> Option<&[u8]> {
     let count = bytes.get(HEAD - 4..HEAD)?.try_into().ok()?;
     let count = u32::from_le_bytes(count) as usize;
@@ -165,7 +166,7 @@ fn three(line: &Line<'_>, corners: &[DVec3]) -> Result<[DVec3; 3], MeshIoError> 
     corners.try_into().map_err(|_| why())
 }
 
-/// The corners of each face.
+/// Corners of each face.
 fn corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> {
     let positions = mesh.positions();
     let faces = mesh.faces().iter();
@@ -194,7 +195,7 @@ fn text(mesh: &Mesh) -> String {
     text + "endsolid dapple\n"
 }
 
-/// Adds a line with a vector.
+/// Appends a line with a vector.
 fn add(text: &mut String, keyword: &str, vector: DVec3) {
     text.push_str(keyword);
     for part in vector.to_array() {
@@ -208,7 +209,7 @@ impl Draft {
     fn add(&mut self, corners: [DVec3; 3]) -> Result<(), MeshIoError> {
         let mut face = [0; 3];
         for (vertex, corner) in face.iter_mut().zip(corners) {
-            // Both zeros are one position.
+            // Adding zero makes both zeros the same position.
             let bits = (corner + DVec3::ZERO).to_array().map(f64::to_bits);
             let next = u32::try_from(self.positions.len());
             let next =

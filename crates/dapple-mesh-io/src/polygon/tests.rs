@@ -1,4 +1,4 @@
-//! Concave polygons against their areas, which the formula of the shoelace gives, and against the sides they must keep.
+//! Tests of concave polygons against their shoelace areas and their sides.
 
 use super::*;
 use crate::{obj, off, ply};
@@ -19,7 +19,7 @@ fn flat(corners: &[[f64; 2]]) -> Vec<DVec3> {
     corners.map(|&[x, y]| DVec3::new(x, y, 0.0)).collect()
 }
 
-/// The triangles of one polygon, and whether it is named as one that crosses itself.
+/// Triangles of one polygon, and whether it is listed as self-intersecting.
 fn triangles(corners: &[DVec3]) -> (Vec<[u32; 3]>, bool) {
     let (mut polygons, mut faces) = (Polygons::default(), Vec::new());
     let numbers: Vec<_> = (0..corners.len() as u32).collect();
@@ -29,7 +29,7 @@ fn triangles(corners: &[DVec3]) -> (Vec<[u32; 3]>, bool) {
     (faces, ears.left_out().next().is_some())
 }
 
-/// Twice the area of a polygon as a vector.
+/// Vector area of a polygon, times two.
 fn shoelace(corners: &[DVec3]) -> DVec3 {
     let pairs = (0..corners.len()).map(|i| corners[i].cross(corners[(i + 1) % corners.len()]));
     pairs.sum()
@@ -47,7 +47,7 @@ fn check(corners: &[DVec3], what: &str) {
         .map(|face| shoelace(&face.map(|vertex| corners[vertex as usize])));
     let areas: Vec<_> = areas.collect();
     let sum: f64 = areas.iter().map(|area| area.length()).sum();
-    // Sums of a few products of small numbers.
+    // Tolerance: sums of a few products of small numbers.
     assert!(
         (sum - whole.length()).abs() < 1e-9 * whole.length(),
         "{what}: {sum} {whole}"
@@ -100,7 +100,7 @@ fn concave_polygons_are_covered_once_in_every_plane_and_direction() {
         [0.0, 2.0],
         [0.0, 1.0],
     ];
-    // A square with a hole, to which a bridge leads.
+    // A square with a hole that is connected by a bridge.
     let hole = [
         [0.0, 0.0],
         [4.0, 0.0],
@@ -147,11 +147,11 @@ fn concave_polygons_are_covered_once_in_every_plane_and_direction() {
 fn convex_polygons_stay_fans() {
     let circle = |i: u32| {
         let angle = f64::from(i) / 9.0 * core::f64::consts::TAU;
-        // In six digits, as many files have them.
+        // Six digits, as in many files
         [libm::cos(angle), libm::sin(angle)].map(|part| libm::round(part * 1e6) / 1e6)
     };
     let circle: Vec<_> = (0..9).map(circle).collect();
-    // A corner on a slanted side, which rounding puts inside by 1e-17.
+    // A corner on a slanted side, which rounding moves inside by 1e-17.
     let slanted = [[0.0, 0.0], [0.1, 0.3], [0.2, 0.6], [-1.0, 1.0]].map(|[x, y]| [-x, y]);
     for shape in [
         &circle[..],
@@ -193,7 +193,7 @@ fn polygons_that_cross_themselves_stay_fans_and_are_named() {
 
 #[test]
 fn large_polygons_are_covered_once_or_stay_fans() {
-    // A comb with teeth of random lengths below a straight chain, which ears see as a whole.
+    // A comb with teeth of random lengths below a straight chain, which every ear test sees as a whole.
     let comb = |n: u32| {
         let teeth = (0..n).map(|i| {
             let length = f64::from(i.wrapping_mul(2_654_435_761) >> 16) / 65536.0;
@@ -206,7 +206,7 @@ fn large_polygons_are_covered_once_or_stay_fans() {
         )
     };
     check(&comb(100_000), "comb");
-    // Each side of this one lies beside all others. The number of tests is bounded, whatever the file says.
+    // Every side of this polygon overlaps all others. The number of tests is bounded for any input.
     let side = |i: u32| [f64::from(i % 2), f64::from(i)];
     let zigzag: Vec<_> = (0..40_000).map(side).chain([[-1.0, 0.0]]).collect();
     let (faces, is_named) = triangles(&flat(&zigzag));
@@ -232,7 +232,7 @@ fn every_format_triangulates_concave_polygons_with_their_columns() {
     let objects: String = L
         .map(|[x, y]| format!("v {x} {y} 0\nvt {x} {y}\n"))
         .concat();
-    // The face comes before its vertices, which OBJ allows.
+    // The face precedes its vertices, which OBJ allows.
     let early = format!("f 1/1 2/2 3/3 4/4 5/5 6/6\n{objects}");
     let late = format!("{objects}f -6/-6 -5/-5 -4/-4 -3/-3 -2/-2 -1/-1\n");
     let ply = format!(

@@ -1,25 +1,25 @@
-//! Accessors: columns of numbers in buffers, of any type, strided and sparse.
+//! Accessors: typed arrays in buffers, including strided and sparse ones.
 
 use super::document::{Accessor, Sparse};
 use super::{Source, wrong};
 use crate::MeshIoError;
 
-/// The numbers of an accessor.
+/// Values of an accessor.
 pub(super) struct Column {
-    /// The number of numbers in each element.
+    /// Number of values per element.
     pub(super) width: usize,
     pub(super) values: Vec<f64>,
 }
 
-/// The number of further numbers that the accessors of a file may have.
+/// Remaining number of values that the accessors of a file may have.
 ///
-/// Accessors may share bytes, stand for zeros, and be used by many nodes, so that a file can claim more memory than it
-/// has bytes. More than four numbers for each byte of the file, and 2^24 more, are an error.
+/// Accessors may share bytes, represent zeros, and be used by many nodes, so a small file can claim a large amount of
+/// memory. The limit is four values per byte of the file plus 2^24.
 pub(super) struct Budget {
     left: usize,
 }
 
-/// A type of numbers.
+/// Component type of an accessor.
 #[derive(Clone, Copy)]
 enum Component {
     I8,
@@ -30,7 +30,7 @@ enum Component {
     F32,
 }
 
-/// Elements in the bytes of a buffer view, and their layout.
+/// Bytes and layout of the elements in a buffer view.
 struct Elements<'a> {
     bytes: &'a [u8],
     stride: usize,
@@ -44,7 +44,7 @@ impl Budget {
         Self { left }
     }
 
-    /// Takes `count` numbers from the budget; fails if fewer are left.
+    /// Takes `count` values from the budget; fails if fewer are left.
     pub(super) fn take(&mut self, count: usize) -> Result<(), MeshIoError> {
         let left = self.left.checked_sub(count);
         self.left = left.ok_or_else(|| wrong("it says much more than it has bytes for"))?;
@@ -53,18 +53,18 @@ impl Budget {
 }
 
 impl Source<'_> {
-    /// The number of elements of an accessor.
+    /// Number of elements of an accessor.
     pub(super) fn count(&self, index: usize) -> Result<usize, MeshIoError> {
         Ok(self.accessor(index)?.count)
     }
 
-    /// Whether an accessor has no bytes in the file, and so stands for zeros.
+    /// Returns whether an accessor has no bytes in the file and therefore represents zeros.
     pub(super) fn is_without_bytes(&self, index: usize) -> Result<bool, MeshIoError> {
         let accessor = self.accessor(index)?;
         Ok(accessor.buffer_view.is_none() && accessor.sparse.is_none())
     }
 
-    /// The numbers of an accessor of indices.
+    /// Values of an accessor as indices.
     pub(super) fn indices(
         &self,
         index: usize,
@@ -77,14 +77,14 @@ impl Source<'_> {
                 "accessor {index} has a type that is not for indices"
             )));
         }
-        // Whole numbers below 2^32 are exact.
+        // Integers below 2^32 are exact.
         Ok(column.values.iter().map(|&index| index as u32).collect())
     }
 
-    /// The numbers of an accessor.
+    /// Values of an accessor.
     ///
-    /// Whole numbers become fractions if they are normalized, or if `fractions` says that the attribute is always
-    /// fractions.
+    /// Integers become fractions if they are normalized, or if `fractions` is set because the attribute is always
+    /// fractional.
     pub(super) fn column(
         &self,
         index: usize,
@@ -145,7 +145,7 @@ impl Source<'_> {
         })
     }
 
-    /// Puts the separate elements of a sparse accessor in their places.
+    /// Applies the substitutions of a sparse accessor.
     fn replace(
         &self,
         sparse: &Sparse,
@@ -184,7 +184,7 @@ impl Source<'_> {
 }
 
 impl Elements<'_> {
-    /// The numbers of `count` elements.
+    /// Values of `count` elements.
     fn read(&self, count: usize) -> Result<Vec<f64>, MeshIoError> {
         let size = self.component.size();
         // The last element may be shorter than the stride.
@@ -231,12 +231,12 @@ impl Component {
         }
     }
 
-    /// Whether this type is allowed for indices.
+    /// Returns whether this type is allowed for indices.
     fn is_index(self) -> bool {
         matches!(self, Self::U8 | Self::U16 | Self::U32)
     }
 
-    /// Reads a number of this type from its bytes.
+    /// Reads a value of this type from its bytes.
     fn read(self, bytes: &[u8]) -> f64 {
         match (self, bytes) {
             (Self::I8, &[a]) => i8::from_le_bytes([a]).into(),
@@ -245,12 +245,12 @@ impl Component {
             (Self::U16, &[a, b]) => u16::from_le_bytes([a, b]).into(),
             (Self::U32, &[a, b, c, d]) => u32::from_le_bytes([a, b, c, d]).into(),
             (Self::F32, &[a, b, c, d]) => f32::from_le_bytes([a, b, c, d]).into(),
-            // All callers pass the length of the type.
+            // Unreachable: all callers pass the length of the type.
             _ => 0.0,
         }
     }
 
-    /// The fraction of a normalized number (specification, section 3.6.2.2).
+    /// Fraction of a normalized value (specification, section 3.6.2.2).
     fn fraction(self, value: f64) -> f64 {
         match self {
             Self::I8 => (value / 127.0).max(-1.0),

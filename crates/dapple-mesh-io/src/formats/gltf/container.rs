@@ -1,4 +1,4 @@
-//! The containers of glTF: a GLB file with its chunks, buffers, and data URIs.
+//! Containers of glTF: GLB files with their chunks, buffers, and data URIs.
 
 use super::document::Document;
 use super::{FORMAT, unsupported, wrong};
@@ -7,11 +7,11 @@ use crate::MeshIoError;
 use crate::text::content;
 use std::borrow::Cow;
 
-/// The first bytes of a GLB file.
+/// Signature of a GLB file.
 pub(super) const MAGIC: &[u8; 4] = b"glTF";
-/// The type of the first chunk.
+/// Type of the first chunk.
 pub(super) const JSON: &[u8; 4] = b"JSON";
-/// The type of the second chunk.
+/// Type of the second chunk.
 pub(super) const BIN: &[u8; 4] = b"BIN\0";
 
 pub(super) struct Container<'a> {
@@ -20,7 +20,7 @@ pub(super) struct Container<'a> {
 }
 
 impl<'a> Container<'a> {
-    /// Splits a GLB file into its chunks; any other file counts as JSON.
+    /// Splits a GLB file into its chunks; any other file is treated as JSON.
     pub(super) fn read(bytes: &'a [u8]) -> Result<Self, MeshIoError> {
         if !bytes.starts_with(MAGIC) {
             let json = content(FORMAT, bytes)?;
@@ -42,7 +42,7 @@ impl<'a> Container<'a> {
         Ok(Self { json, bin })
     }
 
-    /// The bytes of all buffers; `None` for one that is missing or too short.
+    /// Bytes of all buffers; `None` for a buffer that is missing or too short.
     pub(super) fn buffers(
         &self,
         document: &Document,
@@ -62,7 +62,7 @@ impl<'a> Container<'a> {
     }
 }
 
-/// The type and content of the first chunk, and the rest.
+/// Type and content of the first chunk, and the rest.
 fn chunk(bytes: &[u8]) -> Option<([u8; 4], &[u8], &[u8])> {
     let length = word(bytes, 0)?;
     let kind = bytes.get(4..8)?.try_into().ok()?;
@@ -75,7 +75,7 @@ fn word(bytes: &[u8], at: usize) -> Option<usize> {
     usize::try_from(u32::from_le_bytes(bytes)).ok()
 }
 
-/// The bytes in a data URI, if it is in base64.
+/// Decodes a base64 data URI; `None` for other encodings.
 pub(super) fn data(uri: &str) -> Option<Vec<u8>> {
     let (head, text) = uri.split_once(',')?;
     head.ends_with(";base64").then_some(())?;
@@ -100,7 +100,7 @@ pub(super) fn data(uri: &str) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-/// A name in a URI, without percent codes.
+/// Decodes the percent-encoding of a URI.
 pub(super) fn percent_decoded(uri: &str) -> String {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();

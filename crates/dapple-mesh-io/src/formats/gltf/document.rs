@@ -1,4 +1,4 @@
-//! The parts of the JSON of glTF that the reader uses, with its names.
+//! Parts of the glTF JSON that the reader uses, with their glTF names.
 //!
 //! Rare fields are boxed, so that a long list of empty objects takes little memory.
 
@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use std::collections::BTreeMap;
 
-/// The part of the document that is common to all versions of glTF.
+/// Part of the document that all versions of glTF have in common.
 #[derive(Deserialize)]
 pub(super) struct Head {
     pub(super) asset: Asset,
@@ -59,7 +59,7 @@ pub(super) struct Scene {
 pub(super) struct Node {
     pub(super) mesh: Option<usize>,
     pub(super) skin: Option<usize>,
-    /// The weights of morph targets, in place of those of the mesh.
+    /// Weights of morph targets, which override the weights of the mesh.
     pub(super) weights: Option<Box<[f64]>>,
     #[serde(default)]
     pub(super) children: Vec<usize>,
@@ -84,7 +84,7 @@ pub(super) struct Instancing {
 
 #[derive(Deserialize)]
 pub(super) struct Mesh {
-    /// The weights of morph targets.
+    /// Weights of morph targets.
     pub(super) weights: Option<Box<[f64]>>,
     pub(super) primitives: Vec<Primitive>,
 }
@@ -95,10 +95,10 @@ pub(super) struct Primitive {
     pub(super) indices: Option<usize>,
     pub(super) material: Option<usize>,
     pub(super) extensions: Option<BTreeMap<String, IgnoredAny>>,
-    /// The morph targets, each with the accessors of the changes of attributes.
+    /// Morph targets. Each maps an attribute to the accessor of its displacements.
     #[serde(default)]
     pub(super) targets: Vec<BTreeMap<String, usize>>,
-    /// The kind of primitives; triangles if it is missing.
+    /// Primitive mode; triangles if missing.
     pub(super) mode: Option<u32>,
 }
 
@@ -130,7 +130,7 @@ pub(super) struct SparsePart {
     pub(super) buffer_view: usize,
     #[serde(default)]
     pub(super) byte_offset: usize,
-    /// The type of the numbers; only indices have it.
+    /// Component type of the indices; missing for values.
     pub(super) component_type: Option<u32>,
 }
 
@@ -183,9 +183,9 @@ pub(super) struct TextureInfo {
     #[serde(default)]
     pub(super) tex_coord: u32,
     pub(super) extensions: Option<Box<TextureExtensions>>,
-    /// The factor of the slopes of a texture of normals.
+    /// Slope factor of a normal texture.
     pub(super) scale: Option<f64>,
-    /// The strength of a texture of occlusion.
+    /// Strength of an occlusion texture.
     pub(super) strength: Option<f64>,
 }
 
@@ -195,14 +195,14 @@ pub(super) struct TextureExtensions {
     pub(super) transform: Option<TextureTransform>,
 }
 
-/// An affine map of texture coordinates.
+/// Affine transform of texture coordinates.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct TextureTransform {
     pub(super) offset: Option<[f64; 2]>,
     pub(super) rotation: Option<f64>,
     pub(super) scale: Option<[f64; 2]>,
-    /// The set of texture coordinates, in place of that of the texture.
+    /// Set of texture coordinates, which overrides the set of the texture.
     pub(super) tex_coord: Option<u32>,
 }
 

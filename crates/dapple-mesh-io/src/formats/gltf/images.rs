@@ -1,4 +1,4 @@
-//! A file with other images: the document stays, and the bytes of images are replaced.
+//! Replacement of images in a file. The rest of the document is preserved.
 
 use super::container::Container;
 use super::document::Document;
@@ -10,22 +10,22 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// A document with the bytes of its only buffer.
+/// A document with the bytes of its merged buffer.
 struct Draft {
     value: Value,
     bin: Vec<u8>,
-    /// How often the document names each buffer view.
+    /// Number of references to each buffer view in the document.
     uses: BTreeMap<u64, usize>,
-    /// New contents of buffer views that exist already.
+    /// New contents of existing buffer views.
     contents: BTreeMap<usize, Vec<u8>>,
 }
 
-/// Encodes a glTF or GLB file as GLB with other images.
+/// Encodes a glTF or GLB file as GLB with some images replaced.
 ///
-/// `replaced` has pairs of an image and its replacement; every image of the file with the bytes of the first becomes
-/// the second. All else stays as it is in the document: materials, nodes, skins, animations, extensions. Buffers become
-/// one, and images in other files become part of the file. A texture whose image is replaced loses copies of it in
-/// other formats, which viewers would prefer.
+/// `replaced` contains pairs of an image and its replacement. Every image of the file whose bytes equal the first
+/// becomes the second. The rest of the document is unchanged: materials, nodes, skins, animations, extensions. Buffers
+/// are merged into one, and external images become part of the file. A texture whose image is replaced loses the
+/// alternatives in other formats, which viewers would prefer.
 ///
 /// # Errors
 ///
@@ -44,7 +44,7 @@ pub fn replace_images(
     }
     let buffers = container.buffers(&document, resolve);
     let source = Source { document, buffers };
-    // Views of a missing buffer would show bytes of another one.
+    // A view of a missing buffer would refer to bytes of another buffer after merging.
     let mut views = source.document.buffer_views.iter();
     let is_missing = |at: usize| matches!(source.buffers.get(at), Some(None));
     if let Some(view) = views.find(|view| is_missing(view.buffer)) {
@@ -76,7 +76,7 @@ pub fn replace_images(
     draft.file()
 }
 
-/// The media type of an image by its first bytes, among those that files of glTF have.
+/// Media type of an image by its signature, for the formats that occur in glTF files.
 fn media_type(bytes: &[u8]) -> Option<&'static str> {
     match bytes {
         [
@@ -102,7 +102,7 @@ fn media_type(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// Counts the properties named `bufferView` in a value.
+/// Counts the properties named `bufferView` in a value, recursively.
 fn count_views(value: &Value, uses: &mut BTreeMap<u64, usize>) {
     match value {
         Value::Array(items) => items.iter().for_each(|item| count_views(item, uses)),
@@ -118,7 +118,7 @@ fn count_views(value: &Value, uses: &mut BTreeMap<u64, usize>) {
     }
 }
 
-/// A number that is a place, which may be missing.
+/// An index or offset in the document; 0 if missing.
 fn number(entries: &Map<String, Value>, name: &str) -> usize {
     let number = entries.get(name).and_then(Value::as_u64);
     number
@@ -127,13 +127,13 @@ fn number(entries: &Map<String, Value>, name: &str) -> usize {
 }
 
 impl Draft {
-    /// The objects of a list of the document.
+    /// Iterates over the objects of a list of the document.
     fn objects(&mut self, name: &str) -> impl Iterator<Item = &mut Map<String, Value>> {
         let list = self.value.get_mut(name).and_then(Value::as_array_mut);
         list.into_iter().flatten().filter_map(Value::as_object_mut)
     }
 
-    /// Joins all buffers to one. Views, and extensions of views that name a buffer, move with them.
+    /// Merges all buffers into one. Offsets of views, and of extensions of views that name a buffer, are adjusted.
     fn join_buffers(&mut self, buffers: &[Option<Cow<'_, [u8]>>]) {
         let mut starts = Vec::new();
         for buffer in buffers {
@@ -166,7 +166,7 @@ impl Draft {
         }
     }
 
-    /// Puts bytes in the place of an image: into its buffer view, if nothing else uses that, or else into a new one.
+    /// Replaces the bytes of an image: in its buffer view if nothing else uses that view, else in a new view.
     fn set_image(&mut self, at: usize, bytes: Vec<u8>, media_type: &str) {
         let n_views = self.value["bufferViews"].as_array().map_or(0, Vec::len);
         let image = self.value["images"]
@@ -192,7 +192,7 @@ impl Draft {
         self.contents.insert(own.unwrap_or(n_views), bytes);
     }
 
-    /// Takes the copies of an image in other formats from its textures.
+    /// Removes alternatives in other formats from the textures of an image.
     fn drop_copies(&mut self, image: usize) {
         for texture in self.objects("textures") {
             if texture.get("source").and_then(Value::as_u64) != Some(image as u64) {
@@ -209,7 +209,7 @@ impl Draft {
         }
     }
 
-    /// The ranges of bytes that only replaced images had, in order, each a multiple of four bytes long.
+    /// Byte ranges that only replaced images used, in order. The length of each is a multiple of four.
     fn cuts(&mut self) -> Vec<Range<usize>> {
         let contents = core::mem::take(&mut self.contents);
         let (mut freed, mut kept) = (Vec::new(), Vec::new());
@@ -234,7 +234,7 @@ impl Draft {
         self.contents = contents;
         kept.sort_by_key(|range| range.start);
         freed.sort_by_key(|range| range.start);
-        // The largest end of each kept range and those before it.
+        // Running maximum of the ends of the kept ranges.
         let ends: Vec<_> = kept
             .iter()
             .scan(0, |end, range| {
@@ -255,10 +255,10 @@ impl Draft {
         cuts
     }
 
-    /// The GLB file: without the bytes of replaced images, and with the new ones at its end.
+    /// Encodes the GLB file: without the bytes of replaced images, and with the new images at its end.
     fn file(mut self) -> Result<Vec<u8>, MeshIoError> {
         let cuts = self.cuts();
-        // The bytes that are cut off before each cut and after the last.
+        // Total number of bytes removed up to and including each cut.
         let mut before = vec![0];
         let (mut bin, mut end) = (Vec::new(), 0);
         for cut in &cuts {

@@ -8,10 +8,10 @@ use dapple_color::LinearRgba;
 use dapple_mesh::{AlphaMode, EncodedImage, Material, Model};
 use glam::{DAffine2, DVec2};
 
-/// The wrap of a texture that repeats, the only one that models have.
+/// Repeating wrap mode, the only one that models support.
 const REPEAT: u32 = 10497;
 
-/// The texture coordinates that a texture has: the number of their set, and the map that is applied to them.
+/// Texture coordinates of a texture: the index of their set, and the transform applied to them.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct Placement {
     pub(super) set: u32,
@@ -19,7 +19,7 @@ pub(super) struct Placement {
 }
 
 impl Placement {
-    /// The first set as it is.
+    /// The first set without a transform.
     pub(super) const PLAIN: Self = Self {
         set: 0,
         map: DAffine2::IDENTITY,
@@ -39,7 +39,7 @@ impl Placement {
         let scale = transform.scale.map_or(DVec2::ONE, DVec2::from_array);
         Self {
             set: transform.tex_coord.unwrap_or(info.tex_coord),
-            // Counterclockwise as one sees the texture, although v goes down.
+            // Counterclockwise as seen on the texture, although v points down.
             map: DAffine2::from_cols(
                 DVec2::new(cos, -sin) * scale.x,
                 DVec2::new(sin, cos) * scale.y,
@@ -50,7 +50,8 @@ impl Placement {
 }
 
 impl Source<'_> {
-    /// The placement of the textures of a material: that of the base color, else of the normals.
+    /// Placement of the textures of a material: of the base color, else of the normals, else of metalness and
+    /// roughness.
     pub(super) fn placement(&self, material: usize) -> Placement {
         let material = self.document.materials.get(material);
         let pbr = material.and_then(|material| material.pbr_metallic_roughness.as_deref());
@@ -61,7 +62,7 @@ impl Source<'_> {
         info.map_or(Placement::PLAIN, Placement::new)
     }
 
-    /// Reads the material with a number into a model that has its texture coordinates.
+    /// Reads a material into a model whose texture coordinates are already set.
     pub(super) fn read_material(
         &self,
         index: usize,
@@ -127,7 +128,7 @@ impl Source<'_> {
         }
     }
 
-    /// The name of the wrap of a texture, if it does not repeat.
+    /// Name of the wrap mode of a texture, if it does not repeat.
     fn wrap(&self, texture: usize) -> Option<&'static str> {
         let sampler = self.document.textures.get(texture)?.sampler?;
         let sampler = self.document.samplers.get(sampler)?;
@@ -140,7 +141,7 @@ impl Source<'_> {
         })
     }
 
-    /// The image of a texture; or else the entry of [`Model::left_out`] for it.
+    /// Image of a texture, or the entry of [`Model::left_out`] if it cannot be read.
     fn image(&self, index: usize, resolve: &mut FileResolver<'_>) -> Result<EncodedImage, String> {
         let no_image = || format!("texture {index}, which has no image");
         let texture = self.document.textures.get(index).ok_or_else(no_image)?;
@@ -167,7 +168,7 @@ impl Source<'_> {
     }
 }
 
-/// The names of the properties of a material that a model has no place for, if their values matter.
+/// Names of the properties of a material that a model cannot represent, if they differ from their defaults.
 fn left_out_of(material: &Entry) -> Vec<&str> {
     let pbr = material.pbr_metallic_roughness.as_deref();
     let factor = |of: fn(&Pbr) -> Option<f64>, plain: f64, textured: f64| {

@@ -1,4 +1,4 @@
-//! Conversion of the scene of a glTF file to one mesh.
+//! Conversion of the scene of a glTF file to a single mesh.
 
 use super::accessor::{Budget, Column};
 use super::document::{Instancing, Primitive};
@@ -13,17 +13,17 @@ use dapple_mesh::{Mesh, Model};
 use glam::{DAffine2, DMat4, DVec2, DVec3};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The accessors of positions, normals, colors and texture coordinates.
+/// Accessors of positions, normals, colors and texture coordinates.
 type Attributes = [Option<usize>; 4];
 
-/// All that the vertices of a primitive are made of.
+/// Sources of the vertices of a primitive.
 struct Vertices<'a> {
     attributes: Attributes,
-    /// The map of texture coordinates.
+    /// Transform of texture coordinates.
     map: DAffine2,
-    /// The morph targets with their weights, if those are not zero.
+    /// Morph targets with nonzero weights.
     targets: Vec<(f64, &'a BTreeMap<String, usize>)>,
-    /// The accessors of joints and weights, if the mesh has a skin.
+    /// Accessors of joints and weights, if the mesh has a skin.
     influences: Vec<[usize; 2]>,
 }
 
@@ -31,21 +31,22 @@ struct Draft<'a> {
     source: &'a Source<'a>,
     budget: Budget,
     positions: Vec<DVec3>,
-    /// The normals, one for each position as long as all primitives have them.
+    /// Normals of all vertices; incomplete if a primitive lacks them.
     normals: Vec<DVec3>,
-    /// The colors, one for each position up to the last that has one; likewise the texture coordinates.
+    /// Colors of the vertices, up to the last vertex that has one. The same holds for `uvs`.
     colors: Vec<LinearRgba>,
     uvs: Vec<DVec2>,
     faces: Vec<[u32; 3]>,
     material: Option<usize>,
-    /// The materials of faces.
+    /// Materials of the faces.
     materials: BTreeSet<Option<usize>>,
-    /// Whether there are lines, and sets of texture coordinates that no texture here uses.
+    /// Whether the scene has lines, and texture coordinate sets that no texture uses.
     has_lines: bool,
     has_further_uvs: bool,
 }
 
-/// The model without its material, and the number of the material. The file has `n_bytes` bytes, with its buffers.
+/// Reads the model without its material, and the index of the material. `n_bytes` is the size of the file with its
+/// buffers.
 pub(super) fn read(
     source: &Source<'_>,
     n_bytes: usize,
@@ -80,7 +81,7 @@ pub(super) fn read(
         let node = nodes
             .get(index)
             .ok_or_else(|| wrong(format!("there is no node {index}")))?;
-        // Nodes are trees, so that each is visited once.
+        // Nodes form trees, so each is visited once.
         if core::mem::replace(&mut seen[index], true) {
             return Err(wrong(format!("node {index} has two parents")));
         }
@@ -106,7 +107,7 @@ pub(super) fn read(
     draft.into_model()
 }
 
-/// The roots of the default scene; without scenes, all nodes that are no node's child.
+/// Roots of the default scene; without scenes, all nodes that are not a child.
 fn roots(source: &Source<'_>) -> Result<Vec<usize>, MeshIoError> {
     let document = &source.document;
     if document.scene.is_none() && document.scenes.is_empty() {
@@ -127,7 +128,7 @@ fn roots(source: &Source<'_>) -> Result<Vec<usize>, MeshIoError> {
 }
 
 impl Draft<'_> {
-    /// The transforms of the copies of a mesh.
+    /// Transforms of the instances of a mesh.
     fn copies(
         &mut self,
         instancing: &Instancing,
@@ -164,7 +165,7 @@ impl Draft<'_> {
         let mesh = mesh.ok_or_else(|| wrong(format!("there is no mesh {index}")))?;
         let weights = weights.or(mesh.weights.as_deref()).unwrap_or_default();
         let turned = pose.is_mirrored();
-        // The first vertices of the attributes that were added already.
+        // First vertex of each combination of attributes that was already added.
         let mut known = BTreeMap::new();
         for primitive in &mesh.primitives {
             self.budget.take(1)?;
@@ -177,7 +178,7 @@ impl Draft<'_> {
             let Some(positions) = vertices.attributes[0] else {
                 continue;
             };
-            // Without plain data beside them, compressed ones would read as zeros.
+            // Compressed data without an uncompressed fallback would be read as zeros.
             if self.source.is_without_bytes(positions)? {
                 let extensions = primitive.extensions.as_ref().into_iter().flatten();
                 let compression = |name: &&String| name.as_str() == "KHR_draco_mesh_compression";
@@ -236,7 +237,7 @@ impl Draft<'_> {
         }
     }
 
-    /// The vectors of an attribute with those of morph targets.
+    /// Vectors of an attribute with the morph targets applied.
     fn vectors(
         &mut self,
         name: &str,
@@ -263,7 +264,7 @@ impl Draft<'_> {
         Ok(Some(vectors))
     }
 
-    /// The joints of vertices.
+    /// Joints and weights of the vertices.
     fn influences(&mut self, vertices: &Vertices<'_>) -> Result<Influences, MeshIoError> {
         let mut influences = Influences::default();
         for &[joints, weights] in &vertices.influences {
@@ -273,7 +274,7 @@ impl Draft<'_> {
         Ok(influences)
     }
 
-    /// Adds vertices, and returns the number of the first.
+    /// Adds vertices, and returns the index of the first one.
     fn add_vertices(&mut self, vertices: &Vertices<'_>, pose: &Pose) -> Result<u32, MeshIoError> {
         let [positions, normals, colors, uvs] = vertices.attributes;
         let first = self.positions.len();
@@ -316,13 +317,13 @@ impl Draft<'_> {
         {
             return Err(wrong("attributes of a primitive have different counts"));
         }
-        // The numbers of all vertices fit if the last does.
+        // All indices fit if the last one does.
         let fits = u32::try_from(end).is_ok();
         let first = u32::try_from(first).ok().filter(|_| fits);
         first.ok_or_else(|| wrong("there are too many vertices"))
     }
 
-    /// Reads an attribute, if a primitive has it.
+    /// Reads an attribute, if the primitive has it.
     fn column(
         &mut self,
         accessor: Option<usize>,
@@ -361,7 +362,7 @@ impl Draft<'_> {
                 "an index is {index}, but there are {n_vertices} vertices"
             )));
         }
-        // In strips and fans each index is used for three corners.
+        // In strips and fans each index is used for up to three corners.
         self.budget.take(indices.len().saturating_mul(3))?;
         let mut add = |[a, b, c]: [u32; 3]| {
             let [b, c] = if turned { [c, b] } else { [b, c] };
@@ -407,7 +408,7 @@ impl Draft<'_> {
 }
 
 impl Vertices<'_> {
-    /// What two primitives of a mesh have in common if they share their vertices.
+    /// Key of the vertices of a primitive: primitives of a mesh with equal keys share their vertices.
     fn key(&self, primitive: &Primitive) -> (Attributes, Option<usize>, Vec<Option<usize>>) {
         let material = primitive
             .material
@@ -427,7 +428,7 @@ impl Vertices<'_> {
     }
 }
 
-/// The numbers of an element, if the column exists.
+/// Values of an element, if the column exists.
 fn element<const N: usize>(column: &Option<Column>, index: usize) -> Option<[f64; N]> {
     let (elements, _) = column.as_ref()?.values.as_chunks();
     elements.get(index).copied()

@@ -1,4 +1,4 @@
-//! Skins and morph targets: the pose that a file has without an animation.
+//! Skins and morph targets, in the pose without animation.
 //!
 //! Reference: The Khronos Group, *glTF 2.0 Specification*, sections 3.7.2.2 (morph targets) and 3.7.3 (skins).
 
@@ -9,15 +9,15 @@ use super::{Source, wrong};
 use crate::MeshIoError;
 use glam::{DMat4, DVec3};
 
-/// The transform of a mesh to the scene.
+/// Transform of a mesh to the scene.
 pub(super) enum Pose {
-    /// The transform of the node.
+    /// Transform of the node.
     Node(DMat4),
-    /// For each joint, its transform after the inverse of its bind pose. The transform of the node has no effect.
+    /// Per joint, its transform multiplied by its inverse bind matrix. The transform of the node has no effect.
     Skin(Vec<DMat4>),
 }
 
-/// The joints and the weights of vertices, in sets of four.
+/// Joints and weights of vertices, in sets of four.
 #[derive(Default)]
 pub(super) struct Influences {
     joints: Vec<Column>,
@@ -25,7 +25,7 @@ pub(super) struct Influences {
 }
 
 impl Source<'_> {
-    /// For each node its transform to the scene; the identity for one that is below itself.
+    /// Transform of each node to the scene; the identity for nodes in a cycle.
     pub(super) fn worlds(&self) -> Vec<DMat4> {
         let nodes = &self.document.nodes;
         let mut is_root = vec![true; nodes.len()];
@@ -50,7 +50,7 @@ impl Source<'_> {
         worlds.into_iter().map(Option::unwrap_or_default).collect()
     }
 
-    /// The pose of the mesh of a node, whose transform to the scene is given.
+    /// Pose of the mesh of a node with this transform to the scene.
     pub(super) fn pose(
         &self,
         node: &Node,
@@ -92,13 +92,13 @@ impl Influences {
         self.weights.push(weights);
     }
 
-    /// Whether all columns have elements for a number of vertices.
+    /// Returns whether all columns match a number of vertices.
     pub(super) fn fits(&self, n_vertices: usize) -> bool {
         let mut columns = self.joints.iter().chain(&self.weights);
         columns.all(|column| column.width == 4 && column.values.len() == 4 * n_vertices)
     }
 
-    /// The mean of the matrices of the joints of a vertex, by their weights; `None` without weights.
+    /// Weighted mean of the matrices of the joints of a vertex; `None` without weights.
     fn matrix(&self, vertex: usize, joints: &[DMat4]) -> Result<Option<DMat4>, MeshIoError> {
         let (mut sum, mut total) = (DMat4::ZERO, 0.0);
         for (numbers, weights) in self.joints.iter().zip(&self.weights) {
@@ -121,7 +121,7 @@ impl Influences {
 }
 
 impl Pose {
-    /// Puts positions and normals in their places in the scene.
+    /// Transforms positions and normals to the scene.
     pub(super) fn apply(
         &self,
         influences: &Influences,
@@ -129,7 +129,7 @@ impl Pose {
         normals: &mut [DVec3],
     ) -> Result<(), MeshIoError> {
         match self {
-            // Without a transform all bits are kept, also the sign of zero.
+            // Without a transform all bits are preserved, including the sign of zero.
             Self::Node(transform) if *transform == DMat4::IDENTITY => {}
             Self::Node(transform) => {
                 for position in positions {
@@ -155,7 +155,7 @@ impl Pose {
         Ok(())
     }
 
-    /// Whether the pose exchanges inside and outside.
+    /// Returns whether the pose mirrors the mesh, which reverses the winding.
     pub(super) fn is_mirrored(&self) -> bool {
         match self {
             Self::Node(transform) => glam::DMat3::from_mat4(*transform).determinant() < 0.0,

@@ -1,4 +1,4 @@
-//! glTF files by hand, round trips, and through another reader.
+//! Tests with handwritten files, round trips, and another reader.
 
 use super::*;
 use crate::MeshIoErrorKind;
@@ -15,7 +15,7 @@ mod materials;
 mod origin;
 mod valid;
 
-/// Encodes floats as base64, with the digits of RFC 4648.
+/// Encodes bytes as base64, with the digits of RFC 4648.
 fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::new();
@@ -32,7 +32,7 @@ fn base64(bytes: &[u8]) -> String {
     text + &"=="[..(3 - bytes.len() % 3) % 3]
 }
 
-/// Four corners of a square, the indices 0 to 3, and colors in whole numbers.
+/// Four corners of a square, the indices 0 to 3, and integer colors.
 fn square() -> Value {
     let positions = [
         0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0f32,
@@ -113,7 +113,7 @@ fn strip_with_bytes_of_colors_becomes_triangles() {
     let model = read_json(&square()).expect("it is valid");
     assert_eq!(faces(&model), [[0, 1, 2], [1, 3, 2]]);
     let colors = model.colors.expect("it has colors");
-    // Linear, unlike in the other formats.
+    // Colors are linear, unlike in the other formats.
     assert_eq!(colors[0], LinearRgba::opaque(LinearRgb::new(1.0, 0.0, 0.2)));
     assert_eq!(colors[3], LinearRgba::opaque(LinearRgb::WHITE));
     let mut fan = square();
@@ -127,7 +127,7 @@ fn strip_with_bytes_of_colors_becomes_triangles() {
 #[test]
 fn instances_are_copies_of_the_mesh() {
     let mut document = square();
-    // Two steps, the second with a mirror at x.
+    // Two instances, the second one mirrored at x.
     let steps = [
         0.0, 0.0, 5.0, 0.0, 0.0, 7.0, 1.0, 1.0, 1.0, -1.0, 1.0, 1.0f32,
     ];
@@ -173,7 +173,7 @@ fn instances_are_copies_of_the_mesh() {
 #[test]
 fn transforms_of_nodes_are_applied_and_mirrors_turn_faces_over() {
     let mut document = square();
-    // A quarter turn about z, then a mirror at x and a step.
+    // A quarter turn about z, then a mirror at x and a translation.
     let half = 0.5f64.sqrt();
     document["nodes"] = json!([
         { "children": [1], "scale": [-1, 1, 1], "translation": [10, 0, 0] },
@@ -187,7 +187,7 @@ fn transforms_of_nodes_are_applied_and_mirrors_turn_faces_over() {
         [11.0, 1.0, 0.0],
     ];
     for (got, want) in model.mesh.positions().iter().zip(want) {
-        // The root of a half is rounded.
+        // The square root of one half is rounded.
         assert!(
             got.distance(DVec3::from_array(want)) < 1e-15,
             "{got} is not {want:?}"
@@ -304,7 +304,7 @@ fn what_is_not_read_is_named() {
         MeshIoErrorKind::Unsupported { feature } => feature.clone(),
         kind => panic!("{kind:?}"),
     };
-    // In the first version, names are used in place of numbers.
+    // In version 1, references are names instead of numbers.
     let first =
         br#"{"asset": {"version": "1.0"}, "meshes": {"a": {}}, "nodes": {"b": {"meshes": ["a"]}}}"#;
     assert_eq!(feature(first), "glTF 1.0");
@@ -438,12 +438,12 @@ fn clouds_and_nothing_read_back() {
     );
 }
 
-/// The reason why the reader is ours: this file, which is an error here, passes the validation of the crate `gltf`, and
-/// makes it panic.
+/// A file that is an error here, but passes the validation of the crate `gltf` and makes it panic. It is the reason
+/// for our own reader.
 #[test]
 fn file_that_makes_the_crate_gltf_panic_is_refused() {
     let mut document = square();
-    // The validation requires the bounds of positions.
+    // The validation requires bounds of positions.
     document["accessors"][0]["min"] = json!([0, 0, 0]);
     document["accessors"][0]["max"] = json!([1, 1, 0]);
     document["accessors"][1] =
@@ -470,7 +470,7 @@ fn written_file_is_valid_for_another_reader() {
     let model = full();
     let bytes = write(&model).expect("it is valid");
     assert_eq!(bytes.len() % 4, 0, "chunks are aligned");
-    // This validates all references and required properties.
+    // The crate validates all references and required properties.
     let ::gltf::Gltf { document, blob } = ::gltf::Gltf::from_slice(&bytes).expect("it is valid");
     let blob = blob.expect("it has a binary chunk");
     let primitive = document
@@ -531,7 +531,7 @@ fn written_file_is_valid_for_another_reader() {
     );
 }
 
-/// The smallest and the largest of each component.
+/// Minimum and maximum of each component.
 fn bound(positions: &[[f32; 3]]) -> ([f32; 3], [f32; 3]) {
     let fold = |choose: fn(f32, f32) -> f32| {
         [0, 1, 2].map(|axis| {
@@ -551,7 +551,7 @@ proptest! {
         let bytes = write(&Model::from(soup.clone())).expect("it is valid");
         let back = read(&bytes).expect("it is valid");
         prop_assert_eq!(back.mesh.faces(), soup.faces());
-        // The largest number that is at most 1e30.
+        // The largest `f32` that is at most 1e30.
         let max = 1e30f32.next_down();
         let floats: Vec<_> = soup.positions().iter().map(|position| position.map(|part| f64::from((part as f32).clamp(-max, max)))).collect();
         let has_origin = ::gltf::Gltf::from_slice(&bytes).expect("it is valid").nodes().any(|node| node.transform().decomposed().0 != [0.0; 3]);

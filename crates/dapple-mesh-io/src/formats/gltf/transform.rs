@@ -1,9 +1,9 @@
-//! The transforms of nodes for positions and normals.
+//! Transforms of nodes for positions and normals.
 
 use super::document::Node;
 use glam::{DMat3, DMat4, DQuat, DVec3};
 
-/// The transform of a node to its parent.
+/// Transform from a node to its parent.
 pub(super) fn local(node: &Node) -> DMat4 {
     if let Some(matrix) = &node.matrix {
         return DMat4::from_cols_array(matrix);
@@ -15,7 +15,7 @@ pub(super) fn local(node: &Node) -> DMat4 {
     )
 }
 
-/// A scale, then a rotation by a quaternion, then a translation; a missing part is the identity.
+/// Composes a scale, a rotation by a quaternion, and a translation; missing parts are the identity.
 pub(super) fn trs(
     translation: Option<[f64; 3]>,
     rotation: Option<[f64; 4]>,
@@ -33,12 +33,12 @@ pub(super) fn trs(
     )
 }
 
-/// The matrix that transforms normals, up to their lengths; it exists even if the transform has no inverse.
+/// Matrix that transforms normals, up to their lengths. It exists even if the transform has no inverse.
 pub(super) fn cofactors(transform: DMat4) -> DMat3 {
     let matrix = DMat3::from_mat4(transform);
     let (x, y, z) = (matrix.x_axis, matrix.y_axis, matrix.z_axis);
     let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
-    // A mirror transform exchanges inside and outside.
+    // A mirrored transform reverses the orientation.
     if matrix.determinant() < 0.0 {
         -cofactors
     } else {
@@ -46,7 +46,7 @@ pub(super) fn cofactors(transform: DMat4) -> DMat3 {
     }
 }
 
-/// The axes after a rotation. The quaternion need not be of unit length.
+/// Axes after a rotation. The quaternion need not have unit length.
 fn axes(rotation: DQuat) -> [DVec3; 3] {
     let [x, y, z, w] = rotation.to_array();
     let square = x * x + y * y + z * z + w * w;

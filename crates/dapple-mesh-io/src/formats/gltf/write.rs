@@ -11,18 +11,18 @@ use serde_json::{Map, Value, json};
 
 const FLOAT: u32 = 5126;
 const UNSIGNED_INT: u32 = 5125;
-/// The target of a buffer view of attributes.
+/// Target of a buffer view of attributes.
 const ARRAY_BUFFER: u32 = 34962;
-/// The target of a buffer view of indices.
+/// Target of a buffer view of indices.
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
-/// The filter that blends between texels, for magnification, and for minification without a mipmap.
+/// Filter that interpolates between texels, for magnification, and for minification without mipmaps.
 const LINEAR: u32 = 9729;
-/// The filter for minification that blends between levels of a mipmap.
+/// Minification filter that interpolates between mipmap levels.
 const LINEAR_MIPMAP_LINEAR: u32 = 9987;
-/// The texture repeats past its edges.
+/// Wrap mode that repeats the texture.
 const REPEAT: u32 = 10497;
 
-/// The binary chunk with its views and accessors.
+/// Binary chunk with its views and accessors.
 #[derive(Default)]
 struct Bin {
     bytes: Vec<u8>,
@@ -31,9 +31,9 @@ struct Bin {
     images: Vec<Value>,
 }
 
-/// The vertices of a file: a vertex of the mesh becomes several where its corners have different texture coordinates.
+/// Vertices of a file: a vertex of the mesh is split where its corners have different texture coordinates.
 struct Split {
-    /// The vertex of the mesh for each vertex of the file; the first are those of the mesh.
+    /// Mesh vertex of each file vertex; the first ones are the mesh vertices in order.
     vertex: Vec<usize>,
     uvs: Vec<[f32; 2]>,
     faces: Vec<[u32; 3]>,
@@ -41,15 +41,19 @@ struct Split {
 
 /// Encodes the model as a GLB file.
 ///
-/// Numbers are rounded to `f32`. Where that would move a vertex by more than 2^-20 of the extent of the mesh, because the
-/// mesh is far from zero, positions are relative to its center, which is the translation of the node in `f64`. Vertices keep their numbers; where corners have different texture coordinates or
-/// normals, further vertices follow. Faces have the normals of the model, of unit length, or else those of
-/// [`Mesh::vertex_normals`](dapple_mesh::Mesh::vertex_normals); a zero normal, which glTF does not allow, becomes +z.
-/// Colors are clamped to 0 to 1. Without texture coordinates, textures are left out. The material is rough and not
-/// metallic unless a texture defines both; it has two sides if the model says so or the mesh is open, and blends if it is
-/// opaque but its base color factor is not. Textures that must not be shown by mipmaps have samplers with a minification filter
-/// without them; otherwise viewers may use any number of levels. A model without faces becomes a cloud of points, and
-/// one without vertices an empty scene.
+/// - Numbers are rounded to `f32`. If that would move a vertex by more than 2^-20 of the extent, because the mesh is
+///   far from the origin, positions are relative to the center of the mesh, which becomes the translation of the node.
+/// - Vertices keep their order; where corners have different texture coordinates or normals, additional vertices
+///   follow.
+/// - Normals are the normals of the model, with unit length, or else
+///   [`Mesh::vertex_normals`](dapple_mesh::Mesh::vertex_normals). A zero normal, which glTF does not allow, becomes
+///   +z.
+/// - Colors are clamped to 0 to 1. Without texture coordinates, textures are omitted.
+/// - The material is rough and not metallic unless a texture defines both. It is double-sided if the model is, or if
+///   the mesh is open. It blends if it is opaque but its base color factor is not.
+/// - If the material disallows mipmaps, the samplers have a minification filter without them; otherwise viewers may
+///   use any number of levels.
+/// - A model without faces becomes a point cloud, and a model without vertices an empty scene.
 ///
 /// # Errors
 ///
@@ -92,13 +96,14 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
         document["samplers"] = json!([{ "minFilter": min_filter, "magFilter": LINEAR, "wrapS": REPEAT, "wrapT": REPEAT }]);
         document["images"] = bin.images.into();
     }
-    // The order without the feature `preserve_order` of serde_json, which any other crate of a program may turn on.
+    // Sort the keys, so that the feature `preserve_order` of serde_json, which another crate may enable, has no
+    // effect.
     document.sort_all_objects();
     container(document.to_string().into_bytes(), bin.bytes)
 }
 
-/// Adds the columns of a model without corner normals, with positions from an origin, and returns the primitive that
-/// refers to them.
+/// Adds the attributes of a model without corner normals, with positions relative to `origin`, and returns the
+/// primitive that refers to them.
 fn primitive(model: &Model, origin: Option<DVec3>, bin: &mut Bin) -> Value {
     let mesh = &model.mesh;
     let split = Split::new(model);
@@ -150,7 +155,7 @@ fn material(model: &Model, bin: &mut Bin) -> Value {
         Some(json!({ "index": bin.image(image) }))
     };
     let metallic_roughness = texture(&material.metallic_roughness);
-    // Without a texture, the default of glTF would be metallic.
+    // The default of glTF without a texture is metallic.
     let metallic = if metallic_roughness.is_some() {
         1.0
     } else {
@@ -161,7 +166,7 @@ fn material(model: &Model, bin: &mut Bin) -> Value {
         "metallicFactor": metallic,
         "roughnessFactor": 1.0,
     });
-    // An image with all three channels is written once.
+    // Write an image with all three channels only once.
     let occlusion = match &metallic_roughness {
         Some(texture) if material.occlusion == material.metallic_roughness => Some(texture.clone()),
         _ => texture(&material.occlusion),
@@ -192,13 +197,13 @@ fn material(model: &Model, bin: &mut Bin) -> Value {
     value
 }
 
-/// Whether a mesh has an edge with only one face.
+/// Returns whether a mesh has a boundary edge.
 fn is_open(mesh: &Mesh) -> bool {
     mesh.report().boundary_edges > 0
 }
 
-/// A normal at unit length. A normal that is of unit length already, up to rounding to single precision, stays
-/// unchanged, so that a file that was read is written with the same bits.
+/// Normalizes a normal. A normal whose length is already 1 within single precision stays unchanged, so that a file
+/// that was read is written with the same bits.
 fn unit(normal: DVec3) -> DVec3 {
     if (normal.length_squared() - 1.0).abs() < 1e-6 {
         normal
@@ -218,7 +223,7 @@ fn bound(positions: &[[f32; 3]], choose: fn(f32, f32) -> f32) -> [f32; 3] {
     positions.iter().copied().reduce(choose).unwrap_or_default()
 }
 
-/// Joins both chunks to a file; each ends at a multiple of four bytes.
+/// Assembles a GLB file from both chunks, each padded to a multiple of four bytes.
 pub(super) fn container(mut json: Vec<u8>, mut bin: Vec<u8>) -> Result<Vec<u8>, MeshIoError> {
     json.resize(json.len().next_multiple_of(4), b' ');
     bin.resize(bin.len().next_multiple_of(4), 0);
@@ -247,7 +252,7 @@ pub(super) fn container(mut json: Vec<u8>, mut bin: Vec<u8>) -> Result<Vec<u8>, 
 }
 
 impl Bin {
-    /// Adds a column of `f32`, and returns the number of its accessor.
+    /// Adds a column of `f32`, and returns the index of its accessor.
     fn floats<const N: usize>(&mut self, column: &[[f32; N]]) -> usize {
         let bytes: Vec<_> = column
             .iter()
@@ -259,7 +264,7 @@ impl Bin {
         self.accessor(json!({ "bufferView": view, "componentType": FLOAT, "count": column.len(), "type": shape }))
     }
 
-    /// Adds the indices of faces, and returns the number of their accessor.
+    /// Adds the indices of faces, and returns the index of their accessor.
     fn indices(&mut self, faces: &[[u32; 3]]) -> usize {
         let bytes: Vec<_> = faces
             .iter()
@@ -270,7 +275,7 @@ impl Bin {
         self.accessor(json!({ "bufferView": view, "componentType": UNSIGNED_INT, "count": 3 * faces.len(), "type": "SCALAR" }))
     }
 
-    /// Adds an image, and returns its number.
+    /// Adds an image, and returns its index.
     fn image(&mut self, image: &EncodedImage) -> usize {
         let view = self.view(image.bytes(), None);
         self.images
@@ -313,7 +318,7 @@ impl Split {
             return split;
         };
         let mut used = vec![false; count];
-        // The next vertex of the file for the same vertex of the mesh.
+        // Next file vertex of the same mesh vertex.
         let mut next = vec![None; count];
         for (face, uvs) in split.faces.iter_mut().zip(uvs) {
             for (corner, uv) in face.iter_mut().zip(uvs) {
@@ -330,7 +335,7 @@ impl Split {
                         next.push(None);
                     }
                 }
-                // There are at most 3 * 2^31 + 2^31 vertices, and files beyond 2^32 bytes are refused.
+                // There are at most 3 * 2^31 + 2^31 vertices, and files of 2^32 bytes or more are rejected.
                 *corner = at as u32;
             }
         }

@@ -1,4 +1,4 @@
-//! MTL: the materials of an OBJ file.
+//! MTL: materials of an OBJ file.
 
 use super::{joined_words, name};
 use crate::FileResolver;
@@ -11,7 +11,7 @@ use dapple_mesh::{EncodedImage, Material, Model, TileMaterial};
 use glam::{DVec2, DVec3};
 use std::collections::BTreeSet;
 
-/// The keywords of textures that do not begin with `map_`.
+/// Keywords of textures that do not start with `map_`.
 const OTHER_MAPS: [&[u8]; 4] = [b"bump", b"decal", b"disp", b"refl"];
 
 #[derive(Default)]
@@ -21,7 +21,7 @@ struct Entry {
     alpha: Option<f32>,
     diffuse_map: Option<Texture>,
     normal_map: Option<Texture>,
-    /// The keywords of other textures.
+    /// Keywords of other textures.
     other_maps: BTreeSet<String>,
 }
 
@@ -35,17 +35,17 @@ struct Texture {
     other_options: Vec<String>,
 }
 
-/// A scale and then an offset of texture coordinates, v up.
+/// Scale followed by an offset of texture coordinates, v up.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct UvMap {
     scale: DVec2,
     offset: DVec2,
 }
 
-/// Gives a model its material: the one with a name, or without a name the first, in the available libraries. The map of
-/// its textures is applied to the texture coordinates.
+/// Sets the material of a model: the one with this name, or the first one if `name` is `None`, in the available
+/// libraries. The transform of its textures is applied to the texture coordinates.
 ///
-/// Fails for a color that single precision cannot hold, in any material of the libraries.
+/// Fails if any material of the libraries has a color outside of the range of `f32`.
 pub(super) fn add_material(
     model: &mut Model,
     libraries: &[String],
@@ -83,7 +83,7 @@ pub(super) fn add_material(
     Ok(())
 }
 
-/// Adds the materials of a library. Unknown lines are skipped.
+/// Reads the materials of a library. Unknown lines are skipped.
 fn read(bytes: &[u8], entries: &mut Vec<Entry>) -> Result<(), MeshIoError> {
     for line in lines("MTL", bytes)? {
         if line.keyword()? == b"newmtl" {
@@ -120,7 +120,7 @@ impl Entry {
         Ok(())
     }
 
-    /// Gives a model this material.
+    /// Assigns this material to a model.
     fn add_to(&self, model: &mut Model, resolve: &mut FileResolver<'_>) {
         let first = self.diffuse_map.as_ref().or(self.normal_map.as_ref());
         let uv_map = first.and_then(Texture::map);
@@ -140,7 +140,7 @@ impl Entry {
             (&mut base_colors, &self.diffuse_map),
             (&mut normals, &self.normal_map),
         ] {
-            // A copy for each unit square would take far more memory than the file.
+            // A copy per unit square would take far more memory than the file.
             if let (true, 1, Some(found)) = (is_tiled, images.len(), found) {
                 images.clear();
                 let name = shown(&found.name);
@@ -182,9 +182,9 @@ impl Entry {
     }
 }
 
-/// The textures of a material, as they are read.
+/// State of reading the textures of a material.
 struct Reading<'a, 'b> {
-    /// The unit squares with faces.
+    /// Unit squares that contain faces.
     squares: Vec<u32>,
     uv_map: Option<UvMap>,
     resolve: &'a mut FileResolver<'b>,
@@ -192,7 +192,7 @@ struct Reading<'a, 'b> {
 }
 
 impl Reading<'_, '_> {
-    /// The images of a texture: one for each unit square where they have their own, else one at most.
+    /// Images of a texture: one per unit square if the squares have separate textures, else at most one.
     fn images(&mut self, found: Option<&Texture>) -> Vec<Option<EncodedImage>> {
         let Some(found) = found else {
             return Vec::new();
@@ -219,7 +219,8 @@ impl Reading<'_, '_> {
         images
     }
 
-    /// The images of the unit squares, if the name of a texture stands for several, or is that of one of them and all exist.
+    /// Images of the unit squares, if the texture name is a pattern, or contains the number of a square and all files
+    /// exist.
     fn tiles(&mut self, found: &Texture) -> Option<Vec<Option<EncodedImage>>> {
         let name = &found.name;
         if tile_name(name, 1001).is_some() {
@@ -236,13 +237,13 @@ impl Reading<'_, '_> {
         let images = self.tiles_of(&name);
         let has_all = images.iter().all(Option::is_some);
         if !has_all {
-            // It is one texture for all squares.
+            // The texture is shared by all squares.
             self.left_out.truncate(n_before);
         }
         has_all.then_some(images)
     }
 
-    /// The images of the unit squares for a name with a mark.
+    /// Images of the unit squares for a name pattern.
     fn tiles_of(&mut self, name: &str) -> Vec<Option<EncodedImage>> {
         let mut missing = None;
         let mut n_missing = 0;
@@ -267,7 +268,7 @@ impl Reading<'_, '_> {
     }
 }
 
-/// The color of a `Kd`, if it fits in single precision.
+/// Color of a `Kd`; an error outside of the range of `f32`.
 fn diffuse(color: DVec3, line: &Line<'_>) -> Result<LinearRgb, MeshIoError> {
     let parts = color.as_vec3().to_array();
     match parts.iter().position(|part| !part.is_finite()) {
@@ -282,7 +283,7 @@ fn diffuse(color: DVec3, line: &Line<'_>) -> Result<LinearRgb, MeshIoError> {
 }
 
 impl Texture {
-    /// Parses the options of a texture, each of which is a word with a dash and its arguments, and then its name.
+    /// Parses the options of a texture, each a word with a dash and its arguments, and then its name.
     fn new(line: &Line<'_>) -> Option<Self> {
         let words = line.name_words();
         let mut words = words.as_slice();
@@ -311,7 +312,7 @@ impl Texture {
                     texture.offset = vector(0.0);
                     numbers.len()
                 }
-                // One to three numbers.
+                // One to three numbers
                 b"-t" => numbers.len(),
                 b"-mm" => 2,
                 b"-clamp" => {
@@ -329,7 +330,7 @@ impl Texture {
         (!words.is_empty()).then_some(texture)
     }
 
-    /// The map of texture coordinates, v down; `None` if it is the identity.
+    /// Transform of texture coordinates, v down; `None` if it is the identity.
     fn map(&self) -> Option<UvMap> {
         let (scale, offset) = (self.scale, self.offset);
         (scale != DVec2::ONE || offset != DVec2::ZERO).then_some(UvMap { scale, offset })
@@ -337,7 +338,7 @@ impl Texture {
 }
 
 impl UvMap {
-    /// The texture coordinates, v down, in a texture; the file says the map for v up.
+    /// Transforms texture coordinates, v down; the transform in the file is for v up.
     pub(super) fn apply(&self, uv: DVec2) -> DVec2 {
         let up = DVec2::new(uv.x, 1.0 - uv.y) * self.scale + self.offset;
         DVec2::new(up.x, 1.0 - up.y)

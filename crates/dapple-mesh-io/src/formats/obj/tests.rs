@@ -1,4 +1,4 @@
-//! OBJ and MTL files by hand, round trips, and files from the real world.
+//! Tests with handwritten OBJ and MTL files, round trips, and real files.
 
 use super::*;
 use crate::MeshIoErrorKind;
@@ -6,7 +6,7 @@ use crate::test_meshes::{cube, mesh, soup};
 use dapple_mesh::{EncodedImage, Material, VertexIdx};
 use proptest::prelude::*;
 
-/// A quad of two triangles, with the line ends of another system.
+/// A quad of two triangles, with CRLF line ends.
 const QUAD: &[u8] =
     b"# a quad \\\r\nmtllib my house.mtl\r\no one\r\nv 0 0 0 1 0 0 # red\r\nv 1 0 0\r\n\r\n\
 v 1 1 0\r\nv -0.5 1e-7 .25 0 0.5 1\r\nvt 0 0\r\nvt 1 0.25\r\nvt 1 1 0\r\nvt 0 1\r\nvn 0 0 1\r\n\
@@ -32,7 +32,7 @@ fn quad_with_comments_and_crlf_becomes_two_triangles() {
     assert_eq!(faces(&model), [[0, 1, 2], [0, 2, 3]]);
     assert_eq!(model.mesh.positions()[3], DVec3::new(-0.5, 1e-7, 0.25));
     assert_eq!(model.normals, Some(vec![DVec3::Z; 4]));
-    // Here v goes down.
+    // The v axis points down in the model.
     let uvs = [[0.0, 1.0], [1.0, 0.75], [1.0, 0.0], [0.0, 0.0]].map(DVec2::from_array);
     assert_eq!(
         model.uvs,
@@ -327,7 +327,7 @@ fn value_stability_obj_text() {
     assert_eq!(text, want);
 }
 
-/// The files have the counts that their sources state.
+/// Checks that the files have the counts that their sources state.
 #[test]
 fn real_files_have_the_counts_that_are_known() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/meshes/");
@@ -372,7 +372,7 @@ proptest! {
 
     #[test]
     fn positions_read_back_bit_for_bit_at_all_scales(bits in any::<[u64; 3]>()) {
-        // Without the highest bit of the exponent it is a number below 2.
+        // Without the highest exponent bit, the number is below 2.
         let position = DVec3::from_array(bits.map(|bits| f64::from_bits(bits & !(1 << 62))));
         let mesh = Mesh::new(vec![position], &[]).expect("it is in range");
         let back = read(&write(&Model::from(mesh)).expect("it is valid")).expect("it is valid");

@@ -1,16 +1,16 @@
-//! Tests of textures of unit squares (UDIM).
+//! Tests of textures per unit square (UDIM).
 
 use super::{read_with, write_files};
 use dapple_mesh::{EncodedImage, Model};
 
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// A PNG file that says its name.
+/// A PNG file that contains its name.
 fn png(name: &str) -> Vec<u8> {
     [PNG, name.as_bytes()].concat()
 }
 
-/// A triangle in each of some unit squares, v up.
+/// OBJ text with a triangle in each of the unit squares, v up.
 fn text(squares: &[[f64; 2]]) -> String {
     let mut text = "mtllib a.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\n".to_owned();
     for (at, [u, v]) in squares.iter().enumerate() {
@@ -21,7 +21,7 @@ fn text(squares: &[[f64; 2]]) -> String {
     text
 }
 
-/// The model of triangles in unit squares, with a material and files beside it.
+/// Reads triangles in unit squares, with a material and files in the same folder.
 fn read(squares: &[[f64; 2]], material: &str, files: &[&str]) -> Model {
     let library = format!("newmtl a\n{material}\n");
     let mut resolve = |name: &str| match name {
@@ -31,7 +31,7 @@ fn read(squares: &[[f64; 2]], material: &str, files: &[&str]) -> Model {
     read_with(text(squares).as_bytes(), &mut resolve).expect("it is valid")
 }
 
-/// The numbers of the unit squares, with the names of the files of their textures.
+/// Numbers of the unit squares, with the names of their texture files.
 fn tiles(model: &Model) -> Vec<(u32, String)> {
     let name = |image: &Option<EncodedImage>| {
         let bytes = image
@@ -92,7 +92,7 @@ fn textures_that_unit_squares_lack_are_listed() {
     let why = "the texture skin.1002.png, which cannot be read, and 1 more of its unit squares";
     assert_eq!(model.left_out, [why]);
     assert_eq!(model.tiles.len(), 3);
-    // The number of a name is no mark where the other files are missing.
+    // A number in the name is not a pattern if the other files are missing.
     let model = read(&SQUARES, "map_Kd skin.1001.png", &files);
     assert!(model.tiles.is_empty() && model.material.base_color.is_some());
     assert_eq!(model.left_out, [""; 0]);

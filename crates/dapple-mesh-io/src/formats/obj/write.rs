@@ -1,4 +1,4 @@
-//! Encoder of OBJ, MTL, and textures beside them.
+//! Encoder of OBJ, MTL, and the textures in the same folder.
 
 use crate::NamedFile;
 use crate::text::shortest;
@@ -11,8 +11,8 @@ use std::fmt::Write as _;
 
 /// Encodes the model as an OBJ file without its material.
 ///
-/// Positions, normals and texture coordinates have the fewest digits that read back as the same `f64`. Colors are
-/// clamped to 0 to 1, have 16 bits per channel, and no alpha.
+/// Positions, normals and texture coordinates have the shortest digits that read back as the same `f64`. Colors are
+/// clamped to 0 to 1, with 16 bits per channel and without alpha.
 ///
 /// # Errors
 ///
@@ -21,16 +21,16 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
     Ok(text(model, None)?.into_bytes())
 }
 
-/// Encodes the model as an OBJ file `stem.obj` and, if it has a material, its `stem.mtl` and the textures
-/// `stem_base_color.png` and `stem_normal.png`, or `.jpg`. The OBJ file is the last.
+/// Encodes the model as an OBJ file `stem.obj`, which is the last file. A material adds `stem.mtl` and the textures
+/// `stem_base_color.png` and `stem_normal.png`, or `.jpg`.
 ///
-/// The texture of metalness and roughness is left out, since MTL has separate textures for them. Textures of unit squares
-/// ([`Model::tiles`]) are `stem_base_color.1001.png` and so on, which the material names with `<UDIM>`.
+/// The metallic-roughness texture is omitted, since MTL has separate textures for both. Textures of unit squares
+/// ([`Model::tiles`]) are named `stem_base_color.1001.png` and so on, and the material refers to them with `<UDIM>`.
 ///
 /// # Errors
 ///
-/// The errors of [`Model::check`]; [`MeshIoErrorKind::Name`] if the stem is empty, or has white space, a slash, a
-/// backslash or `#`, which a name in an OBJ file cannot have.
+/// The errors of [`Model::check`]; [`MeshIoErrorKind::Name`] if the stem is empty, or contains white space, a slash, a
+/// backslash or `#`, which names in an OBJ file cannot contain.
 pub fn write_files(model: &Model, stem: &str) -> Result<Vec<NamedFile>, MeshIoError> {
     let odd = |c: char| c.is_whitespace() || c.is_control() || matches!(c, '/' | '\\' | '#');
     if stem.is_empty() || stem.contains(odd) {
@@ -53,7 +53,7 @@ fn file(name: String, bytes: &[u8]) -> NamedFile {
     NamedFile { name, bytes }
 }
 
-/// The text of the material; its textures are added to the files.
+/// Text of the MTL file; its textures are added to `files`.
 fn material(model: &Model, stem: &str, files: &mut Vec<NamedFile>) -> String {
     let LinearRgba { color, alpha } = model.material.base_color_factor;
     let mut text = format!(
@@ -83,7 +83,7 @@ fn material(model: &Model, stem: &str, files: &mut Vec<NamedFile>) -> String {
     text
 }
 
-/// The text of the OBJ file. Writing to a string cannot fail.
+/// Text of the OBJ file. Writing to a string cannot fail.
 fn text(model: &Model, library: Option<&str>) -> Result<String, MeshIoError> {
     model.check()?;
     let mut text = String::new();
@@ -125,14 +125,14 @@ fn numbers(text: &mut String, vector: DVec3) {
     }
 }
 
-/// The sRGB code of a color as fractions, whose five digits distinguish 16 bits.
+/// sRGB code of a color as fractions; rounding to 1e-6 preserves all 16-bit codes.
 fn coded(color: LinearRgb) -> DVec3 {
     let unit = |code: u16| (f64::from(code.to_unit()) * 1e6).round() / 1e6;
     DVec3::from_array(color.to_srgb::<u16>().map(unit))
 }
 
-/// Writes the normals and returns their numbers, from 1, for each corner: those of vertices in their order, or each of
-/// the corners' once.
+/// Writes the normals, and returns the 1-based index of the normal of each corner. Vertex normals are written in
+/// order; equal corner normals are written once.
 fn normals(model: &Model, text: &mut String) -> Vec<[usize; 3]> {
     let mut line = |normal: DVec3| {
         text.push_str("vn");
@@ -162,7 +162,7 @@ fn normals(model: &Model, text: &mut String) -> Vec<[usize; 3]> {
         .collect()
 }
 
-/// Writes each texture coordinate once and returns their numbers, from 1, for each corner.
+/// Writes each texture coordinate once, and returns the 1-based index for each corner.
 fn uvs(model: &Model, text: &mut String) -> Vec<[usize; 3]> {
     let mut known = BTreeMap::new();
     let mut number = |uv: DVec2| {
@@ -173,7 +173,7 @@ fn uvs(model: &Model, text: &mut String) -> Vec<[usize; 3]> {
                 text.push_str("vt ");
                 shortest(text, uv.x);
                 text.push(' ');
-                // In OBJ, v goes up.
+                // The v axis of OBJ points up.
                 shortest(text, 1.0 - uv.y);
                 text.push('\n');
                 next

@@ -1,4 +1,4 @@
-//! The numbers after the header of a PLY file.
+//! Body of a PLY file: the values after the header.
 
 use super::FORMAT;
 use super::header::{Element, Encoding, Kind, Scalar};
@@ -6,10 +6,10 @@ use crate::MeshIoError;
 use crate::text::{in_range, parse};
 use core::fmt::Display;
 
-/// The rest of the file, which is not yet read.
+/// Unread rest of the file.
 pub(super) struct Body<'a> {
     encoding: Encoding,
-    /// The whole file, with its header.
+    /// The whole file, including its header.
     bytes: &'a [u8],
     rest: &'a [u8],
 }
@@ -23,7 +23,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// An error in the numbers read last, with the line if the body is text.
+    /// Error about the values read last, with the line number if the body is text.
     pub(super) fn error(&self, why: impl Display) -> MeshIoError {
         if self.encoding != Encoding::Text {
             return MeshIoError::file(FORMAT, why.to_string());
@@ -33,10 +33,10 @@ impl<'a> Body<'a> {
         MeshIoError::file(FORMAT, format!("line {}: {why}", ends.count() + 1))
     }
 
-    /// Checks that the remaining bytes can hold the number of elements in the header.
+    /// Checks that the remaining bytes can hold the element count of the header.
     pub(super) fn check_room(&self, element: &Element) -> Result<(), MeshIoError> {
         let least = |kind: Kind| match kind {
-            // A digit and a space, the last of which may be missing.
+            // A digit and a space; the last space may be missing.
             _ if self.encoding == Encoding::Text => 2,
             Kind::Scalar(scalar) | Kind::List(scalar, _) => scalar.size(),
         };
@@ -66,7 +66,7 @@ impl<'a> Body<'a> {
         Ok(part)
     }
 
-    /// Reads the numbers of a property into `list`, which is cleared first.
+    /// Reads the values of a property into `list`, which is cleared first.
     pub(super) fn values(&mut self, kind: Kind, list: &mut Vec<f64>) -> Result<(), MeshIoError> {
         list.clear();
         let (count, item) = match kind {
@@ -80,11 +80,11 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    /// The length of a list.
+    /// Length of a list.
     fn count(&mut self, scalar: Scalar) -> Result<usize, MeshIoError> {
         let count = self.scalar(scalar)?;
-        // Each number has at least a byte, so that reading stops soon after a false count; no memory is allocated for
-        // the claim.
+        // Each value has at least one byte, so reading soon fails for a false count; memory is not allocated in
+        // advance.
         if count >= 0.0 && count <= self.rest.len() as f64 {
             return Ok(count as usize);
         }

@@ -1,18 +1,18 @@
-//! The header of a PLY file: its elements and their properties.
+//! Header of a PLY file: its elements and their properties.
 
 use super::FORMAT;
 use crate::MeshIoError;
 use crate::text::{parse, words};
 
-/// The header of a PLY file, which describes the body.
+/// Header of a PLY file, which describes the body.
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
-    /// The names of textures, which comments have.
+    /// Names of textures, from comments.
     pub(super) textures: Vec<String>,
 }
 
-/// The encoding of numbers.
+/// Encoding of the body.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {
     Text,
@@ -20,30 +20,30 @@ pub(super) enum Encoding {
     Big,
 }
 
-/// An element: a kind of items, all of which follow each other.
+/// An element: consecutive items with the same properties.
 pub(super) struct Element {
     pub(super) name: String,
     pub(super) count: u64,
-    /// The number of the line in the file, from 1.
+    /// Line number in the file, starting at 1.
     pub(super) line: usize,
     pub(super) properties: Vec<Property>,
 }
 
-/// A property of all items of an element.
+/// A property of the items of an element.
 pub(super) struct Property {
     pub(super) name: String,
     pub(super) kind: Kind,
 }
 
-/// The kind of a property: one number or a list.
+/// Kind of a property: a scalar or a list.
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
     Scalar(Scalar),
-    /// A list: the type of its length, and the type of its numbers.
+    /// A list: the type of its length, and the type of its values.
     List(Scalar, Scalar),
 }
 
-/// The type of a number.
+/// Scalar type.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Scalar {
     I8,
@@ -95,7 +95,7 @@ impl Header {
         }
     }
 
-    /// Adds a line of the header; `None` if it is invalid.
+    /// Parses a line of the header; `None` if it is invalid.
     fn add(&mut self, number: usize, line: &[&[u8]]) -> Option<()> {
         let text = |word: &[u8]| String::from_utf8_lossy(word).into_owned();
         match line {
@@ -127,7 +127,7 @@ impl Header {
 }
 
 impl Element {
-    /// The index of the first property with one of these names.
+    /// Index of the first property with one of these names.
     pub(super) fn place(&self, names: &[&str]) -> Option<usize> {
         let mut properties = self.properties.iter();
         properties.position(|property| names.contains(&property.name.as_str()))
@@ -135,7 +135,7 @@ impl Element {
 }
 
 impl Scalar {
-    /// The number of bytes in a binary file.
+    /// Size in bytes in a binary file.
     pub(super) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,

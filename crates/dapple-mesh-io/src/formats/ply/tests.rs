@@ -1,4 +1,4 @@
-//! PLY files by hand, and round trips.
+//! Tests with handwritten PLY files, and round trips.
 
 use super::*;
 use crate::MeshIoErrorKind;
@@ -40,7 +40,7 @@ fn quad_as_text_becomes_two_triangles_with_linear_colors() {
     assert_eq!((model.normals, model.uvs), (None, None));
 }
 
-/// The beginning of a text file with five vertices on the plane z = 0.
+/// Header of a text file with five vertices on the plane z = 0.
 const FIVE: &str = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n";
 
 #[test]

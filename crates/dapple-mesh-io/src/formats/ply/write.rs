@@ -8,21 +8,21 @@ use dapple_mesh::Model;
 use glam::DVec3;
 use std::fmt::Write as _;
 
-/// The output for numbers: bytes or text.
+/// Output of numbers as bytes or text.
 struct Out {
     bytes: Vec<u8>,
-    /// The line so far, for text.
+    /// Current line, for text.
     line: Option<String>,
     /// Whether positions, normals and texture coordinates are `double`.
     wide: [bool; 3],
 }
 
-/// Encodes the model as a binary PLY file, little-endian.
+/// Encodes the model as a little-endian binary PLY file.
 ///
-/// Positions, normals and texture coordinates are each written as `float` if that is lossless for all of them, and else
-/// as `double`, so that all come back bit for bit, except for 1 - v. Colors are 8 bits of sRGB per channel, with
-/// `alpha` if there is one. Where corners have different normals, further vertices follow, since PLY has normals only
-/// for vertices. A model without faces becomes a cloud of points, oriented if it has normals. The material is left out.
+/// Positions, normals and texture coordinates are each written as `float` if that is lossless for all of them, else as
+/// `double`. They read back bit for bit, except for the conversion 1 - v. Colors are 8-bit sRGB, with `alpha` if any
+/// color has one. Where corners have different normals, additional vertices follow, since PLY has normals only for
+/// vertices. A model without faces becomes a point cloud, oriented if it has normals. The material is omitted.
 ///
 /// # Errors
 ///
@@ -31,7 +31,7 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
     encode(model, None)
 }
 
-/// Encodes the model as a PLY file of text; see [`write()`].
+/// Encodes the model as a text PLY file; see [`write()`].
 ///
 /// # Errors
 ///
@@ -79,7 +79,7 @@ fn encode(model: &Model, line: Option<String>) -> Result<Vec<u8>, MeshIoError> {
         if let Some(uvs) = uvs.get(i) {
             out.byte(6);
             for uv in uvs {
-                // Here v goes up.
+                // The v axis of PLY points up.
                 out.vector(2, [uv.x, 1.0 - uv.y]);
             }
         }
@@ -88,7 +88,7 @@ fn encode(model: &Model, line: Option<String>) -> Result<Vec<u8>, MeshIoError> {
     Ok(out.bytes)
 }
 
-/// Whether a number does not fit in `f32`.
+/// Returns whether a number changes when it is rounded to `f32`.
 fn wide(part: f64) -> bool {
     f64::from(part as f32).to_bits() != part.to_bits()
 }

@@ -1,4 +1,4 @@
-//! STL files by hand and round trips.
+//! Tests with handwritten STL files, and round trips.
 
 use super::*;
 use crate::test_meshes::{cube, mesh, soup};
@@ -123,7 +123,7 @@ fn meshes_far_from_zero_are_written_as_text_with_all_digits() {
     let back = read(&write(&far).expect("it is valid")).expect("it is valid");
     let all = |model: &Model| corners(&model.mesh).collect::<Vec<_>>();
     assert_eq!(all(&back), all(&far));
-    // The area of a cube of 0.1.
+    // Area of a cube with an edge of 0.1.
     let area: f64 = corners(&back.mesh)
         .map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length())
         .sum();

@@ -1,4 +1,4 @@
-//! Replacement of images in a document.
+//! Tests of image replacement.
 
 use super::*;
 
@@ -6,7 +6,8 @@ fn png(text: &str) -> EncodedImage {
     EncodedImage::new([b"\x89PNG\r\n\x1a\n", text.as_bytes()].concat()).expect("it begins as PNG")
 }
 
-/// The square with three images in its buffer, behind and between other views, and with what a model has no place for.
+/// The square with three images in its buffer, behind and between other views, and with properties that a model cannot
+/// represent.
 fn document() -> (Value, Vec<u8>) {
     let mut document = square();
     let uri = document["buffers"][0]["uri"]
@@ -51,14 +52,14 @@ fn document() -> (Value, Vec<u8>) {
     document["meshes"][0]["extras"] =
         json!({ "note": "0.1 and 1e-7", "number": 0.300_000_011_920_928_96 });
     document["nodes"][0]["translation"] = json!([500000.1, 4649776.3, 1]);
-    // The other reader requires the bounds of positions.
+    // The other reader requires bounds of positions.
     document["accessors"][0]["min"] = json!([0, 0, 0]);
     document["accessors"][0]["max"] = json!([1, 1, 0]);
     document["animations"] = json!([{ "name": "none", "channels": [], "samplers": [] }]);
     (document, bytes)
 }
 
-/// The document of a GLB file, without what may differ, and its images.
+/// Document of a GLB file without the parts that may differ, and its images.
 fn parts(bytes: &[u8]) -> (Value, Vec<Vec<u8>>) {
     let file = ::gltf::Gltf::from_slice(bytes).expect("it is valid");
     let blob = file.blob.as_deref().unwrap_or_default();
@@ -228,7 +229,7 @@ fn damaged_documents_are_refused_or_keep_their_images() {
         *document.pointer_mut(pointer).expect("it is there") = value;
         let file = write::container(document.to_string().into_bytes(), bytes.clone());
         let file = file.expect("it is small");
-        // No panic; what is written is a container with JSON.
+        // The result is an error or a container with JSON, never a panic.
         if let Ok(new) = replace_images(&file, &mut |_| None, &pairs) {
             let container = Container::read(&new).expect("it is one");
             assert!(parse::<Value>(container.json).is_ok(), "{pointer}");

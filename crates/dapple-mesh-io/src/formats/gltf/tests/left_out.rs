@@ -1,4 +1,4 @@
-//! Skins, morph targets and transforms of textures, and what is listed in place of being read.
+//! Tests of skins, morph targets and texture transforms, and of the list of omitted parts.
 
 use super::*;
 use dapple_mesh::Model;
@@ -7,7 +7,7 @@ fn png() -> String {
     format!("data:image/png;base64,{}", base64(b"\x89PNG\r\n\x1a\n..."))
 }
 
-/// A square with texture coordinates equal to its positions, four joints and weights for each corner, and a morph target
+/// A square with texture coordinates equal to its positions, four joints and weights per corner, and a morph target
 /// that lifts it by 5.
 fn posed() -> Value {
     let positions: [[f32; 3]; 4] = [
@@ -92,7 +92,8 @@ fn skins_replace_the_transform_of_the_node() {
         "without a skin"
     );
     document["nodes"][1]["skin"] = 0.into();
-    // The values of Blender for this file: joint 1 lifts the upper vertices by 3, and the node does not move it.
+    // Values from Blender for this file: joint 1 lifts the upper vertices by 3, and the transform of the node has no
+    // effect.
     assert_eq!(bounds(&document), [[0.0, 0.0, 0.0], [1.0, 4.0, 0.0]]);
     let mut moved = document.clone();
     moved["nodes"][2]["translation"] = json!([0, 0, 2]);

@@ -1,4 +1,4 @@
-//! Materials.
+//! Tests of materials.
 
 use super::*;
 

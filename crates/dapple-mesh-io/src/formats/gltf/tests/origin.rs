@@ -1,8 +1,8 @@
-//! Meshes far from zero.
+//! Tests of meshes far from the origin.
 
 use super::*;
 
-/// A cube with its least corner at a place.
+/// A cube whose minimum corner is at a position.
 fn cube_at(corner: DVec3, edge: f64) -> Model {
     let unit = cube();
     let positions = unit.positions().iter();
@@ -31,7 +31,7 @@ fn positions_far_from_zero_keep_their_differences() {
             let pairs = back.mesh.positions().iter().zip(model.mesh.positions());
             let moved = pairs.map(|(at, other)| (at - other).abs().max_element());
             let moved = moved.fold(0.0, f64::max);
-            // Half a step of f32 at the extent, and a step of f64 at the coordinate.
+            // Half a step of f32 at the extent, plus a step of f64 at the coordinate.
             let limit = edge / f64::from(1 << 24) + corner.abs().max_element() * f64::EPSILON;
             assert!(moved <= limit, "{what}: {corner} moved by {moved:e}");
             assert_eq!(back.mesh.report().degenerate_faces, 0, "{what}: {corner}");
@@ -45,7 +45,7 @@ fn origin_is_the_translation_of_the_node_and_bounds_are_relative_to_it() {
     let bytes = write(&model).expect("it is valid");
     let file = ::gltf::Gltf::from_slice(&bytes).expect("it is valid");
     let node = file.nodes().next().expect("it has one");
-    // A center of 500000.05, 4649776.05 and 120.05 in steps of 2^-4, the power of two below the extent.
+    // The center 500000.05, 4649776.05, 120.05 in steps of 2^-4, the power of two below the extent.
     let translation = node.transform().decomposed().0;
     assert_eq!(translation, [500_000.06, 4_649_776.0, 120.0625]);
     let mesh = node.mesh().expect("it has one");
@@ -59,7 +59,7 @@ fn meshes_that_single_precision_can_hold_have_no_origin() {
         cube_at(DVec3::splat(-0.5), 1.0),
         cube_at(DVec3::new(15.0, 0.0, 0.0), 1.0 / 3.0 * 3.0),
         cube_at(DVec3::new(3.3, 1.1, 0.7), 0.3),
-        // Far, but exact.
+        // Far from the origin, but exact in f32.
         cube_at(DVec3::splat(65536.0), 0.5),
     ] {
         let bytes = write(&model).expect("it is valid");

@@ -1,4 +1,4 @@
-//! Valid files that are seldom written, and invalid ones that look valid.
+//! Tests of unusual valid files, and of invalid files that look valid.
 
 use super::*;
 
