@@ -41,11 +41,11 @@ pub(crate) fn with_vertex_normals(model: &Model) -> Result<Cow<'_, Model>, MeshE
 }
 
 struct Split {
-    /// The vertex of the mesh for each new vertex; the first are those of the mesh.
+    /// Original vertex of each new vertex; the first ones are the mesh vertices in order.
     vertex: Vec<usize>,
-    /// The normal of each new vertex, once a corner has one.
+    /// Normal of each new vertex; `None` until a corner sets it.
     normals: Vec<Option<DVec3>>,
-    /// For each new vertex, the next one of the same vertex of the mesh.
+    /// Next new vertex of the same mesh vertex.
     next: Vec<Option<usize>>,
 }
 
@@ -59,7 +59,7 @@ impl Split {
         }
     }
 
-    /// The copy of a vertex with this normal; it is added if there is none.
+    /// Returns the copy of a vertex with this normal, which is created if necessary.
     fn vertex_with(&mut self, vertex: VertexIdx, normal: DVec3) -> VertexIdx {
         let mut at = vertex.index();
         while *self.normals[at].get_or_insert(normal) != normal {
@@ -71,7 +71,7 @@ impl Split {
                 self.next.push(None);
             }
         }
-        // The number fits for up to 2^30 faces, whose normals alone are 72 GiB.
+        // The index fits for up to 2^30 faces, whose normals alone take 72 GiB.
         VertexIdx(at as u32)
     }
 }

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-/// A small model with all columns.
+/// A small model with all attributes.
 fn model() -> Model {
     let mut model = Model::from(cube());
     let count = model.mesh.positions().len();
@@ -22,7 +22,7 @@ fn model() -> Model {
     model
 }
 
-/// A cube with a normal for each corner, which differ at every edge.
+/// A cube with corner normals that differ at every edge.
 fn creased() -> Model {
     let mut model = model();
     model.normals = None;
@@ -30,7 +30,7 @@ fn creased() -> Model {
     model
 }
 
-/// The places of all corners with their normals.
+/// Positions of all corners with their normals.
 fn corners(model: &Model) -> Vec<(DVec3, DVec3)> {
     let normals = model.normals_of_corners().expect("it has normals");
     let corners = model.mesh.faces().iter().zip(&normals);
@@ -56,7 +56,7 @@ fn normals_of_corners_go_through_every_format() {
         let read = read.expect("it is valid");
         assert_eq!(corners(&read), corners(&model), "{format}");
         assert_eq!(read.uvs, model.uvs, "{format}");
-        // From file to file once more.
+        // Convert the result to GLB and back.
         let again = gltf::read(&gltf::write(&read).expect("it is valid")).expect("it is valid");
         assert_eq!(corners(&again), corners(&model), "{format} to GLB");
     }
@@ -77,11 +77,11 @@ fn files() -> Vec<Vec<u8>> {
     files
 }
 
-/// Reads the bytes in every format; models are written and read again, if the format is written.
+/// Reads the bytes in every format. Models of writable formats are written and read again.
 fn read_all(bytes: &[u8]) {
     for format in FORMATS {
         let name = format.name();
-        // The same bytes serve as library, buffer and texture.
+        // Use the same bytes as library, buffer and texture.
         let Ok(model) = format.read(bytes, &mut |_| Some(bytes.to_vec())) else {
             continue;
         };
@@ -150,7 +150,7 @@ proptest! {
             let at = at.index(bytes.len());
             bytes[at] = byte;
         }
-        // A part of the bytes appears a second time elsewhere.
+        // Copy a part of the bytes to another location.
         let from = cut.index(bytes.len());
         let part = bytes[from..(from + length).min(bytes.len())].to_vec();
         let to = paste.index(bytes.len());

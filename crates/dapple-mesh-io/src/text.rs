@@ -1,4 +1,4 @@
-//! Reading of texts, and parsing and formatting of their words and numbers.
+//! Text files: decoding, and parsing and formatting of words and numbers.
 
 use crate::MeshIoError;
 use core::fmt::Display;
@@ -7,14 +7,14 @@ use core::str::FromStr;
 use dapple_mesh::POSITION_MAX;
 use dapple_raster::text::without_mark;
 
-/// The text of a file, without the byte order mark of UTF-8. Every reader takes its text from here.
+/// Text of a file without the byte order mark of UTF-8. All readers of text use this function.
 ///
 /// Fails for UTF-16 and UTF-32, with or without a mark: the first character of every format is ASCII.
 pub(crate) fn content<'a>(format: &'static str, bytes: &'a [u8]) -> Result<&'a [u8], MeshIoError> {
     without_mark(bytes).map_err(|error| MeshIoError::file(format, error.to_string()))
 }
 
-/// The words of a text, separated by white space.
+/// Words of a text, separated by white space.
 pub(crate) fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     text.split(u8::is_ascii_whitespace)
         .filter(|word| !word.is_empty())
@@ -25,7 +25,7 @@ pub(crate) fn parse<T: FromStr>(word: &[u8]) -> Option<T> {
     core::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// Checks the range of a component of a position, a normal or a texture coordinate; the error is the reason.
+/// Checks the range of a component of a position, a normal or a texture coordinate; the error is the message.
 pub(crate) fn in_range(part: f64) -> Result<f64, String> {
     if part.abs() <= POSITION_MAX {
         return Ok(part);
@@ -35,12 +35,12 @@ pub(crate) fn in_range(part: f64) -> Result<f64, String> {
     ))
 }
 
-/// The message for a corner with a vertex that does not exist.
+/// Message for a corner with a vertex that does not exist.
 pub(crate) fn no_vertex(vertex: impl Display, count: impl Display) -> String {
     format!("a corner of a face is vertex {vertex}, but there are {count}")
 }
 
-/// Appends the shortest text that reads back as the same number, with an exponent where there would be many zeros.
+/// Appends the shortest text that reads back as the same number, with an exponent if there would be many zeros.
 pub(crate) fn shortest(text: &mut String, number: f64) {
     let plain = number == 0.0 || (1e-5..1e16).contains(&number.abs());
     // Writing to a string cannot fail.

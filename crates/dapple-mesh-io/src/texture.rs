@@ -1,30 +1,30 @@
-//! Textures in other files, and the words for those that are not read.
+//! External textures, and messages for textures that cannot be read.
 
 use crate::FileResolver;
 use dapple_mesh::{EncodedImage, Model};
 
-/// Texture coordinates beyond 0 to 1 by this much are out of the texture; less is rounding.
+/// Tolerance for texture coordinates outside of 0 to 1; smaller differences are rounding.
 const OUTSIDE: f64 = 1e-4;
 
-/// The texture with a name; or else the entry of [`Model::left_out`](dapple_mesh::Model::left_out) for it.
+/// Reads the texture with a name; the error is the entry of [`Model::left_out`](dapple_mesh::Model::left_out) for it.
 pub(crate) fn texture(name: &str, resolve: &mut FileResolver<'_>) -> Result<EncodedImage, String> {
     let bytes = resolve(name).ok_or_else(|| unreadable("texture", name))?;
     encoded(name, bytes)
 }
 
-/// The texture in the bytes of a file with a name.
+/// Wraps the bytes of a texture file; `name` is used in the error.
 pub(crate) fn encoded(name: &str, bytes: Vec<u8>) -> Result<EncodedImage, String> {
     let wrong = |_| format!("the texture {}, which is neither PNG nor JPEG", shown(name));
     EncodedImage::new(bytes).map_err(wrong)
 }
 
-/// The mark in the name of a texture that stands for the number of a unit square.
+/// Placeholder in a texture name for the number of a unit square.
 const UDIM: &str = "<UDIM>";
-/// The mark that stands for the column and the row of a unit square, from 1, as in `u2_v1`.
+/// Placeholder for the column and row of a unit square, starting at 1, as in `u2_v1`.
 const UVTILE: &str = "<UVTILE>";
 
-/// The name of the texture of a [unit square](Model::unit_squares), if a name has a mark for it, in capitals or not:
-/// `<UDIM>` for its number, or `<UVTILE>` for its column and row.
+/// Returns the texture name of a [unit square](Model::unit_squares) for a name with a placeholder; `None` without one.
+/// The placeholders, in any case, are `<UDIM>` for the number, and `<UVTILE>` for the column and row.
 ///
 /// # Examples
 ///
@@ -49,7 +49,7 @@ pub fn tile_name(name: &str, number: u32) -> Option<String> {
     })
 }
 
-/// The name with a mark for a name that has the number of one of several unit squares, such as `skin.1001.png`.
+/// Replaces the number of one of several unit squares in a name, such as `skin.1001.png`, by the placeholder.
 pub(crate) fn name_of_all(name: &str, squares: &[u32]) -> Option<String> {
     let is_digit = |letter: Option<char>| letter.is_some_and(|letter| letter.is_ascii_digit());
     let with_mark = |number: &u32| {
@@ -62,12 +62,12 @@ pub(crate) fn name_of_all(name: &str, squares: &[u32]) -> Option<String> {
     (squares.len() > 1).then(|| squares.iter().find_map(with_mark))?
 }
 
-/// The words for a file that is missing or outside of the folder.
+/// Message for a file that is missing or outside of the folder.
 pub(crate) fn unreadable(what: &str, name: &str) -> String {
     format!("the {what} {}, which cannot be read", shown(name))
 }
 
-/// A name of a file as text for people, without control characters.
+/// File name for display, without control characters.
 pub(crate) fn shown(name: &str) -> String {
     let plain = |letter: char| {
         if letter.is_control() {
@@ -79,7 +79,7 @@ pub(crate) fn shown(name: &str) -> String {
     name.chars().map(plain).collect()
 }
 
-/// Whether a corner has texture coordinates beyond 0 to 1.
+/// Returns whether a corner has texture coordinates outside of 0 to 1.
 pub(crate) fn is_outside(model: &Model) -> bool {
     let mut parts = model
         .uvs

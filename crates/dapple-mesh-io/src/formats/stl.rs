@@ -173,7 +173,7 @@ fn corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> {
     faces.map(|face| face.map(|vertex| positions[vertex.index()]))
 }
 
-/// The normal of a face; zero if it has no area.
+/// Normal of a face; zero if it has no area.
 fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a).normalize_or_zero()
 }

@@ -239,7 +239,7 @@ pub(super) fn container(mut json: Vec<u8>, mut bin: Vec<u8>) -> Result<Vec<u8>, 
     bytes.extend(2u32.to_le_bytes());
     bytes.extend(length.to_le_bytes());
     let mut chunk = |kind: &[u8; 4], content: &[u8]| {
-        // The length fits, since the total does.
+        // The length fits because the total does.
         bytes.extend((content.len() as u32).to_le_bytes());
         bytes.extend(kind);
         bytes.extend(content);

@@ -57,8 +57,8 @@ impl<'a> Body<'a> {
         Err(MeshIoError::file(FORMAT, why))
     }
 
-    /// Checks the last number read as a component of a position, a normal or a texture coordinate. Those of binary
-    /// files are checked when all are read, with the number of the vertex in place of a line.
+    /// Checks the last value as a component of a position, a normal or a texture coordinate. Values of binary files
+    /// are checked after reading, with the vertex index instead of a line number.
     pub(super) fn in_range(&self, part: f64) -> Result<f64, MeshIoError> {
         if self.encoding == Encoding::Text {
             return in_range(part).map_err(|why| self.error(why));

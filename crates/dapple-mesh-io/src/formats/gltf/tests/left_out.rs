@@ -203,7 +203,7 @@ fn transforms_of_textures_are_applied_to_corners() {
         near(&flipped, [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]]),
         "{flipped:?}"
     );
-    // The example of the extension: the lower left quadrant, which v from 1/2 to 1 is, rotated clockwise.
+    // The example of the extension: the lower left quadrant, where v is from 1/2 to 1, rotated clockwise.
     let turned = uvs(
         json!({ "offset": [0, 1], "rotation": core::f64::consts::FRAC_PI_2, "scale": [0.5, 0.5] }),
     );
