@@ -1,21 +1,21 @@
 //! Counter-based hashes of lattice cells.
 //!
-//! A hash is a pure function of a seed, a cell and a counter. The words go in from the slowest axis to the fastest,
-//! the counter last, so that whoever walks along a row or draws several numbers for one cell can share the beginning:
-//! that is what [`CellHash`] holds. What a number is for is not a word of its own: it is the name of the
-//! [`Seed::child`] that is passed.
+//! A hash is a pure function of a seed, a cell and a counter. Words are absorbed from the slowest axis to the fastest,
+//! and the counter last. A [`CellHash`] is the state after a prefix of these words, so that cells of a row, or several
+//! numbers of one cell, share the work. The purpose of a number is not hashed as a word: it is the name passed to
+//! [`Seed::child`].
 
 use crate::Seed;
 use crate::mix::{absorb, finish};
 
-/// 64 random bits for a counter in a cell of the 1-D lattice.
+/// Returns 64 random bits for a counter in a cell of the 1-D lattice.
 #[must_use]
 #[inline]
 pub const fn hash1(seed: Seed, cell: [i64; 1], index: u32) -> u64 {
     CellHash::new(seed, cell).at(index)
 }
 
-/// 64 random bits for a counter in a cell of the 2-D lattice.
+/// Returns 64 random bits for a counter in a cell of the 2-D lattice.
 ///
 /// # Examples
 ///
@@ -32,28 +32,28 @@ pub const fn hash2(seed: Seed, cell: [i64; 2], index: u32) -> u64 {
     CellHash::new(seed, cell).at(index)
 }
 
-/// 64 random bits for a counter in a cell of the 3-D lattice.
+/// Returns 64 random bits for a counter in a cell of the 3-D lattice.
 #[must_use]
 #[inline]
 pub const fn hash3(seed: Seed, cell: [i64; 3], index: u32) -> u64 {
     CellHash::new(seed, cell).at(index)
 }
 
-/// 64 random bits for a counter in a cell of the 4-D lattice.
+/// Returns 64 random bits for a counter in a cell of the 4-D lattice.
 #[must_use]
 #[inline]
 pub const fn hash4(seed: Seed, cell: [i64; 4], index: u32) -> u64 {
     CellHash::new(seed, cell).at(index)
 }
 
-/// The hash state after a seed and a cell, from which as many numbers as the cell needs can be drawn.
+/// Hash state after a seed and a cell. Any number of values can be drawn from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CellHash {
     pub(crate) state: [u32; 2],
 }
 
 impl CellHash {
-    /// Absorbs `seed` and `cell`, the last axis first, for any number of axes. [`hash1`] to [`hash4`] use 1 to 4.
+    /// Absorbs `seed` and `cell`, last axis first, for any number of axes. [`hash1`] to [`hash4`] use 1 to 4.
     #[must_use]
     #[inline]
     pub const fn new<const N: usize>(seed: Seed, cell: [i64; N]) -> Self {
@@ -68,7 +68,7 @@ impl CellHash {
         hash
     }
 
-    /// The hash state of two words that are random already, such as the parts of two
+    /// Creates a hash state from two words that are already random, such as the parts of two
     /// [`LatticeHash`](crate::LatticeHash)es.
     #[must_use]
     #[inline]
@@ -76,7 +76,7 @@ impl CellHash {
         Self { state: words }
     }
 
-    /// Absorbs the coordinate of one more axis, a faster one than those before.
+    /// Absorbs the coordinate of one more axis, which is faster than the axes absorbed before.
     ///
     /// # Examples
     ///
@@ -95,7 +95,7 @@ impl CellHash {
         }
     }
 
-    /// The 64 random bits of counter `index`.
+    /// Returns the 64 random bits of counter `index`.
     #[must_use]
     #[inline]
     pub const fn at(self, index: u32) -> u64 {
@@ -104,7 +104,7 @@ impl CellHash {
     }
 }
 
-/// The low and the high half of a word.
+/// Low and high half of a word.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "the halves are what is asked for"

@@ -1,6 +1,6 @@
-//! Hashes of sixteen cells at once, in SIMD lanes: the bits of [`CellHash`], lane by lane.
+//! Hashes of sixteen cells at once in SIMD lanes, with the same bits as [`CellHash`] in every lane.
 //!
-//! The arithmetic is that of [`mix`](crate::mix), written once more for registers; a test compares the two.
+//! The arithmetic of [`mix`](crate::mix) is repeated here for SIMD registers; a test compares both.
 
 use crate::CellHash;
 use crate::mix::{M0, M1, M2, M3, N0, N1};
@@ -14,7 +14,7 @@ pub struct CellHashes<S: Simd> {
 }
 
 impl<S: Simd> CellHashes<S> {
-    /// One hash in all lanes, for the beginning of a row of cells.
+    /// One hash in all lanes, such as the state at the start of a row of cells.
     #[inline(always)]
     pub fn splat(simd: S, hash: CellHash) -> Self {
         let [a, b] = hash.state;
@@ -23,29 +23,31 @@ impl<S: Simd> CellHashes<S> {
         }
     }
 
-    /// The hashes whose states are given: see [`CellHash::of_words`].
+    /// Hashes with these states: see [`CellHash::of_words`].
     #[inline(always)]
     #[must_use]
     pub const fn of_words(words: [u32x16<S>; 2]) -> Self {
         Self { state: words }
     }
 
-    /// Absorbs the coordinate of one more axis, a faster one than those before: its low and its high 32 bits.
+    /// Absorbs the coordinate of one more axis, which is faster than the axes absorbed before: its low and its high 32
+    /// bits.
     #[inline(always)]
     pub fn axis(self, low: u32x16<S>, high: u32x16<S>) -> Self {
         let [hashes] = Self::axis_each([self], [[low, high]]);
         hashes
     }
 
-    /// The 64 random bits of counter `index`, which may differ from lane to lane: the high 32 bits, then the low.
+    /// Returns the 64 random bits of counter `index`, which may differ between lanes: the high 32 bits, then the low
+    /// 32 bits.
     #[inline(always)]
     pub fn at(self, index: u32x16<S>) -> [u32x16<S>; 2] {
         let [bits] = Self::at_each([self], [index]);
         bits
     }
 
-    /// [`axis`](Self::axis) for several registers in step. This is faster than one after the other, because a hash is
-    /// one long chain of dependent operations.
+    /// [`axis`](Self::axis) for several registers, interleaved. This is faster than sequential calls, because a hash
+    /// is one long chain of dependent operations.
     #[inline(always)]
     pub fn axis_each<const C: usize>(hashes: [Self; C], words: [[u32x16<S>; 2]; C]) -> [Self; C] {
         let [low, high] = in_step(words);
@@ -57,7 +59,7 @@ impl<S: Simd> CellHashes<S> {
         hashes
     }
 
-    /// [`at`](Self::at) for several registers in step, which is faster than one after the other.
+    /// [`at`](Self::at) for several registers, interleaved, which is faster than sequential calls.
     #[inline(always)]
     pub fn at_each<const C: usize>(
         hashes: [Self; C],
@@ -67,8 +69,8 @@ impl<S: Simd> CellHashes<S> {
     }
 }
 
-/// [`LatticeHash::part`](crate::LatticeHash::part) in every lane of several registers in step, for coordinates from -2³¹
-/// up to 2³¹ and the key of their axis.
+/// [`LatticeHash::part`](crate::LatticeHash::part) in every lane of several interleaved registers, for coordinates
+/// from -2³¹ to 2³¹ - 1 and the key of their axis.
 #[inline(always)]
 #[must_use]
 pub fn lattice_parts<S: Simd, const C: usize>(
@@ -79,8 +81,8 @@ pub fn lattice_parts<S: Simd, const C: usize>(
     mix(InStep(coordinates) ^ InStep([u32x16::splat(simd, key); C])).0
 }
 
-/// [`LatticeHash::part`](crate::LatticeHash::part) in every lane of several registers in step, for two hashes with the
-/// keys of one axis. Coordinates are given by their low and their high 32 bits.
+/// [`LatticeHash::part`](crate::LatticeHash::part) in every lane of several interleaved registers, for two hashes with
+/// the keys of one axis. Coordinates are given as their low and their high 32 bits.
 #[inline(always)]
 #[must_use]
 pub fn lattice_part_pairs<S: Simd, const C: usize>(
@@ -95,6 +97,7 @@ pub fn lattice_part_pairs<S: Simd, const C: usize>(
         words[i] = [low ^ keys[0], low ^ keys[1]];
         far |= high + (low >> 31);
     }
+    // Hash the upper halves only if a coordinate is outside of 32 bits.
     if !far.simd_eq(0).all_true() {
         for i in 0..C {
             let [low, high] = coordinates[i];
@@ -109,7 +112,7 @@ pub fn lattice_part_pairs<S: Simd, const C: usize>(
     mix32_pairs(words)
 }
 
-/// [`LatticeHash::bits`](crate::LatticeHash::bits) in every lane of several registers in step.
+/// [`LatticeHash::bits`](crate::LatticeHash::bits) in every lane of several interleaved registers.
 #[inline(always)]
 #[must_use]
 pub fn lattice_bits<S: Simd, const C: usize>(parts: [u32x16<S>; C]) -> [u32x16<S>; C] {
@@ -117,7 +120,7 @@ pub fn lattice_bits<S: Simd, const C: usize>(parts: [u32x16<S>; C]) -> [u32x16<S
     ((bits ^ (bits >> 15)) * M1).0
 }
 
-/// [`mix32`](crate::mix32) in every lane of several pairs of registers in step.
+/// [`mix32`](crate::mix32) in every lane of several interleaved pairs of registers.
 #[inline(always)]
 #[must_use]
 pub fn mix32_pairs<S: Simd, const C: usize>(pairs: [[u32x16<S>; 2]; C]) -> [[u32x16<S>; 2]; C] {
@@ -156,7 +159,7 @@ fn finish<S: Simd, const C: usize>([mut a, mut b]: [InStep<S, C>; 2]) -> [InStep
     [a ^ (b << 7 | b >> 25), b]
 }
 
-/// Several registers on which each operation is done before the next one begins.
+/// Several registers; each operation is applied to all of them before the next operation starts.
 #[derive(Clone, Copy)]
 struct InStep<S: Simd, const C: usize>([u32x16<S>; C]);
 
@@ -187,7 +190,7 @@ fn out_of_step<S: Simd, const C: usize>([a, b]: [InStep<S, C>; 2]) -> [[u32x16<S
     pairs
 }
 
-/// Implements binary operators, with registers or a number, by the assigning operators.
+/// Implements binary operators, with registers or a number, in terms of the assigning operators.
 macro_rules! operators {
     ($($operator:ident $function:ident $assign:tt $other:ty $(, $register:tt)?;)*) => {$(
         impl<S: Simd, const C: usize> $operator<$other> for InStep<S, C> {
@@ -279,7 +282,7 @@ mod tests {
     #[test]
     fn pairs_of_parts_are_those_of_single_coordinates() {
         let hashes = [1, 2].map(|seed| LatticeHash::<2>::new(Seed(seed)));
-        // Both sides of the bounds of 32 bits, and far beyond.
+        // Coordinates on both sides of the 32-bit limits, and far outside
         let near: [i64; 16] = core::array::from_fn(|lane| lane as i64 - 8);
         let edges = near.map(|x| {
             if x % 2 == 0 {

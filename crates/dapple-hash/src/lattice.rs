@@ -1,14 +1,14 @@
-//! A cheap hash of the corners of a lattice, for noise that is asked for at one position at a time.
+//! A fast hash of lattice corners, for noise that is sampled at single positions.
 
 use crate::Seed;
 use crate::mix::{M1, M2, mix32};
 
-/// The hash of the corners of a lattice of `N` axes: 32 random bits for a seed and the coordinates of a corner.
+/// Hash of the corners of an `N`-dimensional lattice: 32 random bits for a seed and the coordinates of a corner.
 ///
-/// Each coordinate is hashed alone, by [`part`](Self::part), with a key of its axis; the exclusive or of the parts of
-/// all axes is hashed once more, by [`bits`](Self::bits). The corners around a position have two coordinates along each
-/// axis, so that most of the work is done once for several corners. A [`CellHash`](crate::CellHash) has 64 bits and
-/// a counter, and costs more.
+/// Each coordinate is hashed separately, by [`part`](Self::part), with a key of its axis. The exclusive or of the
+/// parts of all axes is hashed once more, by [`bits`](Self::bits). The corners around a position have only two
+/// coordinates along each axis, so most of the work is shared between them. A [`CellHash`](crate::CellHash) has 64
+/// bits and a counter, and is more expensive.
 ///
 /// # Examples
 ///
@@ -25,7 +25,7 @@ pub struct LatticeHash<const N: usize> {
 }
 
 impl<const N: usize> LatticeHash<N> {
-    /// The hash of a seed.
+    /// Creates the hash of a seed.
     #[must_use]
     pub const fn new(seed: Seed) -> Self {
         let mut keys = [0; N];
@@ -37,17 +37,16 @@ impl<const N: usize> LatticeHash<N> {
         Self { keys }
     }
 
-    /// The key of an axis.
+    /// Key of an axis.
     #[must_use]
     #[inline(always)]
     pub const fn key(&self, axis: usize) -> u32 {
         self.keys[axis]
     }
 
-    /// The part of a coordinate along an axis: a bijection of the coordinates from -2³¹ up to 2³¹.
+    /// Part of a coordinate along an axis: a bijection of the coordinates from -2³¹ to 2³¹ - 1.
     ///
-    /// Other coordinates are exchanged among themselves by their upper halves, so that the lattice does not repeat after
-    /// 2³² corners.
+    /// The upper halves of other coordinates permute the parts, so that the lattice does not repeat after 2³² corners.
     #[must_use]
     #[inline(always)]
     pub const fn part(&self, axis: usize, coordinate: i64) -> u32 {
@@ -60,7 +59,8 @@ impl<const N: usize> LatticeHash<N> {
         })
     }
 
-    /// The random bits of a corner, from the exclusive or of the parts of its coordinates. The upper 24 are good ones.
+    /// Random bits of a corner, from the exclusive or of the parts of its coordinates. Use the upper 24 bits, which
+    /// have the best quality.
     #[must_use]
     #[inline(always)]
     pub const fn bits(parts: u32) -> u32 {
@@ -74,7 +74,7 @@ mod tests {
     use super::LatticeHash;
     use crate::Seed;
 
-    /// The hash of a corner of the lattice of three dimensions.
+    /// Hash of a corner of the three-dimensional lattice.
     fn hash(seed: u64, [x, y, z]: [i64; 3]) -> u32 {
         let hash = LatticeHash::<3>::new(Seed(seed));
         LatticeHash::<3>::bits(hash.part(0, x) ^ hash.part(1, y) ^ hash.part(2, z))
@@ -82,7 +82,7 @@ mod tests {
 
     #[test]
     fn every_bit_of_a_corner_flips_half_of_the_upper_bits() {
-        // 2^14 tries have a standard deviation of 0.004.
+        // The standard deviation over 2^14 trials is 0.004.
         let n = 1 << 14;
         let mut worst = (0.0_f64, 0, 0);
         for bit in 0..4 * 64 {
@@ -104,7 +104,7 @@ mod tests {
                     *flips += changed >> output & 1;
                 }
             }
-            // The upper 24 bits choose a gradient, and the first five of them decide nearly always.
+            // The upper 24 bits choose a gradient, and nearly always the first five of them decide.
             for (output, &flips) in flips.iter().enumerate().skip(24) {
                 let rate = (f64::from(flips) / n as f64 - 0.5).abs();
                 if rate > worst.0 {
@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn corners_of_rectangles_are_not_correlated() {
-        // The parts of such corners cancel each other, so that the last step alone keeps their bits apart.
+        // The parts of these corners cancel, so only the final mixing separates their bits.
         let side = 512;
         for [dx, dy] in [[1, 1], [1, 2], [3, 1], [16, 16], [256, 256]] {
             let mut odd = [0_u32; 32];
@@ -169,7 +169,8 @@ mod tests {
 
     #[test]
     fn rows_of_corners_share_no_run() {
-        // Eight numbers in a row that came twice among 2^20 would be a repetition: by chance once in 2^216 tries.
+        // A run of eight numbers that occurs twice among 2^20 would be a repetition: the probability by chance is
+        // 2^-216.
         let mut seen = std::collections::BTreeSet::new();
         for y in -512..512 {
             for x in (-512..512).step_by(8) {

@@ -1,33 +1,34 @@
-//! The two mixing functions of all hashes of this crate.
+//! Mixing functions that all hashes of this crate use.
 //!
-//! [`mix64`] is David Stafford's thirteenth variant of the MurmurHash3 finalizer ("Better Bit Mixing", 2011), as used
-//! by SplitMix64. [`absorb`] and [`finish`] work on two 32-bit lanes, with multiplications that keep the low half
-//! only: eight of them run side by side in an AVX2 register, and a shading language has them too.
+//! [`mix64`] is David Stafford's variant 13 of the MurmurHash3 finalizer ("Better Bit Mixing", 2011), as used by
+//! SplitMix64. [`absorb`] and [`finish`] work on two 32-bit words, with multiplications that keep only the low half:
+//! eight of them run in parallel in an AVX2 register, and shading languages support them too.
 
 /// The increment of SplitMix64: the golden ratio as a 64-bit fraction, made odd.
 pub(crate) const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 
-// Odd multipliers with about half of their bits set; the avalanche test decides whether they are good enough.
+// Odd multipliers with about half of their bits set; the avalanche test verifies their quality.
 pub(crate) const M0: u32 = 0x9E37_79B1;
 pub(crate) const M1: u32 = 0x85EB_CA6B;
 pub(crate) const M2: u32 = 0xC2B2_AE35;
 pub(crate) const M3: u32 = 0x27D4_EB2F;
 
-// The multipliers of `mix32`.
+// Multipliers of `mix32`
 pub(crate) const N0: u32 = 0x7FEB_352D;
 pub(crate) const N1: u32 = 0x846C_A68B;
 
-/// A bijection of 64 bits in which every input bit flips every output bit about half of the time.
+/// Bijection of 64 bits in which every input bit flips every output bit about half of the time.
 pub(crate) const fn mix64(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     z ^ (z >> 31)
 }
 
-/// A bijection of 32 bits in which every input bit flips every output bit about half of the time: two multiplications,
-/// for numbers that are drawn from bits that are random already, such as those of a [`CellHash`](crate::CellHash).
+/// Bijection of 32 bits in which every input bit flips every output bit about half of the time. With only two
+/// multiplications, it is meant for numbers derived from bits that are already random, such as the bits of a
+/// [`CellHash`](crate::CellHash).
 ///
-/// The constants are those that Chris Wellons found by search ("Prospecting for Hash Functions", 2018).
+/// The constants were found by Chris Wellons by search ("Prospecting for Hash Functions", 2018).
 #[must_use]
 #[inline]
 pub const fn mix32(mut bits: u32) -> u32 {
@@ -36,7 +37,7 @@ pub const fn mix32(mut bits: u32) -> u32 {
     bits ^ (bits >> 16)
 }
 
-/// Absorbs one word into the state. For a fixed word it is a bijection of the state, so no state is ever lost.
+/// Absorbs one word into the state. For a fixed word this is a bijection of the state, so no state is lost.
 #[inline(always)]
 pub(crate) const fn absorb([mut a, mut b]: [u32; 2], word: u32) -> [u32; 2] {
     a = (a ^ word).wrapping_mul(M0);
@@ -46,7 +47,7 @@ pub(crate) const fn absorb([mut a, mut b]: [u32; 2], word: u32) -> [u32; 2] {
     [a.wrapping_add(b.rotate_left(11)), b]
 }
 
-/// Spreads the last absorbed words over all 64 bits.
+/// Diffuses the last absorbed words over all 64 bits.
 #[inline(always)]
 pub(crate) const fn finish([mut a, mut b]: [u32; 2]) -> [u32; 2] {
     a = (a ^ (a >> 16)).wrapping_mul(M2);
@@ -75,7 +76,7 @@ mod tests {
                     *flips += change >> output & 1;
                 }
             }
-            // 4096 tries have a standard deviation of 32; the constants' known bias is below one in 500.
+            // The standard deviation over 4096 trials is 32; the known bias of the constants is below one in 500.
             for (output, flips) in flips.into_iter().enumerate() {
                 assert!(
                     flips.abs_diff(n / 2) < 200,

@@ -1,17 +1,17 @@
-//! Poisson-distributed counts by table.
+//! Poisson-distributed counts from a table.
 //!
-//! Steven Worley draws the number of feature points of a cell from a Poisson distribution with a precomputed table
-//! ("A Cellular Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>), and clamps it. Here
-//! the table holds the cumulative probabilities as 32-bit integers, so that drawing compares integers and rounds
-//! nothing.
+//! Steven Worley draws the number of feature points of a cell from a Poisson distribution with a precomputed table ("A
+//! Cellular Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>), and clamps it. Here the
+//! table contains the cumulative probabilities as 32-bit integers, so that drawing compares integers and involves no
+//! rounding.
 
 use alloc::vec::Vec;
 use core::fmt;
 
-/// The largest mean that the table accepts.
+/// Maximum mean that the table accepts.
 const MEAN_LIMIT: f64 = 64.0;
 
-/// A table that turns 32 random bits into a count with a Poisson distribution of a given mean, clamped to a range.
+/// Table that maps 32 random bits to a Poisson-distributed count with a given mean, clamped to a range.
 ///
 /// # Examples
 ///
@@ -31,15 +31,15 @@ pub struct PoissonCounts {
 }
 
 impl PoissonCounts {
-    /// The table for `mean` (above 0, at most 64) with the counts clamped to `range`.
+    /// Creates the table for `mean` (above 0, at most 64) with counts clamped to `range`.
     ///
-    /// The probability of the counts below the range goes to its start, that of the counts above to its end. A range up
-    /// to `u32::MAX` leaves the counts unclamped, except for those with a total probability below 2^-32.
+    /// The probability of counts below the range is added to its start, and the probability of counts above it to its
+    /// end. A range up to `u32::MAX` leaves the counts unclamped, except for counts with a total probability below
+    /// 2^-32.
     ///
     /// # Errors
     ///
-    /// [`PoissonErrorKind::Mean`] if `mean` is not a number in `(0, 64]`, [`PoissonErrorKind::EmptyRange`] if `range`
-    /// holds no number.
+    /// [`PoissonErrorKind::Mean`] if `mean` is not in `(0, 64]`, [`PoissonErrorKind::EmptyRange`] if `range` is empty.
     pub fn new(mean: f64, range: core::ops::RangeInclusive<u32>) -> Result<Self, PoissonError> {
         if !(mean > 0.0 && mean <= MEAN_LIMIT) {
             return Err(PoissonError {
@@ -62,7 +62,8 @@ impl PoissonCounts {
                 continue;
             }
             let threshold = (cumulative * (1_u64 << 32) as f64) as u64;
-            // Past the mean, and with nothing left that 32 bits could tell: the end of an unclamped table.
+            // End of an unclamped table: the count is past the mean, and the remaining probability is below the
+            // resolution of 32 bits.
             let Ok(threshold) = u32::try_from(threshold) else {
                 break;
             };
@@ -74,7 +75,7 @@ impl PoissonCounts {
         Ok(Self { least, thresholds })
     }
 
-    /// The count for 32 random bits; it never falls as the bits grow.
+    /// Returns the count for 32 random bits. It increases monotonically with the bits.
     #[must_use]
     #[inline]
     pub fn count(&self, bits: u32) -> u32 {
@@ -85,29 +86,29 @@ impl PoissonCounts {
             })
     }
 
-    /// The smallest count, which belongs to the smallest bits.
+    /// Minimum count, for the lowest bits.
     #[must_use]
     #[inline]
     pub fn least(&self) -> u32 {
         self.least
     }
 
-    /// The thresholds of the bits, ascending: the count is the smallest one plus the number of thresholds at or below
-    /// the bits.
+    /// Thresholds of the bits, ascending. The count is the minimum count plus the number of thresholds at or below the
+    /// bits.
     #[must_use]
     #[inline]
     pub fn thresholds(&self) -> &[u32] {
         &self.thresholds
     }
 
-    /// The smallest and the largest count that [`count`](Self::count) returns.
+    /// Range of the counts that [`count`](Self::count) returns.
     #[must_use]
     #[inline]
     pub fn range(&self) -> core::ops::RangeInclusive<u32> {
         self.count(0)..=self.count(u32::MAX)
     }
 
-    /// The mean of the counts, which clamping moves away from the mean of the distribution.
+    /// Mean of the counts. Clamping moves it away from the mean of the distribution.
     #[must_use]
     pub fn mean(&self) -> f64 {
         let above = self
@@ -118,9 +119,9 @@ impl PoissonCounts {
     }
 }
 
-/// The count of an unclamped table with this mean, without a table: for means that are used once.
+/// Count of an unclamped table with this mean, computed without a table: for means that are used only once.
 ///
-/// The mean is clamped to the range that a table accepts; NaN counts as its lower end.
+/// The mean is clamped to the range that a table accepts; NaN becomes the lower end.
 ///
 /// # Examples
 ///
@@ -143,7 +144,7 @@ pub fn poisson_count(mean: f64, bits: u32) -> u32 {
     let mut count = 0;
     loop {
         cumulative += probability;
-        // The same rounding, and the same ends, as in the table.
+        // Use the rounding and the end conditions of the table.
         let threshold = (cumulative * (1_u64 << 32) as f64) as u64;
         if u64::from(bits) < threshold || threshold > u64::from(u32::MAX) {
             return count;
@@ -156,32 +157,32 @@ pub fn poisson_count(mean: f64, bits: u32) -> u32 {
     }
 }
 
-/// The error of a table of Poisson counts with parameters out of range.
+/// Error of a table of Poisson counts with parameters out of range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoissonError {
     kind: PoissonErrorKind,
 }
 
-/// The cause of a [`PoissonError`], with the value.
+/// Cause of a [`PoissonError`], with the value.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum PoissonErrorKind {
     /// The mean is not a number in `(0, 64]`.
     Mean {
-        /// The mean that was asked for.
+        /// The requested mean.
         mean: f64,
     },
-    /// The range holds no number.
+    /// The range is empty.
     EmptyRange {
-        /// The start of the range.
+        /// Start of the range.
         least: u32,
-        /// The end of the range.
+        /// End of the range.
         most: u32,
     },
 }
 
 impl PoissonError {
-    /// The cause of the error, with the value.
+    /// Cause of the error, with the value.
     #[must_use]
     pub fn kind(&self) -> &PoissonErrorKind {
         &self.kind
@@ -214,7 +215,7 @@ mod tests {
     use super::{PoissonCounts, PoissonErrorKind, poisson_count};
     use crate::{Seed, hash2};
 
-    /// The exact probabilities of the counts 0.. with the tails moved to the ends of the range.
+    /// Exact probabilities of the counts 0.. with the tails added to the ends of the range.
     fn clamped_probabilities(mean: f64, least: usize, most: usize) -> Vec<f64> {
         let mut probabilities = vec![0.0; most + 1];
         let mut probability = libm::exp(-mean);
@@ -240,7 +241,7 @@ mod tests {
                 .map(|count| (histogram[count], expected[count] * cells as f64))
                 .map(|(seen, expected)| (seen - expected) * (seen - expected) / expected)
                 .sum();
-            // The 99.9 % point of chi-square with 8 degrees of freedom; the other cases have as many or fewer.
+            // The 99.9 % quantile of chi-square with 8 degrees of freedom; the other cases have at most as many.
             assert!(
                 chi_square < 26.2,
                 "mean {mean} in {least}..={most}: chi-square is {chi_square}"
@@ -262,7 +263,7 @@ mod tests {
     fn unclamped_counts_keep_their_mean() {
         for mean in [0.01, 0.5, 3.0, 20.0, 64.0] {
             let counts = PoissonCounts::new(mean, 0..=u32::MAX).unwrap();
-            // What is less likely than 2^-32 is missing: a few counts of the size of the mean, times 2^-32.
+            // Counts with a probability below 2^-32 are missing: a few counts near the mean, times 2^-32.
             assert!(
                 (counts.mean() - mean).abs() < 1e-6,
                 "mean {mean} became {}",

@@ -1,10 +1,10 @@
-//! The seed that a caller passes, and its named children.
+//! Seeds, and child seeds derived by name.
 
 use crate::mix::{GOLDEN, mix64};
 
-/// The source of all randomness: 64 bits that the caller chose.
+/// Source of all randomness: 64 bits that the caller chooses.
 ///
-/// Any value is as good as any other; `Seed(0)` and `Seed(1)` have nothing in common.
+/// All values are equally good; `Seed(0)` and `Seed(1)` give uncorrelated results.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -20,10 +20,10 @@ impl From<u64> for Seed {
 }
 
 impl Seed {
-    /// The seed of a part: its bits depend on this seed, on `name` and on `index`.
+    /// Derives the seed of a part. Its bits depend on this seed, on `name` and on `index`.
     ///
-    /// Give every random choice a child of its own, so that no two of them share their bits. The name says what is
-    /// chosen; the index distinguishes the members of a series.
+    /// Use a separate child for every random choice, so that no two choices share bits. The name identifies the
+    /// choice; the index distinguishes the members of a series.
     ///
     /// # Examples
     ///
@@ -43,7 +43,7 @@ impl Seed {
             state = mix64((state ^ bytes[at] as u64).wrapping_add(GOLDEN));
             at += 1;
         }
-        // The length keeps a name apart from a longer name that ends in zero bytes.
+        // Absorb the length, which distinguishes a name from a longer name that ends in zero bytes.
         state = mix64((state ^ bytes.len() as u64).wrapping_add(GOLDEN));
         Self(mix64((state ^ index).wrapping_add(GOLDEN)))
     }

@@ -1,9 +1,9 @@
-//! Sequential random streams, for the choices that are made one after another.
+//! Sequential random streams.
 
 use crate::{CellHash, Pcg32, Seed};
 
 impl Seed {
-    /// A random stream from this seed: `Pcg32`, Melissa O'Neill's XSH RR 64/32 generator, started by two hashes.
+    /// Creates a random stream: `Pcg32`, Melissa O'Neill's XSH RR 64/32 generator, seeded by two hashes.
     ///
     /// # Examples
     ///
@@ -20,9 +20,9 @@ impl Seed {
 }
 
 impl CellHash {
-    /// The random stream of this cell; it has nothing in common with the streams of other cells.
+    /// Creates the random stream of this cell, which is independent of the streams of other cells.
     ///
-    /// It uses the two highest counters, so that [`CellHash::at`] below them stays free for other numbers.
+    /// It uses the two highest counters; the counters of [`CellHash::at`] below them remain available.
     #[must_use]
     pub fn stream(self) -> Pcg32 {
         Pcg32::new(self.at(u32::MAX), self.at(u32::MAX - 1))

@@ -1,21 +1,21 @@
-//! Properties of the lattice hashes: half of the output bits flip for any input bit, the lattice leaves no trace, and
-//! the values never change.
+//! Properties of the lattice hashes: every input bit flips half of the output bits, neighboring cells are not
+//! correlated, and the values never change.
 
 use super::{hash1, hash2, hash3, hash4};
 use crate::{Seed, unit_f64};
 
-/// Samples for each input bit. The standard deviation of a flip rate is then 0.5 / sqrt(2^16) = 0.002, so that
-/// 0.01 is five of them: among 22 528 pairs of bits a good hash stays inside.
+/// Number of samples for each input bit. The standard deviation of a flip rate is 0.5 / sqrt(2^16) = 0.002, so that
+/// 0.01 is five standard deviations: a good hash stays below it among 22 528 pairs of bits.
 const SAMPLES: u32 = 1 << 16;
 
-/// The largest distance of a flip rate from 0.5, over all pairs of an input bit and an output bit.
+/// Largest difference of a flip rate from 0.5, over all pairs of an input bit and an output bit.
 fn worst_flip_rate<const N: usize>(hash: impl Fn(Seed, [i64; N], u32) -> u64) -> f64 {
     let input_bits = 64 * (N + 1) + 32;
     let mut flips = vec![[0_u32; 64]; input_bits];
-    // Eight counters of 8 bits in each number, for the output bits `k`, `k + 8` to `k + 56`.
+    // Each number packs eight 8-bit counters, for the output bits `k`, `k + 8` to `k + 56`.
     let mut counters = vec![[0_u64; 8]; input_bits];
     for sample in 0..SAMPLES {
-        // Half of the samples lie near the origin, where textures are drawn; half anywhere.
+        // Half of the samples are near the origin, where textures are drawn; the others are anywhere.
         let draw = |lane: u64| {
             let bits = Seed(lane).child("avalanche", u64::from(sample)).0;
             if sample % 2 == 0 { bits % 64 } else { bits }
@@ -38,7 +38,7 @@ fn worst_flip_rate<const N: usize>(hash: impl Fn(Seed, [i64; N], u32) -> u64) ->
                 *counter += changed >> k & 0x0101_0101_0101_0101;
             }
         }
-        // Before a counter is full.
+        // Flush the counters before they overflow.
         if sample % 128 == 127 {
             for (flips, counters) in flips.iter_mut().zip(&mut counters) {
                 for (output, flips) in flips.iter_mut().enumerate() {
@@ -71,7 +71,7 @@ fn every_input_bit_flips_every_output_bit_half_of_the_time() {
 
 #[test]
 fn neighboring_cells_are_not_correlated() {
-    // Over n pairs the correlation of independent numbers has a standard deviation of 1 / sqrt(n) = 0.002.
+    // The correlation of n pairs of independent numbers has a standard deviation of 1 / sqrt(n) = 0.002.
     let side = 512_i64;
     let seed = Seed(1).child("correlation", 0);
     let value = |x: i64, y: i64, index: u32| unit_f64(hash2(seed, [x, y], index)) - 0.5;
