@@ -3,11 +3,11 @@
 //! Ken Perlin, "An Image Synthesizer", SIGGRAPH 1985, <https://doi.org/10.1145/325334.325247>, with the quintic blend and
 //! the gradients of "Improving Noise", SIGGRAPH 2002, <https://doi.org/10.1145/566570.566636>.
 //!
-//! This departs from the latter in three points. Corners of cells are hashed with a seed, not looked up in a table of
-//! 256 numbers, so that the noise repeats only if it has a period. All gradients are equally likely. Axes are blended
-//! from the last to the first, so that a row of pixels needs two numbers for each column of corners.
+//! There are three differences from the 2002 paper. Corners of cells are hashed with a seed instead of being looked up
+//! in a table of 256 numbers, so the noise repeats only if it has a period. All gradients are equally likely. Axes are
+//! blended from the last to the first, so that a row of pixels needs only two numbers per column of corners.
 //!
-//! Positions are in cells; a cell is the distance of two corners.
+//! Positions are in units of cells; the side of a cell is the distance between adjacent corners.
 
 use crate::gradients::gradient;
 use crate::lines::Lines;
@@ -19,22 +19,22 @@ use dapple_raster::simd;
 use dapple_raster::simd::{Level, dispatch};
 use dapple_raster::{Field, Fractal, FractalShape, Gradient, RasterError, RasterViewMut, Window};
 
-/// How many corners are hashed at once.
+/// Number of corners that are hashed at once.
 const LANES: usize = 32;
 
-/// The largest number of corners of a cell that share their first coordinate.
+/// Maximum number of corners of a cell that share their first coordinate.
 pub(crate) const MOST_CORNERS: usize = 8;
 
-/// Perlin's improved noise: every corner of a lattice of unit cells has a random gradient, and the noise is 0 there
-/// with that slope, and smooth in between.
+/// Perlin's improved noise. Every corner of a lattice of unit cells has a random gradient. At a corner, the noise is 0
+/// with that gradient as its slope; in between it is smooth.
 ///
-/// So the value at a whole position is 0, for every seed. A grid of blocks or tiles needs positions between the corners,
-/// such as the block's number times 0.1, or [`fractal`](Self::fractal), whose octaves have offsets of their own.
+/// The value at integer positions is therefore 0, for every seed. For a grid of blocks or tiles, sample between the
+/// corners, for example at the block number times 0.1, or use [`fractal`](Self::fractal), whose octaves are offset.
 ///
-/// Most of the power lies between ½ and 1½ cycles per cell. The value and its first and second derivatives are
-/// continuous. Over all positions and seeds the mean is 0 and the variance `VARIANCE` (0.0931 in the plane, 0.0729 in space
-/// and 0.0857 in four dimensions). No value is further from zero than `BOUND` (1, 1.0364 and 1.5366). There is no
-/// normalization. At a position that is not finite it is NaN.
+/// Most of the power is between ½ and 1½ cycles per cell. The value and its first and second derivatives are
+/// continuous. Over all positions and seeds, the mean is 0 and the variance is `VARIANCE` (0.0931 in 2-D, 0.0729 in
+/// 3-D, 0.0857 in 4-D). The absolute value is at most `BOUND` (1, 1.0364 and 1.5366). Values are not normalized. At a
+/// position that is not finite, the value is NaN.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/gradient-noise.md"))]
 ///
@@ -69,9 +69,10 @@ pub(crate) const MOST_CORNERS: usize = 8;
 pub struct GradientNoise<const N: usize> {
     seed: Seed,
     pub(crate) hash: LatticeHash<N>,
-    /// The number of cells after which the noise repeats along each axis; 0 along an axis where it does not.
+    /// Period along each axis, in cells; 0 for no period.
     pub(crate) period: [u32; N],
-    /// The bits of the numbers of cells that are added to positions along each axis; 0, except in octaves of a sum.
+    /// Offset added to positions along each axis, in cells, stored as the bits of an `f64`; 0 except in the octaves of
+    /// a sum.
     offset: [u64; N],
 }
 
@@ -85,56 +86,56 @@ pub type GradientNoise3 = GradientNoise<3>;
 pub type GradientNoise4 = GradientNoise<4>;
 
 impl GradientNoise<2> {
-    /// The noise of a seed.
+    /// Creates the noise of a seed.
     #[must_use]
     pub const fn new(seed: Seed) -> Self {
         Self::of(seed)
     }
 
-    /// The largest absolute value, which some noises attain in the middle of cells.
+    /// Maximum absolute value, which some noises attain in the middle of cells.
     pub const BOUND: f32 = 1.0;
 
-    /// The variance over all positions and seeds.
+    /// Variance over all positions and seeds.
     pub const VARIANCE: f32 = 0.093_062;
 }
 
 impl GradientNoise<3> {
-    /// The noise of a seed.
+    /// Creates the noise of a seed.
     #[must_use]
     pub const fn new(seed: Seed) -> Self {
         Self::of(seed)
     }
 
-    /// The bound of the absolute value.
+    /// Upper bound of the absolute value.
     pub const BOUND: f32 = 1.0364;
 
-    /// The variance over all positions and seeds.
+    /// Variance over all positions and seeds.
     pub const VARIANCE: f32 = 0.072_919;
 }
 
 impl GradientNoise<4> {
-    /// The noise of a seed.
+    /// Creates the noise of a seed.
     #[must_use]
     pub const fn new(seed: Seed) -> Self {
         Self::of(seed)
     }
 
-    /// The bound of the absolute value.
+    /// Upper bound of the absolute value.
     pub const BOUND: f32 = 1.5366;
 
-    /// The variance over all positions and seeds.
+    /// Variance over all positions and seeds.
     pub const VARIANCE: f32 = 0.085_703;
 }
 
-/// The data from which noise is made.
+/// Serialized form of a noise.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Description {
     seed: Seed,
-    /// The number of cells of the period along each axis.
+    /// Period along each axis, in cells.
     period: Vec<Option<u32>>,
-    /// The offsets of an octave along each axis, in cells.
+    /// Offset of an octave along each axis, in cells.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     offset: Vec<f64>,
 }
@@ -190,8 +191,7 @@ impl<const N: usize> GradientNoise<N> {
         }
     }
 
-    /// Makes the noise repeat exactly after a number of cells along each axis; `None` along an axis where it does not
-    /// repeat.
+    /// Makes the noise repeat exactly after a number of cells along each axis; `None` for an axis without a period.
     ///
     /// # Errors
     ///
@@ -203,13 +203,13 @@ impl<const N: usize> GradientNoise<N> {
         Ok(Self { period, ..self })
     }
 
-    /// The cells after which the noise repeats along each axis.
+    /// Period along each axis, in cells.
     #[must_use]
     pub fn periods(&self) -> [Option<u32>; N] {
         self.period.map(|cells| (cells > 0).then_some(cells))
     }
 
-    /// The value at a position in cells.
+    /// Returns the value at a position in cells.
     #[must_use]
     pub fn sample(&self, position: impl Into<[f64; N]>) -> f32 {
         match self.around(position.into()) {
@@ -218,11 +218,11 @@ impl<const N: usize> GradientNoise<N> {
         }
     }
 
-    /// The offset of a position in its cell along each axis, and the parts of the hashes of the corners on both sides;
-    /// `None` if a coordinate is not finite.
+    /// Offset of a position in its cell along each axis, and hash parts of the corners on both sides; `None` if a
+    /// coordinate is not finite.
     #[inline(always)]
     fn around(&self, position: [f64; N]) -> Option<([f32; N], [[u32; 2]; N])> {
-        // Loops: arrays that are mapped become calls from three axes on.
+        // Use loops: `array::map` is not inlined for three or more axes.
         let mut offsets = [0.0; N];
         let mut parts = [[0; 2]; N];
         for axis in 0..N {
@@ -237,7 +237,7 @@ impl<const N: usize> GradientNoise<N> {
         Some((offsets, parts))
     }
 
-    /// The value between the corners of a cell.
+    /// Interpolates between the corners of a cell.
     #[inline(always)]
     fn between_corners(offsets: &[f32; N], parts: &[[u32; 2]; N]) -> f32 {
         let mut columns = [[Column::default(); MOST_CORNERS]; 2];
@@ -256,8 +256,8 @@ impl<const N: usize> GradientNoise<N> {
         Column::between(sides, offsets[0], fade(offsets[0]))
     }
 
-    /// The values at many positions in cells, into memory of the same length: those of [`sample`](Self::sample), in about
-    /// a quarter of the time.
+    /// Computes the values at many positions in cells. They equal those of [`sample`](Self::sample) and take about a
+    /// quarter of the time. `values` must have the length of `positions`.
     ///
     /// # Errors
     ///
@@ -277,15 +277,15 @@ impl<const N: usize> GradientNoise<N> {
         Ok(())
     }
 
-    /// The value at a position in cells, equal to that of [`sample`](Self::sample), and its derivative along each axis,
-    /// per cell. They are NaN where a coordinate is not finite.
+    /// Returns the value at a position in cells, equal to [`sample`](Self::sample), and its derivative along each
+    /// axis, per cell. All are NaN if a coordinate is not finite.
     #[doc(alias("derivative", "analytic derivatives"))]
     #[must_use]
     pub fn sample_with_gradient(&self, position: impl Into<[f64; N]>) -> (f32, [f32; N]) {
         self.value_and_gradient(position.into())
     }
 
-    /// The gradients at corners that differ in the first coordinate alone. The first coordinate of `at` is ignored.
+    /// Gradients at corners that differ only in the first coordinate. The first coordinate of `at` is ignored.
     pub(crate) fn line(&self, level: Level, at: [i64; N], columns: &[i64]) -> Vec<[f32; N]> {
         let row = self.row(at);
         let mut gradients = Vec::with_capacity(columns.len());
@@ -300,12 +300,12 @@ impl<const N: usize> GradientNoise<N> {
         gradients
     }
 
-    /// The parts of all coordinates of a corner but the first, which is the fastest.
+    /// Combined hash part of all coordinates of a corner except the first, which varies fastest.
     pub(crate) fn row(&self, at: [i64; N]) -> u32 {
         (1..N).fold(0, |row, axis| row ^ self.part(axis, at[axis]))
     }
 
-    /// The part of a coordinate of a corner, brought into the period.
+    /// Hash part of a coordinate of a corner, reduced by the period.
     pub(crate) fn part(&self, axis: usize, coordinate: i64) -> u32 {
         let coordinate = match self.period[axis] {
             0 => coordinate,
@@ -314,13 +314,13 @@ impl<const N: usize> GradientNoise<N> {
         self.hash.part(axis, coordinate)
     }
 
-    /// A coordinate with the offset of this noise.
+    /// Coordinate plus the offset of this noise.
     #[inline(always)]
     pub(crate) const fn moved(&self, coordinate: f64, axis: usize) -> f64 {
         coordinate + f64::from_bits(self.offset[axis])
     }
 
-    /// The coordinates of the corners on both sides of a cell along an axis, brought into the period.
+    /// Coordinates of the corners on both sides of a cell along an axis, reduced by the period.
     #[inline(always)]
     pub(crate) fn pair(&self, cell: i64, axis: usize) -> [i64; 2] {
         match self.period[axis] {
@@ -339,11 +339,11 @@ impl<const N: usize> GradientNoise<N> {
         }
     }
 
-    /// The noises of the octaves of a fractal sum, coarsest first, each with a seed and an offset of its own and with the
-    /// period of the first in its own cells.
+    /// Noises of the octaves of a fractal sum, coarsest first. Each octave has a separate seed and offset, and the
+    /// common period in its own cells.
     ///
-    /// Without offsets all octaves of a whole lacunarity would be 0 at whole positions. The offsets are odd multiples of
-    /// 2^-9, so that positions on a coarser grid are moved exactly and a period stays one.
+    /// Without offsets, all octaves with an integer lacunarity would be 0 at integer positions. Offsets are odd
+    /// multiples of 2^-9, so that positions on a coarser grid are moved exactly and periods are preserved.
     pub(crate) fn octaves(&self, count: u32, lacunarity: f64) -> Result<Vec<Self>, RasterError> {
         RasterError::check_range(
             (1..=32).contains(&count),
@@ -381,12 +381,12 @@ impl<const N: usize> GradientNoise<N> {
         Ok(octaves)
     }
 
-    /// The sum of this noise at several scales, `Σ gain^i · shape(noise_i(lacunarity^i · position + offset_i))`, where each
-    /// octave has a seed and an offset of its own.
+    /// Fractal sum of several octaves, `Σ gain^i · shape(noise_i(lacunarity^i · position + offset_i))`, where each
+    /// octave has a separate seed and offset.
     ///
-    /// It is not divided by the sum of the weights, `w = Σ |gain|^i` ([`Fractal::weight`]). For gains from 0 to 1, values are
-    /// from `-w` to `w` for [`Sum`](FractalShape::Sum), and from 0 to `w` for [`Ridged`](FractalShape::Ridged) and
-    /// [`Billow`](FractalShape::Billow).
+    /// The sum is not divided by the sum of the weights, `w = Σ |gain|^i` ([`Fractal::weight`]). For gains from 0 to
+    /// 1, values are from `-w` to `w` for [`Sum`](FractalShape::Sum), and from 0 to `w` for
+    /// [`Ridged`](FractalShape::Ridged) and [`Billow`](FractalShape::Billow).
     ///
     /// # Errors
     ///
@@ -404,7 +404,7 @@ impl<const N: usize> GradientNoise<N> {
     }
 }
 
-/// Positions in cells; windows are filled on all cores where the feature `rayon` is on.
+/// Positions are in cells. Windows are rendered on all cores if the feature `rayon` is enabled.
 impl<const N: usize> Field<N> for GradientNoise<N> {
     fn value(&self, position: [f64; N]) -> f32 {
         self.sample(position)
@@ -429,7 +429,7 @@ impl<const N: usize> Gradient<N> for GradientNoise<N> {
             return (f32::NAN, [f32::NAN; N]);
         };
         let value = Self::between_corners(&offsets, &parts);
-        // The blend weights of both sides of the cell along each axis, and their derivatives
+        // Blend weights of both sides of the cell along each axis, and their derivatives
         let (mut weights, mut slopes) = ([[0.0; 2]; N], [0.0; N]);
         for axis in 0..N {
             let t = offsets[axis];
@@ -439,13 +439,13 @@ impl<const N: usize> Gradient<N> for GradientNoise<N> {
         let mut sum = [0.0; N];
         for corner in 0..1_usize << N {
             let side = |axis: usize| corner >> axis & 1;
-            // The linear function of the corner: its gradient and its value here
+            // Linear function of the corner: its gradient and its value here
             let bits = (0..N).fold(0, |bits, axis| bits ^ parts[axis][side(axis)]);
             let linear = gradient::<N>(LatticeHash::<N>::bits(bits));
             let height = |axis: usize| linear[axis] * (offsets[axis] - side(axis) as f32);
             let height = (0..N).map(height).sum::<f32>();
             for axis in 0..N {
-                // The product rule: the weight of the corner moves along the axis, and so does its function.
+                // Product rule: the blend weight changes along the axis, and so does the linear function.
                 let others = (0..N).filter(|&other| other != axis);
                 let others = others
                     .map(|other| weights[other][side(other)])
@@ -462,14 +462,14 @@ impl<const N: usize> Gradient<N> for GradientNoise<N> {
     }
 }
 
-/// A coordinate as a cell and the offset in it, from 0 to 1; the offset is NaN where the coordinate is not finite.
+/// A coordinate split into a cell and an offset from 0 to 1. The offset is NaN if the coordinate is not finite.
 #[derive(Clone, Copy)]
 pub(crate) struct Place {
     pub(crate) cell: i64,
     pub(crate) offset: f32,
 }
 
-/// 1.5 · 2^52: a sum of it and a number nearer to 0 than 2^51 holds the nearest whole number in its lower bits.
+/// 1.5 · 2^52. The lower bits of its sum with a number below 2^51 in absolute value contain the nearest integer.
 pub(crate) const SHIFT: f64 = 6_755_399_441_055_744.0;
 
 impl Place {
@@ -482,11 +482,12 @@ impl Place {
                 .wrapping_sub(SHIFT.to_bits())
                 .cast_signed();
             let cell = cell - i64::from(shifted - SHIFT > coordinate);
-            // From the cell: a choice by the comparison would be a branch that is wrong half of the time.
+            // Convert the cell back; a selection by the comparison would be a branch that is mispredicted half of the
+            // time.
             let floor = cell as f64;
             return Self {
                 cell,
-                // The negative zero less zero is a negative zero.
+                // Adding 0 turns a negative zero into zero.
                 offset: (coordinate - floor + 0.0) as f32,
             };
         }
@@ -498,7 +499,7 @@ impl Place {
     }
 }
 
-/// The contribution of a column of corners at an offset `t` from it along the first axis: `slope · t + value`.
+/// Contribution of a column of corners at an offset `t` along the first axis: `slope · t + value`.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Column {
     slope: f32,
@@ -506,7 +507,7 @@ pub(crate) struct Column {
 }
 
 impl Column {
-    /// The contribution of one corner of a column, of its gradient and its index in the order of [`corner`].
+    /// Contribution of one corner of a column, from its gradient and its index in the order of [`corner`].
     #[inline(always)]
     pub(crate) fn of<const N: usize>(gradient: [f32; N], index: usize, offsets: &[f32; N]) -> Self {
         let mut value = 0.0;
@@ -518,7 +519,7 @@ impl Column {
         Self { slope, value }
     }
 
-    /// Blends the corners of a column, in the order of [`corner`], along all axes but the first, the last axis last.
+    /// Blends the corners of a column, in the order of [`corner`], along all axes except the first, last axis last.
     #[inline(always)]
     pub(crate) fn blend<const N: usize>(
         mut columns: [Self; MOST_CORNERS],
@@ -537,7 +538,7 @@ impl Column {
         columns[0]
     }
 
-    /// The value between two columns, `t` from the left one; `by` is `fade(t)`.
+    /// Value between two columns, at the distance `t` from the left one; `by` is `fade(t)`.
     #[inline(always)]
     pub(crate) fn between([left, right]: [Self; 2], t: f32, by: f32) -> f32 {
         let near = left.slope * t + left.value;
@@ -546,7 +547,7 @@ impl Column {
     }
 }
 
-/// The random bits of corners, given by the parts of their coordinates. Compilers make vector instructions of the loop.
+/// Random bits of corners, from the hash parts of their coordinates. Compilers vectorize the loop.
 #[inline(always)]
 fn bits_of<const N: usize>(parts: &[u32; LANES]) -> [u32; LANES] {
     let mut all = [0; LANES];
@@ -556,8 +557,8 @@ fn bits_of<const N: usize>(parts: &[u32; LANES]) -> [u32; LANES] {
     all
 }
 
-/// One of the corners of a cell with its first coordinate: bit `k` of the index selects one of the two along axis `k +
-/// 1`.
+/// A corner of a cell with the same first coordinate. Bit `k` of the index selects one of the two coordinates along
+/// axis `k + 1`.
 pub(crate) fn corner<const N: usize>(mut cell: [i64; N], index: usize) -> [i64; N] {
     for (axis, coordinate) in cell.iter_mut().enumerate().skip(1) {
         *coordinate = coordinate.wrapping_add((index >> (axis - 1) & 1) as i64);
@@ -565,12 +566,12 @@ pub(crate) fn corner<const N: usize>(mut cell: [i64; N], index: usize) -> [i64; 
     cell
 }
 
-/// The number of corners of a cell with the same first coordinate.
+/// Number of corners of a cell with the same first coordinate.
 pub(crate) const fn corners(axes: usize) -> usize {
     1 << (axes - 1)
 }
 
-/// Perlin's quintic, `6 t⁵ - 15 t⁴ + 10 t³`, whose first and second derivatives are 0 at both ends.
+/// Perlin's quintic fade function, `6 t⁵ - 15 t⁴ + 10 t³`. Its first and second derivatives are 0 at both ends.
 #[inline(always)]
 pub(crate) fn fade(t: f32) -> f32 {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)

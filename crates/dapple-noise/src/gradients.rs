@@ -1,18 +1,18 @@
-//! The gradients at the corners of cells.
+//! Gradient vectors at the corners of cells.
 //!
-//! Perlin's improved noise takes the directions from the center of a cube to the middles of its edges, four of them twice
-//! to make sixteen. Here all of them are equally likely; in four dimensions they are the 32 of the hypercube, and in two
-//! the eight to corners and sides of a square, all of the same length.
+//! Perlin's improved noise uses the directions from the center of a cube to the midpoints of its edges, four of them
+//! twice to get sixteen. Here all directions are equally likely. In four dimensions there are 32, from the hypercube.
+//! In two dimensions there are eight, to the corners and sides of a square, all with the same length.
 
 use core::f32::consts::SQRT_2;
 #[cfg(feature = "simd")]
 use fearless_simd::{f32x16, prelude::*, u32x16};
 
-/// How many gradients there are in two dimensions.
+/// Number of gradients in two dimensions.
 const N_PLANE: u32 = 8;
-/// In three dimensions.
+/// Number of gradients in three dimensions.
 const N_SPACE: u32 = 12;
-/// In four dimensions.
+/// Number of gradients in four dimensions.
 const N_TIME: u32 = 32;
 
 static PLANE: [[f32; 2]; N_PLANE as usize] = [
@@ -30,12 +30,12 @@ static SPACE: [[f32; 3]; N_SPACE as usize] = edges();
 
 static TIME: [[f32; 4]; N_TIME as usize] = edges();
 
-/// The middles of the edges of a cube from -1 to 1, of which there are `COUNT`.
+/// Midpoints of the edges of a cube from -1 to 1; there are `COUNT`.
 const fn edges<const N: usize, const COUNT: usize>() -> [[f32; N]; COUNT] {
     let mut edges = [[0.0; N]; COUNT];
     let mut index = 0;
     while index < COUNT {
-        // An edge lies along one axis, and the signs of the others tell the parallel ones apart.
+        // An edge is parallel to one axis; the signs along the other axes distinguish parallel edges.
         let along = index >> (N - 1);
         let mut signs = index;
         let mut axis = 0;
@@ -51,13 +51,13 @@ const fn edges<const N: usize, const COUNT: usize>() -> [[f32; N]; COUNT] {
     edges
 }
 
-/// A number below `count`, which is at most 256, from the upper 24 of 32 random bits.
+/// Maps the upper 24 of 32 random bits to a number below `count`, which is at most 256.
 #[inline(always)]
 const fn picked(bits: u32, count: u32) -> u32 {
     ((bits >> 8) * count) >> 24
 }
 
-/// The gradients that random bits choose, a register for each part: those of [`gradient`].
+/// Gradients that random bits select, one register per component: the SIMD form of [`gradient`].
 #[cfg(feature = "simd")]
 #[inline(always)]
 pub(crate) fn gradient_lanes<S: Simd, const N: usize>(simd: S, bits: u32x16<S>) -> [f32x16<S>; N] {
@@ -69,7 +69,7 @@ pub(crate) fn gradient_lanes<S: Simd, const N: usize>(simd: S, bits: u32x16<S>) 
     for axis in 0..N {
         let this_axis = u32x16::splat(simd, axis as u32);
         let bits = if N == 2 {
-            // The first four have both parts; of the others, the first two lie along x.
+            // The first four gradients are diagonal. Of the other four, the first two are along x.
             let is_side = index.simd_ge(u32x16::splat(simd, 4));
             let along = (index >> 1) & u32x16::splat(simd, 1);
             let is_along = along.simd_eq(this_axis);
@@ -78,7 +78,7 @@ pub(crate) fn gradient_lanes<S: Simd, const N: usize>(simd: S, bits: u32x16<S>) 
             let sign = is_side.select(is_along.select(index, zero), index >> axis as u32);
             size | sign << 31
         } else {
-            // An edge lies along one axis; the signs of the others are the lower bits, in their order.
+            // The edge is parallel to one axis; the lower bits are the signs along the other axes, in order.
             let along = index >> (N as u32 - 1);
             let earlier = index >> axis as u32;
             let later = index >> (axis as u32).saturating_sub(1);
@@ -90,7 +90,7 @@ pub(crate) fn gradient_lanes<S: Simd, const N: usize>(simd: S, bits: u32x16<S>) 
     gradient
 }
 
-/// The gradient that 32 random bits choose.
+/// Gradient that 32 random bits select.
 #[inline(always)]
 pub(crate) fn gradient<const N: usize>(bits: u32) -> [f32; N] {
     let pick = |count: u32| picked(bits, count) as usize;
@@ -103,7 +103,7 @@ pub(crate) fn gradient<const N: usize>(bits: u32) -> [f32; N] {
     gradient
 }
 
-/// All gradients.
+/// All gradients of a dimension.
 #[cfg(test)]
 pub(crate) fn all<const N: usize>() -> Vec<[f32; N]> {
     let count = [0, 0, PLANE.len(), SPACE.len(), TIME.len()][N] as u64;

@@ -1,7 +1,8 @@
-//! Renders windows of noise, row by row.
+//! Row-by-row rendering of noise windows.
 //!
-//! The pixels of a row share all coordinates but the first, so that a column of corners is blended along the other axes
-//! once for the row; then each pixel lies between two columns. Every corner is hashed once for a band of rows.
+//! The pixels of a row share all coordinates except the first. A column of corners is therefore blended along the
+//! other axes once per row, and each pixel interpolates between two columns. Every corner is hashed once per band of
+//! rows.
 
 use crate::GradientNoise;
 use crate::gradient::{Column, MOST_CORNERS, Place, corner, corners, fade};
@@ -10,23 +11,23 @@ use dapple_raster::{RasterError, RasterViewMut, Window};
 use std::mem;
 use std::ops::Range;
 
-/// How many rows of pixels a thread takes at once.
+/// Number of pixel rows in a band, the unit of parallel work.
 const ROWS: u32 = 32;
 
-/// The mean length in pixels from which on runs are long enough for registers of more than four values.
+/// Mean run length, in pixels, at and above which runs are rendered with the widest registers.
 const LONG: usize = 24;
 
-/// The data that the rows of a window share.
+/// Data that all rows of a window share.
 pub(crate) struct Lines<'a, const N: usize> {
     noise: &'a GradientNoise<N>,
     window: &'a Window<N>,
-    /// The coordinates of all pixels along the axes past the second; the first two are unused.
+    /// Coordinates of all pixels along the axes after the second; the first two are unused.
     rest: [Place; N],
-    /// The first coordinates of the corners.
+    /// First coordinates of the corners.
     columns: Vec<i64>,
-    /// The runs of pixels in the same column of cells, from left to right.
+    /// Runs of pixels in the same column of cells, from left to right.
     runs: Vec<Run>,
-    /// The offset of each pixel in its cell, from 0 to 1.
+    /// Offset of each pixel in its cell, from 0 to 1.
     offsets: Vec<f32>,
     fades: Vec<f32>,
 }
@@ -35,24 +36,24 @@ struct Run {
     cell: i64,
     /// Whether the first coordinates of the pixels are finite.
     is_finite: bool,
-    /// The columns of corners on the left and on the right.
+    /// Columns of corners on the left and on the right.
     sides: [usize; 2],
     pixels: Range<usize>,
 }
 
-/// The corners around a row of cells, and memory for a row of pixels.
+/// Corners around a row of cells, and scratch memory for a row of pixels.
 struct Corners<const N: usize> {
-    /// The coordinates of the cells; the first is unused.
+    /// Coordinates of the cells; the first is unused.
     cell: [i64; N],
-    /// The lines of corners, in the order of [`corner`].
+    /// Lines of corners, in the order of [`corner`].
     lines: Vec<Line<N>>,
-    /// The columns blended for a row of pixels.
+    /// Columns blended for a row of pixels.
     columns: Vec<Column>,
 }
 
-/// The gradients along a line of the lattice.
+/// Gradients along a line of the lattice.
 struct Line<const N: usize> {
-    /// The coordinates of the corners; the first is unused.
+    /// Coordinates of the corners; the first is unused.
     at: [i64; N],
     gradients: Vec<[f32; N]>,
 }
@@ -84,7 +85,7 @@ impl<'a, const N: usize> Lines<'a, N> {
         }
     }
 
-    /// Fills memory of the window's size, on all cores where the feature `rayon` is on.
+    /// Renders the window into `out`, on all cores if the feature `rayon` is enabled.
     pub(crate) fn render(&self, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         self.window.check_size(out.size())?;
         out.for_each_band(ROWS, |first, mut band| {
@@ -116,7 +117,7 @@ impl<'a, const N: usize> Lines<'a, N> {
         }
     }
 
-    /// The values of a row of pixels, between the blended columns of corners.
+    /// Interpolates the values of a row of pixels between the blended columns of corners.
     #[inline(always)]
     fn fill_runs(&self, values: &mut [f32], columns: &[Column]) {
         for run in &self.runs {
@@ -136,8 +137,7 @@ impl<'a, const N: usize> Lines<'a, N> {
 }
 
 impl Run {
-    /// A run that begins at a pixel. Columns of corners that the run before it does not share are appended to
-    /// `columns`.
+    /// Starts a run at a pixel. Columns of corners that the previous run does not share are appended to `columns`.
     fn new(place: Place, before: Option<&Self>, columns: &mut Vec<i64>, pixel: usize) -> Self {
         let cell = place.cell;
         let mut add = |column| {
@@ -165,7 +165,7 @@ impl Run {
 }
 
 impl<const N: usize> Corners<N> {
-    /// Moves to the row of cells that holds `cell`; lines of corners that both rows share are reused.
+    /// Moves to the row of cells of `cell`, and reuses lines of corners that both rows share.
     fn move_to(&mut self, mut cell: [i64; N], columns: &[i64], noise: &GradientNoise<N>) {
         cell[0] = 0;
         if self.cell == cell && !self.lines.is_empty() {
@@ -200,14 +200,14 @@ impl<const N: usize> Corners<N> {
     }
 }
 
-/// Blends the gradients along the lines of corners, each at least as long as `columns`.
+/// Blends the gradients along lines of corners; each line is at least as long as `columns`.
 #[inline(always)]
 fn blend<const N: usize>(
     mut lines: [&[[f32; N]]; MOST_CORNERS],
     offsets: &[f32; N],
     columns: &mut [Column],
 ) {
-    // Lines of equal length need no further check of their bounds.
+    // Equal lengths allow the compiler to drop bounds checks.
     for line in &mut lines[..corners(N)] {
         *line = &line[..columns.len()];
     }

@@ -1,6 +1,6 @@
 //! Noise at many positions, sixteen at once in SIMD lanes.
 //!
-//! The arithmetic is that of one position, operation by operation, so that the bits are the same.
+//! The operations are the same as for a single position, in the same order, so that the bits are equal.
 
 use crate::GradientNoise;
 use crate::gradient::{MOST_CORNERS, Place, SHIFT, corners};
@@ -9,21 +9,21 @@ use dapple_hash::{lattice_bits, lattice_parts};
 use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, f32x16, prelude::*, u32x16};
 
-/// The number of positions in a register.
+/// Number of positions in a register.
 const LANES: usize = 16;
 
-/// Positions nearer to the origin than this have cells of 32 bits, with those after them.
+/// Positions nearer to the origin than this have cells, and next cells, that fit 32 bits.
 const NEAR: f64 = 2_147_483_646.0;
 
-/// Where sixteen positions lie along one axis: their cells and the offsets in these.
+/// Cells and offsets of sixteen positions along one axis.
 struct Line {
     cells: [u32; LANES],
-    /// The cells after those, in the period.
+    /// The next cells, reduced by the period.
     next: [u32; LANES],
     offsets: [f32; LANES],
 }
 
-/// Fills in the value at each position.
+/// Computes the value at each position.
 pub(crate) fn fill<const N: usize, P: Copy + Into<[f64; N]>>(
     noise: &GradientNoise<N>,
     level: Level,
@@ -49,7 +49,7 @@ fn fill_with<S: Simd, const N: usize, P: Copy + Into<[f64; N]>>(
                 coordinates[axis][lane] = noise.moved(position[axis], axis);
             }
         }
-        // The coordinates of corners have to be words of 32 bits with a sign.
+        // Coordinates of corners must fit signed 32-bit integers; otherwise sample the positions one by one.
         let mut is_near = has_words;
         for line in &coordinates {
             for x in line {
@@ -67,7 +67,7 @@ fn fill_with<S: Simd, const N: usize, P: Copy + Into<[f64; N]>>(
     }
 }
 
-/// The values at sixteen positions nearer than [`NEAR`].
+/// Values at sixteen positions nearer than [`NEAR`].
 #[inline(always)]
 fn value<S: Simd, const N: usize>(
     simd: S,
@@ -75,7 +75,7 @@ fn value<S: Simd, const N: usize>(
     coordinates: &[[f64; LANES]; N],
 ) -> f32x16<S> {
     let one = f32x16::splat(simd, 1.0);
-    // Loops are inlined into the code of a SIMD level, and closures are not always.
+    // Loops are inlined into the code of a SIMD level; closures are not always inlined.
     let mut parts = [[u32x16::splat(simd, 0); 2]; N];
     let mut offsets = [f32x16::splat(simd, 0.0); N];
     for axis in 0..N {
@@ -86,7 +86,7 @@ fn value<S: Simd, const N: usize>(
         let next = u32x16::from_slice(simd, &line.next);
         parts[axis] = lattice_parts(simd, key, [cells, next]);
     }
-    // For each column, the slopes along the first axis and the rest of the plane at each of its corners.
+    // For each column and corner: the slope along the first axis, and the value from the other axes
     let mut columns = [[[f32x16::splat(simd, 0.0); 2]; MOST_CORNERS]; 2];
     for index in 0..corners(N) {
         let mut row = u32x16::splat(simd, 0);
@@ -109,6 +109,7 @@ fn value<S: Simd, const N: usize>(
             columns[side][index] = [gradient[0], value];
         }
     }
+    // Blend the columns along the other axes, then between the two sides.
     for axis in 1..N {
         let by = fade(offsets[axis]);
         for column in &mut columns {
@@ -128,13 +129,13 @@ fn value<S: Simd, const N: usize>(
     near + fade(t) * (far - near)
 }
 
-/// The key of an axis, and its period in cells or 0.
+/// Hash key of an axis, and its period in cells or 0.
 const fn axis_of<const N: usize>(noise: &GradientNoise<N>, axis: usize) -> (u32, u32) {
     (noise.hash.key(axis), noise.period[axis])
 }
 
-/// The place of a coordinate nearer to 0 than 2^51, and the floor of the coordinate, in operations that become vector
-/// instructions; `floor` is a call at the least SIMD level of x86-64.
+/// Cell and offset of a coordinate below 2^51 in absolute value, and its floor, in operations that vectorize; `floor`
+/// is a function call at the lowest SIMD level of x86-64.
 #[inline(always)]
 fn near(coordinate: f64) -> (Place, f64) {
     let shifted = coordinate + SHIFT;
@@ -144,14 +145,14 @@ fn near(coordinate: f64) -> (Place, f64) {
     let cell = shifted.to_bits().wrapping_sub(SHIFT.to_bits());
     let place = Place {
         cell: cell.cast_signed() - i64::from(is_past),
-        // The difference of two negative zeros is a negative one.
+        // Adding 0 turns a negative zero into zero.
         offset: (coordinate - floor + 0.0) as f32,
     };
     (place, floor)
 }
 
 impl Line {
-    /// The cells of coordinates nearer than [`NEAR`], in a period of some cells if that is not 0.
+    /// Cells of coordinates nearer than [`NEAR`], reduced by `period` if it is not 0.
     #[inline(always)]
     fn new(coordinates: &[f64; LANES], period: u32) -> Self {
         let mut line = Self {
@@ -170,7 +171,7 @@ impl Line {
             let inverse = 1.0 / whole;
             for cell in &mut line.cells {
                 let number = f64::from(cell.cast_signed());
-                // The quotient is off by at most one, and all products are whole numbers below 2^53.
+                // The quotient is off by at most one, and all products are integers below 2^53.
                 let mut rest = number - near(number * inverse).1 * whole;
                 rest += if rest < 0.0 { whole } else { 0.0 };
                 rest -= if rest >= whole { whole } else { 0.0 };
@@ -184,7 +185,7 @@ impl Line {
     }
 }
 
-/// Perlin's quintic in every lane.
+/// Perlin's quintic fade function in every lane.
 #[inline(always)]
 fn fade<S: Simd>(t: f32x16<S>) -> f32x16<S> {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)

@@ -1,4 +1,5 @@
-//! The noise beside its formula as a sum over all corners; its bounds, periods, sampling methods and pinned values.
+//! Tests of the noise against its formula as a sum over all corners, and of its bounds, periods, sampling methods and
+//! pinned values.
 
 use super::{GradientNoise, GradientNoise2, GradientNoise3, GradientNoise4, Place, fade};
 use crate::gradients::{all, gradient};
@@ -10,7 +11,8 @@ use proptest::prelude::*;
 
 const SEED: Seed = Seed(7);
 
-/// The noise in `f64`: over the 2^N corners, the sum of each gradient's plane times the blends along all axes.
+/// The noise in `f64`: the sum over the 2^N corners of each gradient's linear function times the blends along all
+/// axes.
 fn oracle<const N: usize>(noise: &GradientNoise<N>, position: [f64; N]) -> f64 {
     let blend = |t: f64| t * t * t * (10.0 + t * (6.0 * t - 15.0));
     let mut sum = 0.0;
@@ -30,7 +32,7 @@ fn oracle<const N: usize>(noise: &GradientNoise<N>, position: [f64; N]) -> f64 {
     sum
 }
 
-/// Positions that look random, within 50 cells of the origin.
+/// Pseudorandom positions within 50 cells of the origin.
 fn positions<const N: usize>(count: u32) -> impl Iterator<Item = [f64; N]> {
     (0..count).map(|index| {
         core::array::from_fn(|axis| {
@@ -45,7 +47,7 @@ fn values_are_the_sum_over_all_corners() {
     fn check<const N: usize>(noise: &GradientNoise<N>) {
         for position in positions(2000) {
             let difference = f64::from(noise.sample(position)) - oracle(noise, position);
-            // A dozen roundings of numbers up to 3.
+            // Tolerance: a dozen roundings of numbers up to 3.
             assert!(difference.abs() < 2e-6, "{difference} at {position:?}");
         }
     }
@@ -59,7 +61,7 @@ fn values_are_the_sum_over_all_corners() {
     );
 }
 
-/// The largest value that any choice of gradients makes at an offset in a cell.
+/// Maximum value over all choices of gradients at an offset in a cell.
 fn supremum<const N: usize>(offset: [f64; N]) -> f64 {
     (0..1 << N)
         .map(|corner: usize| {
@@ -79,8 +81,8 @@ fn supremum<const N: usize>(offset: [f64; N]) -> f64 {
         .sum()
 }
 
-/// The largest value of any noise: the best of a grid over half a cell (the rest is its mirror image), then of ever finer
-/// grids around it.
+/// Maximum value of any noise: the best value on a grid over half a cell (the rest is symmetric), refined on ever
+/// finer grids around it.
 fn largest<const N: usize>() -> f64 {
     let steps: i32 = [0, 0, 40, 20, 10][N];
     let (mut center, mut reach) = ([0.25; N], 0.25);
@@ -111,7 +113,7 @@ fn bounds_are_the_largest_values_that_gradients_can_make() {
         (largest::<4>(), GradientNoise4::BOUND),
     ] {
         let bound = f64::from(bound);
-        // The search ends within a millionth of the largest, and the bounds are rounded up to the fourth digit.
+        // The search ends within 1e-6 of the maximum, and the bounds are rounded up at the fourth digit.
         assert!(largest <= bound + 1e-6, "{largest} is past {bound}");
         assert!(largest > bound - 1e-3, "{largest} is far from {bound}");
     }
@@ -150,7 +152,7 @@ fn mean_and_variance_are_the_stated_ones() {
             GradientNoise4::VARIANCE,
         ),
     ] {
-        // Ten standard errors: some 10,000 cells have been seen.
+        // Ten standard errors for some 10,000 cells
         assert!(mean.abs() < 0.03, "the mean of {axes} axes is {mean}");
         assert!(
             (variance / f64::from(stated) - 1.0).abs() < 0.05,
@@ -218,7 +220,7 @@ fn fractal_sums_vary_from_one_whole_position_to_the_next() {
             let squares = values.iter().map(|value| (value - mean) * (value - mean));
             squares.sum::<f32>() / 1000.0
         });
-        // Offsets differ from octave to octave, so that some are near corners and others are not.
+        // Offsets differ between octaves, so that some octaves are near corners and others are not.
         assert!(
             variance > 0.25 * expected,
             "{shape:?}: {variance} and {expected}"
@@ -360,7 +362,7 @@ fn a_tile_repeats_exactly_along_each_axis_that_was_asked_for() {
     let noise = GradientNoise4::new(SEED).with_period([Some(3), None, Some(1), Some(70_000)]);
     let noise = noise.unwrap();
     for position in positions::<4>(500) {
-        // On a grid of 2^-20, where sums are exact.
+        // Round to multiples of 2^-20, for which sums are exact.
         let position = position.map(|x| (x * 1_048_576.0).round() / 1_048_576.0);
         let value = noise.sample(position);
         for (axis, period) in [(0, -3.0), (2, 1.0), (3, 140_000.0)] {
@@ -440,7 +442,7 @@ fn positions_that_are_not_finite_have_one_value() {
         assert_eq!(noise.sample([bad, 0.5]).to_bits(), nan, "{bad} along x");
         assert_eq!(noise.sample([0.5, bad]).to_bits(), nan, "{bad} along y");
     }
-    // Columns go from finite to infinite.
+    // Columns range from finite to infinite.
     let window = Window::new(DVec2::ZERO, DVec2::splat(1e308), [4, 4]).unwrap();
     let window = window.crop([0, 0], [20, 20]).unwrap();
     let raster = noise.to_raster(&window).unwrap();
@@ -523,7 +525,7 @@ fn gradients_are_those_of_differences() {
                 };
                 let difference = (at(STEP) - at(-STEP)) / (2.0 * STEP);
                 let error = (f64::from(gradient[axis]) - difference).abs();
-                // Third derivatives are below 200, and jump at the borders of cells: 200 · STEP² / 6 and a little.
+                // Third derivatives are below 200 and discontinuous at cell borders: 200 · STEP² / 6 plus some slack.
                 assert!(error < 4e-3, "{error} along {axis} at {position:?}");
             }
         }
@@ -537,7 +539,7 @@ fn gradients_are_those_of_differences() {
             .unwrap(),
     );
     check(GradientNoise4::new(SEED));
-    // At a corner the gradient is the corner's own, whose length is the same everywhere.
+    // At a corner the gradient equals the gradient of the corner, all of which have the same length.
     let at_corner = GradientNoise2::new(SEED)
         .sample_with_gradient([3.0, -8.0])
         .1;
@@ -558,7 +560,7 @@ fn sums_of_octaves_have_gradients() {
             f64::from(sum.sample(moved))
         };
         let difference = (at(1e-3) - at(-1e-3)) * 500.0;
-        // The finest octave has 512 times the third derivative, an eighth as high: 64 · 200 · 1e-6 / 6.
+        // The finest octave has 512 times the third derivative at an eighth of the amplitude: 64 · 200 · 1e-6 / 6.
         assert!((f64::from(gradient[axis]) - difference).abs() < 4e-3);
     }
 }
