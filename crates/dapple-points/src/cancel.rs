@@ -1,26 +1,26 @@
-//! The request of a caller to stop.
+//! Cancellation callbacks.
 
 #[cfg(feature = "poisson-disk")]
 use crate::{PointsError, PointsErrorKind};
 use core::fmt;
 use std::sync::Arc;
 
-/// A callback that returns whether the caller no longer needs the result. It is called on any thread, once for some
-/// milliseconds of work at most.
+/// A callback that returns whether the caller has canceled the operation. It may be called on any thread, at most
+/// every few milliseconds of work.
 pub type IsCancelled<'a> = dyn Fn() -> bool + Sync + 'a;
 
-/// A callback of the form of [`IsCancelled`] that options of textures can hold; by default there is none.
+/// A cancellation callback like [`IsCancelled`] that options of textures can store [default: none].
 #[derive(Clone, Default)]
 pub struct Cancel(Option<Arc<dyn Fn() -> bool + Send + Sync>>);
 
 impl Cancel {
-    /// Asks a callback.
+    /// Creates a cancellation from a callback.
     #[must_use]
     pub fn by(is_cancelled: impl Fn() -> bool + Send + Sync + 'static) -> Self {
         Self(Some(Arc::new(is_cancelled)))
     }
 
-    /// Whether the caller no longer needs the result.
+    /// Returns whether the operation is canceled.
     #[must_use]
     pub fn is_cancelled(&self) -> bool {
         self.0.as_ref().is_some_and(|is_cancelled| is_cancelled())
@@ -33,13 +33,13 @@ impl fmt::Debug for Cancel {
     }
 }
 
-/// Fails if the caller asked to stop.
+/// Fails if the callback reports a cancellation.
 #[cfg(feature = "poisson-disk")]
 pub(crate) fn check(is_cancelled: &IsCancelled) -> Result<(), PointsError> {
     cancelled(is_cancelled())
 }
 
-/// Fails if the caller has asked to stop.
+/// Fails if the operation is canceled.
 #[cfg(feature = "poisson-disk")]
 pub(crate) fn cancelled(is_cancelled: bool) -> Result<(), PointsError> {
     match is_cancelled {

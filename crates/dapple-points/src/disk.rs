@@ -1,18 +1,18 @@
-//! Maximal Poisson-disk sets: random points at least a radius apart, with room for no further one.
+//! Maximal Poisson-disk sets: random points at least a radius apart, without room for another point.
 //!
-//! The distribution is that of random sequential addition: darts fall uniformly at random, one after another, and each
-//! that keeps its distance from all before stays (R. L. Cook, "Stochastic Sampling in Computer Graphics", ACM
-//! Transactions on Graphics 5(1), 1986, <https://doi.org/10.1145/7529.8927>). Going on until nothing fits takes for
-//! ever when done literally. The way here keeps the darts away from covered ground, as M. S. Ebeida, S. A. Mitchell, A.
-//! Patney, A. A. Davidson and J. D. Owens do ("A Simple Algorithm for Maximal Poisson-Disk Sampling in High
-//! Dimensions", Computer Graphics Forum 31, 2012, <https://doi.org/10.1111/j.1467-8659.2012.03059.x>), and departs from
-//! them in that order:
+//! The distribution is random sequential addition: darts fall uniformly at random, one at a time, and a dart becomes a
+//! point if it is far enough from all earlier points (R. L. Cook, "Stochastic Sampling in Computer Graphics", ACM
+//! Transactions on Graphics 5(1), 1986, <https://doi.org/10.1145/7529.8927>). Taken literally, this never ends. As in
+//! M. S. Ebeida, S. A. Mitchell, A. Patney, A. A. Davidson and J. D. Owens ("A Simple Algorithm for Maximal
+//! Poisson-Disk Sampling in High Dimensions", Computer Graphics Forum 31, 2012,
+//! <https://doi.org/10.1111/j.1467-8659.2012.03059.x>), darts are kept away from covered area. This implementation
+//! differs from theirs in two ways:
 //!
-//! * time is cut into slices, in which every cell throws at most one dart at the part of it that is not known to be
-//!   covered, and darts of one slice are settled by random ranks. There are no passes over colored cells, which leave
-//!   a lattice in the spectrum, and no order of the work matters;
-//! * the last gaps are found by an exact search down to single places of a lattice of 2^22 steps per cell. It proves
-//!   that the set is maximal: the largest empty circle has a radius of at most `radius` · (1 + 1e-6).
+//! * Time is divided into slices. In each slice every cell throws at most one dart, at the part of the cell that is
+//!   not known to be covered, and darts of one slice are settled by random ranks. There are no passes over colored
+//!   cells, which leave a lattice in the spectrum, and the result does not depend on the order of work.
+//! * The last gaps are found by an exact search down to single positions of a lattice of 2^22 steps per cell. It
+//!   proves that the set is maximal: the largest empty circle has a radius of at most `radius` · (1 + 1e-6).
 //!
 //! Positions are in the units of the domain. A large set has [`RSA_DENSITY`] · area / radius² points.
 
@@ -30,16 +30,16 @@ use grid::{Cell, Grid};
 use mask::Coverage;
 use solve::Solution;
 
-/// The largest number of points that a set may be expected to have: 2^26.
+/// Maximum expected number of points of a set: 2^26.
 pub const MAX_POISSON_DISK_POINTS: u64 = 1 << 26;
 
-/// How much closer than the radius given points may be, relatively, for positions that were rounded by their maker.
+/// Relative tolerance for the distance of given points, whose positions may have been rounded.
 const GIVEN_SLACK: f64 = 1e-9;
 
-/// A maximal Poisson-disk set: random points at least `radius` apart, with room for no further one.
+/// Creates a maximal Poisson-disk set: random points at least `radius` apart, without room for another point.
 ///
-/// `radius` is in units of the domain. Distances are taken around wrapped axes. The points come cell by cell, in rows,
-/// so neighbors in the plane are often neighbors in memory.
+/// `radius` is in units of the domain. Distances wrap around wrapped axes. The points are ordered by rows of cells, so
+/// neighbors in the plane are often neighbors in memory.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/poisson-disk.md"))]
 ///
@@ -62,7 +62,7 @@ pub fn poisson_disk(domain: Domain, radius: f64, seed: Seed) -> Result<PointSet,
     poisson_disk_cancellable(domain, radius, seed, &|| false)
 }
 
-/// The set of [`poisson_disk`], unless `is_cancelled` returns true.
+/// Creates the set of [`poisson_disk`], unless `is_cancelled` returns true.
 ///
 /// # Errors
 ///
@@ -85,10 +85,10 @@ pub fn poisson_disk_cancellable(
     PoissonDisk::new(domain, radius)?.sample_cancellable(seed, is_cancelled)
 }
 
-/// A maximal Poisson-disk set of about `n_points` points.
+/// Creates a maximal Poisson-disk set of about `n_points` points.
 ///
-/// The radius is that of [`poisson_disk_radius`]. The number of points varies with the seed: in a large set by less
-/// than its square root.
+/// The radius is [`poisson_disk_radius`]. The number of points varies with the seed; for a large set by less than its
+/// square root.
 ///
 /// # Errors
 ///
@@ -111,11 +111,11 @@ pub fn poisson_disk_about(
     poisson_disk(domain, poisson_disk_radius(domain, n_points)?, seed)
 }
 
-/// The radius with which a maximal Poisson-disk set has about `n_points` points, in units of the domain.
+/// Radius at which a maximal Poisson-disk set has about `n_points` points, in units of the domain.
 ///
-/// Along a border that does not wrap, points stand closer, since none beyond it are in their way; that is allowed for.
-/// Never more than half of the shortest wrapped side, which is the largest radius that [`poisson_disk`] takes: on a
-/// torus, three points or fewer cannot be asked for.
+/// The result accounts for borders that do not wrap, where points are denser because no points beyond the border
+/// exclude them. It is at most half of the shortest wrapped side, the maximum that [`poisson_disk`] accepts. On a
+/// torus, sets of three points or fewer are therefore not possible.
 ///
 /// # Errors
 ///
@@ -125,7 +125,7 @@ pub fn poisson_disk_radius(domain: Domain, n_points: u32) -> Result<f64, PointsE
     if n_points == 0 {
         return Err(PointsError::new(PointsErrorKind::NoPoints));
     }
-    // n · r² = RSA_DENSITY · area + BORDER · r · (length of the borders), solved for r.
+    // Solve n · r² = RSA_DENSITY · area + BORDER_DENSITY · r · (length of the borders) for r.
     let sides = [0, 1].map(|axis: usize| {
         if domain.wrap[axis] {
             0.0
@@ -143,11 +143,11 @@ pub fn poisson_disk_radius(domain: Domain, n_points: u32) -> Result<f64, PointsE
     Ok(((half + root) / n_points).min(0.5 * narrowest))
 }
 
-/// Points that a border adds to a set, per radius of its length: measured on cylinders and squares of 100 to 30 000
-/// points, 0.232 ± 0.003. A corner adds less than a tenth of a point.
+/// Number of points that a border adds to a set, per radius of its length. Measured on cylinders and squares of 100 to
+/// 30 000 points: 0.232 ± 0.003. A corner adds less than a tenth of a point.
 const BORDER_DENSITY: f64 = 0.232;
 
-/// A maximal Poisson-disk set that contains the given points, which come first and in their order.
+/// Creates a maximal Poisson-disk set that contains the given points, which come first and in order.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/extend-poisson-disk.md"))]
 ///
@@ -173,7 +173,7 @@ pub fn extend_poisson_disk(
     extend_poisson_disk_cancellable(given, radius, seed, &|| false)
 }
 
-/// The set of [`extend_poisson_disk`], unless `is_cancelled` returns true.
+/// Creates the set of [`extend_poisson_disk`], unless `is_cancelled` returns true.
 ///
 /// # Errors
 ///
@@ -187,7 +187,7 @@ pub fn extend_poisson_disk_cancellable(
     PoissonDisk::new(*given.domain(), radius)?.extend_cancellable(given, seed, is_cancelled)
 }
 
-/// A maker of Poisson-disk sets of one radius in one domain, for any number of seeds.
+/// A sampler of Poisson-disk sets with one radius in one domain, for any number of seeds.
 #[derive(Clone, Debug)]
 pub struct PoissonDisk {
     radius: f64,
@@ -196,7 +196,7 @@ pub struct PoissonDisk {
 }
 
 impl PoissonDisk {
-    /// Prepares sets of points that are at least `radius` apart, in units of the domain.
+    /// Prepares sets of points at least `radius` apart, in units of the domain.
     ///
     /// # Errors
     ///
@@ -211,11 +211,11 @@ impl PoissonDisk {
         })
     }
 
-    /// The set of a seed; see [`poisson_disk`].
+    /// Creates the set of a seed; see [`poisson_disk`].
     ///
     /// # Errors
     ///
-    /// None for what [`new`](Self::new) accepts.
+    /// None if [`new`](Self::new) succeeded.
     pub fn sample(&self, seed: Seed) -> Result<PointSet, PointsError> {
         self.sample_cancellable(seed, &|| false)
     }
@@ -230,7 +230,7 @@ impl PoissonDisk {
         PointSet::new(self.grid.domain, solution.positions()?)
     }
 
-    /// The set of a seed that contains the given points; see [`extend_poisson_disk`].
+    /// Creates the set of a seed that contains the given points; see [`extend_poisson_disk`].
     ///
     /// # Errors
     ///
@@ -261,7 +261,7 @@ impl PoissonDisk {
         PointSet::new(self.grid.domain, positions)
     }
 
-    /// The places of given points, sorted by cell.
+    /// Cells and offsets of the given points, sorted by cell.
     fn places(&self, given: &PointSet) -> Result<Vec<(Cell, [f32; 2])>, PointsError> {
         let grid = &self.grid;
         let mut holders = vec![u32::MAX; grid.stride() * grid.rows()];
@@ -309,7 +309,7 @@ impl PoissonDisk {
     }
 }
 
-/// The SIMD level of this machine, but for 16 lanes, which rows of five neighbors do not fill.
+/// SIMD level of this machine, without 16-lane levels, whose registers a row of five neighbors cannot fill.
 pub(crate) fn level() -> Level {
     let level = Level::new();
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

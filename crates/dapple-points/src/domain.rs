@@ -1,29 +1,28 @@
-//! A rectangle whose opposite sides may be joined.
+//! Rectangular domains whose opposite sides may be joined.
 
 use crate::{PointsError, PointsErrorKind};
 use glam::DVec2;
 
-/// The farthest that a domain may reach along an axis, and its longest side: positions some periods away are still
-/// finite.
+/// Maximum absolute coordinate and side of a domain, such that positions some periods away are still finite.
 const FARTHEST: f64 = 1e300;
 
-/// The rectangle from `origin` with the given `size`, which wraps around along the axes where `wrap` is true.
+/// A rectangle from `origin` with the given `size` that wraps along the axes where `wrap` is true.
 ///
 /// With both axes wrapped it is a torus, with one a cylinder, with none a plain rectangle. Along a wrapped axis the
-/// start belongs to the domain and the end does not: the end is the start again.
+/// domain includes its start and excludes its end, which is the same position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Domain {
-    /// The corner with the smallest coordinates.
+    /// Corner with the smallest coordinates.
     pub origin: DVec2,
-    /// Width and height, both above zero and at most 1e300.
+    /// Width and height, above zero and at most 1e300.
     pub size: DVec2,
-    /// Whether x and y wrap around.
+    /// Whether x and y wrap.
     pub wrap: [bool; 2],
 }
 
 impl Domain {
-    /// The rectangle from `origin` with the given `size`, without wrapping.
+    /// Creates a rectangle from `origin` with the given `size`, without wrapping.
     #[must_use]
     pub const fn rectangle(origin: DVec2, size: DVec2) -> Self {
         Self {
@@ -33,7 +32,7 @@ impl Domain {
         }
     }
 
-    /// The torus from `origin` with the given periods: what is placed on it repeats along both axes.
+    /// Creates a torus from `origin` with the given periods, for content that repeats along both axes.
     #[must_use]
     pub const fn torus(origin: DVec2, size: DVec2) -> Self {
         Self {
@@ -49,14 +48,14 @@ impl Domain {
         Self::torus(DVec2::NEG_ONE, DVec2::splat(2.0))
     }
 
-    /// Checks that the domain can hold points, and returns it.
+    /// Checks that the domain is valid, and returns it.
     ///
     /// # Errors
     ///
     /// [`PointsErrorKind::Domain`] if the origin is not between -1e300 and 1e300, or a side is not above zero and at
-    /// most 1e300, or so short beside the origin that rounding puts both of its ends at one place.
+    /// most 1e300, or so short relative to the origin that rounding merges its ends.
     pub fn checked(self) -> Result<Self, PointsError> {
-        // A part that is not a number is in no range.
+        // Comparisons with NaN are false.
         let valid = (0..2).all(|axis| {
             let (origin, size) = (self.origin[axis], self.size[axis]);
             let is_in_range = origin.abs() <= FARTHEST && size > 0.0 && size <= FARTHEST;
@@ -69,7 +68,7 @@ impl Domain {
         }
     }
 
-    /// The domain, extended by a margin along the axes that do not wrap.
+    /// Domain extended by a margin along the axes that do not wrap.
     #[must_use]
     pub fn grown(self, margin: DVec2) -> Self {
         let margin = DVec2::select(self.wrap.into(), DVec2::ZERO, margin);
@@ -86,19 +85,19 @@ impl Domain {
         self.size.x * self.size.y
     }
 
-    /// The distances after which the domain repeats: its sides, along the axes that wrap.
+    /// Period of the domain along each axis: its side, if the axis wraps.
     #[must_use]
     pub fn period(&self) -> [Option<f64>; 2] {
         [0, 1].map(|axis| self.wrap[axis].then_some(self.size[axis]))
     }
 
-    /// The corner with the largest coordinates.
+    /// Corner with the largest coordinates.
     #[must_use]
     pub fn end(&self) -> DVec2 {
         self.origin + self.size
     }
 
-    /// Whether the position lies in the domain.
+    /// Returns whether the domain contains a position.
     #[must_use]
     pub fn contains(&self, position: DVec2) -> bool {
         let end = self.end();
@@ -110,16 +109,16 @@ impl Domain {
         inside(0) && inside(1)
     }
 
-    /// A position with its coordinates brought into the domain along the wrapped axes.
+    /// Wraps a position into the domain along the wrapped axes.
     ///
-    /// A position that lies in the domain comes back unchanged, to the last bit.
+    /// A position inside of the domain is returned unchanged, bit for bit.
     #[must_use]
     #[inline]
     pub fn wrap(&self, position: DVec2) -> DVec2 {
         DVec2::new(self.wrap_axis(0, position.x), self.wrap_axis(1, position.y))
     }
 
-    /// One coordinate of [`wrap`](Self::wrap), for axis 0 or 1.
+    /// Wraps one coordinate, for axis 0 or 1; see [`wrap`](Self::wrap).
     #[must_use]
     #[inline]
     pub fn wrap_axis(&self, axis: usize, coordinate: f64) -> f64 {
@@ -129,7 +128,7 @@ impl Domain {
             return coordinate;
         }
         let wrapped = coordinate - ((coordinate - origin) / size).floor() * size;
-        // Rounding may leave the result a hair outside; both ends are the same place.
+        // Rounding may leave the result slightly outside; both ends are the same position.
         if wrapped >= origin && wrapped < end {
             wrapped
         } else {
@@ -137,9 +136,9 @@ impl Domain {
         }
     }
 
-    /// The shortest way from `from` to `to`, around the wrapped axes where that is shorter.
+    /// Shortest vector from `from` to `to`, across the wrapped axes where that is shorter.
     ///
-    /// Both positions lie in the domain.
+    /// Both positions must be inside of the domain.
     #[must_use]
     #[inline]
     pub fn delta(&self, from: DVec2, to: DVec2) -> DVec2 {

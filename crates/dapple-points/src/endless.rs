@@ -1,18 +1,20 @@
-//! Poisson-disk points of the whole plane, read through windows: no window changes the points of another one.
+//! Poisson-disk points of the whole plane, evaluated in windows that are consistent with each other.
 //!
-//! Random sequential addition (R. L. Cook, "Stochastic Sampling in Computer Graphics", ACM Transactions on Graphics 5(1),
-//! 1986, <https://doi.org/10.1145/7529.8927>) with darts that are hashes of their place. The plane is cut into square
-//! cells whose diagonal is the radius, so that a cell has room for one point. A cell throws at most [`N_ROUNDS`] darts,
-//! one per round; within a round, darts have random ranks. A dart stays if no point of an earlier dart is too close. So
-//! whether it stays depends on the earlier darts around it, which depend on those around them. These chains end after a
-//! few radii, and are followed as far as they go: the points are exactly those of a construction of the whole plane.
+//! Random sequential addition (R. L. Cook, "Stochastic Sampling in Computer Graphics", ACM Transactions on Graphics
+//! 5(1), 1986, <https://doi.org/10.1145/7529.8927>) with darts that are hashes of their cell. The plane is divided
+//! into square cells whose diagonal is the radius, so that a cell contains at most one point. A cell throws at most
+//! [`N_ROUNDS`] darts, one per round; within a round, darts have random ranks. A dart becomes a point if no point of
+//! an earlier dart is too close. This depends on the earlier darts around it, which depend on the darts around them.
+//! These chains end after a few radii and are followed completely: the points are exactly those of a construction of
+//! the whole plane.
 //!
-//! The idea to make samples of an endless plane on demand is that of D. Dunbar and G. Humphreys ("A Spatial Data Structure
-//! for Fast Poisson-Disk Sample Generation", SIGGRAPH 2006, <https://doi.org/10.1145/1141911.1141915>) and of corner tiles
-//! (A. Lagae and P. Dutré, "An Alternative for Wang Tiles", ACM Transactions on Graphics 25(4), 2006,
-//! <https://doi.org/10.1145/1183287.1183296>). Tiles repeat a finite set of patterns, and ranks do not.
+//! Sampling an unbounded plane on demand is an idea of D. Dunbar and G. Humphreys ("A Spatial Data Structure for Fast
+//! Poisson-Disk Sample Generation", SIGGRAPH 2006, <https://doi.org/10.1145/1141911.1141915>) and of corner tiles (A.
+//! Lagae and P. Dutré, "An Alternative for Wang Tiles", ACM Transactions on Graphics 25(4), 2006,
+//! <https://doi.org/10.1145/1183287.1183296>). Tiles repeat a finite set of patterns; ranks do not.
 //!
-//! Coordinates are counted in steps, a power of two between 2^-23 and 2^-22 of the radius, so that distances are exact.
+//! Coordinates are integers in steps, a power of two between 2^-23 and 2^-22 of the radius, so that distances are
+//! exact.
 
 use crate::{DiskRule, PointsError, PointsErrorKind};
 use block::{Block, Stop};
@@ -21,21 +23,21 @@ use glam::DVec2;
 
 mod block;
 
-/// The largest number of darts of a cell.
+/// Maximum number of darts per cell.
 ///
-/// Measured N r² beside a maximal set: 0.85 with 4 darts, 0.89 with 8, 0.92 with 16, 0.94 with 32.
+/// Measured N r² relative to a maximal set: 0.85 with 4 darts, 0.89 with 8, 0.92 with 16, 0.94 with 32.
 const N_ROUNDS: u8 = 16;
 
-/// Cells along the side of a block, which is worked on in one piece of memory.
+/// Side of a block in cells. A block is processed in one allocation.
 const BLOCK_SIDE: i64 = 128;
 
-/// Farthest coordinate of a window, in radii: where `f64` still has 13 bits for the place within a radius.
+/// Maximum absolute coordinate of a window, in radii: `f64` still has 13 bits for the position within a radius.
 const FARTHEST: f64 = (1_u64 << 39) as f64;
 
-/// The largest number of points that a window may be expected to have: 2^26.
+/// Maximum expected number of points of a window: 2^26.
 const MAX_POINTS: u64 = 1 << 26;
 
-/// The largest ratio of the two bounds of a variable radius.
+/// Maximum ratio of the two bounds of a variable radius.
 const MAX_RATIO: f64 = 16.0;
 
 /// A point of an endless set.
@@ -45,23 +47,23 @@ pub struct EndlessPoint {
     pub position: DVec2,
     /// The radius at the position, between the bounds of the set.
     pub radius: f64,
-    /// 64 random bits that belong to the point whatever window it is read through: the seed of its other properties.
-    /// Copies of a point in a set with a period have the same bits.
+    /// 64 random bits that identify the point in every window: the seed of its other properties. Copies of a point in
+    /// a set with a period have the same id.
     pub id: u64,
 }
 
-/// Poisson-disk points of the endless plane: random points at least a radius apart, for any window on demand.
+/// Poisson-disk points of the endless plane: random points at least a radius apart, evaluated in any window on demand.
 ///
-/// A window has the same points as any other one that overlaps it, to the last bit: chunks of a world agree at their
-/// borders, in whatever order, on whatever thread or machine they are made. Nothing is stored.
+/// Windows that overlap have the same points, bit for bit. Chunks of a world therefore agree at their borders,
+/// regardless of the order, thread or machine that creates them. Nothing is stored.
 ///
-/// * Distances: no two points are closer than the radius. Out to 2^30 radii from the origin positions are not rounded,
-///   and the distance of two positions in `f64` is never below the radius; farther out, positions are rounded to `f64`.
-/// * Density: 0.64 points per squared radius, 0.917 of what [`poisson_disk`](crate::poisson_disk) has (0.697). The set is
-///   not maximal: some gaps have room for a further point. A denser set would take more darts.
-/// * Costs: 2 to 3 microseconds per point on one core of a slow server, four to five times as much as a maximal set, and
-///   memory for a block of 128 × 128 cells. A window also works on the darts around it, as far as its points depend on
-///   them: about two radii on each side.
+/// * Distances: no two points are closer than the radius. Up to 2^30 radii from the origin, positions are not rounded,
+///   and distances in `f64` are never below the radius; farther out, positions are rounded to `f64`.
+/// * Density: 0.64 points per squared radius, 0.917 of the density of [`poisson_disk`](crate::poisson_disk) (0.697).
+///   The set is not maximal: some gaps have room for another point. A denser set would take more darts.
+/// * Cost: 2 to 3 microseconds per point on one core of a slow server, four to five times as much as a maximal set,
+///   and memory for a block of 128 × 128 cells. A window also evaluates the darts that its points depend on: about two
+///   radii on each side.
 ///
 /// # Examples
 ///
@@ -86,7 +88,7 @@ pub struct EndlessPoissonDisk {
 }
 
 impl EndlessPoissonDisk {
-    /// The points at least `radius` apart that belong to a seed.
+    /// Creates the point set of a seed with points at least `radius` apart.
     ///
     /// # Errors
     ///
@@ -97,7 +99,7 @@ impl EndlessPoissonDisk {
         Ok(Self { plane })
     }
 
-    /// The set that repeats along the axes with a period, exactly: a point comes again, with the same id, one period on.
+    /// Makes the set repeat exactly along the axes with a period. Copies of a point have the same id.
     ///
     /// # Errors
     ///
@@ -119,7 +121,7 @@ impl EndlessPoissonDisk {
         Ok(self)
     }
 
-    /// The points of the window from `min` (included) to `max` (excluded), in an order without meaning.
+    /// Returns the points of the window from `min` (included) to `max` (excluded), in unspecified order.
     ///
     /// # Errors
     ///
@@ -135,15 +137,16 @@ impl EndlessPoissonDisk {
     }
 }
 
-/// Poisson-disk points of the endless plane with a radius that varies in space: [`EndlessPoissonDisk`] with a function.
+/// Poisson-disk points of the endless plane with a radius that varies in space: [`EndlessPoissonDisk`] with a
+/// function.
 ///
-/// The radius is read at each dart and clamped to two bounds. Two points keep the distance that a [`DiskRule`] gives for
-/// their radii, the mean by default. Where the radius is r, there are about 0.63 / r² points per area.
+/// The radius is evaluated at each dart and clamped to two bounds. The minimum distance of two points follows from
+/// their radii by a [`DiskRule`], by default their mean. Where the radius is r, the density is about 0.63 / r².
 ///
-/// The function must depend on the position alone, and windows agree as for [`EndlessPoissonDisk`]. Cells are made for
-/// the smaller bound s: per s² of area, a window costs as much as with the fixed radius s, up to five times as much if the
-/// larger bound is 16 times s, because points with a large radius are looked for in more cells. The radius is read about 5
-/// times per s² where it is close to s, and up to 40 times where it is 4 s.
+/// The function must depend only on the position; then windows agree as for [`EndlessPoissonDisk`]. Cells are sized
+/// for the smaller bound s. Per s² of area, a window costs as much as with the fixed radius s, and up to five times as
+/// much if the larger bound is 16 times s, because points with a large radius are searched in more cells. The radius
+/// is evaluated about 5 times per s² where it is close to s, and up to 40 times where it is 4 s.
 ///
 /// # Examples
 ///
@@ -164,7 +167,7 @@ pub struct EndlessVariablePoissonDisk<F> {
 }
 
 impl<F: Fn([f64; 2]) -> f64> EndlessVariablePoissonDisk<F> {
-    /// The points of a seed, with a radius between two bounds, smaller bound first.
+    /// Creates the point set of a seed, with a radius between two bounds, smaller bound first.
     ///
     /// # Errors
     ///
@@ -176,14 +179,15 @@ impl<F: Fn([f64; 2]) -> f64> EndlessVariablePoissonDisk<F> {
         Ok(Self { plane, radius })
     }
 
-    /// The set in which the distance of points with different radii follows a rule.
+    /// Sets the rule for the distance of points with different radii.
     #[must_use]
     pub fn with_rule(mut self, rule: DiskRule) -> Self {
         self.plane.rule = rule;
         self
     }
 
-    /// The set that repeats with a period along each axis that has one. The radius is read in the first period, which starts at 0.
+    /// Makes the set repeat along each axis with a period. The radius is evaluated in the first period, which starts
+    /// at 0.
     ///
     /// # Errors
     ///
@@ -194,7 +198,7 @@ impl<F: Fn([f64; 2]) -> f64> EndlessVariablePoissonDisk<F> {
         Ok(self)
     }
 
-    /// The points of the window from `min` (included) to `max` (excluded), in an order without meaning.
+    /// Returns the points of the window from `min` (included) to `max` (excluded), in unspecified order.
     ///
     /// # Errors
     ///
@@ -210,19 +214,19 @@ impl<F: Fn([f64; 2]) -> f64> EndlessVariablePoissonDisk<F> {
     }
 }
 
-/// Cell grid of the plane and the rules of its dart throwing.
+/// Grid of the plane, and the parameters of its dart throwing.
 #[derive(Clone, Debug, PartialEq)]
 struct Plane {
     seed: Seed,
     rule: DiskRule,
-    /// The smallest and the largest radius.
+    /// Minimum and maximum radius.
     radii: [f64; 2],
-    /// One step in the caller's unit: a power of two.
+    /// Length of a step in the unit of the caller: a power of two.
     step: f64,
     axes: [Axis; 2],
 }
 
-/// The cells along an axis.
+/// Cells along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Axis {
     /// Width of a cell in steps; the largest one on an axis with a period.
@@ -230,26 +234,26 @@ struct Axis {
     period: Option<Period>,
 }
 
-/// The length after which an axis repeats.
+/// Period of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Period {
-    /// The length in the caller's unit.
+    /// Length in the unit of the caller.
     length: f64,
-    /// The length in whole steps. A rest of less than a step stays empty.
+    /// Length in whole steps. A remainder of less than a step stays empty.
     n_steps: i64,
     n_cells: i64,
 }
 
-/// A column or a row of cells.
+/// A column or row of cells.
 #[derive(Clone, Copy, Debug)]
 struct Strip {
-    /// The number of the cell, the same in all periods.
+    /// Index of the cell, equal in all periods.
     cell: i64,
-    /// The length of all periods before.
+    /// Total length of all preceding periods.
     origin: f64,
-    /// The start of the cell in its period, in steps.
+    /// Start of the cell in its period, in steps.
     start: i64,
-    /// The start of the cell in all periods together, in steps.
+    /// Start of the cell across all periods, in steps.
     absolute: i64,
     width: i64,
 }
@@ -300,7 +304,7 @@ impl Plane {
         Ok(())
     }
 
-    /// The points of a window, from its first to its second corner.
+    /// Points of a window, given by its first and second corner.
     fn points(
         &self,
         window: [[f64; 2]; 2],
@@ -313,7 +317,7 @@ impl Plane {
             let farthest = FARTHEST * least;
             check_range("the start of the window", min[axis], [-farthest, farthest])?;
             check_range("the end of the window", max[axis], [min[axis], farthest])?;
-            // One more cell on both sides, because positions are rounded.
+            // Add one cell on both sides, because positions are rounded.
             let cell = |coordinate| self.axes[axis].cell(coordinate, self.step);
             cells[axis] = [cell(min[axis]) - 1, cell(max[axis]) + 2];
         }
@@ -341,13 +345,13 @@ impl Plane {
         Ok(points)
     }
 
-    /// The points of a block of cells, from the first one to before the last one along each axis.
+    /// Points of a block of cells: a half-open range along each axis.
     fn block(
         &self,
         cells: [[i64; 2]; 2],
         radius: &impl Fn([f64; 2]) -> f64,
     ) -> Result<Vec<EndlessPoint>, PointsError> {
-        // Darts seldom depend on cells farther than this. If they do, all is done again with more cells.
+        // Darts rarely depend on cells beyond this margin. If they do, start again with a larger one.
         let mut margin = 6 * self.reach() + 4;
         loop {
             match Block::new(self, cells, margin, radius).solve() {
@@ -361,7 +365,7 @@ impl Plane {
         }
     }
 
-    /// Search radius in cells: points in conflict are at most this many cells apart.
+    /// Search radius in cells: conflicting points are at most this many cells apart.
     fn reach(&self) -> i64 {
         let most = (self.radii[1] / self.step) as i64 + 1;
         let narrowest = self.axes[0].narrowest().min(self.axes[1].narrowest());
@@ -370,7 +374,7 @@ impl Plane {
 }
 
 impl Axis {
-    /// The number of the cell, about, at a coordinate in the caller's unit.
+    /// Approximate index of the cell at a coordinate in the unit of the caller.
     fn cell(&self, coordinate: f64, step: f64) -> i64 {
         let cells = match self.period {
             Some(period) => coordinate / period.length * period.n_cells as f64,
@@ -379,7 +383,7 @@ impl Axis {
         cells.floor() as i64
     }
 
-    /// The column or row with a number, which may be in any period.
+    /// Column or row of a cell index, which may be in any period.
     fn strip(&self, cell: i64) -> Strip {
         let Some(period) = self.period else {
             return Strip {
@@ -405,14 +409,14 @@ impl Axis {
         }
     }
 
-    /// The smallest width of a cell, in steps.
+    /// Minimum width of a cell, in steps.
     fn narrowest(&self) -> i64 {
         self.period
             .map_or(self.width, |period| period.n_steps / period.n_cells)
     }
 }
 
-/// Refuses a number outside of a range.
+/// Rejects a number outside of a range.
 fn check_range(what: &'static str, value: f64, range: [f64; 2]) -> Result<(), PointsError> {
     if value >= range[0] && value <= range[1] {
         return Ok(());

@@ -6,28 +6,28 @@ use glam::DVec2;
 dapple_raster::error! {
     /// An error of making or checking a point set.
     PointsError,
-    /// The cause of a [`PointsError`], with the limit and the value.
+    /// Cause of a [`PointsError`], with the limit and the value.
     PointsErrorKind {
-        /// The origin of the domain is beyond 1e300, or a side is not above zero and at most 1e300, or lost in rounding
-        /// beside the origin.
+        /// The origin of the domain is beyond 1e300, or a side is not above zero and at most 1e300, or is lost in
+        /// rounding relative to the origin.
         Domain {
             /// The domain.
             domain: Domain,
         } =>
             "the domain from {} has size {}, but both sides must be above 0 and at most 1e300, and the origin between -1e300 \
              and 1e300, and near enough that adding a side moves it", domain.origin, domain.size;
-        /// A position is not finite, or lies outside of the domain along an axis that does not wrap.
+        /// A position is not finite, or is outside of the domain along an axis that does not wrap.
         Outside {
-            /// The index of the point.
+            /// Index of the point.
             point: PointIdx,
-            /// The position of the point.
+            /// Position of the point.
             position: DVec2,
         } => "point {} at {position} is not in the domain", point.0;
-        /// More points would be needed than the limit allows.
+        /// The number of points would exceed the limit.
         TooMany {
-            /// The number of points needed, about.
+            /// Approximate number of points needed.
             needed: f64,
-            /// The largest number of points allowed.
+            /// Maximum number of points.
             limit: u64,
         } => "about {needed:.0} points would be needed, but the limit is {limit}";
         /// A number that must be above zero and finite is not.
@@ -44,38 +44,38 @@ dapple_raster::error! {
             /// The radius at that position.
             radius: f64,
         } => "the radius at {position} is {radius}, but it must be above 0 and finite";
-        /// A radius that varies in space changes by as much as the distance, or by more.
+        /// The slope of a radius that varies in space is 1 or more.
         TooSteep {
             /// The position where the radius is too steep.
             position: DVec2,
-            /// The change of the radius per distance.
+            /// Slope of the radius.
             slope: f64,
         } => "the radius changes by {slope} per distance near {position}, but it must change by less than 1";
-        /// A wrapped axis is shorter than two radii, so that a point would meet its own copy.
+        /// A wrapped axis is shorter than two radii, so that a point would conflict with its own copy.
         PeriodTooShort {
             /// The axis, 0 or 1.
             axis: u32,
             /// The length of the axis.
             period: f64,
-            /// The radius, the largest one if it varies.
+            /// Radius; the largest one if it varies.
             radius: f64,
         } => "axis {axis} wraps around after {period}, but it must reach over two radii of {radius}";
-        /// Two given points are closer than they may be.
+        /// Two given points are too close to each other.
         TooClose {
             /// The two points.
             points: [PointIdx; 2],
-            /// The distance of the two points.
+            /// Distance of the two points.
             distance: f64,
-            /// The smallest distance allowed.
+            /// Minimum distance.
             radius: f64,
         } => "points {} and {} are {distance} apart, but the radius is {radius}", points[0].0, points[1].0;
-        /// A radius of a nested set is larger than the one before.
+        /// A radius of a nested set is larger than the previous one.
         NotDescending {
-            /// The index of the radius, from 0.
+            /// Index of the radius, starting at 0.
             level: usize,
             /// The radius.
             radius: f64,
-            /// The radius before it.
+            /// Previous radius.
             before: f64,
         } => "radius {level} is {radius}, but it must not be larger than the one before, {before}";
         /// A number is outside of its range.
@@ -84,27 +84,27 @@ dapple_raster::error! {
             what: &'static str,
             /// The number.
             value: f64,
-            /// The smallest and the largest number allowed.
+            /// Minimum and maximum.
             range: [f64; 2],
         } => "{what} is {value}, but it must be between {} and {}", range[0], range[1];
-        /// A point is needed, but there is no set, or a set without points.
+        /// A nonempty point set is required.
         NoPoints => "there is no point, but at least one is needed";
-        /// Sets that must share one domain do not.
+        /// Point sets that must share one domain have different domains.
         DifferentDomains {
             /// The domain of the first set.
             first: Domain,
-            /// The domain of another one.
+            /// The domain of another set.
             other: Domain,
         } => "one set is in the domain from {} of size {} that wraps along x and y: {:?}, but the first one in that from {} of size \
              {}, wrapping: {:?}", other.origin, other.size, other.wrap, first.origin, first.size, first.wrap;
-        /// A spectrum would have more frequencies, or rings, than the limit allows.
+        /// The number of frequencies or rings of a spectrum would exceed the limit.
         TooManyFrequencies {
-            /// The number of frequencies or rings, about.
+            /// Approximate number of frequencies or rings.
             needed: f64,
-            /// The largest number allowed.
+            /// Maximum number.
             limit: u64,
         } => "the spectrum would have about {needed:.0} frequencies or rings, but the limit is {limit}";
-        /// The callback of the caller asked to stop.
+        /// The operation was canceled by the callback of the caller.
         Cancelled => "the callback asked to stop";
     }
 }

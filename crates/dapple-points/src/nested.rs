@@ -1,16 +1,16 @@
-//! Poisson-disk sets of ever smaller radius, each of which contains the one before.
+//! Nested Poisson-disk sets with decreasing radius, each of which contains the previous one.
 //!
-//! The coarsest set is an ordinary one. Each following level takes the points so far as given and adds points until
-//! none fits at its own radius, so every level is a maximal Poisson-disk set, and the points of the coarser levels
-//! come first. Points of later levels are not where a set of their radius alone would have them: the coarse points are
-//! further apart than such a set needs.
+//! The coarsest set is an ordinary one. Each following level keeps the previous points and adds points until none fits
+//! at its radius. Every level is therefore a maximal Poisson-disk set, and the points of coarser levels come first.
+//! Finer levels differ from an independent set of their radius: the coarse points are farther apart than such a set
+//! requires.
 
 use crate::{
     Domain, IsCancelled, PointSet, PointsError, PointsErrorKind, extend_poisson_disk_cancellable,
 };
 use dapple_hash::Seed;
 
-/// Points in levels: the first few are the coarsest level, the first few more the next one, all of them the finest.
+/// Points in nested levels. Each level is a prefix of the points, from the coarsest level to all points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NestedPointSet {
     points: PointSet,
@@ -24,13 +24,13 @@ impl NestedPointSet {
         &self.points
     }
 
-    /// The number of points of each level, from the coarsest to the finest.
+    /// Number of points of each level, from the coarsest to the finest.
     #[must_use]
     pub fn lengths(&self) -> &[usize] {
         &self.lengths
     }
 
-    /// The points of a level, from 0 for the coarsest, as a set of its own; none if there is no such level.
+    /// Points of a level as a separate set, where 0 is the coarsest level; `None` if there is no such level.
     #[must_use]
     pub fn level(&self, level: usize) -> Option<PointSet> {
         let length = *self.lengths.get(level)?;
@@ -38,17 +38,18 @@ impl NestedPointSet {
         PointSet::new(*self.points.domain(), positions).ok()
     }
 
-    /// All points, without their levels.
+    /// Converts into the set of all points, without levels.
     #[must_use]
     pub fn into_points(self) -> PointSet {
         self.points
     }
 }
 
-/// Maximal Poisson-disk sets with the given radii, which do not grow, each containing the one before.
+/// Creates maximal Poisson-disk sets with the given radii, which must not increase. Each set contains the previous
+/// one.
 ///
-/// The radii are in units of the domain. With half the radius a level has about four times the points; for twice the
-/// points, divide by the square root of two.
+/// The radii are in units of the domain. Half the radius gives about four times the points; for twice the points,
+/// divide the radius by the square root of two.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/nested-poisson-disk.md"))]
 ///
@@ -75,7 +76,7 @@ pub fn nested_poisson_disk(
     nested_poisson_disk_cancellable(domain, radii, seed, &|| false)
 }
 
-/// The sets of [`nested_poisson_disk`], unless `is_cancelled` returns true.
+/// Creates the sets of [`nested_poisson_disk`], unless `is_cancelled` returns true.
 ///
 /// # Errors
 ///
@@ -117,7 +118,7 @@ mod tests {
                 wrap,
                 ..Domain::paper_torus()
             };
-            // The paper doubles the number of points four times; equal radii add nothing.
+            // The paper doubles the number of points four times; a repeated radius adds no points.
             let radii = [0.2, 0.142, 0.1, 0.071, 0.05, 0.05];
             let nested = nested_poisson_disk(domain, &radii, Seed(1)).unwrap();
             assert_eq!(nested.lengths().len(), radii.len());
@@ -129,7 +130,7 @@ mod tests {
                 let distance = set.minimum_distance().unwrap();
                 assert!(distance >= radius, "level {level}: {distance} apart");
                 let gap = set.largest_empty_circle().unwrap().radius;
-                // The tolerance that the sets promise.
+                // The documented tolerance
                 assert!(
                     gap <= radius * (1.0 + 1e-6),
                     "level {level}: a gap of {gap}"

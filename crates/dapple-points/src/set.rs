@@ -3,7 +3,7 @@
 use crate::{Domain, PointsError, PointsErrorKind};
 use glam::DVec2;
 
-/// The number of a point within its set, from 0.
+/// Index of a point in its set, starting at 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -13,7 +13,7 @@ use glam::DVec2;
 pub struct PointIdx(pub u32);
 
 impl PointIdx {
-    /// The number as an index into a column.
+    /// Returns the index as `usize`, for use with slices.
     #[must_use]
     #[inline]
     pub const fn index(self) -> usize {
@@ -21,9 +21,10 @@ impl PointIdx {
     }
 }
 
-/// Points in a domain, in a fixed order. Its meaning depends on the function that made them.
+/// Points in a domain, in a fixed order that depends on the function that created them.
 ///
-/// As data (feature `serde`) it is its domain and its positions; reading checks them as [`PointSet::new`] does.
+/// The serialized form (feature `serde`) is the domain and the positions; reading validates them like
+/// [`PointSet::new`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -35,7 +36,7 @@ pub struct PointSet {
     positions: Vec<DVec2>,
 }
 
-/// The data of a point set before it is checked.
+/// Serialized form of a point set, before validation.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(rename = "PointSet", deny_unknown_fields)]
@@ -54,7 +55,7 @@ impl TryFrom<Unchecked> for PointSet {
 }
 
 impl PointSet {
-    /// The points at `positions`; along wrapped axes they are brought into the domain.
+    /// Creates a set from positions, which are wrapped into the domain along wrapped axes.
     ///
     /// Any number of points is accepted, including none, and points may coincide.
     ///
@@ -83,41 +84,41 @@ impl PointSet {
         Ok(Self { domain, positions })
     }
 
-    /// The domain that the points lie in.
+    /// Domain of the points.
     #[must_use]
     pub fn domain(&self) -> &Domain {
         &self.domain
     }
 
-    /// The number of points.
+    /// Number of points.
     #[must_use]
     pub fn len(&self) -> usize {
         self.positions.len()
     }
 
-    /// Whether the set is empty.
+    /// Returns whether the set is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
 
-    /// The positions, indexed by [`PointIdx`].
+    /// Positions, indexed by [`PointIdx`].
     #[must_use]
     pub fn positions(&self) -> &[DVec2] {
         &self.positions
     }
 
-    /// The position of a point.
+    /// Position of a point.
     ///
     /// # Panics
     ///
-    /// If the set has no such point.
+    /// If the point does not exist.
     #[must_use]
     pub fn position(&self, point: PointIdx) -> DVec2 {
         self.positions[point.index()]
     }
 
-    /// The points and their positions, in order.
+    /// Iterates over the points and their positions, in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (PointIdx, DVec2)> + '_ {
         // A set has at most 2^31 points, so the index fits.
         self.positions

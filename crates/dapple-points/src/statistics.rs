@@ -1,8 +1,8 @@
 //! Statistics of point sets: distances, empty circles, spectra.
 //!
-//! All statistics are exact, for any domain, and depend on the set alone: sums run in a fixed order. Distances are the
-//! shortest ones, around the wrapped axes where that is shorter. Computing times are about proportional to the number
-//! of points where they are spread evenly, and grow towards its square where most of them crowd into one spot.
+//! All statistics are exact for any domain and depend only on the set: sums run in a fixed order. Distances are
+//! shortest distances, across the wrapped axes where that is shorter. Running times are roughly proportional to the
+//! number of points if they are evenly spread, and approach its square if most points are concentrated in one spot.
 
 mod circle;
 mod distance;

@@ -1,6 +1,6 @@
 //! Independent points: white noise, and a jittered grid.
 //!
-//! Each point is a hash of its number or its cell, so that a larger set begins with the points of a smaller one.
+//! Each point is a hash of its index or its cell, so that a larger set starts with the points of a smaller one.
 //! Positions are in the units of the domain.
 //!
 //! Reference: our own; both are as old as sampling.
@@ -9,12 +9,12 @@ use crate::{Domain, PointSet, PointsError, PointsErrorKind};
 use dapple_hash::{CellHash, Seed, unit_f64};
 use glam::DVec2;
 
-/// The largest number of points that either function makes: 2^31, as [`PointSet`] holds.
+/// Maximum number of points of both functions: 2^31, the maximum of a [`PointSet`].
 const MAX_POINTS: u64 = 1 << 31;
 
-/// `n_points` independent points, each uniform in the domain.
+/// Creates `n_points` independent points, uniformly distributed in the domain.
 ///
-/// Point `i` depends on the seed and on `i` alone.
+/// Point `i` depends only on the seed and on `i`.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/white-noise.md"))]
 ///
@@ -44,10 +44,10 @@ pub fn white_noise(domain: Domain, n_points: u32, seed: Seed) -> Result<PointSet
     PointSet::new(domain, positions)
 }
 
-/// One point in each cell of a grid of `cells[0]` columns and `cells[1]` rows, row by row.
+/// Creates one point in each cell of a grid of `cells[0]` columns and `cells[1]` rows, row by row.
 ///
-/// With a `jitter` of 0 a point lies at the center of its cell, with 1 anywhere in the cell, and with a number between
-/// in a concentric cell that is smaller by that factor.
+/// With a `jitter` of 0 a point is at the center of its cell, with 1 anywhere in the cell. In between, it is in a
+/// concentric cell scaled by `jitter`.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/jittered-grid.md"))]
 ///
@@ -96,7 +96,7 @@ pub fn jittered_grid(
     PointSet::new(domain, positions)
 }
 
-/// Checks that the domain has area and the number of points is allowed, and returns the domain.
+/// Checks the domain and the number of points, and returns the domain.
 fn checked(domain: Domain, n_points: u64) -> Result<Domain, PointsError> {
     if n_points > MAX_POINTS {
         return Err(PointsError::new(PointsErrorKind::TooMany {
@@ -107,14 +107,14 @@ fn checked(domain: Domain, n_points: u64) -> Result<Domain, PointsError> {
     domain.checked()
 }
 
-/// A uniform position of the unit square.
+/// Uniform position in the unit square.
 fn unit_square(hash: CellHash) -> DVec2 {
     DVec2::new(unit_f64(hash.at(0)), unit_f64(hash.at(1)))
 }
 
-/// The position at `unit`, from 0 to 1 across the domain along each axis.
+/// Position at `unit`, from 0 to 1 across the domain along each axis.
 fn place(domain: &Domain, unit: DVec2) -> DVec2 {
-    // Rounding must not carry the position over a border that does not wrap.
+    // Rounding must not move the position across a border that does not wrap.
     (domain.origin + unit * domain.size).min(domain.end())
 }
 
@@ -135,7 +135,7 @@ mod tests {
             let unit = (position - DOMAIN.origin) / DOMAIN.size * 8.0;
             counts[unit.y as usize * 8 + unit.x as usize] += 1;
         }
-        // Each count is 1000 ± 32; five standard deviations for 64 of them.
+        // Each count is 1000 ± 32; five standard deviations for 64 counts.
         assert!(counts.iter().all(|&n| n.abs_diff(1000) < 160), "{counts:?}");
     }
 
@@ -149,7 +149,8 @@ mod tests {
                 let center = DOMAIN.origin + (cell + 0.5) * 0.1;
                 farthest = farthest.max((position - center).abs().max_element());
             }
-            // Half of a cell of 0.1; 200 points come close to it. 1e-12 is for rounding.
+            // Half of a cell of 0.1; the maximum over 200 points is close to it. The tolerance of 1e-12 is for
+            // rounding.
             let most = 0.05 * jitter;
             assert!(farthest <= most + 1e-12, "{jitter}: {farthest}");
             assert!(farthest >= most * 0.95, "{jitter}: only {farthest}");

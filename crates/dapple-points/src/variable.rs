@@ -1,15 +1,15 @@
-//! Maximal Poisson disk sets with a radius that varies in space.
+//! Maximal Poisson-disk sets with a radius that varies in space.
 //!
-//! Random sequential placing: darts fall at random places, and stay where they keep their distance from all points
-//! before them, until no dart could. For two points of different radius, [`DiskRule`] defines the distance. Reference:
-//! the rules go back to Scott A. Mitchell, Alexander Rand, Mohamed S. Ebeida and Chandrajit Bajaj, "Variable Radii
-//! Poisson-Disk Sampling", Canadian Conference on Computational Geometry 2012.
+//! Random sequential addition: darts fall at random positions and become points if they are far enough from all
+//! earlier points, until no dart fits. [`DiskRule`] defines the distance of two points with different radii.
+//! Reference: the rules go back to Scott A. Mitchell, Alexander Rand, Mohamed S. Ebeida and Chandrajit Bajaj,
+//! "Variable Radii Poisson-Disk Sampling", Canadian Conference on Computational Geometry 2012.
 //!
-//! The domain is cut into rectangles of some hundred points in which the radius hardly changes, and each of these
-//! blocks gets a grid of cells in its own size. Darts come in rounds. In each, a part of the open cells of all blocks
-//! gets one dart. Blocks that could meet take turns, in an order that changes from round to round; the others work at
-//! the same time. The result depends on the order of these turns only, not on threads. The area that is still open
-//! after the last round is cut into ever smaller quarters until all of it is covered.
+//! The domain is divided into rectangles of some hundred points in which the radius hardly changes. Each rectangle
+//! becomes a block with a grid of cells of suitable size. Darts come in rounds: in each round, a fraction of the open
+//! cells of all blocks receives one dart. Blocks that could conflict take turns, in an order that changes between
+//! rounds; other blocks run in parallel. The result depends only on the order of turns, not on threads. After the last
+//! round, the open area is subdivided into quarters until all of it is covered.
 
 mod block;
 mod density;
@@ -33,13 +33,13 @@ use glam::DVec2;
 use leaf::{RadiusField, Tree};
 pub use rule::DiskRule;
 
-/// The share of the open cells that gets a dart in each round. The first rounds, in which nearly every dart stays,
-/// are thin, so that it matters little which of two blocks has its turn first. Seven rounds from 1/8 to 1 gave N r² of
+/// Fraction of the open cells that receives a dart in each round. The first rounds, in which nearly every dart is
+/// accepted, are sparse, which reduces the influence of the order of blocks. Seven rounds from 1/8 to 1 gave N r² of
 /// 0.6967 instead of 0.6988 (30 sets of 2000 points on a torus), the same anisotropy of 1.05, and took a tenth longer.
 const ROUNDS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
 
-/// The slope with which a radius may rise unnoticed between the places where it is read. Where it rises faster, all is
-/// done again with a larger slope.
+/// Maximum slope of the radius between its sampled positions. If the radius is steeper, the set is recomputed with a
+/// larger slope.
 const RISE: f64 = 0.1;
 
 /// Options of Poisson-disk sets with a varying radius.
@@ -50,9 +50,9 @@ const RISE: f64 = 0.1;
     serde(default, deny_unknown_fields)
 )]
 pub struct VariablePoissonOptions {
-    /// How far apart points of different radius must be; the mean of their radii by default.
+    /// Rule for the minimum distance of points with different radii [default: mean of the radii].
     pub rule: DiskRule,
-    /// The number of points above which a set is refused, by an estimate; 2^24 by default.
+    /// Maximum estimated number of points; larger sets are rejected [default: 2^24].
     pub point_limit: u64,
 }
 
@@ -65,31 +65,30 @@ impl Default for VariablePoissonOptions {
     }
 }
 
-/// A maximal Poisson disk set whose radius varies in space.
+/// Creates a maximal Poisson-disk set whose radius varies in space.
 ///
-/// Any two points a and b are at least `rule(radius(a), radius(b))` apart, but for the rounding of their coordinates.
-/// The set is maximal: for every place u of the domain there is a point c closer than `rule(radius(u), radius(c))`.
-/// Exempt are spots smaller than 10^-6 radii, and dips of the radius that are too small or narrow to show on a lattice
-/// of about two radii.
+/// Any two points a and b are at least `rule(radius(a), radius(b))` apart, up to rounding of their coordinates. The
+/// set is maximal: for every position u of the domain there is a point c closer than `rule(radius(u), radius(c))`.
+/// Exceptions are spots smaller than 10^-6 radii, and dips of the radius that are too small or narrow to appear on a
+/// lattice of about two radii.
 ///
-/// Where the radius is r, there are 0.697 / r² points per area, within 3 % on slopes up to 0.06 and within 5 % up to
-/// 0.35 with the default rule; [`radius_from_density`] and [`radius_for_count`] give the radius to a wanted density. The
-/// radius is read about three times per point.
+/// Where the radius is r, the density is 0.697 / r², within 3 % on slopes up to 0.06 and within 5 % up to 0.35 with
+/// the default rule. [`radius_from_density`] and [`radius_for_count`] compute the radius for a desired density. The
+/// radius is evaluated about three times per point.
 ///
-/// Around a wrapped axis the radius has to repeat itself too, or else there is a step at the seam, which is honored
-/// but looks like one: beside a step from r to R the larger discs reach over by (r + R) / 2. A ramp from left to right
-/// belongs on a cylinder. The order of the points has no meaning.
+/// Along a wrapped axis, the radius should be periodic too. Otherwise there is a step at the seam, which is handled
+/// but visible: next to a step from r to R, the larger discs extend across it by (r + R) / 2. A ramp from left to
+/// right belongs on a cylinder. The order of the points is unspecified.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/variable-poisson-disk.md"))]
 ///
 /// # Errors
 ///
-/// [`PointsErrorKind::Domain`] for a domain without area. [`PointsErrorKind::Radius`] where a radius that was read is
-/// not above zero and finite. [`PointsErrorKind::TooSteep`] where the radius changes by as much as the distance or
-/// more: between neighboring places of a 10 × 10 lattice in each rectangle into which the domain is cut, down to one of
-/// about two radii, or from there to a dart. [`PointsErrorKind::PeriodTooShort`] for a wrapped axis shorter than two of the
-/// largest radii. [`PointsErrorKind::TooMany`] if more points than the limit would be needed; nothing large has been
-/// allocated then.
+/// [`PointsErrorKind::Domain`] for a domain without area. [`PointsErrorKind::Radius`] if an evaluated radius is not
+/// above zero and finite. [`PointsErrorKind::TooSteep`] if the slope of the radius is 1 or more: between neighboring
+/// positions of a 10 × 10 lattice in each rectangle of the domain, down to a rectangle of about two radii, or from
+/// there to a dart. [`PointsErrorKind::PeriodTooShort`] for a wrapped axis shorter than two of the largest radii.
+/// [`PointsErrorKind::TooMany`] if the number of points would exceed the limit, before any large allocation.
 ///
 /// # Examples
 ///
@@ -114,7 +113,7 @@ pub fn variable_poisson_disk(
     variable_poisson_disk_cancellable(domain, radius, options, seed, &|| false)
 }
 
-/// The set of [`variable_poisson_disk`], unless `is_cancelled` returns true.
+/// Creates the set of [`variable_poisson_disk`], unless `is_cancelled` returns true.
 ///
 /// # Errors
 ///
@@ -137,13 +136,13 @@ pub fn variable_poisson_disk_cancellable(
         place_points(field, options, seed, is_cancelled)
     };
     match place(RISE) {
-        // Rougher than it seemed at first: once more with room for anything below 1.
+        // Steeper than the samples suggested: start again with room for any slope below 1.
         Err(error) if matches!(error.kind(), PointsErrorKind::TooSteep { .. }) => place(1.0),
         result => result,
     }
 }
 
-/// Places the points for a radius that rises, between the places where it is read, no faster than along them or than
+/// Places the points. Between its sampled positions, the slope of the radius is at most the slope between them or
 /// `field.rise`.
 fn place_points(
     field: RadiusField<'_>,
@@ -164,6 +163,7 @@ fn place_points(
     check(is_cancelled)?;
     let colors = colors_of(&blocks);
     let n_colors = colors.len() as u64;
+    // Throw darts in rounds, block color by block color.
     for (round, share) in (0..).zip(ROUNDS) {
         let first = hash1(setting.seed.child("turn", 0), [round], 0) % n_colors;
         for turn in 0..n_colors {
@@ -174,6 +174,7 @@ fn place_points(
             })?;
         }
     }
+    // Fill the remaining area.
     for color in &colors {
         take_turns(&mut blocks, color, is_cancelled, |block, blocks| {
             block.pull(blocks, &setting);
@@ -183,7 +184,7 @@ fn place_points(
     collect(*field.domain, blocks)
 }
 
-/// Checks that the largest disc fits into the periods of the domain.
+/// Checks that the largest disc fits the periods of the domain.
 fn check_periods(domain: &Domain, tree: &Tree) -> Result<(), PointsError> {
     let largest = tree.leaves.iter().map(|leaf| leaf.radii.largest);
     let radius = largest.fold(0.0, f64::max);
@@ -200,7 +201,7 @@ fn check_periods(domain: &Domain, tree: &Tree) -> Result<(), PointsError> {
     Ok(())
 }
 
-/// The blocks, each with those around it.
+/// Creates the blocks with their neighbors.
 fn blocks_of(tree: &Tree, setting: &Setting<'_>) -> Vec<Block> {
     parallel::map(tree.leaves.len(), |index| {
         let leaf = &tree.leaves[index];
@@ -220,7 +221,7 @@ fn blocks_of(tree: &Tree, setting: &Setting<'_>) -> Vec<Block> {
     })
 }
 
-/// The shifts to the copies of the domain next to it.
+/// Shifts to the adjacent copies of the domain.
 fn shifts(domain: &Domain) -> impl Iterator<Item = DVec2> {
     let turns = |axis: usize| if domain.wrap[axis] { -1..=1 } else { 0..=0 };
     let (columns, rows, size) = (turns(0), turns(1), domain.size);
@@ -230,7 +231,7 @@ fn shifts(domain: &Domain) -> impl Iterator<Item = DVec2> {
     })
 }
 
-/// Sorts the blocks into classes within which no two come close to each other.
+/// Colors the blocks, so that blocks of the same color are not neighbors.
 fn colors_of(blocks: &[Block]) -> Vec<Vec<u32>> {
     let mut colors: Vec<Vec<u32>> = Vec::new();
     let mut color_of = vec![usize::MAX; blocks.len()];
@@ -250,11 +251,10 @@ fn colors_of(blocks: &[Block]) -> Vec<Vec<u32>> {
     colors
 }
 
-/// The number of blocks that work before it is asked again whether the set is still wanted; a block has some hundred
-/// points.
+/// Number of blocks between checks for cancellation; a block has some hundred points.
 const BLOCKS: usize = 64;
 
-/// Lets the blocks of one color work, at the same time, while all others stand still.
+/// Processes the blocks of one color in parallel; all other blocks are read-only meanwhile.
 fn take_turns(
     blocks: &mut [Block],
     color: &[u32],
@@ -280,7 +280,7 @@ fn take_turns(
     cancelled(is_over.into_inner())
 }
 
-/// The points of all blocks, or the first error.
+/// Points of all blocks, or the first error.
 fn collect(domain: Domain, blocks: Vec<Block>) -> Result<PointSet, PointsError> {
     let mut positions = Vec::with_capacity(blocks.iter().map(|block| block.samples.len()).sum());
     for block in blocks {

@@ -1,11 +1,12 @@
-//! Exact search for places in a cell that no disc covers.
+//! Exact search for positions in a cell that no disc covers.
 //!
-//! The set subcells of a cell are squares of places. A square that lies wholly in one disc is dropped; of the others
-//! one random place is tried, then each square is cut in four, and so on down to single places. Whatever the
-//! search returns is uniformly random among the free places of the cell, and if it returns none there is none.
+//! The open subcells of a cell are squares of lattice positions. A square inside of a single disc is dropped. One
+//! random position of the remaining squares is tried, then each square is split into four, and so on down to single
+//! positions. The result is uniformly distributed among the free positions of the cell, and there is always a result
+//! if a free position exists.
 //!
-//! No arithmetic here rounds: the corners of squares are places, and the distance keeps their order, so a square
-//! whose farthest corner is covered is covered at every place.
+//! Rounding does not affect the decisions. The corners of squares are lattice positions and the distance is monotonic,
+//! so a square whose farthest corner is covered is covered everywhere.
 
 use super::grid::{Cell, FAR, Grid, HALO, LATTICE, STEP};
 use super::mask::{REACH, SIDE};
@@ -13,16 +14,16 @@ use super::sheet::{COLUMNS, LANES, Sheet};
 use dapple_hash::CellHash;
 use fearless_simd::{f32x8, prelude::*};
 
-/// A square of places: its first corner in steps of the lattice.
+/// A square of positions: its first corner in lattice steps.
 type Corner = [u32; 2];
 
-/// The largest number of discs that reach into a cell, one for each cell around it, in whole lanes.
+/// Maximum number of discs that reach into a cell, one per surrounding cell, rounded up to whole lanes.
 const MAX_DISCS: usize = (REACH * REACH).next_multiple_of(LANES);
 
-/// The search, with memory that is used again for the next cell.
+/// The search, with scratch memory that is reused for the next cell.
 #[derive(Clone, Debug)]
 pub(crate) struct GapSearch {
-    /// The centers of the discs that reach into the cell, relative to it; the rest of the last lanes is far away.
+    /// Centers of the discs that reach into the cell, relative to it; unused lanes are far away.
     x: [f32; MAX_DISCS],
     y: [f32; MAX_DISCS],
     n_discs: usize,
@@ -43,7 +44,7 @@ impl Default for GapSearch {
 }
 
 impl GapSearch {
-    /// Collects the discs that reach into a cell. The sheet must hold points only, no proposals.
+    /// Collects the discs that reach into a cell. The sheet must contain only points, no proposals.
     #[inline(always)]
     pub(crate) fn gather<S: Simd>(&mut self, simd: S, grid: &Grid, sheet: &Sheet, cell: Cell) {
         let [first, last] = span(0, LATTICE);
@@ -55,7 +56,7 @@ impl GapSearch {
             let ys = f32x8::from_slice(simd, &sheet.y[start..start + LANES]);
             let xs = xs + f32x8::from_slice(simd, &COLUMNS);
             let ys = ys + (row as f32 - HALO as f32);
-            // From the nearest place of the cell.
+            // Distance to the nearest position of the cell
             let dx = (first - xs).max(xs - last).max(0.0) * grid.scale[0];
             let dy = (first - ys).max(ys - last).max(0.0) * grid.scale[1];
             let mut near = (dx * dx + dy * dy).simd_lt(1.0).to_bitmask();
@@ -72,10 +73,10 @@ impl GapSearch {
         self.y[self.n_discs..end].fill(FAR);
     }
 
-    /// A random free place of the cell whose discs were [gathered](Self::gather) and whose mask is `mask`, or none if
-    /// all of its places are covered.
+    /// Returns a random free position of the cell whose discs were [gathered](Self::gather) and whose mask is `mask`;
+    /// `None` if all positions are covered.
     ///
-    /// The bits of subcells that turn out to be covered by one disc are cleared.
+    /// Bits of subcells covered by a single disc are cleared.
     #[inline(always)]
     pub(crate) fn find<S: Simd>(
         &mut self,
@@ -99,7 +100,7 @@ impl GapSearch {
         None
     }
 
-    /// Takes the set subcells that no disc covers alone as the first squares.
+    /// Initializes the squares with the open subcells that no single disc covers.
     #[inline(always)]
     fn start<S: Simd>(&mut self, simd: S, grid: &Grid, mask: &mut u64, size: u32) {
         self.squares.clear();
@@ -116,7 +117,7 @@ impl GapSearch {
         }
     }
 
-    /// Cuts every square in four of side `size` and keeps those that no disc covers alone.
+    /// Splits every square into four of side `size`, and keeps those that no single disc covers.
     #[inline(always)]
     fn cut<S: Simd>(&mut self, simd: S, grid: &Grid, size: u32) {
         let mut quarters = core::mem::take(&mut self.quarters);
@@ -134,7 +135,7 @@ impl GapSearch {
         self.quarters = core::mem::replace(&mut self.squares, quarters);
     }
 
-    /// The quarters of side `size` of a square that discs cover wholly: a set bit for each, by rows.
+    /// Covered quarters of a square, row by row; nonzero if a single disc covers the quarter of side `size`.
     #[inline(always)]
     fn covered_quarters<S: Simd>(
         &self,
@@ -143,7 +144,7 @@ impl GapSearch {
         [x, y]: Corner,
         size: u32,
     ) -> [u64; 4] {
-        // Written out, since closures given to `array::map` are not compiled for the SIMD level.
+        // Written out, since closures passed to `array::map` are not compiled for the SIMD level.
         let (left, right) = (span(x, size), span(x + size, size));
         let (top, bottom) = (span(y, size), span(y + size, size));
         let [sx, sy] = grid.scale;
@@ -162,7 +163,7 @@ impl GapSearch {
         covered
     }
 
-    /// Whether one disc covers a whole square, given by its first and last place along each axis.
+    /// Returns whether a single disc covers a whole square, given by its first and last position along each axis.
     #[inline(always)]
     fn is_covered<S: Simd>(&self, simd: S, grid: &Grid, [x, y]: [[f32; 2]; 2]) -> bool {
         let discs = self.x.chunks_exact(LANES).zip(self.y.chunks_exact(LANES));
@@ -176,7 +177,7 @@ impl GapSearch {
         covered != 0
     }
 
-    /// A place of the squares, each as likely as the others.
+    /// Random position in the squares, uniformly distributed.
     #[inline(always)]
     fn random_place(&self, size: u32, bits: u64) -> [f32; 2] {
         let rank = ((bits >> 40) * self.squares.len() as u64) >> 24;
@@ -187,13 +188,13 @@ impl GapSearch {
     }
 }
 
-/// First and last place of a square along an axis.
+/// First and last position of a square along an axis.
 #[inline(always)]
 fn span(first: u32, size: u32) -> [f32; 2] {
     [first as f32 * STEP, (first + size - 1) as f32 * STEP]
 }
 
-/// The squares of the distances along an axis from the centers of discs to the farther end of a span.
+/// Squared distances along an axis from disc centers to the farther end of a span.
 #[inline(always)]
 fn far_sq<S: Simd>(centers: f32x8<S>, [first, last]: [f32; 2], scale: f32) -> f32x8<S> {
     let far = (centers - first).max(last - centers) * scale;

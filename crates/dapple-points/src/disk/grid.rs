@@ -1,54 +1,53 @@
-//! The grid under a Poisson-disk set: cells small enough that no cell holds two points.
+//! Grid of a Poisson-disk set, with cells small enough for at most one point each.
 //!
-//! The domain is cut into equal cells whose diagonal is at most the radius, so that a cell holds at most one point
-//! and two points conflict only if their cells are at most two apart. A margin of [`HALO`] cells around the grid holds
-//! copies from the other side along axes that wrap, and nothing along axes that do not, so that no loop over neighbors
-//! asks where it is.
+//! The domain is divided into equal cells whose diagonal is at most the radius. A cell therefore contains at most one
+//! point, and two points conflict only if their cells are at most two apart. A margin of [`HALO`] cells around the
+//! grid contains copies from the other side along wrapped axes, and empty cells along other axes, so that neighbor
+//! loops need no border checks.
 //!
-//! **Units.** A place is a cell and an offset in `[0, 1)²` of the cell, a multiple of 2^-22 ([`LATTICE`] steps per
-//! cell). Differences of offsets across up to three cells are exact in `f32`, in whatever frame they are taken.
-//! Two places conflict if the square of their distance over the reach is below 1: `(dx * scale)² + (dy * scale)²` in
-//! `f32` with [`Grid::scale`], rounded after each operation. It never falls where `|dx|` or `|dy|` grows. The reach is
-//! larger than the radius by [`SLACK`], which is more than all rounding together, so the conflict test needs no second,
-//! exact one: points that do not conflict are at least a radius apart as `f64`, and where everything conflicts no empty
-//! circle is larger than the radius times 1 + 1e-6.
+//! **Units.** A position is a cell and an offset in `[0, 1)²` of the cell, a multiple of 2^-22 ([`LATTICE`] steps per
+//! cell). Differences of offsets across up to three cells are exact in `f32`. Two positions conflict if their squared
+//! distance, relative to the reach, is below 1: `(dx * scale)² + (dy * scale)²` in `f32` with [`Grid::scale`], rounded
+//! after each operation. This is monotonic in `|dx|` and `|dy|`. The reach is larger than the radius by [`SLACK`],
+//! which exceeds all rounding, so no second, exact test is needed. Points that do not conflict are at least a radius
+//! apart in `f64`. Where all positions conflict, no empty circle is larger than the radius times 1 + 1e-6.
 
 use crate::{Domain, PointsError, PointsErrorKind, RSA_DENSITY};
 use dapple_hash::{CellHash, Seed};
 use glam::DVec2;
 
-/// Copies of cells beyond each side of the grid.
+/// Width of the margin beyond each side of the grid, in cells.
 pub(crate) const HALO: u32 = 2;
 
-/// Steps of the lattice of places per cell: 2^22, as 2^24 steps are exact in `f32` and differences reach three cells.
+/// Lattice steps per cell: 2^22, because 2^24 steps are exact in `f32` and differences span three cells.
 pub(crate) const LATTICE: u32 = 1 << 22;
 
-/// One step of the lattice, in cells.
+/// Length of a lattice step, in cells.
 pub(crate) const STEP: f32 = 1.0 / LATTICE as f32;
 
-/// The offset of an empty cell: far from every place, and its square is still finite.
+/// Offset of an empty cell: far from every position, with a finite square.
 pub(crate) const FAR: f32 = 1e9;
 
-/// The smallest width and height of a cell, over the reach, at which an offset of [`FAR`] is still out of reach. In a
-/// thinner domain, cells are taken to be this wide, which adds less than 1e-16 to a squared distance of 1.
+/// Minimum width and height of a cell relative to the reach, at which an offset of [`FAR`] is still out of reach. In a
+/// thinner domain, cells are assumed to be this wide, which adds less than 1e-16 to a squared distance of 1.
 const THINNEST: f32 = 2.0 / FAR;
 
-/// By how much the reach of a point is larger than the radius, relatively. Rounding to `f32` may shorten a distance by
-/// 6 · 2^-24 / 2 = 1.8e-7, and taking a given point to the lattice by 2^-23 = 1.2e-7.
+/// Relative difference between the reach of a point and the radius. Rounding to `f32` may shorten a distance by 6 ·
+/// 2^-24 / 2 = 1.8e-7, and moving a given point to the lattice by 2^-23 = 1.2e-7.
 const SLACK: f64 = 4e-7;
 
-/// How much smaller than a radius the diagonal of a cell is at least, relatively: given points that are a radius apart
-/// and then rounded still lie in different cells.
+/// Minimum relative difference between the radius and the diagonal of a cell: given points that are a radius apart are
+/// still in different cells after rounding.
 const CELL_SLACK: f64 = 1e-6;
 
-/// A cell of the grid by its place in the arrays, margin included: the first cell of the domain is `(HALO, HALO)`.
+/// A cell by its row and column in the arrays, including the margin: the first cell of the domain is `(HALO, HALO)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Cell {
     pub(crate) row: u32,
     pub(crate) column: u32,
 }
 
-/// The cells of a domain for one radius.
+/// Cells of a domain for one radius.
 #[derive(Clone, Debug)]
 pub(crate) struct Grid {
     pub(crate) domain: Domain,
@@ -56,17 +55,17 @@ pub(crate) struct Grid {
     pub(crate) cells: [u32; 2],
     /// Width and height of a cell, in units of the domain.
     cell: DVec2,
-    /// Width and height of a cell over the reach.
+    /// Width and height of a cell, relative to the reach.
     pub(crate) scale: [f32; 2],
 }
 
 impl Grid {
-    /// Lays the grid for points that are to be `radius` apart.
+    /// Creates the grid for points at least `radius` apart.
     pub(crate) fn new(domain: Domain, radius: f64, max_points: u64) -> Result<Self, PointsError> {
         let domain = domain.checked()?;
         check_radius(&domain, radius, max_points)?;
         let side = radius * (1.0 - CELL_SLACK) * core::f64::consts::FRAC_1_SQRT_2;
-        // At most 2^30 cells and a margin: `check_radius` has bounded both the area and each side.
+        // There are at most 2^30 cells and a margin, since `check_radius` has bounded the area and each side.
         let cells = [0, 1].map(|axis| (domain.size[axis] / side).ceil().max(1.0) as u32);
         let cell = domain.size / DVec2::new(f64::from(cells[0]), f64::from(cells[1]));
         let largest = domain.origin.abs().max(domain.end().abs()).max_element();
@@ -80,33 +79,33 @@ impl Grid {
         })
     }
 
-    /// The length of a row of the arrays, in cells.
+    /// Length of a row of the arrays, in cells.
     pub(crate) fn stride(&self) -> usize {
         (self.cells[0] + 2 * HALO) as usize
     }
 
-    /// The number of rows of the arrays.
+    /// Number of rows of the arrays.
     pub(crate) fn rows(&self) -> usize {
         (self.cells[1] + 2 * HALO) as usize
     }
 
-    /// The index of a cell in the arrays.
+    /// Index of a cell in the arrays.
     #[inline(always)]
     pub(crate) fn index(&self, cell: Cell) -> usize {
         cell.row as usize * self.stride() + cell.column as usize
     }
 
-    /// The hash of a cell of the domain.
+    /// Hash of a cell of the domain.
     #[inline(always)]
     pub(crate) fn hash(&self, seed: Seed, cell: Cell) -> CellHash {
-        // There are less than 2^32 cells. One word per cell is half the work of two.
+        // There are less than 2^32 cells, so one word identifies a cell, which is half the work of two.
         let number = (cell.row - HALO) * self.cells[0] + (cell.column - HALO);
         CellHash::new(seed, [i64::from(number)])
     }
 
-    /// The cell of the domain that a cell of the margin copies.
+    /// Cell of the domain that a margin cell is a copy of.
     ///
-    /// Other cells are their own originals, and so are those of the margin along an axis that does not wrap.
+    /// Other cells are returned unchanged, including margin cells along an axis that does not wrap.
     #[inline(always)]
     pub(crate) fn original(&self, cell: Cell) -> Cell {
         Cell {
@@ -115,7 +114,7 @@ impl Grid {
         }
     }
 
-    /// One coordinate of [`original`](Self::original), for axis 0 or 1.
+    /// Coordinate of [`original`](Self::original) along axis 0 or 1.
     #[inline(always)]
     pub(crate) fn original_index(&self, axis: usize, index: u32) -> u32 {
         let count = self.cells[axis];
@@ -130,15 +129,15 @@ impl Grid {
         }
     }
 
-    /// The position of a place.
+    /// Position of an offset in a cell.
     pub(crate) fn position(&self, cell: Cell, offset: [f32; 2]) -> DVec2 {
         let along = |index: u32, offset: f32| f64::from(index - HALO) + f64::from(offset);
         let cells = DVec2::new(along(cell.column, offset[0]), along(cell.row, offset[1]));
-        // Rounding must not carry the position over a border that does not wrap.
+        // Rounding must not move the position across a border that does not wrap.
         (self.domain.origin + cells * self.cell).min(self.domain.end())
     }
 
-    /// The place of the lattice nearest to a position of the domain, within its cell.
+    /// Cell of a position, and its offset rounded to the lattice.
     pub(crate) fn place(&self, position: DVec2) -> (Cell, [f32; 2]) {
         let cells = (position - self.domain.origin) / self.cell;
         let along = |at: f64, count: u32| {
@@ -153,7 +152,7 @@ impl Grid {
     }
 }
 
-/// Checks that a set with this radius exists and is not too large.
+/// Checks that the radius is valid and the set is not too large.
 fn check_radius(domain: &Domain, radius: f64, max_points: u64) -> Result<(), PointsError> {
     let refuse = |kind| Err(PointsError::new(kind));
     if !(radius > 0.0 && radius.is_finite()) {
@@ -171,7 +170,7 @@ fn check_radius(domain: &Domain, radius: f64, max_points: u64) -> Result<(), Poi
             });
         }
     }
-    // A set has at least 0.65 points per squared radius of area, and a strip of no width at least one per two radii.
+    // A set has at least 0.65 points per squared radius of area, and a strip without width at least one per two radii.
     let sides = domain.size / radius;
     let needed = (RSA_DENSITY * sides.x * sides.y).max(0.5 * sides.max_element());
     if needed > max_points as f64 || needed.is_nan() {

@@ -1,25 +1,25 @@
-//! Masks of the parts of a cell that may still take a point: 64 bits, one for each of 8 × 8 subcells.
+//! Masks of the open parts of a cell: 64 bits, one for each of 8 × 8 subcells.
 //!
-//! A bit is cleared once a single disc covers its subcell wholly. A subcell that is only covered by several discs
-//! together keeps its bit: masks tell where to throw darts, not where the gaps are.
+//! A bit is cleared once a single disc covers its subcell. A subcell that is covered only by several discs together
+//! keeps its bit: masks guide the darts, but do not find the gaps.
 //!
-//! The subcells that a point covers depend on where in its cell it lies. [`Coverage`] has them for a raster of 16 × 16
-//! boxes of such offsets, and for a box only those subcells that are covered from everywhere in the box.
+//! The subcells that a point covers depend on its offset in its cell. [`Coverage`] tabulates them for 16 × 16 boxes of
+//! offsets. A box lists only the subcells that are covered from every offset in the box.
 
 use super::grid::{Grid, HALO};
 use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, f32x8, prelude::*};
 
-/// Subcells along a side of a cell.
+/// Number of subcells along a side of a cell.
 pub(crate) const SIDE: usize = 8;
 
-/// Boxes of offsets along a side of a cell. Finer ones clear more bits, but 16 × 16 still stay in the cache.
+/// Number of offset boxes along a side of a cell. Finer boxes clear more bits, but 16 × 16 still fit the cache.
 const BOXES: usize = 16;
 
-/// Cells that a disc reaches, along an axis: its own and two on each side.
+/// Number of cells that a disc reaches along an axis: its cell and two on each side.
 pub(crate) const REACH: usize = 2 * HALO as usize + 1;
 
-/// For an offset within a cell, the bits that stay set in each of the 5 × 5 cells around, row by row.
+/// For each box of offsets, the masks of open subcells in the 5 × 5 cells around a point, row by row.
 #[derive(Clone, Debug)]
 pub(crate) struct Coverage {
     kept: Vec<[[u64; REACH]; REACH]>,
@@ -37,7 +37,7 @@ impl Coverage {
         Self { kept }
     }
 
-    /// The bits that a point at `offset` of the middle cell leaves in the cells around it.
+    /// Masks that a point at `offset` of the center cell leaves in the cells around it.
     #[inline(always)]
     pub(crate) fn kept(&self, offset: [f32; 2]) -> &[[u64; REACH]; REACH] {
         let [x, y] = offset.map(|at| ((at * BOXES as f32) as usize).min(BOXES - 1));
@@ -45,7 +45,7 @@ impl Coverage {
     }
 }
 
-/// For each box of offsets, the square of the largest distance along one axis from the box to each subcell.
+/// For each box of offsets, the squared maximum distance along one axis from the box to each subcell.
 fn farthest(scale: f32) -> [[f32; REACH * SIDE]; BOXES] {
     core::array::from_fn(|offset| {
         core::array::from_fn(|subcell| {
@@ -59,7 +59,7 @@ fn farthest(scale: f32) -> [[f32; REACH * SIDE]; BOXES] {
     })
 }
 
-/// For a row of boxes, the bits of the subcells that are not wholly covered.
+/// Masks of the subcells that are not covered, for a row of boxes.
 #[inline(always)]
 fn kept_in_row<S: Simd>(
     simd: S,
@@ -79,27 +79,29 @@ fn kept_in_row<S: Simd>(
     }
 }
 
-/// The number of the set bit of `mask` that has `rank` set bits below it; there must be one.
+/// Position of the set bit of `mask` that has `rank` set bits below it; the bit must exist.
 ///
-/// Without loops or tables, after S. Vigna, "Broadword Implementation of Rank/Select Queries", Experimental Algorithms
-/// 2008, DOI 10.1007/978-3-540-68552-4_12.
+/// Branch-free and without tables, after S. Vigna, "Broadword Implementation of Rank/Select Queries", Experimental
+/// Algorithms 2008, DOI 10.1007/978-3-540-68552-4_12.
 #[inline(always)]
 pub(crate) fn select(mask: u64, rank: u32) -> u32 {
+    // Prefix sums of the number of set bits, by byte
     let pairs = mask - (mask >> 1 & 0x5555_5555_5555_5555);
     let fours = (pairs & 0x3333_3333_3333_3333) + (pairs >> 2 & 0x3333_3333_3333_3333);
     let ends = ((fours + (fours >> 4)) & 0x0F0F_0F0F_0F0F_0F0F).wrapping_mul(ONES);
+    // Find the byte of the bit.
     let byte = 8 * bytes_up_to(ends, rank);
     let rank = rank - ((ends << 8) >> byte & 0xFF) as u32;
-    // The bits of that byte, one to a byte.
+    // Spread the bits of that byte, one per byte.
     let spread = (mask >> byte & 0xFF).wrapping_mul(ONES) & 0x8040_2010_0804_0201;
     let bits = ((spread + 0x7F7F_7F7F_7F7F_7F7F) | spread) >> 7 & ONES;
     byte + bytes_up_to(bits.wrapping_mul(ONES), rank)
 }
 
-/// A one in every byte.
+/// One in every byte.
 const ONES: u64 = 0x0101_0101_0101_0101;
 
-/// How many of the bytes of `ends`, all of them below 128, are at most `rank`.
+/// Number of bytes of `ends` that are at most `rank`; all bytes are below 128.
 #[inline(always)]
 fn bytes_up_to(ends: u64, rank: u32) -> u32 {
     let high = ONES << 7;

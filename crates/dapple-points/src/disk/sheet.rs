@@ -1,28 +1,28 @@
-//! The contents of the cells: at most one place each, a point or a proposal.
+//! Contents of the cells: at most one point or proposal each.
 
 use super::grid::{Cell, FAR, Grid, HALO};
 use super::mask::REACH;
 use core::ops::Range;
 use fearless_simd::{f32x8, i32x8, prelude::*};
 
-/// The rank of a point that was placed in this run; above all proposals.
+/// Rank of a point placed in this run; above all proposals.
 pub(crate) const POINT: i32 = i32::MAX;
 
-/// The rank of a point that was given; above all proposals.
+/// Rank of a given point; above all proposals.
 pub(crate) const GIVEN: i32 = i32::MAX - 1;
 
-/// The highest rank of a proposal.
+/// Maximum rank of a proposal.
 pub(crate) const HIGHEST_PROPOSAL: i32 = i32::MAX - 2;
 
-/// Lanes that are looked at together; a row of [`REACH`] cells fits.
+/// Number of lanes processed together; a row of [`REACH`] cells fits.
 pub(crate) const LANES: usize = 8;
 
-/// The columns of a row of neighbors, relative to the middle one; lanes beyond the reach are far away.
+/// Columns of a row of neighbors, relative to the center; lanes beyond the reach are far away.
 pub(crate) const COLUMNS: [f32; LANES] = [-2.0, -1.0, 0.0, 1.0, 2.0, FAR, FAR, FAR];
 
-/// Offsets and ranks of all cells, margin included, row by row.
+/// Offsets and ranks of all cells including the margin, row by row.
 ///
-/// An empty cell is [`FAR`] away along x; its other numbers have no meaning.
+/// An empty cell has the x offset [`FAR`]; its other values are undefined.
 #[derive(Clone, Debug)]
 pub(crate) struct Sheet {
     pub(crate) x: Vec<f32>,
@@ -30,7 +30,7 @@ pub(crate) struct Sheet {
     pub(crate) rank: Vec<i32>,
 }
 
-/// Some rows of a [`Sheet`], to be written.
+/// Mutable rows of a [`Sheet`].
 #[derive(Debug)]
 pub(crate) struct SheetRows<'a> {
     first_row: u32,
@@ -40,9 +40,9 @@ pub(crate) struct SheetRows<'a> {
 }
 
 impl Sheet {
-    /// A sheet of empty cells.
+    /// Creates a sheet of empty cells.
     pub(crate) fn new(grid: &Grid) -> Self {
-        // Rows of neighbors are read in whole lanes, so the last one reaches beyond the end.
+        // Rows of neighbors are read in whole lanes, so reads extend beyond the last cell.
         let length = grid.stride() * grid.rows() + LANES;
         Self {
             x: vec![FAR; length],
@@ -51,7 +51,7 @@ impl Sheet {
         }
     }
 
-    /// Cuts the rows of the domain into bands of `band_rows` rows.
+    /// Divides the rows of the domain into bands of `band_rows` rows.
     pub(crate) fn bands(
         &mut self,
         grid: &Grid,
@@ -88,8 +88,8 @@ impl Sheet {
         }
     }
 
-    /// The cells, of the five from `start`, that hold a point in conflict with `place`, and those that hold anything in
-    /// conflict with a rank of at least `rank`: two masks with a bit for each cell.
+    /// Conflicts of a position with the five cells starting at `start`, as two bit masks: cells with a conflicting
+    /// point, and cells with a conflicting point or proposal of at least `rank`.
     #[inline(always)]
     fn conflicts_in_row<S: Simd>(
         &self,
@@ -111,7 +111,7 @@ impl Sheet {
         [points.to_bitmask(), above.to_bitmask()]
     }
 
-    /// The conflicts of the place in `cell`.
+    /// Conflicts of the position stored in `cell`.
     #[inline(always)]
     pub(crate) fn rivals<S: Simd>(&self, simd: S, grid: &Grid, cell: Cell) -> Rivals {
         let middle = grid.index(cell);
@@ -131,18 +131,17 @@ impl Sheet {
     }
 }
 
-/// The conflicts of a proposed point.
+/// Conflicts of a proposed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Rivals {
-    /// A conflict with a point, and perhaps with proposals.
+    /// Conflict with a point, and possibly with proposals.
     Point,
-    /// Conflicts with proposals of the same or a higher rank only: a bit for each cell around; no conflict if no bit is
-    /// set.
+    /// Conflicts only with proposals of equal or higher rank, one bit per surrounding cell; no conflict if it is 0.
     Proposals(u32),
 }
 
 impl Rivals {
-    /// Calls `rival` with the cells around `cell` that hold the proposals until it returns true; returns whether it did.
+    /// Calls `rival` with the surrounding cells of the set bits until it returns true; returns whether it did.
     #[inline(always)]
     pub(crate) fn any(bits: u32, cell: Cell, mut rival: impl FnMut(Cell) -> bool) -> bool {
         let mut left = bits;
@@ -163,7 +162,7 @@ impl Rivals {
 }
 
 impl SheetRows<'_> {
-    /// Puts a place into a cell, and into its copies in the margin of the same row.
+    /// Stores an offset and a rank in a cell, and in its copies in the margin of the same row.
     #[inline(always)]
     pub(crate) fn put(&mut self, grid: &Grid, cell: Cell, offset: [f32; 2], rank: i32) {
         let own = Cell {
@@ -204,7 +203,7 @@ impl SheetRows<'_> {
     }
 }
 
-/// Where the arrays hold the rows of the domain.
+/// Range of the domain rows in the arrays.
 pub(crate) fn domain_rows(grid: &Grid) -> Range<usize> {
     let margin = HALO as usize * grid.stride();
     margin..margin + grid.cells[1] as usize * grid.stride()

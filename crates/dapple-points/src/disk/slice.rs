@@ -1,8 +1,8 @@
-//! One slice of time: every open cell proposes at most one place, and the proposals are settled among themselves.
+//! One time slice: every open cell proposes at most one point, and the proposals are settled among themselves.
 //!
 //! Proposals have random ranks. A proposal is accepted if it conflicts with no point and with no accepted proposal of
-//! higher rank. This is the result of sequential dart throwing in the order of the ranks, but it depends only on a few
-//! proposals nearby, so they can be settled in any order.
+//! higher rank. This equals sequential dart throwing in the order of the ranks. Each decision depends only on a few
+//! nearby proposals, so that proposals can be settled in any order.
 
 use super::gap::GapSearch;
 use super::grid::{Cell, FAR, Grid, HALO, LATTICE, STEP};
@@ -13,7 +13,7 @@ use dapple_hash::Seed;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, prelude::*};
 
-/// The place where a cell proposes a point.
+/// Proposed point of a cell.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     pub(crate) cell: Cell,
@@ -21,23 +21,22 @@ pub(crate) struct Proposal {
     pub(crate) verdict: Verdict,
 }
 
-/// The state of a proposed point.
+/// State of a proposal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
     Accepted,
     Rejected,
-    /// It depends on these proposals, which conflict with it and have the same or a higher rank: a bit for each cell
-    /// around.
+    /// Undecided: it conflicts with these proposals of equal or higher rank, one bit per surrounding cell.
     Open(u32),
 }
 
-/// Cells whose darts are drawn together.
+/// Number of cells whose darts are drawn together.
 const BATCH: usize = 64;
 
-/// The chance that a cell proposes, as a part of 2^32, by the number of its set subcells.
+/// Probability that a cell proposes, in units of 2^-32, by the number of its open subcells.
 pub(crate) type Chances = [u64; SIDE * SIDE + 1];
 
-/// The chances in a slice in which a cell without points is hit by `mean` darts on average.
+/// Probabilities for a slice in which an empty cell receives `mean` darts on average.
 pub(crate) fn dart_chances(mean: f64) -> Chances {
     let subcells = (SIDE * SIDE) as f64;
     core::array::from_fn(|open| {
@@ -49,20 +48,20 @@ pub(crate) fn dart_chances(mean: f64) -> Chances {
 /// Consecutive rows of cells that are processed together.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Band {
-    /// The rows of the band, counted with the margin.
+    /// Rows of the band, including the margin in the count.
     pub(crate) rows: Range<u32>,
     /// Cells that may still take a point.
     pub(crate) open: Vec<Cell>,
     proposals: Vec<Proposal>,
-    /// The places of the accepted proposals of the latest slice.
+    /// Positions of the proposals accepted in the latest slice.
     pub(crate) accepted: Vec<(Cell, [f32; 2])>,
-    /// The number of the proposal of a cell; left over from earlier slices where there is none.
+    /// Index of the proposal of each cell; stale if the cell has none.
     slots: Vec<u32>,
     search: GapSearch,
 }
 
 impl Band {
-    /// A band whose cells are all open.
+    /// Creates a band in which all cells are open.
     pub(crate) fn new(grid: &Grid, rows: Range<u32>) -> Self {
         let columns = HALO..HALO + grid.cells[0];
         let mut open = Vec::with_capacity(rows.len() * columns.len());
@@ -77,10 +76,10 @@ impl Band {
         }
     }
 
-    /// Draws the proposals of the open cells by throwing darts, and drops the cells that are closed. `masks` are those
-    /// of the band's rows.
+    /// Draws the proposals of the open cells by throwing darts, and drops closed cells. `masks` are the masks of the
+    /// rows of the band.
     ///
-    /// `chances` are those of [`dart_chances`].
+    /// `chances` comes from [`dart_chances`].
     #[inline(always)]
     pub(crate) fn draw_darts(
         &mut self,
@@ -94,7 +93,7 @@ impl Band {
         let mut kept = 0;
         self.proposals.clear();
         for start in (0..self.open.len()).step_by(BATCH) {
-            // Three loops: one that fits into lanes, one without branches, one over the few cells that propose.
+            // Three loops: one that vectorizes, one without branches, and one over the few cells that propose.
             let mut lots = [0; BATCH];
             let end = self.open.len().min(start + BATCH);
             for (lot, &cell) in lots.iter_mut().zip(&self.open[start..end]) {
@@ -123,8 +122,8 @@ impl Band {
         self.open.truncate(kept);
     }
 
-    /// Draws the proposals of the open cells by an exact search, and drops the cells without a free place. `masks` are
-    /// those of the band's rows.
+    /// Draws the proposals of the open cells by exact search, and drops cells without a free position. `masks` are the
+    /// masks of the rows of the band.
     #[inline(always)]
     pub(crate) fn draw_gaps<S: Simd>(
         &mut self,
@@ -165,7 +164,7 @@ impl Band {
         });
     }
 
-    /// Writes the proposals of an exact search into the sheet, which the search itself reads.
+    /// Writes the proposals of the exact search to the sheet, which the search itself reads.
     pub(crate) fn place_gaps(&self, grid: &Grid, mut sheet: SheetRows<'_>, seed: Seed) {
         for proposal in &self.proposals {
             let lot = grid.hash(seed, proposal.cell).at(0);
@@ -193,7 +192,7 @@ impl Band {
                 self.is_accepted(grid, sheet, cell);
             }
         }
-        // Every proposal is written, and stays if the next one does not go to the same slot: no branch is guessed.
+        // Write every proposal, and advance the slot only if it was accepted: there is no branch to mispredict.
         self.accepted
             .resize(self.proposals.len() + 1, (Cell::default(), [0.0; 2]));
         let mut n_accepted = 0;
@@ -204,9 +203,9 @@ impl Band {
         self.accepted.truncate(n_accepted);
     }
 
-    /// Whether the proposal of a cell is accepted.
+    /// Returns whether the proposal of a cell is accepted.
     ///
-    /// Answers within the band are stored. Answers about proposals in other bands are computed again by each band that
+    /// Results within the band are cached. Results about proposals in other bands are recomputed by each band that
     /// needs them, so that bands share no memory.
     fn is_accepted(&mut self, grid: &Grid, sheet: &Sheet, cell: Cell) -> bool {
         let slot = self.rows.contains(&cell.row).then(|| {
@@ -241,7 +240,7 @@ impl Band {
         accepted
     }
 
-    /// Makes points of the accepted proposals and takes the others out of the sheet.
+    /// Converts accepted proposals to points, and removes the others from the sheet.
     pub(crate) fn keep_accepted(&self, grid: &Grid, mut sheet: SheetRows<'_>) {
         for proposal in &self.proposals {
             let x = if proposal.verdict == Verdict::Accepted {
@@ -254,13 +253,13 @@ impl Band {
     }
 }
 
-/// The rank of a proposal from the upper half of its random bits; the lower half is used elsewhere.
+/// Rank of a proposal from the upper half of its random bits; the lower half is used elsewhere.
 #[inline(always)]
 fn rank(lot: u64) -> i32 {
     ((lot >> 33) as i32).min(HIGHEST_PROPOSAL)
 }
 
-/// A random place in the set subcells of `mask`.
+/// Random position in the open subcells of `mask`.
 #[inline(always)]
 fn dart(mask: u64, bits: u64) -> [f32; 2] {
     let rank = ((bits >> 38) * u64::from(mask.count_ones())) >> 26;
@@ -275,7 +274,7 @@ fn dart(mask: u64, bits: u64) -> [f32; 2] {
     ]
 }
 
-/// Clears the subcells that the accepted points of a band cover in `masks`, the masks of the rows `rows`.
+/// Clears the subcells that the accepted points of a band cover. `masks` are the masks of the rows `rows`.
 #[inline(always)]
 pub(crate) fn cover(
     grid: &Grid,
@@ -299,7 +298,7 @@ pub(crate) fn cover(
             }
         }
         if rows.contains(&cell.row) {
-            // The table leaves the edges of the cell, but the cell is no wider than the disc.
+            // The table keeps the edges of the cell, but a disc covers its whole cell.
             let row = cell.row - rows.start;
             masks[grid.index(Cell { row, ..cell })] = 0;
         }

@@ -1,7 +1,7 @@
-//! The slices of a set, one after another, on all cores.
+//! Construction of a set in slices, on all cores.
 //!
-//! Each step of a slice runs over bands of rows, which read the results of the step before and write only their own
-//! rows, so that the result does not depend on the number of threads.
+//! Each step of a slice runs over bands of rows in parallel. A band reads the results of the previous step and writes
+//! only its own rows, so that the result does not depend on the number of threads.
 
 use super::grid::{Cell, FAR, Grid, HALO};
 use super::mask::Coverage;
@@ -16,14 +16,13 @@ use dapple_raster::simd::dispatch;
 use fearless_simd::Level;
 use glam::DVec2;
 
-/// Rows of cells in a band: few enough to keep several cores busy, many enough that bands repeat little of each other's
-/// work.
+/// Number of cell rows in a band: small enough to occupy several cores, large enough that bands duplicate little work.
 const BAND_ROWS: u32 = 64;
 
-/// The mean number of darts at a cell in each slice.
+/// Mean number of darts per cell in each slice.
 const DARTS: [f64; 8] = [0.3, 0.4, 0.6, 1.0, 2.0, 4.0, 8.0, 16.0];
 
-/// A set under construction. Once the caller asked to stop, steps do nothing but fail.
+/// A set under construction. After a cancellation, every step fails without doing work.
 pub(crate) struct Solution<'a> {
     is_cancelled: &'a IsCancelled<'a>,
     grid: &'a Grid,
@@ -35,7 +34,7 @@ pub(crate) struct Solution<'a> {
 }
 
 impl<'a> Solution<'a> {
-    /// A solution for the domain, without points.
+    /// Creates an empty solution for the domain.
     pub(crate) fn new(
         grid: &'a Grid,
         coverage: &'a Coverage,
@@ -60,7 +59,7 @@ impl<'a> Solution<'a> {
         })
     }
 
-    /// Takes given points, each in a cell of its own.
+    /// Adds given points, each in a separate cell.
     pub(crate) fn give(&mut self, places: &[(Cell, [f32; 2])]) -> Result<(), PointsError> {
         for &(cell, offset) in places {
             let band = (cell.row - HALO) / BAND_ROWS;
@@ -78,7 +77,7 @@ impl<'a> Solution<'a> {
         self.cover()
     }
 
-    /// Adds points until none fits.
+    /// Adds points until no further point fits.
     pub(crate) fn fill(&mut self, seed: Seed) -> Result<(), PointsError> {
         for (slice, mean) in (0..).zip(DARTS) {
             self.throw_darts(mean, seed.child("darts", slice))?;
@@ -95,7 +94,7 @@ impl<'a> Solution<'a> {
         Ok(())
     }
 
-    /// The positions of the points that were not given, cell by cell.
+    /// Positions of the points that were not given, cell by cell.
     pub(crate) fn positions(&self) -> Result<Vec<DVec2>, PointsError> {
         let mut parts = vec![Vec::new(); self.bands.len()];
         let items = self.bands.iter().zip(&mut parts);
@@ -122,7 +121,7 @@ impl<'a> Solution<'a> {
         positions
     }
 
-    /// Lets open cells propose the places of random darts.
+    /// Lets open cells propose random darts.
     fn throw_darts(&mut self, mean: f64, seed: Seed) -> Result<(), PointsError> {
         let (grid, level) = (self.grid, self.level);
         let chances = dart_chances(mean);
@@ -134,7 +133,7 @@ impl<'a> Solution<'a> {
         })
     }
 
-    /// Lets open cells propose random free places.
+    /// Lets open cells propose random free positions.
     fn search_gaps(&mut self, seed: Seed) -> Result<(), PointsError> {
         let (grid, sheet, level) = (self.grid, &self.sheet, self.level);
         let masks = self.masks[domain_rows(grid)].chunks_mut(BAND_ROWS as usize * grid.stride());
@@ -149,7 +148,7 @@ impl<'a> Solution<'a> {
         })
     }
 
-    /// Settles the proposals and makes points of those that are accepted.
+    /// Settles the proposals, and converts accepted ones to points.
     fn settle(&mut self) -> Result<(), PointsError> {
         let (grid, level) = (self.grid, self.level);
         self.sheet.wrap_rows(grid);
@@ -167,7 +166,7 @@ impl<'a> Solution<'a> {
         Ok(())
     }
 
-    /// Clears the subcells that the newest points cover from the masks.
+    /// Clears the subcells that the newest points cover.
     fn cover(&mut self) -> Result<(), PointsError> {
         let (grid, coverage, level) = (self.grid, self.coverage, self.level);
         let bands = &self.bands;
@@ -182,13 +181,13 @@ impl<'a> Solution<'a> {
     }
 }
 
-/// The numbers of a band and of those next to it, around the domain, each once.
+/// Indices of a band and its neighbors, wrapped around the domain, without duplicates.
 fn neighbors(band: usize, count: usize) -> impl Iterator<Item = usize> {
     let around = [band, (band + 1) % count, (band + count - 1) % count];
     (0..around.len().min(count)).map(move |at| around[at])
 }
 
-/// Calls `work` for every item, on all cores where the feature `rayon` is on, until the caller asks to stop.
+/// Calls `work` for every item until a cancellation, on all cores if the feature `rayon` is enabled.
 fn for_each<T: Send>(
     is_cancelled: &IsCancelled,
     items: impl Iterator<Item = T>,

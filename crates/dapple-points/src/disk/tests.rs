@@ -1,4 +1,4 @@
-//! The properties of a Poisson-disk set, checked by means that share nothing with its construction.
+//! Tests of the properties of Poisson-disk sets, independent of their construction.
 
 use super::mask::Coverage;
 use super::solve::Solution;
@@ -17,10 +17,10 @@ use dapple_raster::{Ramp, Varying, parallel};
 use fearless_simd::Level;
 use glam::DVec2;
 
-/// How much larger than the radius an empty circle may be, as the documentation says.
+/// Maximum relative excess of the radius of an empty circle, as documented.
 const GAP_TOLERANCE: f64 = 1e-6;
 
-/// Domains of every kind of wrapping: square, thin, far from the origin; none narrower than two radii of 0.1.
+/// Domains with every kind of wrapping: square, thin, far from the origin; none narrower than two radii of 0.1.
 fn domains() -> Vec<Domain> {
     let mut domains = Vec::new();
     for wrap in [[false, false], [true, false], [false, true], [true, true]] {
@@ -38,7 +38,7 @@ fn domains() -> Vec<Domain> {
     domains
 }
 
-/// Checks that no two points are closer than the radius and that none fits in between.
+/// Checks that no two points are closer than the radius, and that no further point fits.
 fn assert_is_maximal(set: &PointSet, radius: f64) {
     let case = format!("{} points, {:?}, radius {radius}", set.len(), set.domain());
     if let Some(distance) = set.minimum_distance() {
@@ -102,8 +102,8 @@ fn a_line_is_filled_like_a_plane() {
             "a gap of {gap}"
         );
     }
-    // Rényi's parking constant: 0.7476 of a line is covered by random intervals that do not overlap; 0.02 is three
-    // standard deviations of the number of 748 intervals, which varies by 0.2 · sqrt(748), and the two ends.
+    // Rényi's parking constant: random intervals that do not overlap cover 0.7476 of a line. The tolerance of 0.02 is
+    // three standard deviations of the number of 748 intervals, which varies by 0.2 · sqrt(748), plus the two ends.
     assert!(
         (set.len() as f64 * 0.001 - 0.7476).abs() < 0.02,
         "{} intervals",
@@ -132,8 +132,8 @@ fn spectrum_is_isotropic_and_that_of_darts() {
         "anisotropy {}",
         found.anisotropy()
     );
-    // Random sequential addition by brute force has a peak of 1.75 (research note), found here with fewer frequencies
-    // in a ring: 0.15 is three standard deviations of the largest ring.
+    // Brute-force random sequential addition has a peak of 1.75 (research note). Here rings have fewer frequencies:
+    // 0.15 is three standard deviations of the largest ring.
     assert!(
         (found.peak_power() - 1.75).abs() < 0.15,
         "peak {}",
@@ -141,8 +141,8 @@ fn spectrum_is_isotropic_and_that_of_darts() {
     );
 }
 
-/// Sequential dart throwing, by the book, but for darts that could not stay: none is thrown at the squares of a fine
-/// grid that one disc covers. It ends when `misses` darts in a row found no room.
+/// Sequential dart throwing, except that no darts are thrown at squares of a fine grid that a single disc covers. It
+/// ends after `misses` rejected darts in a row.
 fn throw_darts(domain: Domain, radius: f64, misses: u32, seed: Seed) -> PointSet {
     const SIDE: u32 = 100;
     let square = domain.size / f64::from(SIDE);
@@ -183,7 +183,8 @@ fn points_are_as_many_as_darts_by_brute_force_in_every_domain() {
         };
         let ours = mean(&|seed| poisson_disk(domain, 0.3, seed).unwrap().len());
         let darts = mean(&|seed| throw_darts(domain, 0.3, 2000, seed).len());
-        // Counts near 35 vary by 1.5, so the difference of two means of 100 by 0.2; darts miss one gap in 50 sets.
+        // Counts near 35 vary by 1.5, so the difference of two means of 100 varies by 0.2; darts miss one gap in 50
+        // sets.
         assert!(
             (ours - darts).abs() < 0.7,
             "{wrap:?}: {ours} beside {darts}"
@@ -208,7 +209,7 @@ fn number_of_points_is_about_what_was_asked_for() {
                 })
                 .sum();
             let ratio = total as f64 / 20.0 / f64::from(n_points);
-            // The border correction is of first order; corners are left out.
+            // The border correction is first-order and ignores corners.
             assert!(
                 (ratio - 1.0).abs() < 0.05,
                 "{wrap:?}: {ratio} of {n_points}"
@@ -381,10 +382,10 @@ fn value_stability_poisson_disk() {
     assert_eq!(bits, 8764673758391801309);
 }
 
-/// Makes points, unless it is cancelled.
+/// A function that creates points unless it is canceled.
 type Make<'a> = &'a dyn Fn(&IsCancelled) -> Result<PointSet, PointsError>;
 
-/// Makes points with a callback that asks to stop at its calls from `last` on, and returns the number of calls.
+/// Creates points with a callback that cancels at call number `last` and later, and returns the number of calls.
 fn cancelled_at(last: usize, make: Make<'_>) -> usize {
     let n_calls = AtomicUsize::new(0);
     let made = make(&|| n_calls.fetch_add(1, Relaxed) >= last);
@@ -426,7 +427,7 @@ fn sets_can_be_cancelled_at_every_call_and_are_asked_often() {
         );
         for last in (0..n_calls).step_by(n_calls / 12) {
             let n_calls = cancelled_at(last, make);
-            // Each thread may have asked once more before it knew.
+            // Each thread may have called once more before it was notified.
             assert!(
                 n_calls <= last + parallel::n_threads() + 1,
                 "{n_calls} from {last} on"

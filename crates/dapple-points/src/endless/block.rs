@@ -1,6 +1,6 @@
-//! A block of cells: which of their darts stay.
+//! Evaluation of a block of cells: which darts become points.
 //!
-//! Lengths are in steps, counted from the first cell of the block.
+//! Lengths are in steps, relative to the first cell of the block.
 
 use super::{EndlessPoint, N_ROUNDS, Plane, Strip};
 use core::array::from_fn;
@@ -8,7 +8,7 @@ use core::cmp::Ordering;
 use dapple_hash::{CellHash, unit_f64};
 use glam::DVec2;
 
-/// The reason why a block cannot tell its points.
+/// Reason why a block cannot be evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Stop {
     /// A dart depends on cells beyond the margin.
@@ -17,7 +17,7 @@ pub(super) enum Stop {
     Radius { position: DVec2, radius: f64 },
 }
 
-/// The cells of a block and of a margin around it.
+/// Cells of a block and of the margin around it.
 pub(super) struct Block<'a, F> {
     plane: &'a Plane,
     radius: &'a F,
@@ -25,35 +25,35 @@ pub(super) struct Block<'a, F> {
     rows: Vec<Strip>,
     margin: usize,
     cells: Vec<Cell>,
-    /// The cells around a cell, nearest first.
+    /// Neighbors of a cell, nearest first.
     around: Vec<Neighbor>,
-    /// Cells that must be decided before the darts in work, one dart after another.
+    /// Stack of cells that must be decided before the darts in progress.
     earlier: Vec<usize>,
     /// Scratch memory of [`cover_around`](Self::cover_around).
     quarters: [Vec<[f64; 4]>; 2],
-    /// The smallest and the largest radius.
+    /// Minimum and maximum radius.
     radii: [f64; 2],
 }
 
-/// The state of a cell: its current dart, and whether that one stays.
+/// State of a cell: its current dart, and whether the dart is a point.
 #[derive(Clone, Copy)]
 struct Cell {
     hash: CellHash,
-    /// The random bits of the places of its darts.
+    /// Random bits of the positions of its darts.
     place: u64,
     dart: Dart,
-    /// The current round; [`N_ROUNDS`] after the last one.
+    /// Current round; [`N_ROUNDS`] after the last one.
     round: u8,
     state: State,
-    /// The sixteenths of the cell, by row and column, in which any dart would be too close to a point.
+    /// Mask of the sixteenths of the cell, by row and column, in which every dart would be too close to a point.
     covered: u16,
 }
 
-/// A candidate for a point.
+/// A candidate point.
 #[derive(Clone, Copy)]
 struct Dart {
     at: [f64; 2],
-    /// The radius at its place.
+    /// Radius at its position.
     radius: f64,
 }
 
@@ -61,19 +61,19 @@ struct Dart {
 enum Rival {
     /// No conflict.
     None,
-    /// A point too close to the dart.
+    /// A point is too close to the dart.
     Winner,
-    /// An earlier dart too close to it, in this round.
+    /// An earlier dart in this round is too close to it.
     Earlier(u8),
 }
 
 #[derive(Clone, Copy, PartialEq)]
 enum State {
-    /// Nobody has asked for the cell.
+    /// The cell has not been accessed.
     New,
-    /// Nobody may ask: at the edge of the margin.
+    /// The cell is at the edge of the margin and cannot be evaluated.
     Edge,
-    /// The current dart is not decided.
+    /// The current dart is undecided.
     Open,
     /// The current dart is a point.
     Point,
@@ -82,11 +82,11 @@ enum State {
 /// A cell near another one.
 #[derive(Clone, Copy)]
 struct Neighbor {
-    /// Columns and rows from the cell.
+    /// Offset in columns and rows.
     by: [i64; 2],
-    /// The difference of indices.
+    /// Offset of the index.
     offset: isize,
-    /// The smallest squared distance of a place in one to a place in the other.
+    /// Minimum squared distance between positions of the two cells.
     distance_sq: f64,
 }
 
@@ -115,7 +115,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         block
     }
 
-    /// Marks the cells that have not all of their neighbors in the block.
+    /// Marks the cells without a complete neighborhood in the block.
     fn close_edge(&mut self, reach: usize) {
         let (width, height) = (self.columns.len(), self.rows.len());
         for (y, row) in self.cells.chunks_mut(width).enumerate() {
@@ -161,7 +161,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         Ok(found.collect())
     }
 
-    /// Decides the darts of a cell in all rounds up to `round`, inclusive.
+    /// Decides the darts of a cell in all rounds up to and including `round`.
     fn decide(&mut self, index: usize, round: u8) -> Result<(), Stop> {
         if self.cells[index].state == State::New {
             self.start(index)?;
@@ -178,7 +178,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         Ok(())
     }
 
-    /// Whether the current dart of a cell keeps its distance from all points of earlier darts.
+    /// Returns whether the current dart of a cell is far enough from all points of earlier darts.
     fn stays(&mut self, index: usize) -> Result<bool, Stop> {
         let (dart, round) = (self.cells[index].dart, self.cells[index].round);
         let reach = self.plane.rule.distance(dart.radius, self.radii[1]);
@@ -195,7 +195,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
             }
             let other = &self.cells[other_index];
             match other.state {
-                // Its dart was an earlier one: a later one would have waited for this dart.
+                // Its dart is an earlier one: a later one would have waited for this dart.
                 State::Point if self.are_too_close(&dart, &other.dart) => {
                     self.earlier.truncate(begin);
                     return Ok(false);
@@ -239,6 +239,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         if other.state == State::Point {
             return Ok(if is_near { Rival::Winner } else { Rival::None });
         }
+        // Find an earlier round in which the other cell has a dart too close.
         for its_round in other.round..round {
             let its_dart = if its_round == other.round {
                 Some(other.dart)
@@ -257,13 +258,14 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         } else {
             self.dart(other_index, round)?
         };
+        // Both darts are of the same round: the lower rank comes first.
         if !its_dart.is_some_and(|its_dart| self.are_too_close(dart, &its_dart)) {
             return Ok(Rival::None);
         }
         let [mine, theirs] = [hash, other.hash].map(|hash| hash.at(RANK + u32::from(round)));
         Ok(match theirs.cmp(&mine) {
             Ordering::Less => Rival::Earlier(round),
-            // Of two equal ranks, neither dart stays.
+            // If the ranks are equal, neither dart becomes a point.
             Ordering::Equal => Rival::Winner,
             Ordering::Greater => Rival::None,
         })
@@ -275,7 +277,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         x * x + y * y < least * least
     }
 
-    /// Gives a new cell its first dart.
+    /// Initializes a cell with its first dart.
     fn start(&mut self, index: usize) -> Result<(), Stop> {
         let [column, row] = self.strips(index);
         let hash = CellHash::new(self.plane.seed, [column.cell, row.cell]);
@@ -285,7 +287,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         self.throw(index)
     }
 
-    /// Throws the dart of the current round, and of the following rounds until one may stay.
+    /// Throws darts, starting with the current round, until one is in an uncovered part.
     fn throw(&mut self, index: usize) -> Result<(), Stop> {
         while self.cells[index].round < N_ROUNDS {
             let cell = &self.cells[index];
@@ -300,7 +302,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         Ok(())
     }
 
-    /// The dart of a cell in a round, if there is one.
+    /// Dart of a cell in a round, if there is one.
     fn dart(&self, index: usize, round: u8) -> Result<Option<Dart>, Stop> {
         let cell = &self.cells[index];
         let bits = cell.place ^ DARTS[usize::from(round)];
@@ -319,7 +321,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         }
         let [least, most] = self.radii;
         let radius = (radius / self.plane.step).clamp(least, most);
-        // Thin the darts where the radius is large, so that there are as many of them per point as elsewhere.
+        // Thin the darts where the radius is large, so that their number per point is constant.
         let share = least / radius;
         if share < 1.0 && unit_f64(cell.hash.at(THIN + u32::from(round))) >= share * share {
             return Ok(None);
@@ -330,7 +332,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         Ok(Some(Dart { at, radius }))
     }
 
-    /// The position of the current dart of a cell, in the caller's unit.
+    /// Position of the current dart of a cell, in the unit of the caller.
     fn position(&self, index: usize) -> DVec2 {
         let strips = self.strips(index);
         let first = [self.columns[0].absolute, self.rows[0].absolute];
@@ -342,25 +344,25 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         DVec2::new(along(0), along(1))
     }
 
-    /// The column and the row of a cell.
+    /// Column and row of a cell.
     fn strips(&self, index: usize) -> [Strip; 2] {
         let width = self.columns.len();
         [self.columns[index % width], self.rows[index / width]]
     }
 
-    /// Marks what a new point covers of the cells around it, whatever the radius of a dart there is.
+    /// Marks the parts of surrounding cells that a new point covers for every radius of a dart.
     fn cover_around(&mut self, index: usize) {
         let point = self.cells[index].dart;
         let reach = self.plane.rule.distance(self.radii[0], point.radius);
         let reach_sq = reach * reach;
         let width = self.columns.len();
         let (column, row) = (index % width, index / width);
-        // The squared distances of the point to the far sides of the quarters of the columns and rows around.
+        // Squared distances from the point to the far sides of the quarters of surrounding columns and rows
         let quarters = |axis: usize, strip: &Strip, first: &Strip| -> [f64; 4] {
             let start = (strip.absolute - first.absolute) as f64 - point.at[axis];
             let quarter = 0.25 * strip.width as f64;
             from_fn(|which| {
-                // A dart is rounded down to a step.
+                // Positions of darts are rounded down to a step.
                 let low = start + quarter * which as f64 - 1.0;
                 let high = low + quarter + 1.0;
                 (low * low).max(high * high)
@@ -395,7 +397,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
 }
 
 impl Cell {
-    /// Whether the place of the current dart is known to be too close to a point.
+    /// Returns whether the position of the current dart is known to be too close to a point.
     fn is_covered(&self) -> bool {
         let bits = self.place ^ DARTS[usize::from(self.round)];
         let [x, y] = [bits >> 62, bits >> 30 & 3];
@@ -403,14 +405,14 @@ impl Cell {
     }
 }
 
-/// The counters of a cell's hash: the place of its darts, the id of its point, the ranks and the thinning of its darts.
+/// Counters of the hash of a cell: positions of its darts, id of its point, ranks and thinning of its darts.
 const PLACE: u32 = 0;
 const ID: u32 = 1;
 const RANK: u32 = 2;
 const THIN: u32 = RANK + N_ROUNDS as u32;
 
-/// First numbers of Sobol's sequence, x in the upper half, combined with the position bits of a cell in each round, so
-/// that the darts of a cell fall into different parts of it.
+/// First numbers of Sobol's sequence, x in the upper half. In each round, one is combined with the position bits of a
+/// cell, so that the darts of a cell fall into different parts of it.
 const DARTS: [u64; N_ROUNDS as usize] = {
     let mut darts = [0; N_ROUNDS as usize];
     let mut round = 0;
@@ -429,7 +431,7 @@ const DARTS: [u64; N_ROUNDS as usize] = {
     darts
 };
 
-/// A cell that nobody has asked for.
+/// A cell that has not been accessed.
 const NEW: Cell = Cell {
     hash: CellHash::of_words([0, 0]),
     place: 0,
@@ -442,7 +444,7 @@ const NEW: Cell = Cell {
     covered: 0,
 };
 
-/// The cells around a cell that are nearer than the largest radius, nearest first.
+/// Neighbors of a cell that are nearer than the largest radius, nearest first.
 fn around(plane: &Plane, width: usize) -> Vec<Neighbor> {
     let reach = plane.reach();
     let most = plane.radii[1] / plane.step;

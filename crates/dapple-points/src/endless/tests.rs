@@ -1,4 +1,4 @@
-//! Windows of endless sets beside a construction of a piece of the plane by brute force.
+//! Tests of windows of endless sets against a brute-force construction of a part of the plane.
 
 use super::block::{Block, Stop};
 use super::{EndlessPoint, EndlessPoissonDisk, EndlessVariablePoissonDisk, N_ROUNDS};
@@ -10,7 +10,7 @@ use core::f64::consts::TAU;
 use dapple_hash::{CellHash, Seed, rand_core::Rng, unit_f64};
 use glam::DVec2;
 
-/// Points in an order of their own.
+/// Points in a canonical order.
 fn sorted(mut points: Vec<EndlessPoint>) -> Vec<EndlessPoint> {
     points.sort_by(|a, b| {
         let (a, b) = (a.position, b.position);
@@ -19,7 +19,7 @@ fn sorted(mut points: Vec<EndlessPoint>) -> Vec<EndlessPoint> {
     points
 }
 
-/// The points of a window, in an order of their own.
+/// Points of a window, in a canonical order.
 fn window(set: &EndlessPoissonDisk, min: DVec2, max: DVec2) -> Vec<EndlessPoint> {
     sorted(set.points(min, max).unwrap())
 }
@@ -28,8 +28,8 @@ fn is_inside(position: DVec2, min: DVec2, max: DVec2) -> bool {
     position.cmpge(min).all() && position.cmplt(max).all()
 }
 
-/// The darts of cells from `-first` to `first`, in their order, and the points of those that stay, by comparing each
-/// with all points before it. The smallest radius is 1.
+/// Brute-force construction: throws the darts of the cells from `-first` to `first` in order, and compares each with
+/// all earlier points. The minimum radius is 1.
 fn naive(
     seed: Seed,
     first: i64,
@@ -76,8 +76,7 @@ fn naive(
     points
 }
 
-/// The number of index `i` of the first two dimensions of Sobol's sequence: bit reversal, and the matrix of binomials
-/// modulo 2.
+/// Element `i` of the first two dimensions of Sobol's sequence: bit reversal, and the matrix of binomials modulo 2.
 fn sobol(i: u32) -> [u32; 2] {
     let odd_binomial = |n: u32, k: u32| n & k == k;
     let mut y = 0;
@@ -90,7 +89,7 @@ fn sobol(i: u32) -> [u32; 2] {
 
 #[test]
 fn windows_hold_the_points_of_a_construction_by_brute_force() {
-    // Nothing reaches from the edge of 45 cells, 32 radii, into the window.
+    // No dependency reaches from the edge of 45 cells, 32 radii, into the window.
     let expected = naive(
         Seed(3).child("endless poisson disk", 0),
         45,
@@ -217,13 +216,13 @@ fn points_keep_their_distance_exactly() {
         let points = set.points(min, min + size).unwrap();
         let ids: std::collections::BTreeSet<u64> = points.iter().map(|point| point.id).collect();
         assert_eq!(ids.len(), points.len());
-        // Scaled exactly, so that squares do not underflow.
+        // Scale exactly, so that squares do not underflow.
         let scale = 1.0 / f64::from_bits(radius.to_bits() & f64::INFINITY.to_bits());
         let positions = points.iter().map(|point| (point.position - min) * scale);
         let domain = Domain::rectangle(DVec2::ZERO, size * scale);
         let least = PointSet::new(domain, positions.collect()).unwrap();
         let least = least.minimum_distance().unwrap() / scale;
-        // The least of 4000 distances is hardly larger.
+        // The minimum of 4000 distances is barely larger than the radius.
         assert!(
             (radius..1.01 * radius).contains(&least),
             "{least} beside {radius}"
@@ -237,12 +236,12 @@ fn the_density_is_nine_tenths_of_a_maximal_set_everywhere() {
     for origin in [0.0, -1e9] {
         let points = set.points([origin, 0.0], [origin + 100.0, 100.0]).unwrap();
         let share = points.len() as f64 * 0.25 / 1e4 / RSA_DENSITY;
-        // Measured 0.919 in 10^6 points; sets of 25,000 deviate by less than 0.003.
+        // Measured 0.919 for 10^6 points; sets of 25,000 deviate by less than 0.003.
         assert!((0.91..0.93).contains(&share), "{share}");
     }
 }
 
-/// A torus of about 10,000 points, the set that repeats on it, and a maximal set.
+/// A repeating set on a torus of about 10,000 points, and a maximal set on the same torus.
 fn tori(seed: u64) -> [PointSet; 2] {
     let domain = Domain::torus(DVec2::ZERO, DVec2::splat(127.0));
     let set = EndlessPoissonDisk::new(1.0, Seed(seed))
@@ -264,19 +263,19 @@ fn the_spectrum_is_isotropic_and_shows_no_lattice() {
         let sets: Vec<PointSet> = sets.iter().map(|pair| pair[which].clone()).collect();
         spectrum(&sets, &SpectrumOptions::default()).unwrap()
     });
-    // 1 is isotropic; maximal sets have up to 1.05 in as few samples.
+    // The isotropic value is 1; maximal sets reach 1.05 with as few samples.
     assert!(
         (0.9..1.1).contains(&ours.anisotropy()),
         "{}",
         ours.anisotropy()
     );
-    // The blue-noise ring of low frequencies, and the first peak, beside those of a maximal set.
+    // Compare the low-frequency power and the first peak with a maximal set.
     let [low, maximal_low] = [&ours, &maximal].map(|s| s.mean_power(0.1, 0.5));
     assert!(low < 2.5 * maximal_low && low < 0.3, "{low} {maximal_low}");
     let ratio = ours.peak_power() / maximal.peak_power();
     assert!((0.8..1.1).contains(&ratio), "{ratio}");
-    // The power at the frequencies of the cells: exponential with a mean of about 1 in a set without a lattice. A lattice
-    // of N points has N.
+    // Power at the frequencies of the cells: without a lattice it is exponentially distributed with a mean of about 1;
+    // a lattice of N points has a power of N.
     for [points, _] in &sets {
         for frequency in [[1, 0], [0, 1], [1, 1], [2, 0], [0, 2]] {
             // 180 cells of at most 1 / √2 along a side of 127.
@@ -296,13 +295,13 @@ fn the_spectrum_is_isotropic_and_shows_no_lattice() {
 #[test]
 fn neighbors_are_as_far_as_in_a_maximal_set() {
     let [ours, maximal] = tori(11);
-    // Pair correlation: the mean number of neighbors by distance, per expected number at random.
+    // Pair correlation: mean number of neighbors by distance, relative to random points.
     let pairs = |points: &PointSet, distance: f64| {
         points.mean_neighbor_count(distance) / (points.len() as f64 * distance * distance)
     };
     for distance in [1.1, 1.5, 2.0, 3.0] {
         let ratio = pairs(&ours, distance) / pairs(&maximal, distance);
-        // The points that a maximal set has more fit narrowly, with several neighbors at little more than the radius.
+        // The additional points of a maximal set fit tightly, with several neighbors barely farther than the radius.
         assert!((0.7..1.03).contains(&ratio), "{distance}: {ratio}");
     }
     let gap = ours.largest_empty_circle().unwrap().radius;
@@ -311,7 +310,7 @@ fn neighbors_are_as_far_as_in_a_maximal_set() {
 
 #[test]
 fn points_repeat_after_a_period_and_keep_their_distance_around_it() {
-    // The shortest period possible, one of four narrow cells, one that is no multiple of a step, and a long one.
+    // The shortest possible period, one of four narrow cells, one that is not a multiple of a step, and a long one.
     for (radius, period) in [(1.0, 2.0), (1.0, 2.2), (0.1, 0.3), (3.0, 1e6), (1.0, 10.0)] {
         let set = EndlessPoissonDisk::new(radius, Seed(8))
             .unwrap()
@@ -321,7 +320,7 @@ fn points_repeat_after_a_period_and_keep_their_distance_around_it() {
         let here = window(&set, DVec2::ZERO, size);
         assert!(!here.is_empty());
         let shift = DVec2::new(period, -3.0 * period);
-        // One rounding of a coordinate up to three periods.
+        // Tolerance: one rounding of a coordinate up to three periods.
         let slack = DVec2::splat(4.0 * period * f64::EPSILON);
         let there = window(&set, shift - slack, shift + size + slack);
         for point in &here {
@@ -365,13 +364,13 @@ fn a_variable_radius_is_followed_by_distances_and_densities() {
         let inside = points
             .iter()
             .filter(|point| point.position.x >= left && point.position.x < right);
-        // The integral of 1 / r² over the strip.
+        // Integral of 1 / r² over the strip
         let share = 150.0 / 0.02 * (1.0 / radius([left, 0.0]) - 1.0 / radius([right, 0.0]));
         let density = inside.count() as f64 / share;
         // 400 to 2000 points, whose number deviates by 2 %.
         assert!((0.60..0.67).contains(&density), "{left}: {density}");
     }
-    // With one radius everywhere it is as dense as a set of a fixed radius.
+    // With a constant radius, the set is as dense as a set with a fixed radius.
     let even = EndlessVariablePoissonDisk::new([1.0, 2.0], |_| 2.0, Seed(6)).unwrap();
     let n_points = even.points([0.0, 0.0], [300.0, 300.0]).unwrap().len();
     let density = n_points as f64 * 4.0 / 9e4;
@@ -432,7 +431,7 @@ fn bad_numbers_are_refused() {
     let many = set.points([0.0; 2], [1e5; 2]).map(|points| points.len());
     assert!(matches!(kind(many), PointsErrorKind::TooMany { .. }));
     assert_eq!(set.points([3.0, 0.0], [3.0, 1e9]).unwrap(), []);
-    // The farthest windows work.
+    // Windows at the maximum distance work.
     let farthest = (1_u64 << 39) as f64;
     for corner in [-farthest, farthest - 8.0] {
         let n_points = set.points([corner; 2], [corner + 8.0; 2]).unwrap().len();
@@ -462,7 +461,7 @@ fn value_stability_endless_poisson_disk() {
             let [x, y] = point.position.to_array().map(f64::to_bits);
             x.rotate_left(17) ^ y.rotate_left(31) ^ point.radius.to_bits() ^ point.id
         });
-        // Their order has no meaning.
+        // The order of the points is unspecified.
         (points.len(), parts.fold(0, u64::wrapping_add))
     };
     let set = EndlessPoissonDisk::new(0.7, Seed(7)).unwrap();

@@ -1,8 +1,8 @@
-//! The largest circle without a point in it.
+//! Largest empty circle of a point set.
 //!
-//! The place farthest from all points is a corner of a Voronoi cell, cut off at the sides of the domain. Each cell is
-//! cut out by the bisectors to the points around it, nearest ring of the grid first, until no farther point can
-//! touch it. Corners are kept relative to the cell's point, so a far origin costs no digits.
+//! The position farthest from all points is a corner of a Voronoi cell, clipped at the sides of the domain. Each cell
+//! is clipped by the bisectors to surrounding points, starting with the nearest ring of the grid, until no farther
+//! point can affect it. Corners are relative to the point of the cell, so that a distant origin costs no precision.
 //!
 //! Reference: our own.
 
@@ -10,21 +10,21 @@ use super::grid::{Grid, Images};
 use crate::PointSet;
 use glam::DVec2;
 
-/// A circle without a point inside of it.
+/// A circle without a point inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EmptyCircle {
-    /// The center, in the domain.
+    /// Center, inside of the domain.
     pub center: DVec2,
-    /// The distance from the center to the nearest points.
+    /// Distance from the center to the nearest points.
     pub radius: f64,
 }
 
 impl PointSet {
-    /// The largest empty circle with its center in the domain, or none for a set without points.
+    /// Largest empty circle with its center in the domain; `None` for an empty set.
     ///
-    /// Its radius is the largest distance of any place in the domain to the nearest point. Around wrapped axes every
-    /// copy of every point counts, also those of a single point. Along the other axes the circle may stick out of the
-    /// domain, but its center may not.
+    /// Its radius is the maximum distance of any position in the domain to the nearest point. Along wrapped axes,
+    /// every copy of every point counts, including copies of a single point. Along other axes, the circle may extend
+    /// beyond the domain, but its center may not.
     ///
     /// # Examples
     ///
@@ -52,24 +52,24 @@ impl PointSet {
         }
         let domain = self.domain();
         best.map(|center| EmptyCircle {
-            // Rounding may leave a corner on the border a hair outside.
+            // Rounding may move a corner on the border slightly outside.
             center: domain.wrap(center).clamp(domain.origin, domain.end()),
             radius: best_sq.sqrt(),
         })
     }
 }
 
-/// The corners of a convex polygon around a point, relative to it.
+/// Corners of a convex polygon around a point, relative to it.
 #[derive(Debug, Default)]
 struct VoronoiCell {
     corners: Vec<DVec2>,
     scratch: Vec<DVec2>,
-    /// The largest squared distance of a corner.
+    /// Maximum squared distance of a corner.
     reach_sq: f64,
 }
 
 impl VoronoiCell {
-    /// Makes this the cell of the point at `position`.
+    /// Computes the cell of the point at `position`.
     fn cut_out(&mut self, set: &PointSet, grid: &Grid, position: DVec2) {
         self.start(set, position);
         let center = grid.cell(position);
@@ -84,7 +84,7 @@ impl VoronoiCell {
         }
     }
 
-    /// Starts with the part of the domain that is nearer to the point than to its own copies.
+    /// Initializes the cell with the part of the domain nearer to the point than to its own copies.
     fn start(&mut self, set: &PointSet, position: DVec2) {
         let domain = set.domain();
         let half = domain.size * 0.5;
@@ -109,7 +109,7 @@ impl VoronoiCell {
     /// Clips the cell to the half-plane nearer to its point than to another point, at `other` relative to it.
     fn clip(&mut self, other: DVec2) {
         let other_sq = other.length_squared();
-        // A point in the same place clips nothing; one too far off does not reach the cell.
+        // A coinciding point clips nothing; a point that is too far away does not reach the cell.
         if other_sq == 0.0 || other_sq > 4.0 * self.reach_sq {
             return;
         }
@@ -118,6 +118,7 @@ impl VoronoiCell {
         let Some(&last) = self.corners.last() else {
             return;
         };
+        // Walk along the polygon, and insert a corner where it crosses the bisector.
         let (mut from, mut from_excess) = (last, excess(last));
         for &to in &self.corners {
             let to_excess = excess(to);

@@ -1,13 +1,14 @@
-//! Distances between points, and how densely they are packed.
+//! Distances between points, and packing densities.
 
 use super::grid::{Grid, Images};
 use crate::PointSet;
 use core::f64::consts::PI;
 
 impl PointSet {
-    /// The smallest distance between two points, or none for fewer than two points.
+    /// Minimum distance between two points; `None` for fewer than two points.
     ///
-    /// A point's distance to its own copies around a wrapped axis does not count. Points that coincide have distance 0.
+    /// The distance of a point to its own copies around a wrapped axis does not count. Coinciding points have a
+    /// distance of 0.
     ///
     /// # Examples
     ///
@@ -44,10 +45,10 @@ impl PointSet {
         Some(best_sq.sqrt())
     }
 
-    /// The mean number of other points within `distance` of a point; 0 for an empty set.
+    /// Mean number of other points within `distance` of a point; 0 for an empty set.
     ///
-    /// Points at exactly this distance count. Each other point counts once, by the shortest way, however large the
-    /// distance is. Near the sides of an axis that does not wrap points have fewer neighbors.
+    /// The distance is inclusive. Each other point counts once, by its shortest distance, even if `distance` exceeds
+    /// the period. Near sides that do not wrap, points have fewer neighbors.
     #[must_use]
     pub fn mean_neighbor_count(&self, distance: f64) -> f64 {
         let grid = Grid::new(self);
@@ -65,24 +66,24 @@ impl PointSet {
         n_pairs as f64 / self.len().max(1) as f64
     }
 
-    /// The number of points per square of side `radius`: N r² / area.
+    /// Normalized density: number of points per square of side `radius`, N r² / area.
     ///
-    /// Random sequential placing of points at least `radius` apart ends at 0.697, the densest lattice has 1.155.
+    /// Random sequential addition with the minimum distance `radius` reaches 0.697; the densest lattice has 1.155.
     #[must_use]
     pub fn normalized_density(&self, radius: f64) -> f64 {
         self.len() as f64 * (radius * radius) / self.domain().area()
     }
 
-    /// The share of the domain under discs of diameter `radius` around the points, which do not overlap if points are
-    /// at least `radius` apart: 0.547 for random sequential placing, at most 0.907.
+    /// Fraction of the domain covered by discs of diameter `radius` around the points, which do not overlap if points
+    /// are at least `radius` apart: 0.547 for random sequential addition, at most 0.907.
     #[must_use]
     pub fn packing_fraction(&self, radius: f64) -> f64 {
         self.normalized_density(radius) * (PI / 4.0)
     }
 
-    /// The mean number of discs of the given radius around the points that cover a place: N π r² / area.
+    /// Mean number of discs with this radius that cover a position: N π r² / area.
     ///
-    /// Discs that stick out past a side that does not wrap count in full.
+    /// Discs that extend beyond a side that does not wrap count in full.
     #[must_use]
     pub fn mean_coverage(&self, radius: f64) -> f64 {
         self.normalized_density(radius) * PI

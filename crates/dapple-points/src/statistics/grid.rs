@@ -1,33 +1,33 @@
-//! Points sorted into square cells, searched ring by ring.
+//! Grid of square cells with sorted points, searched ring by ring.
 
 use crate::{Domain, PointSet};
 use glam::DVec2;
 
-/// Mean number of points per cell: few enough to skip most of the far ones, enough to walk few empty cells.
+/// Mean number of points per cell: few enough to skip most distant points, enough to visit few empty cells.
 const POINTS_PER_CELL: f64 = 2.0;
 
-/// The share of a cell by which rounding may put a point into the wrong one; a generous bound.
+/// Upper bound of the fraction of a cell by which rounding may assign a point to the wrong cell.
 const ROUNDING: f64 = 1e-6;
 
-/// How often a search may visit the cells of a domain that wraps.
+/// How a search visits the cells of a domain that wraps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Images {
-    /// Each cell once, by the shortest way.
+    /// Each cell once, at the shortest distance.
     Nearest,
-    /// Each cell as often as it repeats within one period to either side. No image farther off can be the nearest one
-    /// to a place within half a period.
+    /// Each cell with its copies within one period on either side. A more distant copy cannot be the nearest one to a
+    /// position within half a period.
     All,
 }
 
-/// The points of a set by cell, in rows of cells.
+/// Points of a set, grouped by cell in rows of cells.
 #[derive(Debug)]
 pub(super) struct Grid {
     domain: Domain,
-    /// Columns and rows.
+    /// Number of columns and rows.
     counts: [i64; 2],
-    /// The shorter side of a cell.
+    /// Length of the shorter side of a cell.
     side: f64,
-    /// `starts[cell]..starts[cell + 1]` are the places of a cell's points in `order`.
+    /// `starts[cell]..starts[cell + 1]` is the range of the points of a cell in `order`.
     starts: Vec<u32>,
     order: Vec<u32>,
 }
@@ -37,7 +37,7 @@ impl Grid {
         let domain = *set.domain();
         let n_points = set.len().max(1);
         let side = (domain.area() * POINTS_PER_CELL / n_points as f64).sqrt();
-        // The cast saturates, and no side has more cells than there are points.
+        // The cast saturates, and a side has at most as many cells as there are points.
         let counts =
             [0, 1].map(|axis| ((domain.size[axis] / side) as i64).clamp(1, n_points as i64));
         let side = (domain.size.x / counts[0] as f64).min(domain.size.y / counts[1] as f64);
@@ -52,7 +52,7 @@ impl Grid {
         grid
     }
 
-    /// Sorts the points by cell, stable within each.
+    /// Sorts the points by cell, with a stable order within each cell.
     fn sort(&mut self, set: &PointSet) {
         let columns = self.counts[0];
         let cells = set.iter().map(|(_, position)| self.cell(position));
@@ -72,7 +72,7 @@ impl Grid {
         }
     }
 
-    /// The column and row of a position.
+    /// Column and row of a position.
     pub(super) fn cell(&self, position: DVec2) -> [i64; 2] {
         [0, 1].map(|axis| {
             let fraction = (position[axis] - self.domain.origin[axis]) / self.domain.size[axis];
@@ -81,24 +81,24 @@ impl Grid {
         })
     }
 
-    /// A lower bound of the distances to all points in ring `ring` and beyond.
+    /// Lower bound of the distance to all points in ring `ring` and beyond.
     pub(super) fn distance_to_ring(&self, ring: i64) -> f64 {
         (ring as f64 - 1.0 - ROUNDING) * self.side
     }
 
-    /// The last ring that can hold a point within `distance`, or any point at all.
+    /// Last ring that can contain a point within `distance`, or any point at all.
     pub(super) fn last_ring(&self, distance: f64) -> i64 {
         let reach = (distance / self.side + 1.0 + ROUNDING) as i64;
         reach.clamp(0, self.counts[0].max(self.counts[1]))
     }
 
-    /// The last ring that can hold a point.
+    /// Last ring that can contain a point.
     pub(super) fn outermost_ring(&self) -> i64 {
         self.counts[0].max(self.counts[1]) + 1
     }
 
-    /// Calls `visit` with each point in the cells of ring `ring`, and with the shift to add to its position to bring it
-    /// there.
+    /// Calls `visit` with each point in the cells of ring `ring`, and with the shift from its position to its copy in
+    /// the ring.
     pub(super) fn visit_ring(
         &self,
         center: [i64; 2],
@@ -111,7 +111,7 @@ impl Grid {
             let Some((row, shift_y)) = self.along(1, center[1], dy, images) else {
                 continue;
             };
-            // A row on the edge of the ring is whole, any other has the two ends.
+            // A row at the edge of the ring is complete; any other row has only its two ends.
             let is_whole = dy.abs() == ring;
             let step = if is_whole { 1 } else { (2 * ring).max(1) };
             if !is_whole && reach_x < ring {
@@ -131,7 +131,7 @@ impl Grid {
         }
     }
 
-    /// The column or row at `offset` from `center`, and how far it is shifted from the one in the domain.
+    /// Column or row at `offset` from `center`, and its shift from the original in the domain.
     fn along(&self, axis: usize, center: i64, offset: i64, images: Images) -> Option<(i64, f64)> {
         let count = self.counts[axis];
         if !self.domain.wrap[axis] {

@@ -1,32 +1,32 @@
-//! The power spectrum of point sets, averaged over rings, and how evenly each ring is filled.
+//! Radially averaged power spectra of point sets, and their anisotropy.
 //!
-//! R. A. Ulichney, "Dithering with Blue Noise", Proceedings of the IEEE 76(1), 1988,
-//! <https://doi.org/10.1109/5.3288>: the radially averaged power spectrum and its anisotropy. The periodogram of N
-//! points is |Σ exp(-2πi f·x)|² / N, which has mean 1 for white noise. It is taken at the frequencies f that fit the
-//! domain a whole number of times, but for f = 0.
+//! R. A. Ulichney, "Dithering with Blue Noise", Proceedings of the IEEE 76(1), 1988, <https://doi.org/10.1109/5.3288>:
+//! the radially averaged power spectrum and its anisotropy. The periodogram of N points is |Σ exp(-2πi f·x)|² / N,
+//! whose mean is 1 for white noise. It is evaluated at the frequencies f that fit the domain a whole number of times,
+//! except f = 0.
 //!
-//! Departures: frequencies are given as ν = |f| / sqrt(N / area), so that sets of any number of points compare, and
-//! anisotropy is not in decibels but divided by what an isotropic random set has: the squares of the deviations from
-//! the mean of the ring, over the square of that mean, times the number of sets that were averaged. It is 1 for an
-//! isotropic process, a bit more where power changes within a ring, and far more where a lattice shines through. By this
-//! measure, with the default options, sequential random placing of 2000 points on a torus has mean anisotropy 1.05 over
-//! 30 sets, power 0.060 below ν = 1/4 and a peak of 1.7.
+//! There are two differences. Frequencies are given as ν = |f| / sqrt(N / area), so that sets with different numbers
+//! of points are comparable. Anisotropy is not in decibels but relative to an isotropic random set: the variance
+//! within the ring divided by the squared mean of the ring, times the number of averaged sets. It is 1 for an
+//! isotropic process, slightly more where power changes within a ring, and far more where a lattice is visible. With
+//! the default options, random sequential addition of 2000 points on a torus has a mean anisotropy of 1.05 over 30
+//! sets, a power of 0.060 below ν = 1/4 and a peak of 1.7.
 //!
-//! Along an axis that does not wrap the same frequencies are taken; there the border of the domain itself adds power
-//! close to the axes of the spectrum.
+//! Along an axis that does not wrap, the same frequencies are used; the border of the domain then adds power near the
+//! axes of the spectrum.
 
 mod periodogram;
 
 use crate::{IsCancelled, PointSet, PointsError, PointsErrorKind};
 use periodogram::Periodogram;
 
-/// The most frequencies that a spectrum looks at.
+/// Maximum number of frequencies of a spectrum.
 const FREQUENCY_LIMIT: u64 = 1 << 24;
 
-/// The most rings that a spectrum has.
+/// Maximum number of rings of a spectrum.
 const RING_LIMIT: f64 = 65_536.0;
 
-/// Options of a spectrum: its range and its resolution.
+/// Options of a spectrum: range and resolution.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -34,9 +34,9 @@ const RING_LIMIT: f64 = 65_536.0;
     serde(default, deny_unknown_fields)
 )]
 pub struct SpectrumOptions {
-    /// The highest frequency, in units of sqrt(N / area), above 0; 2 by default.
+    /// Maximum frequency, above 0, in units of sqrt(N / area) [default: 2].
     pub highest_frequency: f64,
-    /// The width of a ring, in the same units, above 0; 1/20 by default.
+    /// Width of a ring, above 0, in units of sqrt(N / area) [default: 1/20].
     pub ring_width: f64,
 }
 
@@ -49,29 +49,29 @@ impl Default for SpectrumOptions {
     }
 }
 
-/// A power spectrum, by rings of equal frequency.
+/// A power spectrum, averaged over rings of equal frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
-    /// The rings that hold any frequency, the lowest first.
+    /// Rings that contain a frequency, lowest first.
     pub rings: Vec<SpectrumRing>,
 }
 
-/// One ring of a [`Spectrum`].
+/// A ring of a [`Spectrum`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectrumRing {
-    /// The frequency in the middle of the ring, in units of sqrt(N / area).
+    /// Frequency at the center of the ring, in units of sqrt(N / area).
     pub frequency: f64,
-    /// How many frequencies the ring holds; f and -f have the same power and count once.
+    /// Number of frequencies in the ring; f and -f have equal power and count once.
     pub n_frequencies: u32,
-    /// Their mean power: 1 for white noise.
+    /// Mean power of the frequencies: 1 for white noise.
     pub power: f64,
-    /// The variance of their power, divided by that of an isotropic process: 1 for an isotropic set. A ring of a single
-    /// frequency, or without power, has 1.
+    /// Variance of the power relative to an isotropic process: 1 for an isotropic set. A ring with a single frequency,
+    /// or without power, has 1.
     pub anisotropy: f64,
 }
 
 impl Spectrum {
-    /// The mean power of all frequencies in the rings centered in `from..to`; NaN if there is no such ring.
+    /// Mean power of all frequencies in the rings with a center in `from..to`; NaN if there is no such ring.
     #[must_use]
     pub fn mean_power(&self, from: f64, to: f64) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
@@ -84,13 +84,13 @@ impl Spectrum {
         sum / count
     }
 
-    /// The largest power of a ring.
+    /// Maximum power of a ring.
     #[must_use]
     pub fn peak_power(&self) -> f64 {
         self.rings.iter().map(|ring| ring.power).fold(0.0, f64::max)
     }
 
-    /// The mean anisotropy of all rings, each weighted by its degrees of freedom: 1 is isotropic.
+    /// Mean anisotropy of all rings, weighted by their degrees of freedom: 1 is isotropic.
     #[must_use]
     pub fn anisotropy(&self) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
@@ -103,16 +103,16 @@ impl Spectrum {
     }
 }
 
-/// The spectrum of one set, or the average over several sets of the same domain.
+/// Computes the spectrum of one set, or the average over several sets of the same domain.
 ///
-/// The more sets, the less noise, in the anisotropy too. With sets of different numbers of points, the unit of
-/// frequency goes by the mean number. The time is that of two multiplications per point, set and frequency, of which
-/// there are 2π (`highest_frequency`)² N.
+/// More sets reduce the noise of the power and of the anisotropy. If the sets have different numbers of points, the
+/// unit of frequency uses their mean. The time is two multiplications per point, set and frequency, with 2π
+/// (`highest_frequency`)² N frequencies.
 ///
 /// # Errors
 ///
-/// [`PointsErrorKind::NoPoints`] without a set or with an empty one, [`PointsErrorKind::DifferentDomains`] if the sets
-/// do not share one domain, [`PointsErrorKind::NotPositive`] for an option that is not above zero and finite,
+/// [`PointsErrorKind::NoPoints`] without a set or with an empty set, [`PointsErrorKind::DifferentDomains`] if the sets
+/// have different domains, [`PointsErrorKind::NotPositive`] for an option that is not above zero and finite,
 /// [`PointsErrorKind::TooManyFrequencies`] for more than 2^24 frequencies or 65536 rings.
 ///
 /// # Examples
@@ -131,9 +131,9 @@ pub fn spectrum(sets: &[PointSet], options: &SpectrumOptions) -> Result<Spectrum
     spectrum_cancellable(sets, options, &|| false)
 }
 
-/// The spectrum of [`spectrum`], unless `is_cancelled` returns true.
+/// Computes the spectrum of [`spectrum`], unless `is_cancelled` returns true.
 ///
-/// It is called on any thread, once for each column of frequencies of each block of 256 points.
+/// The callback is called on any thread, once for each column of frequencies of each block of 256 points.
 ///
 /// # Errors
 ///
@@ -215,7 +215,7 @@ impl SpectrumOptions {
     }
 }
 
-/// sqrt(N / area) of the sets, after a check that they share one domain and are not empty.
+/// Unit frequency sqrt(N / area) of the sets, after checking that they share one domain and are not empty.
 fn unit_frequency(sets: &[PointSet]) -> Result<f64, PointsError> {
     let Some(first) = sets.first() else {
         return Err(PointsError::new(PointsErrorKind::NoPoints));
@@ -236,7 +236,7 @@ fn unit_frequency(sets: &[PointSet]) -> Result<f64, PointsError> {
     Ok((n_points / sets.len() as f64 / first.domain().area()).sqrt())
 }
 
-/// The sums of a ring.
+/// Sums over a ring.
 #[derive(Clone, Copy, Debug, Default)]
 struct RingSums {
     count: u32,

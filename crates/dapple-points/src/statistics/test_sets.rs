@@ -4,7 +4,7 @@ use crate::{Domain, PointSet};
 use dapple_hash::{Seed, hash1, unit_f64};
 use glam::DVec2;
 
-/// Domains of every kind of wrapping, square and thin, far from the origin.
+/// Domains with every kind of wrapping, square and thin, far from the origin.
 pub(super) fn domains() -> Vec<Domain> {
     let mut domains = Vec::new();
     for wrap in [[false, false], [true, false], [false, true], [true, true]] {
@@ -19,7 +19,7 @@ pub(super) fn domains() -> Vec<Domain> {
     domains
 }
 
-/// Random positions; `crowding` above 1 gathers them near the corner of the domain.
+/// Random positions; `crowding` above 1 concentrates them near the corner of the domain.
 pub(super) fn random_set(domain: Domain, n_points: u32, crowding: i32) -> PointSet {
     let unit = |index| unit_f64(hash1(Seed(3), [i64::from(n_points)], index));
     let place = |index| (0..crowding).fold(1.0, |product, _| product * unit(index));

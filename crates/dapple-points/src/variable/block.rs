@@ -1,10 +1,10 @@
-//! Block: a leaf with its cells, a margin for the points around it, and the darts thrown at them.
+//! Block: a leaf with its cells, a margin for surrounding points, and its darts.
 //!
-//! A cell's diagonal is at most the smallest radius, so a cell holds at most one point. In the margin, where radii may
-//! be smaller, a second point of a cell goes to a separate list. Most darts fall too close to a point. The quick test
-//! rejects most of these in 32-bit floating point, eight cells at a time, with the smallest radius of the leaf instead
-//! of the dart's own, and a margin for rounding. Only the darts that pass have their radius read and are tested in 64
-//! bits. In the same way it finds most of the cells that need no filling.
+//! The diagonal of a cell is at most the smallest radius, so a cell contains at most one point. In the margin, where
+//! radii may be smaller, further points of a cell go to a separate list. Most darts are too close to a point. The
+//! quick test rejects most of these in 32-bit floating point, eight cells at a time, with the smallest radius of the
+//! leaf instead of the radius of the dart, and a margin for rounding. Only the remaining darts have their radius
+//! evaluated and are tested in 64 bits. The quick test also finds most of the cells that need no filling.
 
 use super::leaf::{Leaf, RadiusField};
 use super::rule::DiskRule;
@@ -12,17 +12,17 @@ use crate::{PointsError, PointsErrorKind};
 use dapple_hash::{CellHash, Seed, unit_f32, unit_f64};
 use glam::DVec2;
 
-/// Cells to each side of a dart in which it looks for points by the quick test.
+/// Number of cells on each side of a dart that the quick test searches.
 const QUICK_REACH: usize = 2;
 
-/// Cells of a row that the quick test reads at once: those within reach, and some past them.
+/// Number of cells of a row that the quick test reads at once: the cells within reach, and some beyond.
 const LANES: usize = 8;
 
-/// The part of a squared distance that the quick test allows for rounding: coordinates of up to 40 cells with 24 bits
-/// are off by 5e-6 of a cell at most.
+/// Relative margin of squared distances in the quick test: coordinates of up to 40 cells with 24 bits have an error of
+/// at most 5e-6 of a cell.
 const QUICK_MARGIN: f64 = 4e-5;
 
-/// The largest number of cells in a margin; points farther out go to a separate list.
+/// Maximum width of the margin in cells; points farther out go to a separate list.
 const MOST_MARGIN: f64 = 6.0;
 
 const NOBODY: u32 = u32::MAX;
@@ -41,17 +41,17 @@ pub(super) struct Local {
     pub(super) radius: f64,
 }
 
-/// A block close by, or this one, around a wrapped axis.
+/// A nearby block, or a copy of this block around a wrapped axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Neighbor {
     pub(super) block: u32,
-    /// The shift that brings the neighbor's points near the block.
+    /// Shift that moves the points of the neighbor near the block.
     pub(super) shift: DVec2,
-    /// The number of the neighbor's points that this block has taken in.
+    /// Number of points of the neighbor that this block has already read.
     pub(super) seen: usize,
 }
 
-/// The domain, radius and rule that all blocks share.
+/// Domain, radius and rule that all blocks share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Setting<'a> {
     pub(super) field: RadiusField<'a>,
@@ -65,28 +65,29 @@ pub(super) struct Block {
     pub(super) index: u32,
     pub(super) leaf: Leaf,
     pub(super) neighbors: Vec<Neighbor>,
-    /// The points that this block has placed.
+    /// Points that this block has placed.
     pub(super) samples: Vec<Sample>,
-    /// The points of this block and of those around it.
+    /// Points of this block and of its neighbors.
     pub(super) locals: Vec<Local>,
-    /// The first error.
+    /// First error.
     pub(super) error: Option<PointsError>,
-    /// The columns and rows of the cells without a point, in random order.
+    /// Columns and rows of the cells without a point, in random order.
     pub(super) open: Vec<[u16; 2]>,
     cursor: usize,
-    /// The sides of a cell, and one over them.
+    /// Sides of a cell. `per_cell` is the inverse.
     pub(super) cell: DVec2,
     per_cell: DVec2,
-    /// Cells of margin to each side, and cells in a row with its margins and what the quick test reads past them.
+    /// Margin on each side in cells. `stride` is the number of cells in a row, with its margins and the excess that
+    /// the quick test reads.
     margin: usize,
     stride: usize,
-    /// The largest radius among `locals`.
+    /// Maximum radius of `locals`.
     pub(super) largest: f64,
-    /// By cell: the place and the squared reach of its point for the quick test, in units of the smallest radius.
+    /// For each cell, x, y and the squared reach of its point for the quick test, in units of the smallest radius.
     quick: [Vec<f32>; 3],
-    /// By cell: its point among `locals`.
+    /// For each cell, the index of its point in `locals`.
     slots: Vec<u32>,
-    /// The points that have no cell of their own.
+    /// Points without a cell slot.
     aside: Vec<u32>,
     /// Scratch memory.
     found: Vec<u32>,
@@ -110,7 +111,7 @@ impl Block {
             stride,
             quick: [vec![0.0; n_slots], vec![0.0; n_slots], vec![0.0; n_slots]],
             slots: vec![NOBODY; n_slots],
-            // A third of the cells get a point; a bit more room than that saves moving them.
+            // A third of the cells get a point; slightly more capacity avoids reallocation.
             locals: Vec::with_capacity(n_slots * 3 / 8),
             samples: Vec::with_capacity((leaf.cells[0] * leaf.cells[1]) as usize * 3 / 8 + 1),
             ..Self::default()
@@ -132,11 +133,11 @@ impl Block {
         }
     }
 
-    /// Takes in the points that the blocks around have placed since the last time.
+    /// Reads the points that neighboring blocks have placed since the last call.
     pub(super) fn pull(&mut self, blocks: &[Self], setting: &Setting<'_>) {
         for neighbor in 0..self.neighbors.len() {
             let Neighbor { block, shift, seen } = self.neighbors[neighbor];
-            // A block's own copies are taken in when they are placed; in its place stands an empty one.
+            // Copies of the block itself are added when they are placed; an empty block is in its slot meanwhile.
             let samples = &blocks[block as usize].samples;
             for sample in samples.get(seen..).unwrap_or_default() {
                 self.take_in(sample, shift, setting);
@@ -145,7 +146,7 @@ impl Block {
         }
     }
 
-    /// Takes in a point of another block, or a copy of one of its own, if a dart could ever meet it.
+    /// Adds a point of another block, or a copy of one of its own, if a dart could conflict with it.
     fn take_in(&mut self, sample: &Sample, shift: DVec2, setting: &Setting<'_>) {
         let at = (sample.position - setting.field.domain.origin) + shift - self.leaf.min;
         let away = (at - self.leaf.size).max(-at).max(DVec2::ZERO);
@@ -182,7 +183,7 @@ impl Block {
         self.quick[2][slot] = (reach * reach * (1.0 - QUICK_MARGIN)) as f32;
     }
 
-    /// Throws one dart into each of a share of the open cells.
+    /// Throws one dart into each of a fraction of the open cells.
     #[inline(always)]
     pub(super) fn throw_round(&mut self, round: u32, share: f64, setting: &Setting<'_>) {
         let random = CellHash::new(
@@ -190,7 +191,7 @@ impl Block {
             [i64::from(self.index), i64::from(round)],
         );
         let count = self.open.len() as f64 * share;
-        // Rounded up or down at random, so that small blocks keep the share on average.
+        // Round up or down at random, so that small blocks match the fraction on average.
         let count = (count + unit_f64(random.at(u32::MAX))) as u32;
         for dart in 0..count {
             if self.open.is_empty() || self.error.is_some() {
@@ -213,12 +214,12 @@ impl Block {
         }
     }
 
-    /// The corner of a cell.
+    /// Minimum corner of a cell.
     pub(super) fn min_of(&self, [column, row]: [u16; 2]) -> DVec2 {
         DVec2::new(f64::from(column), f64::from(row)) * self.cell
     }
 
-    /// Throws a dart into a part of the block and keeps it, as a point, if it fits.
+    /// Throws a dart into a part of the block, and adds it as a point if it fits.
     pub(super) fn throw(
         &mut self,
         min: DVec2,
@@ -228,7 +229,7 @@ impl Block {
     ) -> bool {
         let domain = setting.field.domain;
         let position = domain.origin + (self.leaf.min + (min + size * place));
-        // The test uses the position as the caller will see it, with its rounding.
+        // Test the position that the caller will see, with its rounding.
         let at = (position - domain.origin) - self.leaf.min;
         if !domain.contains(position) {
             return false;
@@ -252,7 +253,7 @@ impl Block {
         true
     }
 
-    /// The radius at a position of this block.
+    /// Evaluates the radius at a position of this block.
     pub(super) fn read(&mut self, position: DVec2, setting: &Setting<'_>) -> Option<f64> {
         let radii = &self.leaf.radii;
         let error = match setting.field.at(position) {
@@ -267,19 +268,19 @@ impl Block {
         None
     }
 
-    /// Whether a place in a cell is certainly too close to a point; the quick test.
+    /// Quick test: returns whether a position in a cell is certainly too close to a point.
     #[inline(always)]
     fn is_surely_taken(&self, [column, row]: [u16; 2], place: u64) -> bool {
         let scale = (1.0 / self.leaf.radii.least) * self.cell;
         let x = (f32::from(column) + unit_f32(place as u32)) * scale.x as f32;
         let y = (f32::from(row) + unit_f32((place >> 32) as u32)) * scale.y as f32;
         let corner = self.quick_corner([column, row]);
-        // Nearest rows first; the outer ones are asked only if they have to be.
+        // Test the nearest rows first, and the outer rows only if necessary.
         self.is_quickly_taken(corner, [2, 1, 3], x, y)
             || self.is_quickly_taken(corner, [0, 4], x, y)
     }
 
-    /// Whether a point in these rows, counted from that of the slot `corner`, is certainly too close.
+    /// Returns whether a point in these rows, relative to the slot `corner`, is certainly too close.
     #[inline(always)]
     fn is_quickly_taken<const N: usize>(
         &self,
@@ -306,7 +307,7 @@ impl Block {
         room.iter().any(|&inside| inside > 0.0)
     }
 
-    /// Whether each quarter of a cell is certainly covered by one point, as the quick test has them.
+    /// Quick test: returns whether each quarter of a cell is certainly covered by a single point.
     #[inline(always)]
     pub(super) fn is_surely_covered(&self, [column, row]: [u16; 2]) -> bool {
         let side = (1.0 / self.leaf.radii.least) * self.cell;
@@ -335,14 +336,14 @@ impl Block {
         is_covered
     }
 
-    /// The first slot of those around a cell in which the quick test looks.
+    /// First slot of the neighborhood of a cell for the quick test.
     #[inline(always)]
     fn quick_corner(&self, [column, row]: [u16; 2]) -> usize {
         let first = self.margin - QUICK_REACH;
         (usize::from(row) + first) * self.stride + usize::from(column) + first
     }
 
-    /// The points of some cells in a row, as the quick test has them.
+    /// Quick-test data of consecutive cells in a row.
     #[inline(always)]
     fn quick_lanes(&self, from: usize) -> Option<[&[f32; LANES]; 3]> {
         let [xs, ys, reaches] = &self.quick;
@@ -353,7 +354,7 @@ impl Block {
         ])
     }
 
-    /// Whether a point keeps its distance from all others.
+    /// Returns whether a point is far enough from all others.
     fn fits(&mut self, new: &Local, rule: DiskRule) -> bool {
         let mut found = core::mem::take(&mut self.found);
         let reach = rule.distance(new.radius, self.largest);
@@ -367,7 +368,7 @@ impl Block {
         fits
     }
 
-    /// Collects the points within `reach` of a rectangle, and some others, and returns their number.
+    /// Collects the points within `reach` of a rectangle, possibly with some others, and returns their number.
     pub(super) fn collect_near(
         &self,
         min: DVec2,
@@ -392,7 +393,7 @@ impl Block {
         for row in low[1]..high[1] {
             let (from, to) = (row * self.stride + low[0], row * self.stride + high[0]);
             for &slot in &self.slots[from..to] {
-                // Written in any case and kept if it is one: a third of the cells have a point, which no branch
+                // Write every slot, and advance only if it has a point: a third of the cells do, which no branch
                 // predictor can guess.
                 found[count] = slot;
                 count += usize::from(slot != NOBODY);
@@ -406,7 +407,7 @@ impl Block {
     }
 }
 
-/// The squared distances from `at` to the farther ends of the first `N` parts of length `side` from 0 on.
+/// Squared distances from `at` to the farther ends of the first `N` intervals of length `side`, starting at 0.
 #[inline(always)]
 pub(super) fn farthest_sq<const N: usize>(at: f32, side: f32) -> [f32; N] {
     let mut squares = [0.0; N];

@@ -1,17 +1,17 @@
-//! Radii for a wanted density, or for a wanted number of points.
+//! Radii for a desired density or number of points.
 
 use crate::{Domain, PointsError, PointsErrorKind};
 use dapple_raster::Varying;
 use glam::DVec2;
 
-/// N r² / area of points that were placed one after another at random (random sequential adsorption, RSA), at least r
-/// apart, until no further one fitted: a packing fraction of 0.547 for discs of diameter r.
+/// Normalized density N r² / area of random sequential addition (RSA) at saturation, for points at least r apart. It
+/// corresponds to a packing fraction of 0.547 for discs of diameter r.
 pub const RSA_DENSITY: f64 = 0.697;
 
-/// Places per axis at which a density is read to find its mean.
+/// Number of samples per axis for the mean of a density.
 const PLACES: u32 = 256;
 
-/// The radius at which a Poisson disk set has the given density, in points per area: sqrt(0.697 / density).
+/// Radius at which a Poisson-disk set has the given density, in points per area: sqrt(0.697 / density).
 ///
 /// # Examples
 ///
@@ -26,10 +26,10 @@ pub fn radius_from_density(density: &Varying) -> Varying {
     scaled_radius(density, RSA_DENSITY)
 }
 
-/// The radius at which about `n_points` points follow a density that is given up to a factor.
+/// Radius at which about `n_points` points follow a density that is given up to a factor.
 ///
-/// The density is read at 256 × 256 places. Along sides that do not wrap there is room for some more points, about 0.24
-/// for each radius of their length (measured).
+/// The density is sampled at 256 × 256 positions. Sides that do not wrap have room for some additional points, about
+/// 0.24 per radius of their length (measured).
 ///
 /// # Errors
 ///

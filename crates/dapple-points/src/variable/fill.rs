@@ -1,36 +1,36 @@
-//! The last step: filling the open area until no further point fits.
+//! Last step: filling the open area until no further point fits.
 //!
 //! Mohamed S. Ebeida, Scott A. Mitchell, Anjul Patney, Andrew A. Davidson and John D. Owens, "A Simple Algorithm for
 //! Maximal Poisson-Disk Sampling in High Dimensions", Computer Graphics Forum 31(2), 2012,
-//! <https://doi.org/10.1111/j.1467-8659.2012.03059.x>: a cell is quartered again and again; quarters that one disc
-//! covers are dropped, darts are thrown at the rest. Here each cell is finished on its own, with the few points that
-//! reach it. The radius in a quarter is bounded from below by the last one read and the slope, and read again
-//! only where that bound is too loose for the size of the quarter.
+//! A cell is repeatedly divided into quarters; quarters that a single disc covers are dropped, and darts are thrown at
+//! the rest. Here each cell is completed separately, with the few points that reach it. The radius in a quarter has a
+//! lower bound from the last evaluated radius and the slope. It is evaluated again only if that bound is too loose for
+//! the size of the quarter.
 
 use super::block::{Block, Local, Setting, farthest_sq, fractions};
 use super::rule::DiskRule;
 use dapple_hash::CellHash;
 use glam::DVec2;
 
-/// A cell is cut into this many parts along each side at first.
+/// Number of initial parts along each side of a cell.
 const SIDE: usize = 4;
 
-/// How often these parts are quartered: the smallest have 2^-20 of the side of a cell.
+/// Number of subdivisions: the smallest parts have 2^-20 of the side of a cell.
 const LEVELS: u32 = 18;
 
-/// The part of a squared distance that the first cut allows for rounding to 24 bits.
+/// Relative margin of a squared distance for rounding to 24 bits in the first subdivision.
 const MARGIN: f64 = 1e-5;
 
-/// Darts per level into one cell.
+/// Maximum number of darts per level and cell.
 const DARTS: usize = 4;
 
-/// The largest number of parts of a cell; a cell with more is left as it is. Only a radius that jumps gets there.
+/// Maximum number of parts of a cell; a cell with more is left unfilled. This happens only for a discontinuous radius.
 const MOST_PARTS: usize = 4096;
 
-/// A bound of the radius is loose if it is off by more than this part of the half perimeter of half a part.
+/// Maximum slack of the bound of the radius, relative to the sum of the half sides of a part.
 const LOOSE: f64 = 0.25;
 
-/// From the center of a part to those of its quarters, in half sides of a quarter.
+/// Offsets from the center of a part to the centers of its quarters, in half sides of a quarter.
 const WAYS: [DVec2; 4] = [
     DVec2::NEG_ONE,
     DVec2::new(1.0, -1.0),
@@ -42,24 +42,24 @@ const WAYS: [DVec2; 4] = [
 #[derive(Clone, Copy, Debug)]
 struct Part {
     center: DVec2,
-    /// The lower bound of the radius.
+    /// Lower bound of the radius.
     least: f64,
-    /// The most by which the radius may exceed `least`.
+    /// Maximum excess of the radius over `least`.
     slack: f64,
 }
 
-/// Buffers for one block after another.
+/// Scratch memory that is reused between blocks.
 #[derive(Debug, Default)]
 pub(super) struct Filler {
     found: Vec<u32>,
     near: Vec<Local>,
     parts: Vec<Part>,
-    /// The parts of the level before.
+    /// Parts of the previous level.
     whole: Vec<Part>,
 }
 
 impl Filler {
-    /// Finishes all open cells of a block.
+    /// Fills all open cells of a block.
     #[inline(always)]
     pub(super) fn fill(&mut self, block: &mut Block, setting: &Setting<'_>) {
         for cell in core::mem::take(&mut block.open) {
@@ -91,6 +91,7 @@ impl Filler {
         let mut half = block.cell * (0.5 / SIDE as f64);
         let mut n_darts = 0;
         for _ in 0..LEVELS {
+            // Throw darts at random parts.
             for _ in 0..self.parts.len().min(DARTS) {
                 let part = ((random.at(2 * n_darts) >> 32) * self.parts.len() as u64) >> 32;
                 let part = self.parts[part as usize];
@@ -106,6 +107,7 @@ impl Filler {
                     return;
                 }
             }
+            // Divide the remaining parts into quarters.
             half *= 0.5;
             self.quarter(block, half, setting);
             if self.parts.is_empty() || self.parts.len() > MOST_PARTS || block.error.is_some() {
@@ -114,7 +116,7 @@ impl Filler {
         }
     }
 
-    /// Cuts a cell into sixteenths and keeps those that no disc covers; returns whether any are left.
+    /// Divides a cell into sixteenths and keeps the parts that no disc covers; returns whether any is left.
     #[inline(always)]
     fn start(&mut self, block: &Block, min: DVec2, rule: DiskRule) -> bool {
         let max = min + block.cell;
@@ -161,7 +163,7 @@ impl Filler {
         !self.parts.is_empty()
     }
 
-    /// Cuts all parts into quarters of half side `half`.
+    /// Divides all parts into quarters with half sides `half`.
     fn quarter(&mut self, block: &mut Block, half: DVec2, setting: &Setting<'_>) {
         core::mem::swap(&mut self.parts, &mut self.whole);
         self.parts.clear();
@@ -201,7 +203,7 @@ impl Filler {
     }
 }
 
-/// Whether the disc of one point covers all of a part.
+/// Returns whether the disc of a single point covers a whole part.
 fn is_covered(near: &[Local], part: &Part, half: DVec2, rule: DiskRule) -> bool {
     near.iter().any(|local| {
         let reach = rule.distance(part.least, local.radius);

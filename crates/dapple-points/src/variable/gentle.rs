@@ -1,15 +1,16 @@
-//! Radii for a density of any kind: one with edges, gaps and grain, such as a photograph.
+//! Radii for arbitrary densities, including densities with edges, gaps and grain, such as photographs.
 //!
-//! A set of points cannot follow a density that changes by more over a distance than its points are apart, and
-//! [`variable_poisson_disk`](crate::variable_poisson_disk) refuses a radius whose slope is 1 or more. Here the radius
-//! is read on a lattice, and each place gets the least of `radius(q) + slope · |p - q|` over all places `q`: the
-//! largest radius below the given one that rises by no more than the slope. The points therefore thin out slowly around
+//! A point set cannot follow a density that changes strongly within the distance of its points, and
+//! [`variable_poisson_disk`](crate::variable_poisson_disk) rejects a radius whose slope is 1 or more. Here the radius
+//! is sampled on a lattice, and each position p gets the minimum of `radius(q) + slope · |p - q|` over all positions
+//! `q`: the largest radius below the given one whose slope is limited. The points therefore thin out gradually around
 //! small, dense spots, and no small spot is lost.
 //!
-//! Distances are those of steps to the eight neighbors, which are up to 8 % longer than straight ones. They come from two
-//! sweeps over the lattice, there and back: Gunilla Borgefors, "Distance transformations in digital images", Computer
-//! Vision, Graphics, and Image Processing 34(3), 1986, <https://doi.org/10.1016/S0734-189X(86)80047-0>. Around wrapped axes
-//! they are repeated until nothing changes. Units are those of the domain.
+//! Distances are path lengths in steps to the eight neighbors, which are up to 8 % longer than straight lines. They
+//! are computed by a forward and a backward sweep over the lattice: Gunilla Borgefors, "Distance transformations in
+//! digital images", Computer Vision, Graphics, and Image Processing 34(3), 1986,
+//! <https://doi.org/10.1016/S0734-189X(86)80047-0>. With wrapped axes, the sweeps are repeated until nothing changes.
+//! Units are those of the domain.
 
 use super::density::{RSA_DENSITY, radius_for_count};
 use crate::{Domain, PointsError, PointsErrorKind};
@@ -17,21 +18,23 @@ use dapple_raster::{Raster, Varying, Wrap};
 use glam::DVec2;
 use std::sync::Arc;
 
-/// How fast the radius rises, along an axis or a diagonal; in between, a bilinear radius can rise 1.42 times as fast,
-/// which leaves room below 1.
+/// Maximum slope of the radius along an axis or a diagonal. In between, a bilinear radius can be 1.42 times as steep,
+/// which is still below 1.
 const SLOPE: f64 = 0.5;
-/// How often the radius is scaled towards the wanted number of points. Each time some 0.9 of what is missing is made up.
+/// Number of times the radius is rescaled toward the desired number of points. Each time removes about 0.9 of the
+/// error.
 const ROUNDS: usize = 6;
 
-/// The radius at which about `n_points` points follow a density of any kind, given up to a factor.
+/// Radius at which about `n_points` points follow an arbitrary density, given up to a factor.
 ///
-/// The density is read at `places` places, columns and rows; it is at least 0, and where it is 0 points are as far apart
-/// as the slope of ½ allows. A lattice finer than half of the distance of the points is of no use.
+/// The density is sampled at `places` positions, in columns and rows. It must be at least 0; where it is 0, points are
+/// as far apart as the maximum slope of ½ allows. A lattice finer than half of the distance of the points has no
+/// benefit.
 ///
 /// # Errors
 ///
 /// [`PointsErrorKind::Domain`] for a domain without area, [`PointsErrorKind::NotPositive`] if `n_points` or the mean of
-/// the density is not above zero and finite, [`PointsErrorKind::TooMany`] for no places or more than 2^26.
+/// the density is not above zero and finite, [`PointsErrorKind::TooMany`] for no positions or more than 2^26.
 ///
 /// # Examples
 ///
@@ -64,7 +67,7 @@ pub fn gentle_radius_for_count(
     let radius = radius_for_count(domain, density, n_points)?;
     let lattice = Lattice::new(&domain, places);
     let steep = lattice.read(&radius);
-    // The largest radius that is of use, also where the density is 0.
+    // Maximum useful radius, also where the density is 0
     let most = domain.size.max_element();
     let mut scale = 1.0;
     let mut gentle = Vec::new();
@@ -94,15 +97,15 @@ pub fn gentle_radius_for_count(
     })
 }
 
-/// The largest number of places.
+/// Maximum number of lattice positions.
 const PLACES_MAX: u64 = 1 << 26;
 
-/// Places of a domain, in columns and rows.
+/// Lattice positions of a domain, in columns and rows.
 struct Lattice<'a> {
     domain: &'a Domain,
     columns: usize,
     rows: usize,
-    /// By how much a radius may rise to the next column, the next row, and the next of both.
+    /// Maximum increase of the radius to the next column, the next row, and the next diagonal position.
     rises: [f64; 3],
 }
 
@@ -118,7 +121,7 @@ impl<'a> Lattice<'a> {
         }
     }
 
-    /// The radius at all places, row by row. One that is no number is the largest there is.
+    /// Samples the radius at all positions, row by row. NaN becomes infinity.
     fn read(&self, radius: &Varying) -> Vec<f64> {
         let count = DVec2::new(self.columns as f64, self.rows as f64);
         let mut radii = Vec::with_capacity(self.columns * self.rows);
@@ -136,7 +139,7 @@ impl<'a> Lattice<'a> {
         radii
     }
 
-    /// Lowers radii until none rises too fast.
+    /// Lowers radii until none is too steep.
     fn limit(&self, radii: &mut [f64]) {
         loop {
             let mut is_changed = false;
@@ -146,14 +149,14 @@ impl<'a> Lattice<'a> {
             for index in (0..radii.len()).rev() {
                 is_changed |= self.lower(radii, index, 1);
             }
-            // Without an axis that wraps, two sweeps are all.
+            // Without a wrapped axis, two sweeps are sufficient.
             if !is_changed || self.domain.wrap == [false; 2] {
                 return;
             }
         }
     }
 
-    /// Lowers one radius to what its neighbors on one side allow: those before it, or those after it.
+    /// Lowers one radius to the limit given by its neighbors on one side: the preceding or the following ones.
     fn lower(&self, radii: &mut [f64], index: usize, side: i64) -> bool {
         let (column, row) = (index % self.columns, index / self.columns);
         let [x, y, diagonal] = self.rises;
@@ -177,7 +180,7 @@ impl<'a> Lattice<'a> {
     }
 }
 
-/// The place beside one on an axis, if there is one.
+/// Neighboring index on an axis, if it exists.
 fn neighbor(place: usize, step: i64, length: usize, wraps: bool) -> Option<usize> {
     let beside = place as i64 + step;
     if wraps {
@@ -212,7 +215,7 @@ mod tests {
         }
     }
 
-    /// The length of the shortest way in steps to the eight neighbors: as many diagonal ones as possible.
+    /// Length of the shortest path in steps to the eight neighbors, with as many diagonal steps as possible.
     fn steps(from: [f64; 2], to: [f64; 2], domain: &Domain, places: [f64; 2]) -> f64 {
         let along = |axis: usize| {
             let straight = (from[axis] - to[axis]).abs();
@@ -242,7 +245,7 @@ mod tests {
                     radius + SLOPE * steps(place(index), place(other), &domain, [13.0, 9.0])
                 });
                 let least = allowed.fold(f64::INFINITY, f64::min);
-                // Sums of a dozen steps in another order.
+                // Tolerance: sums of a dozen steps in another order.
                 assert!((radius - least).abs() < 1e-12, "{wrap:?}, place {index}");
             }
         }
@@ -255,7 +258,7 @@ mod tests {
             let radius = gentle_radius_for_count(domain, &squares(), n_points, [96, 72]).unwrap();
             let points = variable_poisson_disk(domain, &radius, &Default::default(), Seed(3));
             let found = points.unwrap().len() as f64;
-            // Slopes of a half cost some points; see `variable_poisson_disk`.
+            // Slopes of one half lose some points; see `variable_poisson_disk`.
             assert!(
                 (found / n_points - 1.0).abs() < 0.12,
                 "{found} of {n_points}"

@@ -1,9 +1,9 @@
-//! Cutting the domain into rectangles in which the radius hardly changes.
+//! Division of the domain into rectangles in which the radius hardly changes.
 //!
 //! A rectangle is halved along its longer side until a few hundred points fit and the radius varies by less than half.
-//! The radius is read on a lattice of 10 × 10 places, and the differences of neighboring places give the slope. Between
-//! the places the radius is assumed to fall and rise by no more than 1.5 times this slope allows. Each later reading
-//! checks that it does not rise further, since the distances of points depend on it.
+//! The radius is sampled on a lattice of 10 × 10 positions, and differences of neighboring samples give the slope.
+//! Between samples, the slope of the radius is assumed to be at most 1.5 times this slope. Each later evaluation
+//! checks that the radius stays below this bound, since the distances of points depend on it.
 
 use super::density::RSA_DENSITY;
 use super::rule::DiskRule;
@@ -13,22 +13,22 @@ use core::f64::consts::SQRT_2;
 use dapple_raster::Varying;
 use glam::DVec2;
 
-/// Places per side of the lattice on which the radius is read.
+/// Number of lattice samples of the radius per side.
 const LATTICE: usize = 10;
 
-/// The largest number of cells along a side of a leaf.
+/// Maximum number of cells along a side of a leaf.
 const MOST_CELLS: f64 = 32.0;
 
-/// The number of cells along its sides up to which a leaf is not cut, however much the radius varies in it.
+/// Maximum number of cells along the sides of a leaf that is never divided, regardless of the variation of the radius.
 const FEW_CELLS: f64 = 4.0;
 
-/// The ratio of the largest to the smallest radius that a leaf of more cells may have.
+/// Maximum ratio of the largest to the smallest radius in a leaf with more cells.
 const MOST_RATIO: f64 = 1.5;
 
-/// By how much a slope between lattice places may exceed the slopes along them.
+/// Factor by which slopes between lattice samples may exceed the slopes along them.
 const SLOPE_MARGIN: f64 = 1.5;
 
-/// The most that rounding may add to the diagonal of a cell, with room to spare.
+/// Relative upper bound, with some slack, of the rounding error of the diagonal of a cell.
 const ROUNDING: f64 = 1e-9;
 
 /// A rectangle with its radii, relative to the origin of the domain.
@@ -39,14 +39,14 @@ pub(super) struct Leaf {
     pub(super) radii: Radii,
     /// Columns and rows of cells whose diagonal is at most the smallest radius.
     pub(super) cells: [u32; 2],
-    /// The radii on the lattice, row by row.
+    /// Radius samples, row by row.
     lattice: Lattice,
 }
 
 type Lattice = [[f64; LATTICE]; LATTICE];
 
 impl Leaf {
-    /// Bounds of the radius in a rectangle of the leaf, as far as its slope is no larger than along the lattice.
+    /// Bounds of the radius in a rectangle of the leaf, provided that its slope is at most the slope of the lattice.
     pub(super) fn bounds(&self, min: DVec2, size: DVec2) -> [f64; 2] {
         let place = (min + size * 0.5) / self.size * LATTICE as f64;
         let [x, y] = place
@@ -58,26 +58,26 @@ impl Leaf {
     }
 }
 
-/// The range and slope of the radius in a rectangle.
+/// Range and slope of the radius in a rectangle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Radii {
-    /// The lower bound of the radius, valid while its slope between the places read is no larger than along them.
+    /// Lower bound of the radius, provided that its slope between samples is at most the slope along them.
     pub(super) least: f64,
-    /// The largest radius that was read.
+    /// Maximum sample of the radius.
     pub(super) largest: f64,
-    /// The upper bound of the radius, checked wherever it is read later.
+    /// Upper bound of the radius, checked at every later evaluation.
     pub(super) most: f64,
-    /// The change of the radius per distance, with a margin.
+    /// Slope of the radius, with a margin.
     pub(super) slope: f64,
-    /// The largest distance of a place in the leaf to the places where the radius was read.
+    /// Maximum distance of a position in the leaf to the nearest sample.
     pub(super) spread: f64,
 }
 
-/// The number of rectangles that are cut before it is asked again whether the set is still wanted. In each the radius is
-/// read a hundred times, by a function of the caller at most some microseconds each.
+/// Number of rectangles between checks for cancellation. In each, the radius is evaluated a hundred times, by a
+/// function of the caller that takes at most some microseconds.
 const NODES: u32 = 64;
 
-/// The tree of rectangles; parents come before their children.
+/// Tree of rectangles; parents precede their children.
 #[derive(Debug, Default)]
 pub(super) struct Tree {
     nodes: Vec<Node>,
@@ -88,7 +88,7 @@ pub(super) struct Tree {
 struct Node {
     min: DVec2,
     size: DVec2,
-    /// The largest `most` of the leaves below.
+    /// Maximum of `most` over the leaves below.
     most: f64,
     below: Below,
 }
@@ -99,18 +99,17 @@ enum Below {
     Nodes([u32; 2]),
 }
 
-/// The radius as it varies over a domain.
+/// A radius that varies over a domain.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RadiusField<'a> {
     pub(super) domain: &'a Domain,
     pub(super) radius: &'a Varying,
-    /// The slope with which the radius may rise between the places where it is read, if that is larger than the slope
-    /// along them.
+    /// Maximum slope of the radius between samples, if it is larger than the slope along them.
     pub(super) rise: f64,
 }
 
 impl RadiusField<'_> {
-    /// The radius at a position of the domain.
+    /// Radius at a position of the domain.
     pub(super) fn at(&self, position: DVec2) -> Result<f64, PointsError> {
         let radius = self.radius.at(position);
         if radius > 0.0 && radius.is_finite() {
@@ -123,9 +122,9 @@ impl RadiusField<'_> {
         }
     }
 
-    /// The leaf of a rectangle, if it is fit to be one, and the approximate number of points in it.
+    /// Leaf of a rectangle, if the rectangle is suitable, and the approximate number of points in it.
     fn leaf(&self, min: DVec2, size: DVec2) -> Result<(Option<Leaf>, f64), PointsError> {
-        // The smallest radius is no larger than the one in the middle, which decides the matter for most rectangles.
+        // The smallest radius is at most the radius at the center, which suffices to divide most rectangles.
         let middle = self.at(self.domain.origin + (min + size * 0.5))?;
         if size.max_element() * SQRT_2 > MOST_CELLS * middle {
             return Ok((None, RSA_DENSITY * (size.x / middle) * (size.y / middle)));
@@ -141,7 +140,7 @@ impl RadiusField<'_> {
         Ok((leaf, n_points))
     }
 
-    /// The range of the radius in a rectangle, and the approximate number of points in it.
+    /// Range of the radius in a rectangle, its samples, and the approximate number of points in it.
     fn survey(&self, min: DVec2, size: DVec2) -> Result<(Radii, Lattice, f64), PointsError> {
         if let Varying::Constant(_) = self.radius {
             let radius = self.at(self.domain.origin + min)?;
@@ -178,7 +177,7 @@ impl RadiusField<'_> {
         Ok((radii, values, RSA_DENSITY * n_points))
     }
 
-    /// The largest slope along the lattice.
+    /// Maximum slope along the lattice.
     fn slope(&self, values: &Lattice, min: DVec2, step: DVec2) -> Result<f64, PointsError> {
         let mut steepest = 0.0_f64;
         for y in 0..LATTICE - 1 {
@@ -198,14 +197,14 @@ impl RadiusField<'_> {
         Ok(steepest)
     }
 
-    /// A place of the lattice.
+    /// Position of a lattice sample.
     fn place(&self, min: DVec2, step: DVec2, x: usize, y: usize) -> DVec2 {
         self.domain.origin + (min + step * DVec2::new(x as f64 + 0.5, y as f64 + 0.5))
     }
 }
 
 impl Tree {
-    /// Cuts up the whole domain.
+    /// Divides the whole domain.
     pub(super) fn new(
         field: RadiusField<'_>,
         point_limit: u64,
@@ -238,7 +237,7 @@ impl Tree {
                 open.push((first.0, first.1, Some((node, 0))));
                 Below::Nodes([0; 2])
             };
-            // The number is checked as it grows, so that no large tree is built for a set that is refused.
+            // Check the number as it grows, so that no large tree is built for a rejected set.
             if n_points > point_limit as f64 {
                 return Err(PointsError::new(PointsErrorKind::TooMany {
                     needed: n_points.max(first_guess),
@@ -262,7 +261,7 @@ impl Tree {
         }
     }
 
-    /// Gives each node the largest radius below it.
+    /// Propagates the maximum radius from the leaves to all nodes.
     fn sum_up(&mut self) {
         for node in (0..self.nodes.len()).rev() {
             if let Below::Nodes(children) = self.nodes[node].below {
@@ -272,7 +271,7 @@ impl Tree {
         }
     }
 
-    /// Calls `visit` with every leaf that, moved by `shift`, comes close enough to `leaf` for a conflict.
+    /// Calls `visit` with every leaf that, shifted by `shift`, is close enough to `leaf` for a conflict.
     pub(super) fn visit_near(
         &self,
         leaf: &Leaf,
@@ -297,7 +296,7 @@ impl Tree {
     }
 }
 
-/// The columns and rows of cells of a leaf of this size, if it is fit to be one.
+/// Columns and rows of cells of a leaf of this size, if the leaf is suitable.
 fn cells_of(size: DVec2, radii: &Radii) -> Option<[u32; 2]> {
     let cells = (size * (SQRT_2 * (1.0 + ROUNDING)) / radii.least).ceil();
     let is_leaf = radii.least > 0.0
@@ -306,7 +305,7 @@ fn cells_of(size: DVec2, radii: &Radii) -> Option<[u32; 2]> {
     is_leaf.then(|| cells.to_array().map(|count| (count as u32).max(1)))
 }
 
-/// The two halves of a rectangle, cut across its longer side.
+/// Halves of a rectangle, divided across its longer side.
 fn halves(min: DVec2, size: DVec2) -> [(DVec2, DVec2); 2] {
     let along = if size.x >= size.y { DVec2::X } else { DVec2::Y };
     let half = size * (DVec2::ONE - 0.5 * along);

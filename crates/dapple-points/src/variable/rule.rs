@@ -1,4 +1,4 @@
-//! The smallest distance of two points with different radii.
+//! Minimum distance of two points with different radii.
 
 dapple_raster::named! {
     /// How far apart two points must be whose radii differ.
@@ -20,7 +20,7 @@ dapple_raster::named! {
 }
 
 impl DiskRule {
-    /// The smallest distance that points with these radii may have.
+    /// Returns the minimum distance of points with these radii.
     #[must_use]
     #[inline]
     pub fn distance(self, a: f64, b: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! Distances, gaps, density and determinism of sets with a varying radius, and bad input.
+//! Tests of distances, gaps, density and determinism of sets with a varying radius, and of invalid input.
 
 use super::leaf::{RadiusField, Tree};
 use super::{DiskRule, VariablePoissonOptions, variable_poisson_disk};
@@ -18,7 +18,7 @@ fn domain(wrap: [bool; 2]) -> Domain {
     }
 }
 
-/// From `start` on the left to `end` on the right of [`domain`], with equal ratios over equal distances.
+/// Geometric ramp from `start` on the left to `end` on the right of [`domain`].
 fn ramp(start: f64, end: f64) -> Varying {
     let from = DVec2::new(-3.0, 10.0);
     let to = DVec2::new(-1.0, 10.0);
@@ -30,7 +30,7 @@ fn ramp(start: f64, end: f64) -> Varying {
     })
 }
 
-/// Periodic in both directions of [`domain`], with slopes up to 0.5.
+/// Periodic along both axes of [`domain`], with slopes up to 0.5.
 fn waves() -> Varying {
     Varying::function(|at| {
         let (x, y) = (libm::sin(TAU * at.x), libm::sin(TAU * at.y));
@@ -50,7 +50,7 @@ fn error(domain: Domain, radius: &Varying) -> PointsError {
     variable_poisson_disk(domain, radius, &Default::default(), Seed(1)).unwrap_err()
 }
 
-/// The distance of the closest pair over the distance that the rule demands.
+/// Minimum over all pairs of the distance relative to the distance that the rule requires.
 fn closest_pair(set: &PointSet, radius: &Varying, rule: DiskRule) -> f64 {
     let radii: Vec<f64> = set.positions().iter().map(|&at| radius.at(at)).collect();
     let mut closest = f64::INFINITY;
@@ -63,8 +63,8 @@ fn closest_pair(set: &PointSet, radius: &Varying, rule: DiskRule) -> f64 {
     closest
 }
 
-/// At the emptiest place, found on a dense lattice and refined: the distance to the points over the distance that the
-/// rule demands.
+/// Maximum over all positions, found on a dense lattice and refined, of the distance to the points relative to the
+/// distance that the rule requires.
 fn emptiest_place(set: &PointSet, radius: &Varying, rule: DiskRule) -> f64 {
     let radii: Vec<f64> = set.positions().iter().map(|&at| radius.at(at)).collect();
     let domain = set.domain();
@@ -124,14 +124,14 @@ fn variable_disks_keep_their_distance_and_leave_no_room() {
             ] {
                 let set = make(domain(wrap), &radius, rule, 5);
                 let closest = closest_pair(&set, &radius, rule);
-                // Coordinates near 10 round by 2e-15, radii are at least 0.02.
+                // Coordinates near 10 are rounded by 2e-15; radii are at least 0.02.
                 assert!(
                     closest >= 1.0 - 1e-12,
                     "{name}, {rule:?}, {wrap:?}: two of {} points are {closest} of their distance apart",
                     set.len()
                 );
                 let emptiest = emptiest_place(&set, &radius, rule);
-                // The stated tolerance.
+                // The documented tolerance
                 assert!(
                     emptiest < 1.0 + 1e-6,
                     "{name}, {rule:?}, {wrap:?}: there is room of {emptiest} beside {} points",
@@ -215,7 +215,7 @@ fn variable_sets_are_the_same_for_any_number_of_threads() {
     }
 }
 
-/// The number of points over that predicted by 0.697 / r², in the part of the domain with x in `from..to`.
+/// Number of points relative to the prediction 0.697 / r², in the part of the domain with x in `from..to`.
 fn relative_density(radius: &Varying, from: f64, to: f64) -> f64 {
     let (mut n_points, mut expected) = (0.0, 0.0);
     for seed in 0..20 {
@@ -236,7 +236,7 @@ fn relative_density(radius: &Varying, from: f64, to: f64) -> f64 {
 
 #[test]
 fn local_density_follows_the_radius() {
-    // From 0.01 to 0.08 the slope is at most 0.083, and 0.06 in the middle of the part looked at.
+    // From 0.01 to 0.08 the slope is at most 0.083, and 0.06 in the middle of the measured part.
     let ratio = relative_density(&ramp(0.01, 0.08), -2.8, -1.4);
     // 12000 points per set and 20 sets: the noise is below 0.3 %.
     assert!(
@@ -258,7 +258,7 @@ fn estimated_numbers_of_points_agree_with_the_sets() {
     for density in [ramp(1.0, 64.0), ramp(5.0, 5.0)] {
         let radius = super::radius_for_count(domain, &density, 5000.0).unwrap();
         let set = make(domain, &radius, DiskRule::Average, 1);
-        // Both ends of the cylinder have room for some more.
+        // Both ends of the cylinder have room for some additional points.
         assert!(
             (set.len() as f64 / 5000.0 - 1.0).abs() < 0.02,
             "there are {} points",

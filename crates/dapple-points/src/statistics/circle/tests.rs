@@ -1,10 +1,10 @@
-//! The largest empty circle against all places of a lattice, and of few points by hand.
+//! Tests of the largest empty circle against all positions of a lattice, and for few points by hand.
 
 use crate::statistics::test_sets::{domains, random_set};
 use crate::{Domain, PointSet};
 use glam::DVec2;
 
-/// The distance from a place to the nearest point, by trying all.
+/// Distance from a position to the nearest point, by brute force.
 fn distance_at(set: &PointSet, place: DVec2) -> f64 {
     let squared = set
         .positions()
@@ -23,7 +23,7 @@ fn no_place_is_farther_than_the_radius_and_the_center_is_that_far() {
                 domain.contains(circle.center),
                 "{circle:?} is centered outside"
             );
-            // The domain lies at 100, where a center rounds by 2e-14.
+            // The domain is near 100, where a center is rounded by 2e-14.
             let reached = distance_at(&set, circle.center);
             assert!(
                 (reached - circle.radius).abs() < 1e-12,
@@ -96,7 +96,7 @@ fn thin_domains_do_not_take_forever() {
             wrap,
         };
         let circle = random_set(domain, 50, 1).largest_empty_circle().unwrap();
-        // Half of the widest of the gaps between points, or all of one at an open end.
+        // Half of the widest gap between points, or all of a gap at an open end.
         assert!(
             circle.radius > 0.01 && circle.radius < 1.0,
             "{circle:?} in {domain:?}"

@@ -1,4 +1,4 @@
-//! Distances and neighbor counts against all pairs.
+//! Tests of distances and neighbor counts against all pairs.
 
 use crate::statistics::test_sets::{domains, random_set};
 use crate::{Domain, PointSet};

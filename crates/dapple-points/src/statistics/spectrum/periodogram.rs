@@ -1,30 +1,31 @@
-//! Periodograms at whole-number frequencies.
+//! Periodograms at integer frequencies.
 //!
 //! exp(i(a ± b)) needs only the four products of the sines and cosines of a and b, so that one pass over the points
-//! gives two frequencies. Sines and cosines of the multiples come by complex multiplication from the first.
+//! gives two frequencies. The sines and cosines of multiples are computed by complex multiplication.
 
 use crate::{IsCancelled, PointSet};
 use core::f64::consts::TAU;
 use dapple_raster::parallel;
 
-/// Points per block: its tables stay in the second-level cache for the usual thousands of points.
+/// Number of points per block: its tables stay in the second-level cache for the usual thousands of points.
 const BLOCK: usize = 256;
 
-/// Sums that run side by side, in vector registers; the order of summation is part of the values.
+/// Number of parallel sums in vector registers; the order of summation affects the values.
 const LANES: usize = 8;
 
-/// The sums of the powers of sets at the frequencies `[x, y]` with `0 <= x <= counts[0]` and `|y| <= counts[1]`.
+/// Accumulated power of sets at the frequencies `[x, y]` with `0 <= x <= counts[0]` and `|y| <= counts[1]`.
 #[derive(Debug)]
 pub(super) struct Periodogram {
     counts: [u32; 2],
-    /// By x, then by y from 0: the powers at `[x, y]` and at `[x, -y]`.
+    /// Power at `[x, y]` and at `[x, -y]`, ordered by x, then by y starting at 0.
     powers: Vec<[f64; 2]>,
 }
 
-/// Σ cos a cos b, Σ sin a sin b, Σ sin a cos b, Σ cos a sin b over the points, with a and b their angles along x and y.
+/// Σ cos a cos b, Σ sin a sin b, Σ sin a cos b, Σ cos a sin b over the points, where a and b are their angles along x
+/// and y.
 type Products = [f64; 4];
 
-/// Cosines and sines of the multiples of angles, by multiple, each padded with zeros to a whole number of lanes.
+/// Cosines and sines of multiples of angles, ordered by multiple and padded with zeros to whole lanes.
 struct Multiples {
     cos: Vec<[f64; LANES]>,
     sin: Vec<[f64; LANES]>,
@@ -40,7 +41,7 @@ impl Periodogram {
         }
     }
 
-    /// Adds the power of a set that is not empty. It is left incomplete once `is_cancelled` returns true.
+    /// Adds the power of a nonempty set. The result is incomplete if `is_cancelled` returns true.
     pub(super) fn add(&mut self, set: &PointSet, is_cancelled: &IsCancelled) {
         let mut sums = vec![Products::default(); self.powers.len()];
         let n_rows = self.counts[1] as usize + 1;
@@ -74,7 +75,7 @@ impl Periodogram {
         }
     }
 
-    /// Calls `visit` with each frequency but `[0, 0]` and its power; of f and -f only with one.
+    /// Calls `visit` with each frequency except `[0, 0]` and its power; of f and -f only one is visited.
     pub(super) fn for_each(&self, mut visit: impl FnMut([i32; 2], f64)) {
         let n_rows = self.counts[1] as usize + 1;
         for (x, column) in (0..).zip(self.powers.chunks(n_rows)) {
@@ -116,7 +117,7 @@ impl Multiples {
         multiples
     }
 
-    /// The products of multiple `a` of these angles and multiple `b` of the others, summed over the points.
+    /// Products of multiple `a` of these angles and multiple `b` of the others, summed over the points.
     fn products(&self, a: usize, others: &Self, b: usize) -> Products {
         let [a, b] = [a, b].map(|multiple| multiple * self.per_row..(multiple + 1) * self.per_row);
         let mut sums = [[0.0; LANES]; 4];

@@ -1,4 +1,4 @@
-//! Spectra of noise, lattices and disk sets, and bad input.
+//! Tests of spectra of noise, lattices and disk sets, and of invalid input.
 
 use super::{SpectrumOptions, spectrum};
 use crate::statistics::test_sets::{domains, random_set};
@@ -7,7 +7,7 @@ use core::{f64::consts::TAU, slice};
 use dapple_hash::{Seed, hash1, unit_f64};
 use glam::DVec2;
 
-/// Rings of the spectrum by the formula, one frequency at a time: ring means and variances.
+/// Ring means and variances of the spectrum by the formula, one frequency at a time.
 fn naive_rings(sets: &[PointSet], options: &SpectrumOptions) -> Vec<(u32, f64, f64)> {
     let size = sets[0].domain().size;
     let n_points: f64 = sets.iter().map(|set| set.len() as f64).sum();
@@ -59,7 +59,7 @@ fn spectrum_equals_the_formula() {
         ring_width: 0.2,
     };
     for domain in domains() {
-        // Numbers of points below and above a block, and no multiple of the lanes.
+        // Numbers of points below and above a block size, not multiples of the lanes.
         let sets = [random_set(domain, 37, 1), random_set(domain, 301, 2)];
         let naive = naive_rings(&sets, &options);
         let rings = spectrum(&sets, &options).unwrap().rings;
