@@ -1,41 +1,41 @@
 //! Errors of rasters, windows and fields.
 
 crate::error! {
-    /// An error of an operation on rasters, windows or fields.
+    /// Error of an operation on rasters, windows or fields.
     RasterError,
-    /// The cause of a [`RasterError`], with the limit and the value.
+    /// Cause of a [`RasterError`], with the limit and the value.
     RasterErrorKind with Range {
         /// A width or a height is zero.
         Empty {
-            /// The size, in pixels.
+            /// Size in pixels.
             size: [u32; 2],
         } => "a raster of {} × {} pixels is empty", size[0], size[1];
-        /// The pixels are more than the address space, or the limit of 2^31, allows.
+        /// The number of pixels exceeds the address space or the limit of 2^31.
         TooLarge {
-            /// The size, in pixels.
+            /// Size in pixels.
             size: [u32; 2],
         } => "a raster of {} × {} pixels is larger than the limit of 2^31 pixels", size[0], size[1];
-        /// The number of values is not that of the pixels.
+        /// The number of values does not match the number of pixels.
         Length {
-            /// The number of values.
+            /// Number of values.
             length: usize,
-            /// The number of values needed.
+            /// Required number of values.
             needed: usize,
         } => "there are {length} values, but {needed} are needed";
-        /// Two sizes that must be equal are not.
+        /// Two sizes that must be equal differ.
         SizeMismatch {
-            /// The size that was passed, in pixels.
+            /// Actual size in pixels.
             size: [u32; 2],
-            /// The size that was needed, in pixels.
+            /// Required size in pixels.
             needed: [u32; 2],
         } => "the raster has {} × {} pixels, but {} × {} are needed", size[0], size[1], needed[0], needed[1];
-        /// A rectangle reaches past the raster.
+        /// A rectangle extends beyond the raster.
         OutOfBounds {
-            /// The first column and row of the rectangle.
+            /// First column and row of the rectangle.
             first: [u32; 2],
-            /// The size of the rectangle, in pixels.
+            /// Size of the rectangle in pixels.
             size: [u32; 2],
-            /// The size of the raster, in pixels.
+            /// Size of the raster in pixels.
             bounds: [u32; 2],
         } =>
             "the rectangle of {} × {} pixels at ({}, {}) leaves the raster of {} × {}",
@@ -53,7 +53,7 @@ crate::error! {
 }
 
 impl RasterError {
-    /// Checks that memory for `length` values has exactly the `needed` length. For implementations of
+    /// Checks that a buffer of `length` values has exactly the `needed` length. For implementations of
     /// [`Field`](crate::Field).
     ///
     /// # Errors
@@ -66,7 +66,8 @@ impl RasterError {
         Err(Self::new(RasterErrorKind::Length { length, needed }))
     }
 
-    /// Checks that a number lies in its range, which is so if `holds`. For implementations of [`Field`](crate::Field).
+    /// Checks that a number is in its range; `holds` is the result of the comparison. For implementations of
+    /// [`Field`](crate::Field).
     ///
     /// # Errors
     ///

@@ -1,20 +1,21 @@
-//! The macro that defines the error types of all crates.
+//! Macro that defines the error types of all crates.
 
-/// Defines an error of dapple: an opaque struct, its kinds with their messages, and the errors it converts from.
+/// Defines an error type of dapple: an opaque struct, its kinds with their messages, and conversions from other
+/// errors.
 ///
-/// A kind is its documentation, a name, fields with their documentation, and a text with the fields by name (or the arguments
-/// of a format string). `with Range` adds the kind `Range` of a number out of its range, and the function `check` that
-/// refuses one. `from` lists kinds that hold the error of another crate, which is also the source.
+/// A kind consists of its documentation, a name, fields with documentation, and a message that refers to the fields by
+/// name (or the arguments of a format string). `with Range` adds the kind `Range` for a number out of range, and the
+/// function `check` that returns it. `from` lists kinds that wrap an error of another crate, which is also the source.
 ///
 /// ```
 /// dapple_raster::error! {
-///     /// Why a cake was refused.
+/// Error of baking a cake.
 ///     CakeError,
-///     /// The limit that was broken.
+/// The limit that was violated.
 ///     CakeErrorKind with Range {
 ///         /// There are too many layers.
 ///         Layers {
-///             /// How many there are.
+/// Number of layers.
 ///             count: u32,
 ///         } => "there are {count} layers, but the limit is 7";
 ///     }
@@ -62,7 +63,7 @@ macro_rules! error {
                 Err(Self::new($kind::Range { what, value, range }))
             })?
 
-            /// The cause of the error, with the limit and the value.
+            /// Cause of the error, with the limit and the value.
             #[must_use]
             pub fn kind(&self) -> &$kind {
                 &self.kind
@@ -97,7 +98,7 @@ macro_rules! error {
     };
 }
 
-/// Defines the kinds of an error whose struct is written by hand: see [`error!`](crate::error).
+/// Defines the kinds of an error whose struct is handwritten: see [`error!`](crate::error).
 #[doc(hidden)]
 #[macro_export]
 macro_rules! error_kind {
@@ -117,11 +118,11 @@ macro_rules! error_kind {
         pub enum $kind {
             $(#[doc = concat!("A number is outside of its ", stringify!($range), ".")]
             Range {
-                /// The name of the number.
+                /// Name of the number.
                 what: &'static str,
-                /// The number.
+                /// Value of the number.
                 value: f64,
-                /// The range it must lie in, as text.
+                /// Required range, as text.
                 range: &'static str,
             },)?
             $($(#[$doc])* $variant $({ $($(#[$field_doc])* $field: $type),* })?,)*

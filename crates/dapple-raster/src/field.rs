@@ -1,4 +1,4 @@
-//! The trait [`Field`]: anything that has a value at every position of the plane or of space.
+//! The trait [`Field`]: a function with a value at every position of the plane or of space.
 
 mod combinators;
 mod fractal;
@@ -20,14 +20,15 @@ use crate::{Raster, RasterError, RasterErrorKind, RasterViewMut, Window};
 use core::fmt;
 use std::sync::Arc;
 
-/// A scalar function of positions with `N` coordinates that can also fill a window: of the plane by default, of space,
-/// or of space and time.
+/// A scalar function of positions with `N` coordinates: of the plane by default, of space, or of space and time. It
+/// can also render a window.
 ///
-/// Evaluators implement this trait, and programs store `dyn Field`. [`FieldExt`] has the methods that programs call: [`sample`](FieldExt::sample) takes the vectors of any library, and others compose fields.
-/// References, boxes and `Arc`s of fields are fields, and so are a [`Constant`] and closures in [`field_fn`].
+/// Generators implement this trait, and programs store `dyn Field`. [`FieldExt`] has the methods for callers:
+/// [`sample`](FieldExt::sample) accepts the vectors of any library, and other methods compose fields. References,
+/// boxes and `Arc`s of fields are fields, and so are a [`Constant`] and closures in [`field_fn`].
 ///
-/// All methods give the same bits: `render` and `values` equal `value` at every position. An implementation overrides
-/// them when it is faster on many positions at once. At a position that is not finite the value is NaN.
+/// All methods give the same bits: `render` and `values` equal `value` at every position. Implementations override
+/// them to be faster on many positions. At a position that is not finite, the value is NaN.
 ///
 /// # Examples
 ///
@@ -48,10 +49,10 @@ use std::sync::Arc;
 /// # Ok::<(), dapple_raster::RasterError>(())
 /// ```
 pub trait Field<const N: usize = 2>: Send + Sync {
-    /// The value at a position.
+    /// Returns the value at a position.
     fn value(&self, position: [f64; N]) -> f32;
 
-    /// The values at many positions, into memory of the same length.
+    /// Computes the values at many positions; both slices must have the same length.
     ///
     /// # Errors
     ///
@@ -64,7 +65,7 @@ pub trait Field<const N: usize = 2>: Send + Sync {
         Ok(())
     }
 
-    /// The values at the pixel centers of a window, into memory of its size.
+    /// Computes the values at the pixel centers of a window; `out` must have its size.
     ///
     /// # Errors
     ///
@@ -83,13 +84,12 @@ pub trait Field<const N: usize = 2>: Send + Sync {
         Ok(())
     }
 
-    /// The values in several windows, such as the planes of a volume, each into memory of its size. Faster than one at a
-    /// time where neighboring planes share work, as those through cells do.
+    /// Renders several windows, such as the planes of a volume, each into a view of its size. This is faster than
+    /// rendering them one at a time if neighboring planes share work, as cellular noise does.
     ///
     /// # Errors
     ///
-    /// [`Length`](crate::RasterErrorKind::Length) if there are not as many windows as views, and
-    /// [`SizeMismatch`](crate::RasterErrorKind::SizeMismatch) if a view has another size than its window.
+    /// [`Length`](crate::RasterErrorKind::Length) if the numbers of windows and views differ, and
     fn render_stack(
         &self,
         windows: &[Window<N>],
@@ -100,18 +100,19 @@ pub trait Field<const N: usize = 2>: Send + Sync {
         stack.try_for_each(|(window, out)| self.render(window, out))
     }
 
-    /// The distances after which the field repeats along each axis: `None` along an axis where it does not repeat or the
-    /// period is unknown, 0 along an axis where the field is constant.
+    /// Period of the field along each axis: `None` if it does not repeat or the period is unknown, 0 if the field is
+    /// constant along the axis.
     fn period(&self) -> [Option<f64>; N] {
         [None; N]
     }
 
-    /// One period of the field from the origin, as a raster of `size` pixels that tiles exactly: the period of the first
-    /// two axes, where the other coordinates are 0. Along an axis where the field is constant, the raster covers a length of 1.
+    /// Renders one period of the field, starting at the origin, as a raster of `size` pixels that tiles exactly. The
+    /// period is that of the first two axes; the other coordinates are 0. Along an axis where the field is constant,
+    /// the raster covers a length of 1.
     ///
     /// # Errors
     ///
-    /// [`NoPeriod`](RasterErrorKind::NoPeriod) if the field does not repeat along both axes, otherwise those of
+    /// [`NoPeriod`](RasterErrorKind::NoPeriod) if the field does not repeat along both axes, otherwise the errors of
     /// [`Window::new`].
     fn tile_raster(&self, size: [u32; 2]) -> Result<Raster<f32>, RasterError> {
         let mut extent = [1.0; 2];
@@ -125,12 +126,12 @@ pub trait Field<const N: usize = 2>: Send + Sync {
         self.to_raster(&window.in_space([0.0; N]))
     }
 
-    /// The values at the pixel centers of a window, as a new raster.
+    /// Renders a window into a new raster.
     ///
     /// # Errors
     ///
-    /// [`Empty`](crate::RasterErrorKind::Empty) or [`TooLarge`](crate::RasterErrorKind::TooLarge) if the window has a bad
-    /// size.
+    /// [`Empty`](crate::RasterErrorKind::Empty) or [`TooLarge`](crate::RasterErrorKind::TooLarge) if the size of the
+    /// window is invalid.
     fn to_raster(&self, window: &Window<N>) -> Result<Raster<f32>, RasterError> {
         let mut raster = Raster::filled(window.size, 0.0)?;
         self.render(window, raster.view_mut())?;
@@ -170,7 +171,7 @@ macro_rules! forward_field {
 
 forward_field!(&F, Box<F>, Arc<F>);
 
-/// The field that has one value everywhere.
+/// A field with the same value everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constant(pub f32);
 
@@ -184,9 +185,10 @@ impl<const N: usize> Field<N> for Constant {
     }
 }
 
-/// What can stand for a field in an argument: a field, or a number, which is a [`Constant`] then.
+/// Conversion to a field: implemented for fields, and for numbers, which become a [`Constant`].
 ///
-/// Numbers are not fields themselves: with [`FieldExt`] in scope, `value.max(0.0)` would be ambiguous for an `f32`.
+/// Numbers are not fields themselves, because `value.max(0.0)` would be ambiguous for an `f32` with [`FieldExt`] in
+/// scope.
 ///
 /// # Examples
 ///
@@ -198,10 +200,10 @@ impl<const N: usize> Field<N> for Constant {
 /// assert_eq!([1.0_f32, 3.0].map(|value| value.max(2.0)), [2.0, 3.0]);
 /// ```
 pub trait IntoField<const N: usize = 2> {
-    /// The field.
+    /// Type of the field.
     type Field: Field<N>;
 
-    /// This as a field.
+    /// Converts `self` to a field.
     fn into_field(self) -> Self::Field;
 }
 
@@ -221,7 +223,7 @@ impl<const N: usize> IntoField<N> for f32 {
     }
 }
 
-/// A field from a function of the coordinates: two in the plane, three in space, or four.
+/// Creates a field from a function of two (plane), three (space) or four coordinates.
 ///
 /// # Examples
 ///
@@ -239,7 +241,7 @@ pub const fn field_fn<const N: usize, F: Fn([f64; N]) -> f32 + Send + Sync>(
     FieldFn(function)
 }
 
-/// The field that [`field_fn`] makes.
+/// Field created by [`field_fn`].
 #[derive(Clone, Copy)]
 pub struct FieldFn<F>(F);
 

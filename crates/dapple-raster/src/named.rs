@@ -1,23 +1,23 @@
-//! Kinds of values that have names: one table for recipes, the command line and documentation.
+//! Enums with named values: one table for recipes, the command line and documentation.
 
-/// A kind of which every value has a name, made by the macro `named!`.
+/// An enum whose values have names, defined by the macro `named!`.
 pub trait Named: Copy + PartialEq + 'static {
-    /// All values, in the order of their definition.
+    /// All values, in the order of definition.
     const ALL: &'static [Self];
 
-    /// Their names, in the same order.
+    /// Names of the values, in the same order as `ALL`.
     const NAMES: &'static [&'static str];
 
-    /// The name: in small letters, words joined by `_`.
+    /// Name in snake case.
     fn name(self) -> &'static str;
 
-    /// Other names that are read as well.
+    /// Alternative names that are accepted when reading.
     fn aliases(self) -> &'static [&'static str];
 
-    /// The documentation of the value.
+    /// Documentation of the value.
     fn documentation(self) -> &'static str;
 
-    /// The value of this name or alias; `None` if there is no such value.
+    /// Returns the value with this name or alias; `None` if there is no such value.
     #[must_use]
     fn from_name(name: &str) -> Option<Self> {
         let is_named = |value: &Self| value.name() == name || value.aliases().contains(&name);
@@ -25,11 +25,11 @@ pub trait Named: Copy + PartialEq + 'static {
     }
 }
 
-/// Defines an enum whose values have names: implements [`Named`], `Display`, and serde behind the feature `serde` of this
-/// crate.
+/// Defines an enum whose values have names. It implements [`Named`], `Display`, and serde if the feature `serde` of
+/// this crate is enabled.
 ///
-/// A name stands behind each value, and other names that are read as well behind a bar. Each value has a documentation,
-/// whose first sentence is the help on the command line.
+/// The name follows each value, and aliases follow after a bar. Each value has a documentation, whose first sentence
+/// is the help text on the command line.
 ///
 /// ```
 /// use dapple_raster::Named;
@@ -59,7 +59,7 @@ macro_rules! named {
             $(
                 $(#[doc = $doc:literal])*
                 $(#[cfg_attr $attribute:tt])*
-                // The inner option is never there: a repetition has to hold a variable.
+                // The inner option never occurs: a repetition must contain a variable.
                 $(#[default $($default:ident)?])?
                 $value:ident = $name:literal $(| $alias:literal)*
             ),* $(,)?
@@ -108,7 +108,7 @@ macro_rules! named {
     };
 }
 
-/// Implements serde for a kind of values with names: a value is its name.
+/// Implements serde for a named enum: a value is serialized as its name.
 #[cfg(feature = "serde")]
 #[doc(hidden)]
 #[macro_export]
@@ -133,7 +133,7 @@ macro_rules! named_serde {
     };
 }
 
-/// Without serde there is nothing to implement.
+/// Without serde, implements nothing.
 #[cfg(not(feature = "serde"))]
 #[doc(hidden)]
 #[macro_export]
@@ -141,11 +141,11 @@ macro_rules! named_serde {
     ($kind:ident) => {};
 }
 
-/// Reads a value by its name.
+/// Deserializes a value from its name.
 ///
 /// # Errors
 ///
-/// If there is no value of this name, with all names.
+/// If there is no value of this name; the error lists all names.
 #[cfg(feature = "serde")]
 #[doc(hidden)]
 pub fn read_named<'de, T: Named, D: serde::Deserializer<'de>>(
@@ -154,7 +154,7 @@ pub fn read_named<'de, T: Named, D: serde::Deserializer<'de>>(
     deserializer.deserialize_str(Name(core::marker::PhantomData))
 }
 
-/// Reads the name of a value.
+/// Visitor for the name of a value.
 #[cfg(feature = "serde")]
 struct Name<T>(core::marker::PhantomData<T>);
 

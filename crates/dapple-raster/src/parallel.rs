@@ -1,17 +1,17 @@
-//! Work on all cores where the feature `rayon` is on, and one piece after the other where it is not.
+//! Parallel loops: on all cores if the feature `rayon` is enabled, sequential otherwise.
 //!
-//! Every piece is computed on its own and put where it belongs, so that the bits do not depend on the number of
-//! threads. This is the only place that uses `rayon`. Its code and that of iterators is large and compiled anew for every
-//! closure, which is optimized again in each of their functions. So closures are called through references to trait
-//! objects: a call costs about a nanosecond, and all that is around it is compiled once for each type of values.
+//! Every piece is computed independently and stored at its position, so that the bits do not depend on the number of
+//! threads. This is the only module that uses `rayon`. Code of parallel iterators is large, compiled separately for
+//! every closure, and optimized again in each caller. Therefore closures are called through trait objects: a call
+//! costs about a nanosecond, and the surrounding code is compiled once per value type.
 
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-/// The largest number of pieces for each thread: enough that no thread waits long for another.
+/// Maximum number of pieces per thread: enough that no thread waits long for another.
 const PIECES: usize = 64;
 
-/// The number of threads that can work at once: 1 where the feature `rayon` is off.
+/// Number of threads that can run in parallel: 1 if the feature `rayon` is disabled.
 #[must_use]
 pub fn n_threads() -> usize {
     #[cfg(feature = "rayon")]
@@ -31,12 +31,12 @@ pub fn for_each(count: usize, work: &(dyn Fn(usize) + Sync)) {
     (0..count).for_each(work);
 }
 
-/// The results of `make` for the numbers below `count`, in their order; each call is worth a task of its own.
+/// Collects the results of `make` for the numbers below `count`, in order. Each call is worth a task.
 pub fn map<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync) -> Vec<T> {
     map_at_least(1, count, make)
 }
 
-/// The results of `make` for the numbers below `count`, in their order; `least` calls together are worth a task.
+/// Collects the results of `make` for the numbers below `count`, in order. `least` calls together are worth a task.
 pub fn map_at_least<T: Send>(
     least: usize,
     count: usize,
@@ -45,16 +45,16 @@ pub fn map_at_least<T: Send>(
     all_of(least, count, &make)
 }
 
-/// What [`map_at_least`] returns, by one call of a closure for each number.
+/// Implements [`map_at_least`] through a trait object.
 #[inline(never)]
 fn all_of<T: Send>(least: usize, count: usize, make: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
     map_parts(least, count, &|part| part.map(make).collect())
 }
 
-/// The results of `make` for ranges of the numbers below `count`, one after the other; `least` numbers together are
-/// worth a task.
+/// Concatenates the results of `make` for ranges of the numbers below `count`. `least` numbers together are worth a
+/// task.
 ///
-/// On one thread there is one range: `make` is called in one way only, so that it is compiled once.
+/// On one thread there is a single range: `make` has only one call site, so that it is compiled once.
 #[inline(never)]
 pub(crate) fn map_parts<T: Send>(
     least: usize,
@@ -80,12 +80,12 @@ pub(crate) fn map_parts<T: Send>(
     all
 }
 
-/// Calls `work` once with each of some items and its number, in any order; each is worth a task of its own.
+/// Calls `work` once with each item and its index, in any order. Each call is worth a task.
 pub fn for_each_mut<T: Send>(items: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
     for_each_mut_at_least(1, items, work);
 }
 
-/// Calls `work` once with each of some items and its number, in any order; `least` items together are worth a task.
+/// Calls `work` once with each item and its index, in any order. `least` items together are worth a task.
 pub fn for_each_mut_at_least<T: Send>(
     least: usize,
     items: &mut [T],
@@ -94,7 +94,7 @@ pub fn for_each_mut_at_least<T: Send>(
     each_of(least, items, &work);
 }
 
-/// What [`for_each_mut_at_least`] does, by one call of a closure for each item.
+/// Implements [`for_each_mut_at_least`] through a trait object.
 #[inline(never)]
 fn each_of<T: Send>(least: usize, items: &mut [T], work: &(dyn Fn(usize, &mut T) + Sync)) {
     let size = piece(items.len(), least);
@@ -105,7 +105,7 @@ fn each_of<T: Send>(least: usize, items: &mut [T], work: &(dyn Fn(usize, &mut T)
     });
 }
 
-/// The results of `change` for some items and their numbers, in their order; `least` items together are worth a task.
+/// Collects the results of `change` for each item and its index, in order. `least` items together are worth a task.
 pub fn map_mut_at_least<T: Send, U: Send>(
     least: usize,
     items: &mut [T],
@@ -118,7 +118,7 @@ pub fn map_mut_at_least<T: Send, U: Send>(
     pairs.into_iter().filter_map(|(_, made)| made).collect()
 }
 
-/// Calls `work` once with each chunk of `size` values (the last one may be shorter) and its number, in any order.
+/// Calls `work` once with each chunk of `size` values (the last one may be shorter) and its index, in any order.
 ///
 /// # Panics
 ///
@@ -131,8 +131,8 @@ pub fn for_each_chunk<T: Send>(
     for_each_chunk_with(values, size, || (), |(), chunk, values| work(chunk, values));
 }
 
-/// Calls `work` once with each chunk of `size` values (the last one may be shorter), its number, and scratch memory
-/// that a thread keeps from one chunk to the next.
+/// Calls `work` once with each chunk of `size` values (the last one may be shorter), its index, and scratch memory
+/// that is reused between chunks.
 ///
 /// # Panics
 ///
@@ -149,13 +149,12 @@ pub fn for_each_chunk_with<T: Send, S: Send>(
     });
 }
 
-/// Calls `work` once with each of some items and its number, in any order.
+/// Calls `work` once with each item and its index, in any order.
 pub fn consume<T: Send>(items: Vec<T>, work: impl Fn(usize, T) + Sync) {
     consume_with(items, || (), |(), index, item| work(index, item));
 }
 
-/// Calls `work` once with each of some items, its number, and scratch memory that a thread keeps from one item to the
-/// next.
+/// Calls `work` once with each item, its index, and scratch memory that is reused between items.
 pub fn consume_with<T: Send, S: Send>(
     items: Vec<T>,
     scratch: impl Fn() -> S + Sync,
@@ -164,7 +163,7 @@ pub fn consume_with<T: Send, S: Send>(
     consume_all(items, &scratch, &work);
 }
 
-/// What [`consume_with`] does, by one call of a closure for each item.
+/// Implements [`consume_with`] through trait objects.
 #[inline(never)]
 fn consume_all<T: Send, S: Send>(
     items: Vec<T>,
@@ -186,9 +185,9 @@ fn consume_all<T: Send, S: Send>(
     });
 }
 
-/// Lets all workers work at the same time, each with its number; there are at most [`n_threads`] of them.
+/// Runs all workers concurrently, each with its index; there are at most [`n_threads`] workers.
 ///
-/// A thread that comes late may find that the others have done all of it.
+/// A worker that starts late may find that the others have completed all work.
 pub fn together<W: Send>(workers: &mut [W], work: impl Fn(usize, &mut W) + Sync) {
     #[cfg(feature = "rayon")]
     if workers.len() > 1 {
@@ -205,7 +204,7 @@ pub fn together<W: Send>(workers: &mut [W], work: impl Fn(usize, &mut W) + Sync)
     }
 }
 
-/// Sorts numbers, ascending.
+/// Sorts numbers in ascending order.
 pub fn sort(numbers: &mut [u128]) {
     #[cfg(feature = "rayon")]
     rayon::slice::ParallelSliceMut::par_sort_unstable(numbers);
@@ -213,7 +212,7 @@ pub fn sort(numbers: &mut [u128]) {
     numbers.sort_unstable();
 }
 
-/// How many of `count` items make one task: never fewer than `least`, and all of them on one thread.
+/// Number of items per task: at least `least`, and all `count` items on a single thread.
 fn piece(count: usize, least: usize) -> usize {
     let size = match n_threads() {
         1 => count,
@@ -222,7 +221,7 @@ fn piece(count: usize, least: usize) -> usize {
     size.max(least).max(1)
 }
 
-/// Locks a mutex, whether or not a thread panicked while it held the lock: rayon passes the panic on.
+/// Locks a mutex and ignores poisoning: rayon propagates the panic.
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,12 +1,14 @@
-//! Parts of textures that are kept while textures are made again with other options, as under a slider.
+//! Cache of parts of textures that are reused when a texture is rebuilt with other options, for example while a slider
+//! is dragged.
 
 use core::any::Any;
 use core::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Parts of textures made before, such as nets of control points, for textures that need equal ones.
+/// A cache of texture parts, such as networks of control points, for textures that need equal ones.
 ///
-/// Clones share what is kept. By default nothing is kept; [`keeping`](Self::keeping) keeps what the last rounds used.
+/// Clones share the cache. By default nothing is cached; [`keeping`](Self::keeping) caches the parts used in recent
+/// rounds.
 ///
 /// # Examples
 ///
@@ -28,7 +30,7 @@ pub struct Parts {
     kept: Option<Arc<Mutex<Kept>>>,
 }
 
-/// The parts, each with the round in which it was used last.
+/// Cached parts, each with the round of its last use.
 #[derive(Default)]
 struct Kept {
     parts: Vec<(Arc<dyn Any + Send + Sync>, u64)>,
@@ -36,7 +38,7 @@ struct Kept {
 }
 
 impl Parts {
-    /// A place that keeps parts until [`begin`](Self::begin) drops them.
+    /// Creates a cache that keeps parts until [`begin`](Self::begin) drops them.
     #[must_use]
     pub fn keeping() -> Self {
         Self {
@@ -44,7 +46,7 @@ impl Parts {
         }
     }
 
-    /// Begins a round, and drops the parts that none of the last `max_age` rounds used.
+    /// Starts a round, and drops the parts that were not used in the last `max_age` rounds.
     pub fn begin(&self, max_age: u64) {
         if let Some(mut kept) = self.lock() {
             kept.round += 1;
@@ -53,9 +55,9 @@ impl Parts {
         }
     }
 
-    /// The kept part of this type for which `is_it` holds; without one, `make` makes it.
+    /// Returns the cached part of this type for which `is_it` is true, or else creates it with `make`.
     ///
-    /// `is_it` holds for parts that have the bits of what `make` makes.
+    /// `is_it` must be true only for parts with the same bits as the result of `make`.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! The traits and types that a program which samples fields needs: `use dapple_raster::prelude::*`.
+//! Traits and types for programs that sample fields: `use dapple_raster::prelude::*`.
 //!
 //! ```
 //! use dapple_raster::prelude::*;

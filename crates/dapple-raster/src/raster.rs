@@ -1,4 +1,4 @@
-//! The raster: pixels that own their memory.
+//! Rasters: images that own their pixels.
 
 use crate::parallel;
 use crate::window::check_size;
@@ -15,12 +15,12 @@ pub struct Raster<T> {
 }
 
 impl<T> Raster<T> {
-    /// A raster of `size` pixels from their values, row by row.
+    /// Creates a raster of `size` pixels from their values, row by row.
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for a bad size, [`RasterErrorKind::Length`] if the
-    /// number of values is not the number of pixels.
+    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for an invalid size, [`RasterErrorKind::Length`] if
+    /// the number of values does not match the number of pixels.
     pub fn from_vec(size: [u32; 2], data: Vec<T>) -> Result<Self, RasterError> {
         check_size(size)?;
         let needed = size[0] as usize * size[1] as usize;
@@ -28,11 +28,11 @@ impl<T> Raster<T> {
         Ok(Self { data, size })
     }
 
-    /// A raster of `size` pixels whose values are `value(column, row)`.
+    /// Creates a raster of `size` pixels with the values `value(column, row)`.
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for a bad size.
+    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for an invalid size.
     pub fn from_fn(
         size: [u32; 2],
         mut value: impl FnMut(u32, u32) -> T,
@@ -45,43 +45,43 @@ impl<T> Raster<T> {
         Ok(Self { data, size })
     }
 
-    /// Columns and rows.
+    /// Width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// The number of columns.
+    /// Number of columns.
     #[must_use]
     pub fn width(&self) -> u32 {
         self.size[0]
     }
 
-    /// The number of rows.
+    /// Number of rows.
     #[must_use]
     pub fn height(&self) -> u32 {
         self.size[1]
     }
 
-    /// The values, row by row from the top.
+    /// Pixels, row by row from the top.
     #[must_use]
     pub fn pixels(&self) -> &[T] {
         &self.data
     }
 
-    /// The values, row by row from the top.
+    /// Mutable pixels, row by row from the top.
     #[must_use]
     pub fn pixels_mut(&mut self) -> &mut [T] {
         &mut self.data
     }
 
-    /// The values, row by row from the top.
+    /// Converts into the pixels, row by row from the top.
     #[must_use]
     pub fn into_pixels(self) -> Vec<T> {
         self.data
     }
 
-    /// The pixels of a row, from left to right.
+    /// Pixels of a row, from left to right.
     ///
     /// # Panics
     ///
@@ -91,19 +91,19 @@ impl<T> Raster<T> {
         self.view().row(row)
     }
 
-    /// All pixels, for reading.
+    /// View of all pixels, for reading.
     #[must_use]
     pub fn view(&self) -> RasterView<'_, T> {
         RasterView::whole(&self.data, self.size)
     }
 
-    /// All pixels, for writing.
+    /// View of all pixels, for writing.
     #[must_use]
     pub fn view_mut(&mut self) -> RasterViewMut<'_, T> {
         RasterViewMut::whole(&mut self.data, self.size)
     }
 
-    /// A raster of the same size with every value changed by `change`.
+    /// Applies `change` to every pixel.
     #[must_use]
     pub fn map<U>(&self, change: impl FnMut(&T) -> U) -> Raster<U> {
         Raster {
@@ -112,7 +112,7 @@ impl<T> Raster<T> {
         }
     }
 
-    /// A raster that combines two of the same size, pixel by pixel.
+    /// Combines two rasters of the same size, pixel by pixel.
     ///
     /// # Errors
     ///
@@ -135,16 +135,16 @@ impl<T> Raster<T> {
         })
     }
 
-    /// Refuses a size that is not this raster's.
+    /// Checks that a size equals the size of this raster.
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::SizeMismatch`] if it is another.
+    /// [`RasterErrorKind::SizeMismatch`] if the sizes differ.
     pub fn check_same_size(&self, size: [u32; 2]) -> Result<(), RasterError> {
         check_same_size(size, self.size)
     }
 
-    /// The pixel that stands for `[column, row]`, which may lie outside, with the given wrap for each axis.
+    /// Returns the pixel at `[column, row]`, which may be outside, with the given wrap mode for each axis.
     #[must_use]
     #[inline]
     pub fn at(&self, column: i64, row: i64, wrap: [Wrap; 2]) -> &T {
@@ -157,11 +157,11 @@ impl<T> Raster<T> {
 }
 
 impl<T: Copy> Raster<T> {
-    /// A raster of `size` pixels that all have the same value.
+    /// Creates a raster of `size` pixels with the same value.
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for a bad size.
+    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for an invalid size.
     pub fn filled(size: [u32; 2], value: T) -> Result<Self, RasterError> {
         check_size(size)?;
         Ok(Self {
@@ -170,7 +170,7 @@ impl<T: Copy> Raster<T> {
         })
     }
 
-    /// The pixels of a view, copied.
+    /// Copies the pixels of a view.
     #[must_use]
     pub fn from_view(view: RasterView<'_, T>) -> Self {
         let mut data = Vec::with_capacity(view.size()[0] as usize * view.size()[1] as usize);
@@ -181,20 +181,21 @@ impl<T: Copy> Raster<T> {
         }
     }
 
-    /// The rectangle of `size` pixels from `first`, copied.
+    /// Copies the rectangle of `size` pixels that starts at `first`.
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::OutOfBounds`] if it reaches past the raster, [`RasterErrorKind::Empty`] if it has no pixel.
+    /// [`RasterErrorKind::OutOfBounds`] if it extends beyond the raster, [`RasterErrorKind::Empty`] if it has no
+    /// pixel.
     pub fn crop(&self, first: [u32; 2], size: [u32; 2]) -> Result<Self, RasterError> {
         Ok(Self::from_view(self.view().crop(first, size)?))
     }
 
-    /// `count[0] × count[1]` copies of the raster side by side, which makes seams visible.
+    /// Repeats the raster `count[0] × count[1]` times, which makes seams visible.
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for the size that results.
+    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for the resulting size.
     pub fn tile(&self, count: [u32; 2]) -> Result<Self, RasterError> {
         let size = [
             self.size[0].saturating_mul(count[0]),
@@ -210,7 +211,7 @@ impl<T: Copy> Raster<T> {
 }
 
 impl<T: Sync> Raster<T> {
-    /// A raster of the same size with every value changed by `change`, on all cores where the feature `rayon` is on.
+    /// Applies `change` to every pixel, on all cores if the feature `rayon` is enabled.
     #[must_use]
     pub fn par_map<U: Send>(&self, change: impl Fn(&T) -> U + Sync) -> Raster<U> {
         let data = parallel::map_parts(BAND_PIXELS, self.data.len(), &|part| {
@@ -221,16 +222,15 @@ impl<T: Sync> Raster<T> {
     }
 }
 
-/// The number of pixels that are made at a time, unless one row has more.
+/// Number of pixels that are computed at a time, unless a row has more.
 const BAND_PIXELS: usize = 4096;
 
 impl<T: Send> Raster<T> {
-    /// A raster whose values are those of `value` at the pixel centers of `window`, on all cores where the feature
-    /// `rayon` is on.
+    /// Computes `value` at the pixel centers of `window`, on all cores if the feature `rayon` is enabled.
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for a bad size.
+    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for an invalid size.
     pub fn from_window(
         window: &Window,
         value: impl Fn(DVec2) -> T + Sync,
@@ -238,7 +238,7 @@ impl<T: Send> Raster<T> {
         Self::of_window(window, &value)
     }
 
-    /// What [`from_window`](Self::from_window) returns, by one call of a closure for each pixel.
+    /// Implements [`from_window`](Self::from_window) through a trait object.
     #[inline(never)]
     fn of_window(
         window: &Window,
@@ -250,21 +250,21 @@ impl<T: Send> Raster<T> {
         })
     }
 
-    /// A raster from its rows, each made on its own, on all cores where the feature `rayon` is on.
+    /// Creates a raster from independently computed rows, on all cores if the feature `rayon` is enabled.
     ///
-    /// `row` gives the values of a row from left to right; what is past the width is not used.
+    /// `row` returns the values of a row from left to right; values beyond the width are ignored.
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for a bad size, [`RasterErrorKind::Length`] if a
-    /// row is too short.
+    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for an invalid size, [`RasterErrorKind::Length`] if
+    /// a row is too short.
     pub fn from_rows<I>(size: [u32; 2], row: impl Fn(u32) -> I + Sync) -> Result<Self, RasterError>
     where
         I: IntoIterator<Item = T>,
     {
         check_size(size)?;
         let width = size[0] as usize;
-        // Narrow rows are made several at a time.
+        // Group narrow rows into pieces.
         let n_rows = BAND_PIXELS / width;
         let data = parallel::map_parts(n_rows, size[1] as usize, &|rows| {
             let mut values = Vec::with_capacity(width * rows.len());
@@ -275,7 +275,7 @@ impl<T: Send> Raster<T> {
     }
 }
 
-/// Refuses a size that is not the one needed.
+/// Checks that two sizes are equal.
 pub(crate) fn check_same_size(size: [u32; 2], needed: [u32; 2]) -> Result<(), RasterError> {
     if size == needed {
         Ok(())

@@ -1,4 +1,4 @@
-//! Bilinear interpolation of rasters, and means over areas.
+//! Bilinear interpolation of rasters, and area averages.
 
 use crate::{Raster, Wrap};
 use core::ops::{Add, Mul, Sub};
@@ -10,11 +10,11 @@ pub trait Texel: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f32, Outpu
 impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f32, Output = T>> Texel for T {}
 
 impl<T: Texel> Raster<T> {
-    /// The value at `uv`, interpolated between the four nearest pixel centers.
+    /// Samples the raster at `uv` with bilinear interpolation between the four nearest pixel centers.
     ///
-    /// `(0, 0)` is the top left corner of the raster and `(1, 1)` the bottom right one; the center of pixel
-    /// `[i, j]` is at `((i + ½) / width, (j + ½) / height)`, where the result is that pixel. `wrap` says, for each
-    /// axis, what lies past the edge. A `uv` that is not finite reads the first pixel.
+    /// `(0, 0)` is the top left corner of the raster and `(1, 1)` the bottom right one. The center of pixel `[i, j]`
+    /// is at `((i + ½) / width, (j + ½) / height)`, where the result equals the pixel. `wrap` is the wrap mode of each
+    /// axis. A `uv` that is not finite reads the first pixel.
     #[must_use]
     pub fn sample_bilinear(&self, uv: DVec2, wrap: [Wrap; 2]) -> T {
         let [width, height] = self.size();
@@ -26,16 +26,16 @@ impl<T: Texel> Raster<T> {
         lerp(top, bottom, fy)
     }
 
-    /// The mean over a rectangle around `uv` whose sides are `area`, in the units of `uv`.
+    /// Averages a rectangle around `uv` with the side lengths `area`, in units of `uv`.
     ///
-    /// Each pixel counts with the part of the rectangle that it covers. Along an axis on which the rectangle is at most a
-    /// pixel long, the value is interpolated as by [`sample_bilinear`](Self::sample_bilinear), and on both axes it is that
-    /// value. A rectangle longer than the raster counts as long as the raster.
+    /// Each pixel is weighted by its overlap with the rectangle. Along an axis where the rectangle is at most one
+    /// pixel long, the value is interpolated as in [`sample_bilinear`](Self::sample_bilinear); if this holds for both
+    /// axes, the results are equal. Sides longer than the raster are clamped to its size.
     #[must_use]
     pub fn sample_area(&self, uv: DVec2, area: DVec2, wrap: [Wrap; 2]) -> T {
         let size = self.size().map(f64::from);
         let pixels = area * DVec2::from(size);
-        // A rectangle of a pixel may be longer by a rounding.
+        // Rounding may make a rectangle of one pixel slightly longer.
         if !(pixels.x > ONE_PIXEL || pixels.y > ONE_PIXEL) {
             return self.sample_bilinear(uv, wrap);
         }
@@ -49,25 +49,25 @@ impl<T: Texel> Raster<T> {
     }
 }
 
-/// The length of a rectangle, in pixels, up to which pixels are interpolated.
+/// Maximum side of a rectangle, in pixels, at which values are interpolated.
 const ONE_PIXEL: f64 = 1.0 + 1e-9;
 
-/// The pixels of a line that an interval covers.
+/// Overlap of an interval with the pixels of a line.
 struct Shares {
     first: i64,
-    /// The ends of the interval, in pixels from the first one.
+    /// Ends of the interval, in pixels relative to the first one.
     ends: [f64; 2],
 }
 
-/// The pixels that an interval of a line of `size` pixels covers. One of at most a pixel is a pixel long: then the shares
-/// are the factors of linear interpolation.
+/// Overlap of an interval with a line of `size` pixels. An interval of at most one pixel is extended to one pixel: the
+/// weights are then those of linear interpolation.
 fn shares(middle: f64, length: f64, size: f64) -> Shares {
     let length = if length > ONE_PIXEL {
         length.min(size)
     } else {
         1.0
     };
-    // Ends are a whole number of 2^-20 of a pixel, so that a boundary of pixels is met in spite of roundings.
+    // Round the ends to 2^-20 of a pixel, so that pixel boundaries are matched despite rounding.
     let [from, end] = [-0.5, 0.5].map(|half| {
         let end = middle * size + half * length;
         (end * PARTS + 0.5).floor() / PARTS
@@ -79,11 +79,11 @@ fn shares(middle: f64, length: f64, size: f64) -> Shares {
     }
 }
 
-/// The resolution of the ends of intervals, in parts of a pixel.
+/// Resolution of interval ends, in fractions of a pixel.
 const PARTS: f64 = (1 << 20) as f64;
 
 impl Shares {
-    /// The shares of the pixels from the first one on; they add up to 1.
+    /// Weights of the pixels, starting at the first one, which sum to 1.
     fn weights(&self) -> impl Iterator<Item = f32> {
         let [from, end] = self.ends;
         let length = end - from;
@@ -91,13 +91,13 @@ impl Shares {
         (0..n_pixels).map(move |pixel| {
             let pixel = f64::from(pixel);
             let covered = (end.min(pixel + 1.0) - from.max(pixel)) / length;
-            // A place that is not finite covers nothing, and reads the first pixel.
+            // A position that is not finite has no overlap, and reads the first pixel.
             if covered > 0.0 { covered as f32 } else { 0.0 }
         })
     }
 }
 
-/// The mean of values by shares that add up to 1; exactly the value where all are equal.
+/// Weighted mean with weights that sum to 1; exact if all values are equal.
 fn mean<T: Texel>(first: i64, weights: impl Iterator<Item = f32>, at: impl Fn(i64) -> T) -> T {
     let base = at(first);
     let mut sum = base;
@@ -107,18 +107,18 @@ fn mean<T: Texel>(first: i64, weights: impl Iterator<Item = f32>, at: impl Fn(i6
     sum
 }
 
-/// The whole-number part and the rest in `[0, 1)`. Past the range of `i64` the fraction is 0.
+/// Integer part, and fraction in `[0, 1)`. Outside of the range of `i64` the fraction is 0.
 fn cell_and_fraction(coordinate: f64) -> (i64, f32) {
     let floor = coordinate.floor();
     let fraction = (coordinate - floor) as f32;
-    // A fraction that rounds to 1 is the next cell.
+    // A fraction that rounds to 1 belongs to the next cell.
     match fraction < 1.0 {
         true => (floor as i64, fraction),
         false => ((floor + 1.0) as i64, 0.0),
     }
 }
 
-/// Interpolates linearly; equal to `a` at 0, so that a raster is reproduced exactly at its pixel centers.
+/// Linear interpolation, exactly `a` at 0, so that pixel centers reproduce the raster.
 fn lerp<T: Texel>(a: T, b: T, t: f32) -> T {
     a + (b - a) * t
 }
@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn a_raster_is_reproduced_at_its_pixel_centers_for_any_size() {
-        // The center of a pixel comes out just below a whole number for many sizes that are not powers of 2.
+        // For many sizes that are not powers of 2, the center of a pixel is computed just below an integer.
         for size in [3, 7, 49, 85, 100, 255] {
             let raster = Raster::from_fn([size, 1], |x, _| x as f32).unwrap();
             for column in 0..size {
@@ -161,7 +161,7 @@ mod tests {
             let uv = DVec2::from(at) / DVec2::new(12.0, 8.0);
             let area = DVec2::from(size.map(f64::from)) / DVec2::new(12.0, 8.0);
             let sampled = raster.sample_area(uv, area, [Wrap::Repeat; 2]);
-            // Single precision; the ends are met within 2^-20 of a pixel.
+            // Tolerance: `f32`, and ends rounded to 2^-20 of a pixel.
             let error = (f64::from(sampled) - mean(first, size)).abs();
             assert!(error < 1e-4, "{first:?} {size:?}: {sampled}");
         }
@@ -179,7 +179,7 @@ mod tests {
             };
             assert_eq!(sampled(0.0).to_bits(), point.to_bits());
             assert_eq!(sampled(1.0).to_bits(), point.to_bits());
-            // A millionth of a pixel more adds as much of values up to 16, and ends are whole numbers of 2^-20.
+            // A millionth of a pixel more changes values up to 16 by as much; ends are rounded to 2^-20.
             assert!((sampled(1.000_001) - point).abs() < 1e-4);
         }
     }

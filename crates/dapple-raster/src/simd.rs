@@ -1,7 +1,7 @@
-//! The choice of the SIMD level, and tests of all levels.
+//! Selection of the SIMD level, and tests of all levels.
 //!
-//! For crates that fill rasters with vector instructions: every level gives the same bits. Without the feature `simd`
-//! there is one level, for which code is compiled as everything else is.
+//! For crates that render rasters with vector instructions: every level gives the same bits. Without the feature
+//! `simd` there is a single level, compiled like other code.
 
 #[cfg(feature = "simd")]
 mod levels;

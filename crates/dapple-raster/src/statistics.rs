@@ -1,26 +1,26 @@
-//! Range, mean, standard deviation and histogram of a raster of numbers.
+//! Range, mean, standard deviation and histogram of a raster.
 
 use crate::Raster;
 
-/// The range, mean and standard deviation of the numbers of a raster.
+/// Range, mean and standard deviation of the pixels of a raster.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
-    /// The smallest number.
+    /// Minimum.
     pub min: f32,
-    /// The largest number.
+    /// Maximum.
     pub max: f32,
-    /// The mean.
+    /// Mean.
     pub mean: f64,
-    /// The standard deviation, with the number of pixels as the divisor.
+    /// Standard deviation, with the number of pixels as the divisor.
     pub deviation: f64,
-    /// How many pixels are NaN or infinite; the other fields leave them out.
+    /// Number of pixels that are NaN or infinite; the other fields exclude them.
     pub n_not_finite: usize,
 }
 
 impl Raster<f32> {
-    /// The statistics of all finite pixels, summed row by row in a fixed order.
+    /// Computes the statistics of all finite pixels, summed row by row in a fixed order.
     ///
-    /// Without a finite pixel `min` is infinite, `max` is minus infinity, and the other numbers are NaN.
+    /// Without a finite pixel, `min` is infinity, `max` is minus infinity, and the other numbers are NaN.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
         let finite = || {
@@ -51,16 +51,16 @@ impl Raster<f32> {
         }
     }
 
-    /// How many pixels lie in each of `bins` equal parts of the range from `from` to `to`.
+    /// Number of pixels in each of `bins` equal intervals of the range from `from` to `to`.
     ///
-    /// Numbers outside of the range count in the first or last part; NaN counts nowhere.
+    /// Values outside of the range count in the first or last interval; NaN is ignored.
     #[must_use]
     pub fn histogram(&self, from: f32, to: f32, bins: u32) -> Vec<usize> {
         let mut counts = vec![0; bins.max(1) as usize];
         for &value in self.pixels().iter().filter(|value| !value.is_nan()) {
             let part = (value - from) / (to - from) * counts.len() as f32;
             let last = counts.len() - 1;
-            // A negative number becomes zero, a large one the last.
+            // The cast maps negative numbers to zero; large numbers are clamped.
             counts[(part as usize).min(last)] += 1;
         }
         counts

@@ -1,40 +1,41 @@
-//! Decoding of texts of files: recipes, tables, lists and text formats of meshes.
+//! Decoding of text files: recipes, tables, lists and text mesh formats.
 //!
-//! All texts are UTF-8. A byte order mark before a text is skipped, and other encodings of Unicode are named in the error.
+//! All text is UTF-8. A leading byte order mark is skipped, and the error for other Unicode encodings names the
+//! encoding.
 
 crate::error! {
-    /// An error of decoding a text.
+    /// Error of decoding text.
     TextError,
-    /// The cause of a [`TextError`].
+    /// Cause of a [`TextError`].
     TextErrorKind {
-        /// The text has another encoding of Unicode.
+        /// The text has another Unicode encoding.
         Encoding {
-            /// The name of the encoding: UTF-16 or UTF-32.
+            /// Name of the encoding: UTF-16 or UTF-32.
             found: &'static str,
         } => "the text is {found}, but must be UTF-8";
         /// The bytes are not UTF-8.
         NotUtf8 {
-            /// The number of bytes before the first invalid one.
+            /// Number of bytes before the first invalid one.
             at: usize,
         } => "the text is not UTF-8 at byte {at}";
     }
 }
 
-/// The byte order mark in UTF-8.
+/// Byte order mark in UTF-8.
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// Returns the bytes of a text after its byte order mark, if it has one. The bytes may be invalid UTF-8, such as the
-/// Latin-1 comments of old files.
+/// Returns the bytes of a text without its byte order mark. The bytes may be invalid UTF-8, such as Latin-1 comments
+/// in old files.
 ///
-/// UTF-16 and UTF-32 are recognized by their marks; without a mark, by the zero bytes of two (UTF-16) or one (UTF-32)
-/// characters of ASCII at the beginning.
+/// UTF-16 and UTF-32 are recognized by their byte order marks, or by the zero bytes of the first two (UTF-16) or one
+/// (UTF-32) ASCII characters.
 ///
 /// # Errors
 ///
 /// [`Encoding`](TextErrorKind::Encoding) for UTF-16 and UTF-32.
 pub fn without_mark(bytes: &[u8]) -> Result<&[u8], TextError> {
     let found = match *bytes {
-        // The mark of UTF-32 in little endian begins like the mark of UTF-16.
+        // Test UTF-32 first: its little-endian mark starts like the mark of UTF-16.
         [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => "UTF-32",
         [1..=0x7f, 0, 0, 0, ..] | [0, 0, 0, 1..=0x7f, ..] => "UTF-32",
         [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "UTF-16",
@@ -44,7 +45,7 @@ pub fn without_mark(bytes: &[u8]) -> Result<&[u8], TextError> {
     Err(TextError::new(TextErrorKind::Encoding { found }))
 }
 
-/// Decodes a text in UTF-8 and skips its byte order mark. A text that is a `str` already may have a mark, too.
+/// Decodes UTF-8 text and skips its byte order mark, which a `str` may have too.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! Numbers that vary in space, as plain data.
+//! Spatially varying numbers as plain data.
 
 #[cfg(feature = "serde")]
 mod data;
@@ -18,32 +18,33 @@ use std::sync::Arc;
 /// let density = Varying::from(Ramp { from: DVec2::ZERO, to: DVec2::X, start: 0.25, end: 0.75 });
 /// assert_eq!(density.at(DVec2::new(0.5, 9.0)), 0.5);
 /// ```
-/// As data it is a number, where it is constant, or `{ ramp = … }` and `{ geometric_ramp = … }` with the fields of [`Ramp`].
+/// The serialized form of a constant is a number. Ramps are `{ ramp = … }` or `{ geometric_ramp = … }` with the fields
+/// of [`Ramp`].
 #[derive(Clone)]
 #[non_exhaustive]
 pub enum Varying {
-    /// One number everywhere.
+    /// The same number everywhere.
     Constant(f64),
     /// A linear ramp.
     Ramp(Ramp),
-    /// A ramp with equal ratios over equal distances, instead of equal differences. Both ends are above zero.
+    /// A ramp with constant ratios instead of constant differences over equal distances. Both ends must be above zero.
     GeometricRamp(Ramp),
-    /// The values of a raster that covers a rectangle of the plane, bilinear in between. It is not written as data.
+    /// Values of a raster that covers a rectangle of the plane, with bilinear interpolation. Cannot be serialized.
     Raster {
-        /// The values.
+        /// Raster with the values.
         raster: Arc<Raster<f32>>,
-        /// The top left corner of the rectangle.
+        /// Top left corner of the rectangle.
         origin: DVec2,
-        /// Its width and height.
+        /// Width and height of the rectangle.
         extent: DVec2,
-        /// The wrapping past the edges of the raster, along x and y.
+        /// Wrap modes beyond the edges of the raster, along x and y.
         wrap: [Wrap; 2],
     },
-    /// Any function of the position. It is not written as data.
+    /// A function of the position. Cannot be serialized.
     Function(Arc<dyn Fn(DVec2) -> f64 + Send + Sync>),
 }
 
-/// Two values at two places; along the line between them the value changes, across it does not.
+/// Linear gradient between two positions: the value changes along the line between them, and is constant across it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -51,18 +52,18 @@ pub enum Varying {
     serde(deny_unknown_fields)
 )]
 pub struct Ramp {
-    /// Where the ramp starts.
+    /// Start position.
     pub from: DVec2,
-    /// Where it ends.
+    /// End position.
     pub to: DVec2,
-    /// The value at the start and before it.
+    /// Value at the start and before it.
     pub start: f64,
-    /// The value at the end and past it.
+    /// Value at the end and beyond it.
     pub end: f64,
 }
 
 impl Ramp {
-    /// How far along the ramp a position is, from 0 to 1. A ramp without length is at its end everywhere.
+    /// Fraction of the ramp at a position, from 0 to 1. A ramp of zero length is at its end everywhere.
     #[must_use]
     pub fn fraction(&self, position: DVec2) -> f64 {
         let along = self.to - self.from;
@@ -74,7 +75,7 @@ impl Ramp {
         }
     }
 
-    /// The value at a position.
+    /// Value at a position.
     #[must_use]
     pub fn at(&self, position: DVec2) -> f64 {
         let fraction = self.fraction(position);
@@ -83,12 +84,12 @@ impl Ramp {
 }
 
 impl Varying {
-    /// A number given by a function of the position.
+    /// Creates a number from a function of the position.
     pub fn function(value: impl Fn(DVec2) -> f64 + Send + Sync + 'static) -> Self {
         Self::Function(Arc::new(value))
     }
 
-    /// The number at a position.
+    /// Value at a position.
     #[must_use]
     pub fn at(&self, position: DVec2) -> f64 {
         match self {

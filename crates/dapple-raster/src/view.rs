@@ -1,4 +1,4 @@
-//! Borrowed rectangles of pixels, with a stride.
+//! Views: borrowed rectangles of pixels with a stride.
 
 use crate::parallel;
 use crate::{RasterError, RasterErrorKind};
@@ -20,7 +20,7 @@ pub struct RasterViewMut<'a, T> {
 }
 
 impl<'a, T> RasterView<'a, T> {
-    /// A view of memory that somebody else owns: rows of `size[0]` pixels that begin `stride` elements apart.
+    /// Creates a view of existing memory: rows of `size[0]` pixels whose starts are `stride` elements apart.
     ///
     /// # Errors
     ///
@@ -30,7 +30,7 @@ impl<'a, T> RasterView<'a, T> {
         Ok(Self { data, stride, size })
     }
 
-    /// All pixels of a raster, which has as many as it should.
+    /// View of all pixels of a raster, whose length is already checked.
     pub(crate) fn whole(data: &'a [T], size: [u32; 2]) -> Self {
         Self {
             data,
@@ -39,13 +39,13 @@ impl<'a, T> RasterView<'a, T> {
         }
     }
 
-    /// Columns and rows.
+    /// Width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// The pixels of a row, from left to right.
+    /// Pixels of a row, from left to right.
     ///
     /// # Panics
     ///
@@ -58,7 +58,7 @@ impl<'a, T> RasterView<'a, T> {
         &self.data[start..start + self.size[0] as usize]
     }
 
-    /// The rows from top to bottom.
+    /// Rows from top to bottom.
     pub fn rows(&self) -> impl ExactSizeIterator<Item = &'a [T]> {
         let view = RasterView {
             data: self.data,
@@ -67,11 +67,11 @@ impl<'a, T> RasterView<'a, T> {
         (0..view.size[1]).map(move |row| view.row(row))
     }
 
-    /// The rectangle of `size` pixels from `first`.
+    /// View of the rectangle of `size` pixels that starts at `first`.
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::OutOfBounds`] if it reaches past this view.
+    /// [`RasterErrorKind::OutOfBounds`] if it extends beyond this view.
     pub fn crop(&self, first: [u32; 2], size: [u32; 2]) -> Result<Self, RasterError> {
         let range = crop_range(self.stride, self.size, first, size)?;
         Ok(Self {
@@ -83,7 +83,7 @@ impl<'a, T> RasterView<'a, T> {
 }
 
 impl<'a, T> RasterViewMut<'a, T> {
-    /// A view of memory that somebody else owns: rows of `size[0]` pixels that begin `stride` elements apart.
+    /// Creates a view of existing memory: rows of `size[0]` pixels whose starts are `stride` elements apart.
     ///
     /// # Errors
     ///
@@ -93,7 +93,7 @@ impl<'a, T> RasterViewMut<'a, T> {
         Ok(Self { data, stride, size })
     }
 
-    /// All pixels of a raster, which has as many as it should.
+    /// View of all pixels of a raster, whose length is already checked.
     pub(crate) fn whole(data: &'a mut [T], size: [u32; 2]) -> Self {
         Self {
             data,
@@ -102,13 +102,13 @@ impl<'a, T> RasterViewMut<'a, T> {
         }
     }
 
-    /// Columns and rows.
+    /// Width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// The pixels of a row, from left to right.
+    /// Pixels of a row, from left to right.
     ///
     /// # Panics
     ///
@@ -121,7 +121,7 @@ impl<'a, T> RasterViewMut<'a, T> {
         &mut self.data[start..start + self.size[0] as usize]
     }
 
-    /// The rows from top to bottom.
+    /// Rows from top to bottom.
     pub fn rows_mut(&mut self) -> impl Iterator<Item = &mut [T]> {
         let [width, height] = self.size.map(|side| side as usize);
         self.data
@@ -130,14 +130,14 @@ impl<'a, T> RasterViewMut<'a, T> {
             .map(move |row| &mut row[..width])
     }
 
-    /// The rows from top to bottom, borrowed for as long as the view.
+    /// Converts into rows from top to bottom, borrowed for the lifetime of the view.
     pub fn into_rows(self) -> impl Iterator<Item = &'a mut [T]> {
         let [width, height] = self.size.map(|side| side as usize);
         let rows = self.data.chunks_mut(self.stride).take(height);
         rows.map(move |row| &mut row[..width])
     }
 
-    /// Borrows the pixels for a shorter time.
+    /// Reborrows the pixels for a shorter lifetime.
     #[must_use]
     pub fn reborrow(&mut self) -> RasterViewMut<'_, T> {
         RasterViewMut {
@@ -147,11 +147,11 @@ impl<'a, T> RasterViewMut<'a, T> {
         }
     }
 
-    /// The rectangle of `size` pixels from `first`.
+    /// View of the rectangle of `size` pixels that starts at `first`.
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::OutOfBounds`] if it reaches past this view.
+    /// [`RasterErrorKind::OutOfBounds`] if it extends beyond this view.
     pub fn crop(self, first: [u32; 2], size: [u32; 2]) -> Result<Self, RasterError> {
         let range = crop_range(self.stride, self.size, first, size)?;
         Ok(Self {
@@ -161,8 +161,8 @@ impl<'a, T> RasterViewMut<'a, T> {
         })
     }
 
-    /// Cuts the view into bands of `height` rows, the last one with what remains; they share no pixel, so that each
-    /// can be filled by a thread of its own.
+    /// Splits the view into bands of `height` rows; the last one may have fewer. Bands share no pixels, so that
+    /// separate threads can fill them.
     ///
     /// # Panics
     ///
@@ -174,7 +174,7 @@ impl<'a, T> RasterViewMut<'a, T> {
         bands
             .take(rows.div_ceil(height) as usize)
             .map(move |(band, data)| {
-                // There are at most `u32::MAX` rows, hence bands.
+                // There are at most `u32::MAX` rows, so the product fits.
                 let above = band as u32 * height;
                 RasterViewMut {
                     data,
@@ -186,14 +186,14 @@ impl<'a, T> RasterViewMut<'a, T> {
 }
 
 impl<T: Send> RasterViewMut<'_, T> {
-    /// Gives every band of `height` rows (the last one of what remains) and the number of its first row to `fill`, on all
-    /// cores where the feature `rayon` is on.
+    /// Calls `fill` with the first row and the view of every band of `height` rows (the last one may have fewer), on
+    /// all cores if the feature `rayon` is enabled.
     ///
     /// # Panics
     ///
     /// If `height` is zero.
     pub fn for_each_band(self, height: u32, fill: impl Fn(u32, RasterViewMut<'_, T>) + Sync) {
-        // There are at most `u32::MAX` rows, hence bands.
+        // There are at most `u32::MAX` rows, so the product fits.
         parallel::consume(self.bands(height).collect(), |band, view| {
             fill(band as u32 * height, view);
         });
@@ -207,7 +207,7 @@ impl<T: Copy> RasterViewMut<'_, T> {
     }
 }
 
-/// Refuses memory that is too short for its rows.
+/// Checks that memory is long enough for its rows.
 fn check(length: usize, stride: usize, size: [u32; 2]) -> Result<(), RasterError> {
     let [width, height] = size.map(|side| side as usize);
     if width == 0 || height == 0 {
@@ -231,7 +231,7 @@ fn check(length: usize, stride: usize, size: [u32; 2]) -> Result<(), RasterError
     }
 }
 
-/// The elements that a rectangle spans, from its first pixel to its last.
+/// Range of elements from the first to the last pixel of a rectangle.
 fn crop_range(
     stride: usize,
     bounds: [u32; 2],

@@ -1,16 +1,16 @@
-//! Windows: grids of pixels in the plane, and in planes through space.
+//! Windows: pixel grids in the plane, and in planes through space.
 
 use crate::raster::check_same_size;
 use crate::{RasterError, RasterErrorKind};
 
-/// A grid of pixels along the first two axes: the pixel `[i, j]` has its center at `(origin + (first + [i, j] + ½) ·
-/// pixel) · scale`.
+/// A pixel grid along the first two axes. Pixel `[i, j]` has its center at `(origin + (first + [i, j] + ½) · pixel) ·
+/// scale`.
 ///
-/// In three or four dimensions the window lies in a plane along the first two axes: all pixels have the further
-/// coordinates `origin · scale`. Make one with [`in_space`](Self::in_space).
+/// In three or four dimensions the window is in a plane along the first two axes: all pixels have the further
+/// coordinates `origin · scale`. Create it with [`in_space`](Self::in_space).
 ///
-/// `first` counts whole pixels from the origin, so a part of a window keeps the origin and the pixel of the whole and
-/// has the same positions to the last bit: see [`crop`](Self::crop).
+/// `first` is the integer offset of the first pixel from the origin. A part of a window keeps the origin and the pixel
+/// size of the whole, and therefore has the same positions, bit for bit: see [`crop`](Self::crop).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -21,22 +21,22 @@ use crate::{RasterError, RasterErrorKind};
     ))
 )]
 pub struct Window<const N: usize = 2> {
-    /// The corner from which pixels are counted, before scaling, and the coordinates along further axes.
+    /// Corner from which pixels are counted, before scaling, and the coordinates along further axes.
     pub origin: [f64; N],
-    /// The width and height of a pixel. A negative height makes rows go up.
+    /// Width and height of a pixel. With a negative height, y decreases from row to row.
     pub pixel: [f64; 2],
-    /// The column and row of the first pixel, counted from the origin.
+    /// Column and row of the first pixel, relative to the origin.
     pub first: [i64; 2],
-    /// Columns and rows.
+    /// Number of columns and rows.
     pub size: [u32; 2],
-    /// The factor by which positions are multiplied last, such as the frequency of a texture: 1, except in
-    /// [`scaled`](Self::scaled) windows.
+    /// Factor that multiplies positions last, such as the frequency of a texture [default: 1]. Only
+    /// [`scaled`](Self::scaled) windows have another value.
     #[cfg_attr(feature = "serde", serde(default = "one"))]
     pub scale: [f64; N],
 }
 
 impl Window {
-    /// The window of `size` pixels that covers the rectangle from `origin` with the given `extent`.
+    /// Creates a window of `size` pixels over the rectangle from `origin` with the given `extent`.
     ///
     /// # Errors
     ///
@@ -71,7 +71,7 @@ impl Window {
         })
     }
 
-    /// The window of `size` pixels that covers the unit square.
+    /// Creates a window of `size` pixels over the unit square.
     ///
     /// # Errors
     ///
@@ -80,7 +80,7 @@ impl Window {
         Self::new([0.0; 2], [1.0; 2], size)
     }
 
-    /// This window in the plane through `origin` along the first two axes of space. The first two coordinates of
+    /// Moves the window to the plane through `origin` along the first two axes of space. The first two coordinates of
     /// `origin` are ignored.
     ///
     /// # Examples
@@ -108,7 +108,7 @@ impl Window {
 }
 
 impl<const N: usize> Window<N> {
-    /// This window in the plane, without the coordinates along further axes.
+    /// Window in the plane, without the coordinates along further axes.
     #[must_use]
     pub fn in_plane(&self) -> Window {
         Window {
@@ -120,7 +120,7 @@ impl<const N: usize> Window<N> {
         }
     }
 
-    /// The coordinate of all pixels along an axis past the second.
+    /// Coordinate of all pixels along an axis after the second.
     ///
     /// # Panics
     ///
@@ -131,7 +131,7 @@ impl<const N: usize> Window<N> {
         self.origin[axis] * self.scale[axis]
     }
 
-    /// The part of `size` pixels that begins `first` pixels into this window (before it, if negative).
+    /// Returns the part of `size` pixels that starts `first` pixels into this window (before it, if negative).
     ///
     /// # Errors
     ///
@@ -149,8 +149,8 @@ impl<const N: usize> Window<N> {
         })
     }
 
-    /// The window whose positions are those of this one times `factor`, to the last bit: the way to render a field at
-    /// another frequency. `None` if the two factors cannot be joined without rounding.
+    /// Multiplies all positions by `factor`, bit for bit, to render a field at another frequency. Returns `None` if
+    /// the product of the scales would be rounded.
     ///
     /// # Examples
     ///
@@ -176,21 +176,21 @@ impl<const N: usize> Window<N> {
         Some(Self { scale, ..*self })
     }
 
-    /// The x coordinate of the centers of column `column`, counted within the window.
+    /// The x coordinate of the pixel centers in column `column` of the window.
     #[must_use]
     #[inline]
     pub fn column_x(&self, column: u32) -> f64 {
         center(self.origin[0], self.pixel[0], self.first[0], column) * self.scale[0]
     }
 
-    /// The y coordinate of the centers of row `row`, counted within the window.
+    /// The y coordinate of the pixel centers in row `row` of the window.
     #[must_use]
     #[inline]
     pub fn row_y(&self, row: u32) -> f64 {
         center(self.origin[1], self.pixel[1], self.first[1], row) * self.scale[1]
     }
 
-    /// The center of a pixel.
+    /// Center of a pixel.
     #[must_use]
     #[inline]
     pub fn position(&self, column: u32, row: u32) -> [f64; N] {
@@ -203,41 +203,40 @@ impl<const N: usize> Window<N> {
         position
     }
 
-    /// Checks that memory has the size of this window.
+    /// Checks that a buffer has the size of this window.
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::SizeMismatch`] if `size` is not that of the window.
+    /// [`RasterErrorKind::SizeMismatch`] if `size` differs from the size of the window.
     pub fn check_size(&self, size: [u32; 2]) -> Result<(), RasterError> {
         check_same_size(size, self.size)
     }
 
-    /// The number of pixels.
+    /// Number of pixels.
     #[must_use]
     pub fn n_pixels(&self) -> usize {
         self.size[0] as usize * self.size[1] as usize
     }
 }
 
-/// The coordinate of a pixel center. The whole-number part is exact as long as it stays below 2^52; one product and one
-/// sum are rounded.
+/// Coordinate of a pixel center. The integer part is exact below 2^52; one product and one sum are rounded.
 #[inline]
 fn center(origin: f64, pixel: f64, first: i64, index: u32) -> f64 {
     origin + (first.saturating_add(i64::from(index)) as f64 + 0.5) * pixel
 }
 
-/// Whether a number is a power of two, so that products with it are exact.
+/// Returns whether a number is a power of two, so that products with it are exact.
 fn is_power_of_two(number: f64) -> bool {
     number.is_normal() && number.to_bits() << 12 == 0
 }
 
-/// The default scale of windows that were written without one.
+/// Default scale of windows that were serialized without one.
 #[cfg(feature = "serde")]
 fn one<const N: usize>() -> [f64; N] {
     [1.0; N]
 }
 
-/// Checks that a size has pixels, and no more than the limit.
+/// Checks that a size is not empty and within the limit.
 pub(crate) fn check_size(size: [u32; 2]) -> Result<(), RasterError> {
     let pixels = u64::from(size[0]) * u64::from(size[1]);
     if pixels == 0 {

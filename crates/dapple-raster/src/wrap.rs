@@ -1,4 +1,4 @@
-//! Wrapping: which pixel stands for an index past the edge.
+//! Wrap modes: mapping of indices beyond the edge to pixels.
 
 crate::named! {
     /// How an index past the end of an axis is brought back, for each axis on its own.
@@ -15,7 +15,7 @@ crate::named! {
 }
 
 impl Wrap {
-    /// The index in `0..length` that stands for `index`. `length` is at least 1.
+    /// Maps `index` to `0..length`. `length` is at least 1.
     #[must_use]
     #[inline]
     pub fn index(self, index: i64, length: u32) -> u32 {
@@ -28,7 +28,7 @@ impl Wrap {
                 folded.min(2 * length - 1 - folded)
             }
         };
-        // Between zero and `length - 1`, so the cast loses nothing.
+        // The result is between zero and `length - 1`, so the cast is lossless.
         wrapped as u32
     }
 }

@@ -1,4 +1,4 @@
-//! The trait [`FieldExt`]: sampling at the vectors of any library, and methods that compose fields.
+//! The trait [`FieldExt`]: sampling with vectors of any library, and composition of fields.
 
 use super::{
     Extruded, Linear, Mapped, Mixed, Pair, PairOperation, Rotated, Scaled, Slice, Translated,
@@ -6,13 +6,14 @@ use super::{
 };
 use crate::{Displacement, Field, Gradient, IntoField, RasterError};
 
-/// The methods of every field: values at positions, and composition.
+/// Methods of all fields: sampling and composition.
 ///
-/// A position is an array of `N` coordinates or whatever converts to one, such as the vectors of any version of glam.
+/// A position is an array of `N` coordinates, or any type that converts to one, such as the vectors of any version of
+/// glam.
 ///
-/// Compositions transform positions and change values; [`Fractal`](crate::Fractal) sums several scales. Every
-/// composition keeps the promises of [`Field`]: all methods give the same bits, and the period follows from the periods
-/// of the parts. Compositions work in the plane and in space.
+/// Compositions transform positions or change values; [`Fractal`](crate::Fractal) sums several scales. Compositions
+/// satisfy the requirements of [`Field`]: all methods give the same bits, and the period is derived from the periods
+/// of the parts. They work in the plane and in space.
 ///
 /// # Examples
 ///
@@ -26,13 +27,13 @@ use crate::{Displacement, Field, Gradient, IntoField, RasterError};
 /// # Ok::<(), dapple_raster::RasterError>(())
 /// ```
 pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
-    /// The value at a position.
+    /// Returns the value at a position.
     fn sample(&self, position: impl Into<[f64; N]>) -> f32 {
         self.value(position.into())
     }
 
-    /// The values at many positions, into memory of the same length. Faster than one at a time for most fields; with
-    /// arrays at hand, [`Field::values`] saves a copy of them.
+    /// Computes the values at many positions; both slices must have the same length. This is faster than single calls
+    /// for most fields. If the positions are arrays, [`Field::values`] avoids copying them.
     ///
     /// # Errors
     ///
@@ -46,8 +47,8 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         self.values(&positions, values)
     }
 
-    /// The value at a position, equal to that of [`sample`](Self::sample), and its derivative along each axis, for fields
-    /// that have a [`Gradient`].
+    /// Returns the value at a position, equal to [`sample`](Self::sample), and its derivative along each axis, for
+    /// fields with a [`Gradient`].
     #[doc(alias("derivative", "analytic derivatives"))]
     fn sample_with_gradient(&self, position: impl Into<[f64; N]>) -> (f32, [f32; N])
     where
@@ -56,8 +57,9 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         self.value_and_gradient(position.into())
     }
 
-    /// The plane along the first two axes at fixed coordinates along the others: `[z]` in space, `[z, w]` in four
-    /// dimensions, such as a place and a moment. A number of them that does not fit is an error of compilation.
+    /// Restricts the field to the plane along the first two axes, at fixed coordinates along the others: `[z]` in
+    /// space, `[z, w]` in four dimensions, for example a depth and a time. A wrong number of coordinates is a
+    /// compile-time error.
     ///
     /// # Examples
     ///
@@ -84,7 +86,7 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         }
     }
 
-    /// This field of the plane as a field of space, the same at all coordinates along further axes.
+    /// Extends this field of the plane to space, constant along further axes.
     ///
     /// # Examples
     ///
@@ -102,9 +104,9 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         Extruded { field: self }
     }
 
-    /// This field at the position times `frequency` along each axis: `frequency` times as many features.
+    /// Scales positions by `frequency` along each axis, which gives `frequency` times as many features.
     ///
-    /// For one number use [`frequency`](Self::frequency).
+    /// For the same factor along all axes, use [`frequency`](Self::frequency).
     fn frequency_per_axis(self, frequency: impl Into<[f64; N]>) -> Scaled<Self, N> {
         Scaled {
             field: self,
@@ -112,12 +114,12 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         }
     }
 
-    /// This field at the position times `frequency`: `frequency` times as many features along all axes.
+    /// Scales positions by `frequency`, which gives `frequency` times as many features along all axes.
     fn frequency(self, frequency: f64) -> Scaled<Self, N> {
         self.frequency_per_axis([frequency; N])
     }
 
-    /// This field at the position plus `offset`: its features move by `-offset`.
+    /// Adds `offset` to positions; features move by `-offset`.
     fn offset(self, offset: impl Into<[f64; N]>) -> Translated<Self, N> {
         Translated {
             field: self,
@@ -125,8 +127,9 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         }
     }
 
-    /// This field turned about the origin by an angle in radians, from x towards y: clockwise in an image, whose rows
-    /// go down. In space it turns about the line where x and y are 0. It has no period along x and y.
+    /// Rotates the field about the origin by an angle in radians, from x toward y: clockwise in an image, where y
+    /// points down. In space, the axis of rotation is the line where x and y are 0. The result has no period along x
+    /// and y.
     fn rotate(self, angle: f64) -> Rotated<Self> {
         let (sin, cos) = libm::sincos(angle);
         Rotated {
@@ -135,10 +138,10 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         }
     }
 
-    /// This field at the position plus `amount` times the values of other fields there, one field for each axis: domain
-    /// warping. An amount of 1 moves a position by as many units as the values say.
+    /// Domain warping: displaces positions by `amount` times the values of other fields, one field per axis. With an
+    /// amount of 1, a position moves by the value of the field, in units of the domain.
     ///
-    /// `by` is an array of fields, or a tuple of fields of several types.
+    /// `by` is an array of fields, or a tuple of fields of different types.
     ///
     /// # Examples
     ///
@@ -159,7 +162,7 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         }
     }
 
-    /// This field's values passed through a function.
+    /// Applies a function to the values.
     fn map<M: Fn(f32) -> f32 + Send + Sync>(self, function: M) -> Mapped<Self, M> {
         Mapped {
             field: self,
@@ -167,7 +170,7 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         }
     }
 
-    /// This field's values stretched so that `from[0]` becomes `to[0]` and `from[1]` becomes `to[1]`. Nothing is cut off.
+    /// Linearly maps the range `from` to the range `to`, without clamping.
     ///
     /// # Errors
     ///
@@ -193,32 +196,32 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         })
     }
 
-    /// The sum of two fields.
+    /// Sum of two fields.
     fn add<B: IntoField<N>>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Add)
     }
 
-    /// This field less another.
+    /// Difference of two fields.
     fn sub<B: IntoField<N>>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Subtract)
     }
 
-    /// The product of two fields.
+    /// Product of two fields.
     fn mul<B: IntoField<N>>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Multiply)
     }
 
-    /// The smaller of the values of two fields.
+    /// Minimum of two fields.
     fn min<B: IntoField<N>>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Minimum)
     }
 
-    /// The larger of the values of two fields.
+    /// Maximum of two fields.
     fn max<B: IntoField<N>>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Maximum)
     }
 
-    /// Two fields combined value by value with an operation.
+    /// Combines two fields value by value with an operation.
     fn with<B: IntoField<N>>(self, other: B, operation: PairOperation) -> Pair<Self, B::Field> {
         Pair {
             first: self,
@@ -227,8 +230,7 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         }
     }
 
-    /// The linear interpolation from this field to another: this field where `by` is 0 or less, the other one where it
-    /// is 1 or more.
+    /// Linear interpolation between two fields: this field where `by` is 0 or less, `to` where it is 1 or more.
     fn mix<B: IntoField<N>, T: IntoField<N>>(
         self,
         to: B,

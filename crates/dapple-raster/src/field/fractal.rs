@@ -1,4 +1,4 @@
-//! Fractal sums of fields: the same texture at several scales on top of each other.
+//! Fractal sums of fields: copies of a field at several scales, added up.
 //!
 //! Fractional Brownian motion, ridged and billowed sums as in F. Kenton Musgrave's chapters of Ebert et al., "Texturing
 //! and Modeling: A Procedural Approach", 3rd edition, 2003.
@@ -7,14 +7,15 @@ use super::common_period;
 use super::values::{by_bands, zip_rows};
 use crate::{Field, RasterError, RasterViewMut, Scaled, Window};
 
-/// The largest number of octaves of a sum.
+/// Maximum number of octaves of a sum.
 const MOST_OCTAVES: usize = 32;
 
-/// A sum of octaves, `Σ gain^i · shape(field_i(lacunarity^i · position))`, not divided by the sum of the weights:
-/// fractional Brownian motion, ridges or billows, by the shape. A lacunarity of 2 and a gain of ½ are usual.
+/// A fractal sum of octaves, `Σ gain^i · shape(field_i(lacunarity^i · position))`, not divided by the sum of the
+/// weights: fractional Brownian motion, ridges or billows, depending on the shape. Usual values are a lacunarity of 2
+/// and a gain of ½.
 ///
-/// Octaves of one field, such as `vec![field; 5]`, agree at the origin. Octaves with their own seeds agree
-/// nowhere; the noises and cells of dapple have methods that make such octaves from one seed.
+/// Octaves that are copies of one field, such as `vec![field; 5]`, coincide at the origin. Octaves with separate seeds
+/// do not; the noise and cell generators of dapple have methods that create such octaves from one seed.
 ///
 /// # Examples
 ///
@@ -29,7 +30,7 @@ const MOST_OCTAVES: usize = 32;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Fractal<F> {
-    /// Coarsest first.
+    /// Octaves, coarsest first.
     octaves: Vec<Octave<F>>,
     shape: FractalShape,
 }
@@ -71,12 +72,13 @@ impl FractalShape {
 }
 
 impl<F> Fractal<F> {
-    /// The sum of `octaves`, coarsest first, each `lacunarity` times finer and `gain` times as high as the one before.
+    /// Creates a sum of `octaves`, coarsest first. Each has `lacunarity` times the frequency and `gain` times the
+    /// weight of the previous one.
     ///
     /// # Errors
     ///
-    /// [`Range`](crate::RasterErrorKind::Range) unless there are 1 to 32 octaves, the gain is from -1 to 1 and the lacunarity from 1 to
-    /// 16.
+    /// [`Range`](crate::RasterErrorKind::Range) unless there are 1 to 32 octaves, the gain is from -1 to 1 and the
+    /// lacunarity from 1 to 16.
     pub fn new(
         octaves: impl IntoIterator<Item = F>,
         gain: f64,
@@ -106,8 +108,8 @@ impl<F> Fractal<F> {
         Ok(sum)
     }
 
-    /// The sum of the absolute weights: octaves with values from -1 to 1 have sums from minus this number to this
-    /// number (see [`FractalShape`] for other shapes).
+    /// Sum of the absolute weights, w: octaves with values from -1 to 1 have sums from -w to w (see [`FractalShape`]
+    /// for other shapes).
     #[must_use]
     pub fn weight(&self) -> f32 {
         let octaves = self.octaves.iter();
@@ -119,7 +121,7 @@ impl<F> Fractal<F> {
         self.shape
     }
 
-    /// The octaves at their frequencies, and their weights.
+    /// Octaves scaled to their frequencies, with their weights.
     pub(super) fn octaves<const N: usize>(&self) -> impl Iterator<Item = (Scaled<&F, N>, f32)> {
         self.octaves.iter().map(|octave| {
             let scaled = Scaled {

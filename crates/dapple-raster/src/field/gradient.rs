@@ -1,4 +1,4 @@
-//! Fields with exact gradients, by the chain rule.
+//! Exact gradients of fields, by the chain rule.
 
 use super::values::unit;
 use super::{
@@ -8,11 +8,11 @@ use super::{
 use crate::{Change as _, Constant, Displacement, Field, Fractal};
 use std::sync::Arc;
 
-/// A field that gives its gradient along with its value.
+/// A field with an analytic gradient.
 ///
-/// The gradient is that of the formula, not a difference: per unit of the position, one number for each axis. It jumps
-/// where the field has a crease, such as a border between cells, and is the limit from one side there. Compositions of
-/// such fields have gradients too, except for [`map`](crate::FieldExt::map) with a function of the caller.
+/// The gradient is the derivative of the formula, not a finite difference: one number per axis, per unit of the
+/// position. At a crease, such as a border between cells, it is the limit from one side. Compositions of such fields
+/// have gradients too, except [`map`](crate::FieldExt::map) with an arbitrary function.
 ///
 /// # Examples
 ///
@@ -37,7 +37,7 @@ use std::sync::Arc;
 /// assert_eq!((value, gradient), (2.25, [9.0, 0.0]));
 /// ```
 pub trait Gradient<const N: usize = 2>: Field<N> {
-    /// The value at a position, equal to [`Field::value`] bit for bit, and its derivative along each axis.
+    /// Returns the value at a position, equal to [`Field::value`] bit for bit, and its derivative along each axis.
     fn value_and_gradient(&self, position: [f64; N]) -> (f32, [f32; N]);
 }
 
@@ -59,7 +59,7 @@ impl<const N: usize> Gradient<N> for Constant {
     }
 }
 
-/// The product of each part of a gradient and a number.
+/// Multiplies a gradient by a number.
 fn times<const N: usize>(mut gradient: [f32; N], factor: f32) -> [f32; N] {
     for part in &mut gradient {
         *part *= factor;
@@ -67,7 +67,7 @@ fn times<const N: usize>(mut gradient: [f32; N], factor: f32) -> [f32; N] {
     gradient
 }
 
-/// The sum of two gradients.
+/// Adds two gradients.
 fn plus<const N: usize>(mut gradient: [f32; N], other: [f32; N]) -> [f32; N] {
     for (part, other) in gradient.iter_mut().zip(other) {
         *part += other;
@@ -94,7 +94,7 @@ impl<F: Gradient<N>, const N: usize> Gradient<N> for Translated<F, N> {
 impl<F: Gradient<N>, const N: usize> Gradient<N> for Rotated<F> {
     fn value_and_gradient(&self, position: [f64; N]) -> (f32, [f32; N]) {
         let (value, mut gradient) = self.field.value_and_gradient(self.moved(position));
-        // The transpose of the rotation that moves positions.
+        // Apply the transpose of the rotation of positions.
         let [cos, sin] = self.direction.map(|part| part as f32);
         let [x, y] = [gradient[0], gradient[1]];
         gradient[0] = x * cos - y * sin;
@@ -103,9 +103,9 @@ impl<F: Gradient<N>, const N: usize> Gradient<N> for Rotated<F> {
     }
 }
 
-/// Displacements with gradients: an array of fields of one type, or a tuple of any.
+/// Displacement fields with gradients: an array of fields of one type, or a tuple of different types.
 pub trait DisplacementGradient<const N: usize = 2>: Displacement<N> {
-    /// The displacement along an axis, which is below `N`.
+    /// Displacement along an axis, which must be below `N`.
     fn gradient_along(&self, axis: usize) -> &dyn Gradient<N>;
 }
 
@@ -140,7 +140,7 @@ impl<F: Gradient<N>, D: DisplacementGradient<N>, const N: usize> Gradient<N> for
             slopes[axis] = times(slope, self.amount as f32);
         }
         let (value, outer) = self.field.value_and_gradient(moved);
-        // The position moves with itself and with each displacement.
+        // Chain rule: the sampled position depends on the position and on each displacement.
         let gradient = (0..N).fold(outer, |sum, axis| {
             plus(sum, times(slopes[axis], outer[axis]))
         });
@@ -232,7 +232,7 @@ mod tests {
     use super::Gradient;
     use crate::{Constant, Field, FieldExt as _, Fractal, FractalShape};
 
-    /// Waves of space with exact derivatives.
+    /// Waves in space with exact derivatives.
     #[derive(Clone, Copy)]
     struct Waves;
 
@@ -253,7 +253,7 @@ mod tests {
         }
     }
 
-    /// Compares gradients with differences of values at several positions.
+    /// Compares gradients with finite differences at several positions.
     fn check<const N: usize>(name: &str, field: &dyn Gradient<N>) {
         const STEP: f64 = 1.0 / 256.0;
         for index in 0..40 {
@@ -268,7 +268,7 @@ mod tests {
                     f64::from(field.value(moved))
                 };
                 let difference = (at(STEP) - at(-STEP)) / (2.0 * STEP);
-                // Values are rounded to 2^-22 here, and the third derivatives are below 500.
+                // Values are rounded to 2^-22 here, and third derivatives are below 500.
                 let error = (f64::from(gradient[axis]) - difference).abs();
                 assert!(
                     error < 2e-3,

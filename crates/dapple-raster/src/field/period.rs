@@ -1,11 +1,11 @@
-//! Periods of fields that are composed of several fields.
+//! Periods of composed fields.
 
-/// How many times the longer of two periods may go before both end at the same place; past this they count as having
-/// no period in common.
+/// Maximum number of repetitions of the longer period in a common period; beyond it, two periods have no common
+/// period.
 const MOST_REPEATS: u32 = 64;
 
-/// The distance after which two fields repeat together along each axis: the least common multiple of their
-/// [periods](crate::Field::period), if it is at most 64 times the longer one. For fields that are made of other fields.
+/// Common period of two fields along each axis: the least common multiple of their [periods](crate::Field::period), if
+/// it is at most 64 times the longer one. For implementations of composed fields.
 #[must_use]
 pub fn common_period<const N: usize>(a: [Option<f64>; N], b: [Option<f64>; N]) -> [Option<f64>; N] {
     core::array::from_fn(|axis| common_multiple(a[axis]?, b[axis]?))

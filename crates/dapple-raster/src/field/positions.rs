@@ -1,32 +1,32 @@
-//! Fields that sample another field at transformed positions.
+//! Fields that transform the position before sampling another field.
 
 use super::common_period;
 use super::values::by_bands;
 use crate::{Field, RasterError, RasterViewMut, Window};
 
-/// A field at the position times a factor: see [`FieldExt::frequency`](super::FieldExt::frequency).
+/// A field with scaled positions: see [`FieldExt::frequency`](super::FieldExt::frequency).
 #[derive(Clone, Copy, Debug)]
 pub struct Scaled<F, const N: usize = 2> {
     pub(super) field: F,
     pub(super) frequency: [f64; N],
 }
 
-/// A field at the position plus an offset: see [`FieldExt::offset`](super::FieldExt::offset).
+/// A field with translated positions: see [`FieldExt::offset`](super::FieldExt::offset).
 #[derive(Clone, Copy, Debug)]
 pub struct Translated<F, const N: usize = 2> {
     pub(super) field: F,
     pub(super) offset: [f64; N],
 }
 
-/// A field turned about the origin: see [`FieldExt::rotate`](super::FieldExt::rotate).
+/// A field rotated about the origin: see [`FieldExt::rotate`](super::FieldExt::rotate).
 #[derive(Clone, Copy, Debug)]
 pub struct Rotated<F> {
     pub(super) field: F,
-    /// The cosine and the sine of the angle.
+    /// Cosine and sine of the angle.
     pub(super) direction: [f64; 2],
 }
 
-/// A field at positions that other fields displace: see [`FieldExt::warp`](super::FieldExt::warp).
+/// A field with displaced positions: see [`FieldExt::warp`](super::FieldExt::warp).
 #[derive(Clone, Copy, Debug)]
 pub struct Warped<F, D> {
     pub(super) field: F,
@@ -34,9 +34,9 @@ pub struct Warped<F, D> {
     pub(super) amount: f64,
 }
 
-/// The fields that displace positions, one for each axis: an array of fields of one type, or a tuple of any.
+/// Displacement fields, one per axis: an array of fields of one type, or a tuple of different types.
 pub trait Displacement<const N: usize = 2>: Send + Sync {
-    /// The displacement along an axis, which is below `N`.
+    /// Displacement along an axis, which must be below `N`.
     fn along(&self, axis: usize) -> &dyn Field<N>;
 }
 
@@ -61,7 +61,7 @@ displacement!(2: X 0, Y 1);
 displacement!(3: X 0, Y 1, Z 2);
 displacement!(4: X 0, Y 1, Z 2, W 3);
 
-/// Fills a window from its positions, on all cores where the feature `rayon` is on.
+/// Renders a window from its positions, on all cores if the feature `rayon` is enabled.
 fn render_rows<const N: usize>(
     field: &impl Field<N>,
     window: &Window<N>,

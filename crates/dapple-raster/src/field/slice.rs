@@ -1,13 +1,12 @@
-//! Planes through fields of three or four dimensions, and fields of the plane in space.
+//! Planar slices of 3-D and 4-D fields, and extrusion of 2-D fields.
 
 use crate::{Field, RasterError, RasterViewMut, Window};
 
-/// A plane along the first two axes through a field of space, as a field of the plane: see
-/// [`FieldExt::slice`](super::FieldExt::slice).
+/// A slice of a field of space along the first two axes: see [`FieldExt::slice`](super::FieldExt::slice).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slice<F, const N: usize> {
     pub(super) field: F,
-    /// The coordinates of the plane; the first two are unused.
+    /// Coordinates of the plane; the first two are unused.
     pub(super) rest: [f64; N],
 }
 
@@ -40,7 +39,7 @@ impl<F: Field<N>, const N: usize> Field for Slice<F, N> {
     }
 }
 
-/// A field of the plane in space, the same at all coordinates along further axes: see
+/// A field of the plane extended to space, constant along further axes: see
 /// [`FieldExt::extrude`](super::FieldExt::extrude).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extruded<F> {

@@ -1,22 +1,22 @@
-//! Fields that change or join the values of others.
+//! Fields that change or combine the values of other fields.
 
 use super::common_period;
 use crate::{Field, RasterError, RasterViewMut, Window, parallel};
 use core::fmt;
 
-/// How many values of a field are computed at a time: few enough that two such bands stay in a core's cache.
+/// Number of values that are computed at a time, such that two bands fit the cache of a core.
 const BAND: usize = 1 << 17;
 
-/// A field whose values go through a function: see [`FieldExt::map`](super::FieldExt::map).
+/// A field with a function applied to its values: see [`FieldExt::map`](super::FieldExt::map).
 #[derive(Clone, Copy)]
 pub struct Mapped<F, M> {
     pub(super) field: F,
     pub(super) function: M,
 }
 
-/// What a [`Mapped`] field does with a value: any function of a number, or a [`Linear`] one.
+/// Function that a [`Mapped`] field applies to its values: a function of one number, or a [`Linear`] map.
 pub trait Change: Send + Sync {
-    /// The new value.
+    /// Returns the new value.
     fn change(&self, value: f32) -> f32;
 }
 
@@ -26,7 +26,7 @@ impl<M: Fn(f32) -> f32 + Send + Sync> Change for M {
     }
 }
 
-/// The linear function from one range to another: see [`FieldExt::remap`](super::FieldExt::remap).
+/// Linear map from one range to another: see [`FieldExt::remap`](super::FieldExt::remap).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linear {
     pub(super) from: f32,
@@ -41,7 +41,7 @@ impl Change for Linear {
     }
 }
 
-/// Two fields combined value by value: see [`FieldExt::add`](super::FieldExt::add) and its siblings.
+/// Two fields combined value by value: see [`FieldExt::add`](super::FieldExt::add) and related methods.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair<A, B> {
     pub(super) first: A,
@@ -67,7 +67,7 @@ crate::named! {
     }
 }
 
-/// The interpolation from one field to another: see [`FieldExt::mix`](super::FieldExt::mix).
+/// Linear interpolation between two fields: see [`FieldExt::mix`](super::FieldExt::mix).
 #[derive(Clone, Copy, Debug)]
 pub struct Mixed<A, B, T> {
     pub(super) from: A,
@@ -76,7 +76,7 @@ pub struct Mixed<A, B, T> {
 }
 
 impl PairOperation {
-    /// The result for two values.
+    /// Applies the operation to two values.
     #[must_use]
     #[inline]
     pub fn apply(self, a: f32, b: f32) -> f32 {
@@ -212,7 +212,7 @@ pub(super) fn unit(value: f32) -> f32 {
     value.clamp(0.0, 1.0)
 }
 
-/// Renders a field band by band and passes each of its values to `change` with the value already in the output.
+/// Renders a field band by band, and calls `change` with each output value and the rendered value.
 fn join<const N: usize>(
     field: &impl Field<N>,
     window: &Window<N>,
@@ -226,8 +226,8 @@ fn join<const N: usize>(
     })
 }
 
-/// Fills bands that fit a core's cache, on all cores where the feature `rayon` is on: `fill` is given the part of the window,
-/// its pixels, and memory for as many.
+/// Renders bands that fit the cache of a core, on all cores if the feature `rayon` is enabled. `fill` receives the
+/// part of the window, its pixels, and a scratch buffer of the same size.
 pub(super) fn by_bands<const N: usize>(
     window: &Window<N>,
     out: RasterViewMut<'_, f32>,
@@ -251,13 +251,13 @@ pub(super) fn by_bands<const N: usize>(
     done.into_iter().collect()
 }
 
-/// Changes values by the values of others at the same places.
+/// Calls `change` for each value and the other value of the same pixel.
 pub(super) fn zip_rows(
     values: &mut RasterViewMut<'_, f32>,
     others: &mut RasterViewMut<'_, f32>,
     change: impl Fn(&mut f32, f32),
 ) {
-    // One loop for each row: a flat one would not become vector instructions.
+    // Use one loop per row: a flat iterator would not vectorize.
     for (values, others) in values.rows_mut().zip(others.rows_mut()) {
         for (value, &mut other) in values.iter_mut().zip(others) {
             change(value, other);

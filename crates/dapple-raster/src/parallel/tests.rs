@@ -1,4 +1,4 @@
-//! Every number, item and chunk is taken once, whatever the number of threads.
+//! Tests that every number, item and chunk is processed once, for any number of threads.
 
 use super::{
     consume, for_each, for_each_chunk, for_each_chunk_with, for_each_mut, map, map_mut_at_least,
@@ -87,7 +87,7 @@ fn scratch_memory_is_used_again() {
         let made = AtomicU32::new(0);
         let scratch = || made.fetch_add(1, Ordering::Relaxed);
         for_each_chunk_with(&mut [0; 1000], 1, scratch, |_, _, _| ());
-        // No more than there are threads.
+        // At most as many as there are threads.
         assert!((1..=7).contains(&made.into_inner()));
     });
 }

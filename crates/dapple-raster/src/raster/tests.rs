@@ -1,4 +1,4 @@
-//! Rasters: sizes, rows, crops, tiles, and that threads change nothing.
+//! Tests of rasters: sizes, rows, crops, tiles, and independence of the number of threads.
 
 use super::Raster;
 use crate::{RasterErrorKind, Window, Wrap};

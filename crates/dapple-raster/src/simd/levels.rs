@@ -1,4 +1,4 @@
-//! The SIMD levels of the machine, by `fearless_simd`.
+//! SIMD levels of the machine, based on `fearless_simd`.
 
 #[doc(hidden)]
 pub use fearless_simd;
@@ -9,12 +9,11 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 #[doc(inline)]
 pub use crate::{simd_baseline as baseline, simd_dispatch as dispatch};
 
-/// Runs an operation at a SIMD level, as `fearless_simd::dispatch!` does, compiled for fewer levels.
+/// Runs an operation at a SIMD level, like `fearless_simd::dispatch!`, but compiled for fewer levels.
 ///
-/// On x86-64 these are SSE2, AVX2 and AVX-512. Nearly all processors with SSE4.2 have AVX2, and to compile everything a
-/// fourth time for the others would take a quarter of the time that it takes to compile. Builds with debug assertions
-/// have AVX-512 only with `--cfg all_simd_levels`, for the same reason: their tests wait for the compiler, not for the
-/// kernels.
+/// On x86-64 the levels are SSE2, AVX2 and AVX-512. Nearly all processors with SSE4.2 have AVX2, and compiling a
+/// fourth level for the others would add a quarter of the compile time. Builds with debug assertions have AVX-512 only
+/// with `--cfg all_simd_levels`, because compile time dominates their tests.
 #[doc(hidden)]
 #[cfg(target_arch = "x86_64")]
 #[macro_export]
@@ -33,7 +32,7 @@ macro_rules! simd_dispatch {
     }};
 }
 
-/// Runs an operation with AVX-512, or the code of the next level.
+/// Runs an operation with AVX-512, or else the code of the next level.
 #[doc(hidden)]
 #[cfg(all(target_arch = "x86_64", any(not(debug_assertions), all_simd_levels)))]
 #[macro_export]
@@ -60,7 +59,7 @@ macro_rules! simd_avx512 {
     };
 }
 
-/// Runs an operation at a SIMD level, as `fearless_simd::dispatch!` does.
+/// Runs an operation at a SIMD level, like `fearless_simd::dispatch!`.
 #[doc(hidden)]
 #[cfg(not(target_arch = "x86_64"))]
 #[macro_export]
@@ -70,7 +69,7 @@ macro_rules! simd_dispatch {
     };
 }
 
-/// Runs an operation at the SIMD level that every processor has: for code that gains little from wider registers.
+/// Runs an operation at the baseline SIMD level: for code that gains little from wider registers.
 #[doc(hidden)]
 #[cfg(target_arch = "x86_64")]
 #[macro_export]
@@ -86,7 +85,7 @@ macro_rules! simd_baseline {
     }};
 }
 
-/// Runs an operation at the SIMD level that every processor has: for code that gains little from wider registers.
+/// Runs an operation at the baseline SIMD level: for code that gains little from wider registers.
 #[doc(hidden)]
 #[cfg(not(target_arch = "x86_64"))]
 #[macro_export]
@@ -97,14 +96,14 @@ macro_rules! simd_baseline {
     }};
 }
 
-/// The index of the level that [`for_every_level`] forces, or [`BEST`].
+/// Index of the level forced by [`for_every_level`], or [`BEST`].
 static CHOSEN: AtomicUsize = AtomicUsize::new(BEST);
 
-/// The value of [`CHOSEN`] while no level is forced.
+/// Value of [`CHOSEN`] if no level is forced.
 const BEST: usize = usize::MAX;
 
-/// The SIMD level to use: the best that this machine has and [`dispatch`] is compiled for, looked up once, unless
-/// [`for_every_level`] forces another.
+/// SIMD level to use: the best level of this machine that [`dispatch`] is compiled for, detected once, unless
+/// [`for_every_level`] forces another level.
 #[inline]
 #[must_use]
 pub fn level() -> Level {
@@ -115,7 +114,7 @@ pub fn level() -> Level {
     }
 }
 
-/// The levels that this machine has and [`dispatch`] is compiled for, from the lowest to the highest, looked up once.
+/// Levels of this machine that [`dispatch`] is compiled for, from lowest to highest, detected once.
 #[cold]
 fn levels() -> &'static [Level] {
     static LEVELS: OnceLock<Vec<Level>> = OnceLock::new();
@@ -134,14 +133,14 @@ fn levels() -> &'static [Level] {
     })
 }
 
-/// Calls `check` for every level that this machine has and [`dispatch`] is compiled for, from the lowest to the highest, for
-/// tests that all give the same bits.
+/// Calls `check` for every level of this machine that [`dispatch`] is compiled for, from lowest to highest, to test
+/// that all levels give the same bits.
 ///
-/// Meanwhile [`level`] returns that level in all threads, so that code without a level as an argument is checked as
-/// well. Calls from several threads wait for each other; `check` must not call this function.
+/// Meanwhile [`level`] returns that level in all threads, so that code without a level argument is tested as well.
+/// Concurrent calls wait for each other; `check` must not call this function.
 pub fn for_every_level(mut check: impl FnMut(Level)) {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
-    // After a check that failed, the next one starts from scratch.
+    // Ignore poisoning after a failed check.
     let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     for (index, &level) in levels().iter().enumerate() {
         CHOSEN.store(index, Ordering::Relaxed);

@@ -1,9 +1,9 @@
-//! The one level that there is without the feature `simd`.
+//! The single level without the feature `simd`.
 
 #[doc(inline)]
 pub use crate::simd_dispatch as dispatch;
 
-/// The instructions that the whole program is compiled for.
+/// Instruction set that the whole program is compiled for.
 #[derive(Clone, Copy, Debug)]
 pub struct Level;
 

@@ -1,4 +1,4 @@
-//! [`Varying`] as data: a plain number, or a table with the name of what varies.
+//! Serialization of [`Varying`]: a plain number, or a table with the kind as its key.
 
 use super::{Ramp, Varying};
 use core::fmt;
@@ -6,7 +6,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde::ser::{Error as _, Serialize, Serializer};
 
-/// The data of a number that is not constant: a table with one key.
+/// Serialized form of a number that varies: a table with one key.
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Table {

@@ -1,11 +1,11 @@
-//! Every combinator beside its formula, with all methods of a field, and its errors.
+//! Tests of every combinator against its formula, with all methods of a field, and of its errors.
 
 use super::FieldExt;
 use crate::{Constant, Field, Fractal, FractalShape, RasterErrorKind, Window, field_fn};
 use core::f64::consts::{FRAC_PI_2, TAU};
 use glam::DVec2;
 
-/// A field with a period of 2 along x and 3 along y, whose values are from -1 to 1.
+/// A field with a period of 2 along x and 3 along y, and values from -1 to 1.
 #[derive(Clone, Copy, Debug)]
 struct Waves;
 
@@ -19,7 +19,7 @@ impl Field for Waves {
     }
 }
 
-/// A sum of octaves of one field.
+/// A fractal sum of one field.
 fn octaves<F: Clone>(
     field: F,
     count: usize,
@@ -35,7 +35,7 @@ fn slope(position: DVec2) -> f32 {
     (0.5 * position.x - 0.25 * position.y) as f32
 }
 
-/// Compares the values of all methods, on a window larger than a band, with odd positions.
+/// Compares the values of all methods with a formula, on a window larger than a band, with irregular positions.
 fn check(name: &str, field: &dyn Field, formula: impl Fn(DVec2) -> f32) {
     let origin = DVec2::new(-1.3, 0.7);
     let whole = Window::new(origin, DVec2::new(5.1, 3.3), [420, 340]).unwrap();
@@ -178,7 +178,7 @@ fn a_tile_repeats_to_the_last_bit() {
     let tile = field.tile_raster([16, 24]).unwrap();
     let twice = Window::new(DVec2::ZERO, DVec2::new(8.0, 12.0), [32, 48]).unwrap();
     let twice = field.to_raster(&twice).unwrap();
-    // The sine of the test is not periodic to the last bit.
+    // The sine of the test field is not exactly periodic.
     for row in 0..48 {
         for column in 0..32 {
             let [one, other] = [tile.row(row % 24), twice.row(row)];
@@ -218,7 +218,7 @@ fn numbers_keep_their_own_methods_beside_the_trait() {
     use crate::prelude::*;
     use core::ops::{Add as _, Mul as _, Sub as _};
 
-    // All of these names are methods of `FieldExt`, too.
+    // All of these names are also methods of `FieldExt`.
     let values = [-1.0_f32, 0.5, 3.0];
     let clipped: Vec<f32> = values.iter().map(|value| value.max(0.0)).collect();
     assert_eq!(clipped, [0.0, 0.5, 3.0]);
@@ -230,7 +230,7 @@ fn numbers_keep_their_own_methods_beside_the_trait() {
     let lengths = [3_usize, 4].map(|length| length.max(values.len() + 1));
     assert_eq!(lengths, [4, 4]);
     assert_eq!(1.0_f32.sub(0.25), 0.75);
-    // And numbers stand for fields in arguments.
+    // Numbers are accepted in place of fields.
     let field = Waves
         .mix(1.0, 0.25)
         .add(2.0)
@@ -239,7 +239,7 @@ fn numbers_keep_their_own_methods_beside_the_trait() {
     assert_eq!(field.period(), [Some(2.0), Some(3.0)]);
 }
 
-/// A field of space that repeats after 1, 2 and 3.
+/// A field of space with the periods 1, 2 and 3.
 #[derive(Clone, Copy, Debug)]
 struct Solid;
 
