@@ -1,20 +1,21 @@
-//! Decomposition of a raster into bands of detail, and its reconstruction.
+//! Decomposition of a raster into frequency bands, and its reconstruction.
 
 use crate::line::check_finite;
 use crate::{Border, SplineFilter, WaveletError};
 use dapple_raster::Raster;
 
-/// The bands of a raster: a detail for each level, finest first, and the coarse rest.
+/// Bands of a raster: one detail raster per level, finest first, and the coarse remainder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bands {
-    /// `(I − P)` of each level: the detail that halving loses. The first has the size of the raster.
+    /// Detail `(I − P)` of each level, which halving loses. The first one has the size of the raster.
     pub details: Vec<Raster<f32>>,
-    /// The raster of the last level.
+    /// Coarse raster of the last level.
     pub coarse: Raster<f32>,
 }
 
 impl SplineFilter {
-    /// Decomposes a raster into `levels` details and a coarse rest; with zero levels the rest is the raster itself.
+    /// Decomposes a raster into `levels` details and a coarse remainder. With zero levels the remainder is the raster
+    /// itself.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/analyze.md"))]
     ///
@@ -40,11 +41,11 @@ impl SplineFilter {
         Ok(Bands { details, coarse })
     }
 
-    /// Reconstructs the raster of the bands, up to a rounding to `f32` per level.
+    /// Reconstructs the raster from its bands, up to one rounding to `f32` per level.
     ///
     /// # Errors
     ///
-    /// The errors of [`up`](Self::up): `Length` if a detail has another size than its level needs.
+    /// The errors of [`up`](Self::up): `Length` if the size of a detail does not match its level.
     pub fn synthesize(
         &self,
         bands: &Bands,

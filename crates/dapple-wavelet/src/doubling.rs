@@ -1,6 +1,6 @@
-//! Equation 6: writing a spline with twice as many coefficients.
+//! Equation 6: representation of a spline with twice as many coefficients.
 //!
-//! A fine coefficient is a sum of up to three coarse ones, with weights that depend on whether its index is even or odd.
+//! A fine coefficient is a sum of up to three coarse ones, with weights that depend on the parity of its index.
 
 use crate::ends::{Halving, Line};
 use crate::kernel::two_scale;
@@ -9,32 +9,32 @@ use dapple_raster::parallel;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, Simd};
 
-/// A filter that doubles a line.
+/// Filter that doubles the length of a line.
 #[derive(Clone, Debug)]
 pub(crate) struct Doubling {
     pub(crate) fine: Line,
     pub(crate) coarse: Line,
-    /// The weights for even and for odd fine indices; both have equally many.
+    /// Weights for even and for odd fine indices; both have the same number of weights.
     parts: [Part; 2],
 }
 
-/// The coarse coefficients whose weighted sum is the fine coefficient `2 i`, or `2 i + 1`.
+/// Coarse coefficients whose weighted sum is fine coefficient `2 i` or `2 i + 1`.
 #[derive(Clone, Debug)]
 struct Part {
-    /// The index of the first coefficient, relative to `i`.
+    /// Index of the first coefficient, relative to `i`.
     first: i64,
     weights: Vec<f64>,
 }
 
-/// The number of coarse values by which a line is extended past each end: the reach of any part.
+/// Number of coarse values by which a line is extended at each end: the reach of the filter.
 const PAD: usize = 4;
 
 impl Doubling {
-    /// The filter to lines of `fine_len` from the coarse lines that [`Halving`] makes of them.
+    /// Filter to lines of `fine_len`, from the coarse lines that [`Halving`] gives for them.
     ///
     /// # Errors
     ///
-    /// The errors of [`Halving::new`], and `Length` if `coarse_len` is not the coarse length.
+    /// The errors of [`Halving::new`], and `Length` if `coarse_len` does not match.
     pub(crate) fn new(
         filter: SplineFilter,
         coarse_len: usize,
@@ -55,7 +55,7 @@ impl Doubling {
         })
     }
 
-    /// The line, doubled.
+    /// Doubles a line.
     pub(crate) fn line(&self, coarse: &[f64]) -> Vec<f64> {
         let mut fine = vec![0.0; self.fine.len];
         let mut padded = vec![0.0; coarse.len() + 2 * PAD];
@@ -74,7 +74,7 @@ impl Doubling {
         });
     }
 
-    /// Computes a fine row, compiled for the level of `_simd`.
+    /// Computes a fine row, compiled for the SIMD level of `_simd`.
     #[inline(always)]
     fn row<S: Simd>(
         &self,
@@ -90,7 +90,7 @@ impl Doubling {
         along_rows.spread(padded, fine, |value| value as f32);
     }
 
-    /// Computes fine row `row` from the coarse rows, which are as wide as `sums`; rounded to `f32`.
+    /// Computes fine row `row` from the coarse rows, which have the width of `sums`; rounded to `f32`.
     #[inline(always)]
     pub(crate) fn blend(&self, row: usize, coarse: &[f32], sums: &mut [f64]) {
         let part = &self.parts[row % 2];
@@ -105,12 +105,12 @@ impl Doubling {
             [a] => blend([a], [coarse_row(0)], sums),
             [a, b] => blend([a, b], [0, 1].map(coarse_row), sums),
             [a, b, c] => blend([a, b, c], [0, 1, 2].map(coarse_row), sums),
-            // No spline here has more than five two-scale weights, three of one parity.
+            // Splines have at most five two-scale weights, three per parity.
             _ => {}
         }
     }
 
-    /// Extends a coarse line, which has `PAD` values of room at both ends.
+    /// Extends a coarse line, which has `PAD` free values at both ends.
     #[inline(always)]
     fn go_on(&self, padded: &mut [f64]) {
         let len = self.coarse.len;
@@ -129,7 +129,7 @@ impl Doubling {
             (&[a], &[d]) => spread([[a], [d]], lines, fine, round),
             (&[a, b], &[d, e]) => spread([[a, b], [d, e]], lines, fine, round),
             (&[a, b, c], &[d, e, f]) => spread([[a, b, c], [d, e, f]], lines, fine, round),
-            // No spline here has more than five two-scale weights, three of one parity.
+            // Splines have at most five two-scale weights, three per parity.
             _ => {}
         }
     }
@@ -139,7 +139,7 @@ impl Part {
     fn new(filter: SplineFilter, parity: i64, offset: i64) -> Self {
         let h = two_scale(filter.degree);
         let first_tap = filter.first_tap();
-        // Fine coefficient 2 i + parity has tap k = 2 (i - j) + parity - first_tap of coarse coefficient j.
+        // Tap of coarse coefficient j in fine coefficient 2 i + parity: k = 2 (i - j) + parity - first_tap
         let least = (parity - first_tap).rem_euclid(2);
         let mut weights: Vec<f64> = h
             .iter()
@@ -149,7 +149,7 @@ impl Part {
             .copied()
             .collect();
         let greatest = least + 2 * (weights.len() as i64 - 1);
-        // Where one parity has a tap less, it has a zero.
+        // Pad the parity with fewer taps with a zero.
         weights.resize(h.len().div_ceil(2), 0.0);
         Self {
             first: (parity - first_tap - greatest) / 2 - offset,
@@ -158,7 +158,7 @@ impl Part {
     }
 }
 
-/// The weighted sum of rows, rounded to `f32`.
+/// Weighted sum of rows, rounded to `f32`.
 #[inline(always)]
 fn blend<const T: usize>(weights: [f64; T], rows: [&[f32]; T], sums: &mut [f64]) {
     let rows = rows.map(|row| &row[..sums.len()]);
@@ -168,7 +168,7 @@ fn blend<const T: usize>(weights: [f64; T], rows: [&[f32]; T], sums: &mut [f64])
     }
 }
 
-/// Computes the even and odd values of a line, each a weighted sum of coarse values from its own place on.
+/// Computes the even and odd values of a line, each a weighted sum of consecutive coarse values.
 #[inline(always)]
 fn spread<const T: usize, O>(
     weights: [[f64; T]; 2],
@@ -188,7 +188,7 @@ fn spread<const T: usize, O>(
     }
 }
 
-/// The weighted sum of the terms, in their order.
+/// Weighted sum of the terms, in order.
 #[inline(always)]
 fn weigh<const T: usize>(weights: [f64; T], term: impl Fn(usize) -> f64) -> f64 {
     let mut sum = weights[0] * term(0);

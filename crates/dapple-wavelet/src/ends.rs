@@ -1,21 +1,21 @@
-//! The extension of a line past its ends, and the length of the coarse line of a fine one.
+//! Extension of a line beyond its ends, and the length of its coarse line.
 
 use crate::{Border, Phase, SplineFilter, WaveletError, WaveletErrorKind};
 
-/// A line of finite length that is extended infinitely.
+/// A line of finite length with an infinite extension.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Line {
-    /// The number of values stored.
+    /// Number of stored values.
     pub(crate) len: usize,
     ends: Ends,
 }
 
-/// The extension of the line at its ends.
+/// Extension of the line at its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Ends {
     /// The line repeats.
     Repeat,
-    /// The line is mirrored: at the start and at the end, with the end value twice or once.
+    /// The line is mirrored. For the start and the end: whether the end value occurs twice or once.
     Mirror { twice: [bool; 2] },
 }
 
@@ -24,15 +24,15 @@ enum Ends {
 pub(crate) struct Halving {
     pub(crate) fine: Line,
     pub(crate) coarse: Line,
-    /// The number of the first stored coarse coefficient, in the sense of [`Phase`](crate::Phase): 0 or 1.
+    /// Index of the first stored coarse coefficient, as defined by [`Phase`](crate::Phase): 0 or 1.
     pub(crate) offset: i64,
 }
 
-/// The largest length: no memory holds a longer line, and no index overflows.
+/// Maximum length: no memory can store a longer line, and no index overflows.
 const LONGEST: u64 = 1 << 40;
 
 impl Line {
-    /// A line of `len` pixels of a spline, at least one.
+    /// Creates a line of `len` coefficients, at least one.
     ///
     /// # Errors
     ///
@@ -63,7 +63,7 @@ impl Line {
         Ok(Self { len, ends })
     }
 
-    /// The index of the stored value for `index`, which may lie outside.
+    /// Index of the stored value for `index`, which may be outside.
     pub(crate) fn index(&self, index: i64) -> usize {
         let len = self.len as i64;
         let inside = match self.ends {
@@ -72,7 +72,7 @@ impl Line {
                 // Mirrors at `low / 2` and `high / 2` map an index to `low - index` and `high - index`.
                 let low = -i64::from(twice[0]);
                 let high = 2 * (len - 1) + i64::from(twice[1]);
-                // A single value that is mirrored once has a period of 0; all indices map to it.
+                // A single value that occurs once has a period of 0; all indices map to it.
                 let index = index.rem_euclid((high - low).max(1));
                 if index < len { index } else { high - index }
             }
@@ -82,11 +82,12 @@ impl Line {
 }
 
 impl Halving {
-    /// The coarse line of a fine one of `len` pixels.
+    /// Computes the coarse line of a fine line of `len` coefficients.
     ///
     /// # Errors
     ///
-    /// `NotDivisible` for an odd periodic length, `TooShort` for a line that would not become shorter; `Range` above 2^40.
+    /// `NotDivisible` for an odd periodic length, `TooShort` for a line that would not get shorter; `Range` above
+    /// 2^40.
     pub(crate) fn new(
         filter: SplineFilter,
         len: usize,
@@ -117,12 +118,12 @@ impl Halving {
                 offset: 0,
             });
         };
-        // Coarse coefficient j is at (4 j + first + last) / 2, so a mirror of the fine line at s / 2, which moves x to s - x,
-        // moves j to (s - first - last) / 2 + -j, a whole number for both degrees and phases.
+        // Coarse coefficient j is centered at (4 j + first + last) / 2. A mirror of the fine line at s / 2, which maps
+        // x to s - x, therefore maps j to (s - first - last) / 2 - j, an integer for both degrees and phases.
         let first_and_last = 2 * filter.first_tap() + filter.degree.order() + 1;
         let low = (-i64::from(twice[0]) - first_and_last).div_euclid(2);
         let high = (2 * (len as i64 - 1) + i64::from(twice[1]) - first_and_last).div_euclid(2);
-        // The stored coefficients lie between the two mirrors.
+        // The stored coefficients are between the two mirrors.
         let [first, last] = [low.div_euclid(2) + low.rem_euclid(2), high.div_euclid(2)];
         let ends = Ends::Mirror {
             twice: [low.rem_euclid(2) == 1, high.rem_euclid(2) == 1],
@@ -139,10 +140,10 @@ impl Halving {
     }
 }
 
-/// The shortest line that becomes shorter when it is halved.
+/// Minimum length of a line that gets shorter by halving.
 ///
-/// A mirrored line of 2 keeps its length where its coarse coefficients lie on both mirrors. Halved again and again, its
-/// varying part would grow without bound.
+/// A mirrored line of 2 keeps its length if its coarse coefficients are on both mirrors. With repeated halving, its
+/// variation would grow without bound.
 pub(crate) fn shortest(filter: SplineFilter, border: Border) -> usize {
     let is_even = filter.degree.order() % 2 == 0;
     if border == Border::Mirror && filter.phase == Phase::CookDeRose && is_even {
@@ -152,7 +153,7 @@ pub(crate) fn shortest(filter: SplineFilter, border: Border) -> usize {
     }
 }
 
-/// The lengths of a line that is halved `levels` times, from the first to the last.
+/// Lengths of a line that is halved `levels` times, from the first to the last.
 ///
 /// # Errors
 ///
@@ -185,7 +186,7 @@ pub(crate) fn lengths(
     Ok(lengths)
 }
 
-/// The largest number of levels: more than any raster can have, whose sides are below 2^32.
+/// Maximum number of levels: more than any raster needs, whose sides are below 2^32.
 const MOST_LEVELS: u32 = 32;
 
 #[cfg(test)]

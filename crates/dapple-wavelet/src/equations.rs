@@ -1,7 +1,7 @@
-//! The equations of Du, Wang and Meng, one test for each, written out as in the paper.
+//! Tests of the equations of Du, Wang and Meng, one per equation, written out as in the paper.
 //!
-//! The paper measures φ and its shifts from its left end: there coefficient `i` is at `i`, while here its spline is
-//! centered on it. `h` and `a` begin where [`Phase`](crate::Phase) says.
+//! The paper positions φ and its shifts by their left end, where coefficient `i` is at `i`; here the spline is
+//! centered on its coefficient. [`Phase`](crate::Phase) defines where `h` and `a` begin.
 
 use crate::oracle::{DEGREES, all_filters, binomials, coarse_center, distance, noise, spread};
 use crate::{Border, Degree, SplineFilter};
@@ -9,7 +9,7 @@ use dapple_raster::Raster;
 
 const PERIODIC: Border = Border::Periodic;
 
-/// Scattered positions, none of them where a step jumps.
+/// Scattered positions, away from the discontinuities of the constant spline.
 fn positions() -> impl Iterator<Item = f64> {
     noise(60).into_iter().map(|value| 9.0 * value)
 }
@@ -25,7 +25,7 @@ fn value(filter: SplineFilter, line: &[f64], x: f64) -> f64 {
     filter.value_line(line, x, PERIODIC).expect("a good line")
 }
 
-/// The value of a periodic raster's spline.
+/// Value of the spline of a periodic raster.
 fn value_2d(filter: SplineFilter, raster: &Raster<f32>, x: f64, y: f64) -> f64 {
     let along = |row: u32| {
         let line: Vec<f64> = raster.row(row).iter().map(|&value| value.into()).collect();
@@ -46,7 +46,7 @@ fn noise_raster(side: u32) -> Raster<f32> {
     Raster::from_vec([side, side], pixels).expect("a good size")
 }
 
-/// The halving filter `a`, from its responses to impulses in a periodic line of 64: tap `k`, for `k` from -32 to 31.
+/// Halving filter `a`, from its responses to impulses in a periodic line of 64: tap `k`, for `k` from -32 to 31.
 fn halving_taps(filter: SplineFilter) -> impl Fn(i64) -> f64 {
     let taps: Vec<f64> = (0..64)
         .map(|k| {
@@ -76,7 +76,7 @@ fn equation_01_function_is_a_weighted_sum_of_shifted_splines() {
     for degree in DEGREES {
         let f = noise(6);
         for x in positions() {
-            // Over so many copies of the six coefficients that all splines at x are among them.
+            // Enough copies of the six coefficients to include all splines at x.
             let sum: f64 = (-30..30_i64)
                 .map(|i| f[i.rem_euclid(6) as usize] * degree.value(x - i as f64))
                 .sum();
@@ -96,7 +96,7 @@ fn equation_02_space_is_spanned_by_whole_shifts() {
             // The position is rounded once.
             assert!(gap < 1e-14, "{degree:?} at {x}: {gap}");
         }
-        // A function of the space has one set of coefficients only; on a circle of 7, its values at whole numbers give them.
+        // A function of the space has unique coefficients; on a circle of 7, its values at integers determine them.
         let samples = of(degree).samples_line(&f, PERIODIC).expect("a good line");
         let again = of(degree)
             .coefficients_line(&samples, PERIODIC)
@@ -183,7 +183,7 @@ fn equation_07_down_is_a_sum_over_the_halving_filter() {
 
 #[test]
 fn equation_07_down_is_nearest_in_the_least_squares_sense() {
-    // The integral of the squared difference of two functions, by values between which both are smooth.
+    // Integral of the squared difference of two functions, by samples between which both are smooth.
     let distance_sq = |filter: SplineFilter, fine: &[f64], coarse: &[f64]| -> f64 {
         let origin = coarse_center(filter, 0);
         let difference = |i: i32| {
@@ -227,7 +227,7 @@ fn equation_08_up_of_rasters_is_a_double_sum() {
             let (i, j) = (index % 16, index / 16);
             let row = |ky: i64| -> f64 { (-4..12).map(|kx| h(i - 2 * kx) * at(kx, ky)).sum() };
             let needed: f64 = (-4..12).map(|ky| h(j - 2 * ky) * row(ky)).sum();
-            // Two roundings to f32 of values up to 1.
+            // Tolerance: two roundings to f32 of values up to 1.
             assert!(
                 (f64::from(value) - needed).abs() < 2e-7,
                 "{filter:?} at {i}, {j}"
@@ -249,7 +249,7 @@ fn equation_09_down_of_rasters_is_a_double_sum() {
                 |ky: i64| -> f64 { (-32..32).map(|kx| a(kx) * at(kx + 2 * i, ky + 2 * j)).sum() };
             let needed: f64 = (-32..32).map(|ky| a(ky) * row(ky)).sum();
             let value = f64::from(coarse.row(j as u32)[i as usize]);
-            // Two roundings to f32, of values of about 1, and weights whose sum is up to 3.
+            // Tolerance: two roundings to f32, of values of about 1, and weights whose sum is up to 3.
             assert!((value - needed).abs() < 1e-6, "{filter:?} at {i}, {j}");
         }
     }
@@ -278,7 +278,8 @@ fn equation_10_raster_is_a_function_of_the_finer_space() {
 
 #[test]
 fn equation_11_half_size_raster_is_the_function_nearest_to_the_raster() {
-    // The difference to the raster's function is orthogonal to every spline of the half size: it has nothing left to halve.
+    // The difference from the raster's function is orthogonal to every spline of the half size, so halving it gives
+    // zero.
     for degree in DEGREES {
         let filter = of(degree);
         let r = noise_raster(16);
@@ -290,7 +291,7 @@ fn equation_11_half_size_raster_is_the_function_nearest_to_the_raster() {
         let rest = filter
             .down(&difference, [PERIODIC; 2])
             .expect("a good raster");
-        // A few roundings to f32 of values up to 2.
+        // Tolerance: a few roundings to f32 of values up to 2.
         assert!(
             rest.pixels().iter().all(|value| value.abs() < 1e-6),
             "{degree:?}: {rest:?}"
@@ -307,7 +308,7 @@ fn equation_12_half_size_raster_is_halved_along_both_axes() {
         let half_flipped = filter.down(&flipped, [PERIODIC; 2]).expect("a good raster");
         for (x, y) in [(0, 0), (1, 5), (7, 2), (3, 3)] {
             let [a, b] = [half.row(y)[x as usize], half_flipped.row(x)[y as usize]];
-            // Along columns first or along rows first: only the roundings to f32 differ.
+            // The order of the axes affects only the roundings to f32.
             assert!((a - b).abs() < 1e-6, "{filter:?} at {x}, {y}: {a} and {b}");
         }
     }
@@ -324,7 +325,7 @@ fn equation_13_full_size_raster_loses_nothing_of_the_half_size() {
         for (x, y) in positions().zip(positions().skip(1)).take(10) {
             let [u, v] = [x, y].map(|x| 2.0 * x + origin);
             let gap = (value_2d(filter, &full, u, v) - value_2d(filter, &half, x, y)).abs();
-            // Two roundings to f32 of values up to 1.
+            // Tolerance: two roundings to f32 of values up to 1.
             assert!(gap < 2e-7, "{filter:?} at {x}, {y}: {gap}");
         }
         let again = filter.down(&full, [PERIODIC; 2]).expect("a good raster");

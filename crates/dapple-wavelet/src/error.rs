@@ -3,34 +3,34 @@
 use dapple_raster::RasterError;
 
 dapple_raster::error! {
-    /// An error of a filter or of a noise.
+    /// Error of a filter or of a noise.
     WaveletError,
-    /// The cause of a [`WaveletError`], with the limit and the value.
+    /// Cause of a [`WaveletError`], with the limit and the value.
     WaveletErrorKind with Range {
-        /// The length of a periodic side is not divisible by 2 as often as it is to be halved.
+        /// The length of a periodic side is not divisible by the required power of two.
         NotDivisible {
-            /// The length of the side.
+            /// Length of the side.
             length: usize,
-            /// The number of times it was to be halved.
+            /// Number of halvings.
             levels: u32,
         } => "a periodic side of {length} cannot be halved {levels} times; its length must be a multiple of 2^{levels}";
         /// A side is too short.
         TooShort {
-            /// The length of the side.
+            /// Length of the side.
             length: usize,
-            /// The shortest allowed length.
+            /// Minimum length.
             least: usize,
         } => "a side of {length} is too short; it must have at least {least}";
-        /// The number of values is not the one needed.
+        /// The number of values is wrong.
         Length {
-            /// The number of values.
+            /// Number of values.
             length: usize,
-            /// The number of values needed.
+            /// Required number of values.
             needed: usize,
         } => "there are {length} values, but {needed} are needed";
         /// A value is NaN or infinite.
         NotFinite {
-            /// Its index, counted along rows from the first.
+            /// Index of the value, row by row.
             index: usize,
             /// The value.
             value: f64,

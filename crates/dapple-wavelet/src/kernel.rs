@@ -1,29 +1,30 @@
 //! Filter kernels: taps and poles.
 //!
-//! Halving is least squares. With `h` the two-scale coefficients and `b` the inner products of the spline with its own shifts
-//! (a B-spline of degree `2d + 1` at whole numbers), the coarse coefficients `c` of the fine `g` solve `b * c = ↓2(q ⋆ g)`,
-//! `q = ½ h * b`. For least squares of the coefficients themselves, `q` is `h` and `b` is `h` correlated with itself at even
-//! distances. Either `b` is symmetric, and its inverse is a chain of recursions of first order, one pair for each pole inside
-//! of the unit circle; the sum of `b` is 1, so that the gain of the chain is the product of all `(1 − pole)²`.
+//! Halving is a least-squares fit. Let `h` be the two-scale coefficients and `b` the inner products of the spline with
+//! its own shifts (a B-spline of degree `2d + 1` at integers). The coarse coefficients `c` of the fine ones `g` solve
+//! `b * c = ↓2(q ⋆ g)` with `q = ½ h * b`. For least squares of the coefficients instead of the functions, `q` is `h`,
+//! and `b` is the autocorrelation of `h` at even distances. In both cases `b` is symmetric. Its inverse is a chain of
+//! first-order recursions, one pair for each pole inside of the unit circle. The sum of `b` is 1, so the gain of the
+//! chain is the product of all `(1 − pole)²`.
 //!
-//! Reference: Michael Unser, Akram Aldroubi and Murray Eden, "B-Spline Signal Processing: Part I, Theory", IEEE Transactions
-//! on Signal Processing 41(2), 1993, for inverses by recursion.
+//! Reference: Michael Unser, Akram Aldroubi and Murray Eden, "B-Spline Signal Processing: Part I, Theory", IEEE
+//! Transactions on Signal Processing 41(2), 1993, for inverses by recursion.
 
 use crate::{Degree, Fit, SplineFilter};
 
-/// The filter of a line: a short sum for each value, and recursions over the results.
+/// Filter of a line: a short weighted sum for each value, followed by recursions over the results.
 #[derive(Clone, Debug)]
 pub(crate) struct Kernel {
-    /// The offset of the first tap from the place of the value.
+    /// Offset of the first tap relative to the value.
     pub(crate) first: i64,
-    /// The weights of the sum, symmetric; they include the gain of the recursions.
+    /// Symmetric weights of the sum, which include the gain of the recursions.
     pub(crate) taps: Vec<f64>,
-    /// The poles of the recursions, each run forward and backward.
+    /// Poles of the recursions, each run forward and backward.
     pub(crate) poles: &'static [f64],
 }
 
 impl Kernel {
-    /// The filter that halves, from the two fine coefficients under a coarse one.
+    /// Halving filter, relative to the first of the two fine coefficients of a coarse one.
     pub(crate) fn halving(filter: SplineFilter) -> Self {
         let h = two_scale(filter.degree);
         let first = filter.first_tap();
@@ -37,17 +38,17 @@ impl Kernel {
         }
     }
 
-    /// The filter that evaluates a spline at the places of its coefficients.
+    /// Filter that evaluates a spline at the positions of its coefficients.
     pub(crate) fn samples(degree: Degree) -> Self {
         Self::new(-(degree.order() / 2), samples(degree).to_vec(), &[])
     }
 
-    /// The filter that computes the coefficients of the spline with given values.
+    /// Filter that computes the coefficients of the spline with given values.
     pub(crate) fn coefficients(degree: Degree) -> Self {
         Self::new(0, vec![1.0], sample_poles(degree))
     }
 
-    /// A kernel that preserves constants: the taps are divided by their sum.
+    /// Creates a kernel that preserves constants: the taps are divided by their sum.
     fn new(first: i64, taps: Vec<f64>, poles: &'static [f64]) -> Self {
         let sum: f64 = taps.iter().sum();
         let gain = poles
@@ -60,8 +61,8 @@ impl Kernel {
         }
     }
 
-    /// The number of steps after which the start of a recursion no longer matters: its influence is below 2^-58, less
-    /// than a rounding.
+    /// Number of steps after which the initial value of a recursion has an influence below 2^-58, less than a
+    /// rounding.
     pub(crate) fn reach(&self) -> usize {
         let slowest = self
             .poles
@@ -76,10 +77,10 @@ impl Kernel {
     }
 }
 
-/// The influence of its start that a recursion may have left: 2^-58.
+/// Maximum remaining influence of the initial value of a recursion: 2^-58.
 const FORGOTTEN: f64 = 1.0 / (1_u64 << 58) as f64;
 
-/// The two-scale coefficients `2^-d C(d + 1, k)` of equation 4.
+/// Two-scale coefficients `2^-d C(d + 1, k)` of equation 4.
 pub(crate) fn two_scale(degree: Degree) -> Vec<f64> {
     match degree {
         Degree::Constant => vec![1.0, 1.0],
@@ -89,7 +90,7 @@ pub(crate) fn two_scale(degree: Degree) -> Vec<f64> {
     }
 }
 
-/// Inner products of the spline with its shifts by `-d ..= d`, all scaled by the smallest number that makes them whole.
+/// Inner products of the spline with its shifts by `-d ..= d`, scaled to the smallest integers.
 pub(crate) fn gram(degree: Degree) -> &'static [f64] {
     match degree {
         Degree::Constant => &[1.0],
@@ -99,7 +100,7 @@ pub(crate) fn gram(degree: Degree) -> &'static [f64] {
     }
 }
 
-/// Values of the spline at whole numbers, all scaled by the smallest number that makes them whole.
+/// Values of the spline at integers, scaled to the smallest integers.
 fn samples(degree: Degree) -> &'static [f64] {
     match degree {
         Degree::Constant | Degree::Linear => &[1.0],
@@ -108,8 +109,8 @@ fn samples(degree: Degree) -> &'static [f64] {
     }
 }
 
-/// The poles of the inverse of [`gram`]: `z` with `z + 1/z = y`, where `y + 4`, `y² + 26y + 64` and
-/// `y³ + 120y² + 1188y + 2176` are zero.
+/// Poles of the inverse of [`gram`]: `z` with `z + 1/z = y`, where `y` is a root of `y + 4`, `y² + 26y + 64` or `y³ +
+/// 120y² + 1188y + 2176`.
 fn function_poles(degree: Degree) -> &'static [f64] {
     match degree {
         Degree::Constant => &[],
@@ -123,7 +124,7 @@ fn function_poles(degree: Degree) -> &'static [f64] {
     }
 }
 
-/// The poles of the inverse of the coarse line's `HᵀH`, whose rows are 1; 1 6 1; 6 20 6; and 1 28 70 28 1.
+/// Poles of the inverse of `HᵀH` of the coarse line, whose rows are 1; 1 6 1; 6 20 6; and 1 28 70 28 1.
 fn coefficient_poles(degree: Degree) -> &'static [f64] {
     match degree {
         Degree::Constant => &[],
@@ -133,7 +134,7 @@ fn coefficient_poles(degree: Degree) -> &'static [f64] {
     }
 }
 
-/// The poles of the inverse of [`samples`].
+/// Poles of the inverse of [`samples`].
 fn sample_poles(degree: Degree) -> &'static [f64] {
     match degree {
         Degree::Constant | Degree::Linear => &[],
@@ -148,7 +149,7 @@ const SQRT_3_MINUS_2: f64 = -0.267_949_192_431_122_7;
 /// √8 − 3, the root of `z² + 6z + 1`.
 const SQRT_8_MINUS_3: f64 = -0.171_572_875_253_809_9;
 
-/// The product of two polynomials.
+/// Product of two polynomials.
 fn convolve(a: &[f64], b: &[f64]) -> Vec<f64> {
     let mut product = vec![0.0; a.len() + b.len() - 1];
     for (i, a) in a.iter().enumerate() {

@@ -1,9 +1,9 @@
-//! Filters of lines in `f64`: halving by recursion, doubling, and both as a projection.
+//! Filters of lines in `f64`: halving by recursion, doubling, and projection, which does both.
 //!
 //! Reference: Robert L. Cook and Tony DeRose, "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005),
-//! <https://doi.org/10.1145/1073204.1073264>, for the filter pair, which equations 6 and 7 of Du, Wang and Meng are.
+//! <https://doi.org/10.1145/1073204.1073264>, for the filter pair of equations 6 and 7 of Du, Wang and Meng.
 //!
-//! Cook and DeRose cut the filter `a` off after 32 taps. Here it has all of its taps: see `recursion.rs`.
+//! Cook and DeRose truncate the filter `a` to 32 taps. Here it is complete: see `recursion.rs`.
 
 use crate::doubling::Doubling;
 use crate::ends::{Halving, lengths};
@@ -12,21 +12,21 @@ use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
 use core::ops::Mul;
 
 impl SplineFilter {
-    /// The number of coefficients of a line of `length` after it is halved: half as many for a periodic line; for a
-    /// mirrored line see [`Border::Mirror`].
+    /// Number of coefficients of a line of `length` after halving: half as many for a periodic line; see
+    /// [`Border::Mirror`] for a mirrored line.
     ///
     /// # Errors
     ///
-    /// `NotDivisible` for an odd periodic length; `TooShort` for a line that would not become shorter, which is one below 2, or
-    /// below 3 for a mirrored line of an even degree in the phase of Cook and DeRose; `Range` above 2^40.
+    /// `NotDivisible` for an odd periodic length; `TooShort` for a line that would not get shorter: a length below 2,
+    /// or below 3 for a mirrored line with an even degree in the phase of Cook and DeRose; `Range` above 2^40.
     pub fn coarse_len(&self, length: usize, border: Border) -> Result<usize, WaveletError> {
         Ok(Halving::new(*self, length, border)?.coarse.len)
     }
 
-    /// Equation 7: the nearest line with half as many coefficients.
+    /// Equation 7: halves a line to the nearest line with half as many coefficients.
     ///
-    /// No absolute value exceeds 3.82 times the largest absolute value of `fine`, or 2.33 times for degrees below the
-    /// cubic. Values are finite up to `f64::MAX / 4`; beyond it some may be infinite or NaN.
+    /// Absolute values are at most 3.82 times the largest absolute value of `fine`, or 2.33 times for degrees below
+    /// the cubic. Values are finite up to `f64::MAX / 4`; beyond it some may be infinite or NaN.
     ///
     /// # Errors
     ///
@@ -48,12 +48,12 @@ impl SplineFilter {
         Ok(filter_line(&halving, fine))
     }
 
-    /// Equation 6: the same function with `fine_len` coefficients.
+    /// Equation 6: represents the same function with `fine_len` coefficients.
     ///
     /// # Errors
     ///
-    /// `Length` if the length of `coarse` is not half of `fine_len`, as [`coarse_len`](Self::coarse_len) says, and the
-    /// errors of [`down_line`](Self::down_line).
+    /// `Length` if the length of `coarse` does not match `fine_len`, as defined by [`coarse_len`](Self::coarse_len),
+    /// and the errors of [`down_line`](Self::down_line).
     pub fn up_line(
         &self,
         coarse: &[f64],
@@ -65,10 +65,10 @@ impl SplineFilter {
         Ok(doubling.line(coarse))
     }
 
-    /// Halves a line `levels` times and doubles it as often; zero levels return the line itself.
+    /// Halves a line `levels` times and doubles it `levels` times; zero levels return the line itself.
     ///
-    /// Each level mirrors its own line anew, which is not always the same as mirroring the fine line: see
-    /// [`Border::Mirror`]. Values are finite up to `f64::MAX / 4^levels`; beyond it some may be infinite or NaN.
+    /// Each level mirrors its own line, which may differ from mirroring the fine line: see [`Border::Mirror`]. Values
+    /// are finite up to `f64::MAX / 4^levels`; beyond it some may be infinite or NaN.
     ///
     /// # Errors
     ///
@@ -92,7 +92,7 @@ impl SplineFilter {
     }
 }
 
-/// The line, filtered.
+/// Applies a filter to a line.
 pub(crate) fn filter_line(filter: &LineFilter, line: &[f64]) -> Vec<f64> {
     let mut lanes = Lanes::<1>::default();
     let load = |values: &mut [[f64; 1]]| values.as_flattened_mut().copy_from_slice(line);
@@ -104,8 +104,7 @@ pub(crate) fn check_finite<T>(values: &[T]) -> Result<(), WaveletError>
 where
     T: Copy + Default + PartialEq + Mul<Output = T> + Into<f64>,
 {
-    // A value that is not finite does not become zero when it is multiplied by zero. There is no early exit, which
-    // would be slower.
+    // The product of zero and a value that is not finite is not zero. An early exit would be slower.
     let is_finite = |value: T| value * T::default() == T::default();
     if values
         .iter()

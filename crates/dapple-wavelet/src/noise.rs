@@ -2,16 +2,16 @@
 //!
 //! Robert L. Cook and Tony DeRose, "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005),
 //! <https://doi.org/10.1145/1073204.1073264>: white noise minus the part that half as many coefficients can represent.
-//! The rest are the coefficients of a quadratic B-spline with nearly all of its power in one octave, so that the pixels
-//! of a picture either resolve it or see nothing of it.
+//! The difference is a quadratic B-spline with nearly all of its power in one octave. The pixels of an image therefore
+//! either resolve it or do not show it at all.
 //!
-//! This departs from the paper in a few points. Halving is the exact recursion of
-//! [`SplineFilter`](crate::SplineFilter), not 32 rounded taps. Coefficient `k` lies at `k + ½`, the center of its cell.
-//! Bands are shifted by whole cells, so that they are not copies of each other at the origin. The variance of a band is
-//! exact for tiles of any size, and values are not divided by the weights. The projection of solid noise onto surfaces
-//! (the paper's section 3.3) is not implemented.
+//! There are some differences from the paper. Halving is the exact recursion of [`SplineFilter`](crate::SplineFilter)
+//! instead of 32 rounded taps. Coefficient `k` is at `k + ½`, the center of its cell. Bands are shifted by whole
+//! cells, so that they are not copies of each other at the origin. The variance of a band is exact for tiles of any
+//! size, and values are not divided by the weights. The projection of solid noise onto surfaces (section 3.3 of the
+//! paper) is not implemented.
 //!
-//! Positions are in cells; a cell is the distance of two coefficients.
+//! Positions are in cells; a cell is the distance between adjacent coefficients.
 
 mod band;
 mod evaluate;
@@ -32,20 +32,20 @@ use tile::Tile;
 pub(crate) use scale::LineSums;
 pub(crate) use white::white_raster;
 
-/// Noise without low frequencies: a tile of B-spline coefficients, evaluated at any position, in one band or several.
+/// Noise without low frequencies: a tile of B-spline coefficients, evaluated at any position, in one or several bands.
 ///
-/// A band has about 84 % of its power between ¼ and ½ cycles per cell, counted along the axis where the frequency is highest.
-/// About half of the rest is above and half below, and less than a ten-thousandth of all is below ⅛.
+/// A band has about 84 % of its power between ¼ and ½ cycles per cell, measured along the axis with the highest
+/// frequency. About half of the remainder is above and half below. Less than a ten-thousandth of the power is below ⅛.
 ///
-/// Values are nearly normal. Over all positions and seeds their mean is 0 and their variance 1. At one position the
-/// variance depends on where it lies between the coefficients: in the plane it is 0.31 at every other corner of cells
-/// along each axis and up to 1.38 within cells. No absolute value exceeds [`bound`](Self::bound). There is no other
-/// normalization.
+/// Values are nearly normally distributed. Over all positions and seeds, the mean is 0 and the variance 1. The
+/// variance at a position depends on its offset from the coefficients: in the plane it is 0.31 at every other corner
+/// of cells along each axis, and up to 1.38 within cells. Absolute values are at most [`bound`](Self::bound). There is
+/// no other normalization.
 ///
-/// The noise repeats after as many cells along each axis as [`size`](Self::size) says, to the last bit where both positions
-/// are exact in `f64`. It is continuous, and so is its gradient. At a position that is not finite it is NaN.
+/// The period along each axis is [`size`](Self::size), in cells; repetition is exact if both positions are exact in
+/// `f64`. The noise and its gradient are continuous. At a position that is not finite, the value is NaN.
 ///
-/// A new noise has one band, of weight 1; [`with_weights`](Self::with_weights) sets the weights of several.
+/// A new noise has one band of weight 1; [`with_weights`](Self::with_weights) sets the weights of several bands.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/wavelet-noise.md"))]
 ///
@@ -74,18 +74,18 @@ pub type WaveletNoise2 = WaveletNoise<2>;
 /// Wavelet noise in three dimensions.
 pub type WaveletNoise3 = WaveletNoise<3>;
 
-/// The largest number of bands.
+/// Maximum number of bands.
 const MOST_BANDS: usize = 16;
 
-/// The largest weight, so that no sum of weighted values overflows.
+/// Maximum weight, so that sums of weighted values do not overflow.
 const LARGEST_WEIGHT: f32 = 1e30;
 
 impl<const N: usize> WaveletNoise<N> {
-    /// The noise as the weighted sum of bands, coarsest first.
+    /// Sets the weights of the bands, coarsest first.
     ///
-    /// Band `b` is the tile at `2^b` times the position, shifted by whole numbers of cells: it has its power between
-    /// `2^b / 4` and `2^b / 2` cycles per cell and repeats `2^b` times in a period. Bands hardly correlate, so the
-    /// variance of the noise is about the sum of the squares of the weights. Values are not divided by the weights.
+    /// Band `b` is the tile at `2^b` times the position, shifted by whole cells. Its power is between `2^b / 4` and
+    /// `2^b / 2` cycles per cell, and it repeats `2^b` times in a period. Bands are nearly uncorrelated, so the
+    /// variance of the noise is about the sum of the squared weights. Values are not divided by the weights.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/with-weights.md"))]
     ///
@@ -99,20 +99,20 @@ impl<const N: usize> WaveletNoise<N> {
         Ok(self)
     }
 
-    /// The number of cells along each axis of the tile, which are the periods.
+    /// Number of cells along each axis of the tile, which is the period.
     #[must_use]
     pub fn size(&self) -> [u32; N] {
         self.size
     }
 
-    /// The bound of the absolute value: the largest absolute coefficient times the sum of the absolute weights.
+    /// Bound of the absolute value: the largest absolute coefficient times the sum of the absolute weights.
     ///
-    /// With several bands values rarely come near to it.
+    /// With several bands, values rarely come near the bound.
     #[must_use]
     pub fn bound(&self) -> f32 {
         let weights = self.bands.iter().map(|band| f64::from(band.weight.abs()));
         let weights: f64 = weights.sum();
-        // The weights of a B-spline sum to 1, up to roundings, for which this leaves room.
+        // The weights of a B-spline sum to 1 up to rounding, which the factor allows for.
         (f64::from(self.tile.largest()) * weights * (1.0 + 1e-5)) as f32
     }
 }
@@ -127,7 +127,7 @@ impl<const N: usize> fmt::Debug for WaveletNoise<N> {
     }
 }
 
-/// Checks the number, the size and the finiteness of weights.
+/// Checks the number, the range and the finiteness of weights.
 pub(crate) fn check_weights(weights: &[f32]) -> Result<(), WaveletError> {
     if weights.is_empty() || weights.len() > MOST_BANDS {
         return Err(WaveletError::new(WaveletErrorKind::Range {

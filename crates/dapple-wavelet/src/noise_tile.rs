@@ -1,12 +1,11 @@
-//! Seamless rasters of wavelet noise, weighted band by band.
+//! Seamless rasters of wavelet noise with a weight per band.
 //!
-//! A raster is read as the coefficients of a periodic quadratic B-spline. A band of Cook and DeRose's wavelet noise
-//! (see [`WaveletNoise`](crate::WaveletNoise)) is made at its own size, where no other band has its frequencies, and
-//! doubled until it has the size of the raster, which only changes the number of coefficients. So there is no seam,
-//! bands do not overlap, and each can be recovered by halving. Prefer it to making a picture of noise repeat
-//! afterwards.
+//! A raster contains the coefficients of a periodic quadratic B-spline. A band of Cook and DeRose's wavelet noise (see
+//! [`WaveletNoise`](crate::WaveletNoise)) is created at the size where no other band has its frequencies. It is then
+//! doubled to the size of the raster, which changes only the number of coefficients. The result has no seam, bands do
+//! not overlap, and each band can be recovered by halving. Prefer this to making a noise image repeat afterward.
 //!
-//! Every band has white noise of its own, and repeats only where the raster does.
+//! Every band has separate white noise, and has no shorter period than the raster.
 //!
 //! Reference: Robert L. Cook and Tony DeRose, "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005),
 //! <https://doi.org/10.1145/1073204.1073264>, for the bands; their sum as a raster is our own.
@@ -18,22 +17,23 @@ use dapple_raster::Raster;
 
 const PERIODIC: [Border; 2] = [Border::Periodic; 2];
 
-/// A raster of wavelet noise that repeats without a seam, from the weights of its bands, finest first.
+/// Creates a seamless raster of wavelet noise from the weights of its bands, finest first.
 ///
-/// The pixels are the coefficients of a periodic quadratic spline. Band `b` has its power between `2^-b / 4` and `2^-b
-/// / 2` cycles per pixel, nearly. Its mean is 0, and the mean of its squares over all pixels and seeds is the square of
-/// its weight. Bands are independent, so these squares add up. The values are nearly normal, and not processed further.
+/// The pixels are the coefficients of a periodic quadratic spline. Nearly all power of band `b` is between `2^-b / 4`
+/// and `2^-b / 2` cycles per pixel. Its mean is 0, and its mean square over all pixels and seeds is the square of its
+/// weight. Bands are independent, so the mean squares add up. The values are nearly normally distributed and are not
+/// processed further.
 ///
-/// [`SplineFilter::analyze`] decomposes the raster into these bands again. Runs on all cores where the feature `rayon`
-/// is on.
+/// [`SplineFilter::analyze`] recovers these bands from the raster. Runs on all cores if the feature `rayon` is
+/// enabled.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/wavelet-tile.md"))]
 ///
 /// # Errors
 ///
-/// [`WaveletErrorKind::Range`] unless there are 1 to 16 weights from -1e30 to 1e30, [`WaveletErrorKind::NotFinite`] if one
-/// is NaN or infinite, [`WaveletErrorKind::NotDivisible`] if a side is no multiple of `2^n` for `n` weights, and
-/// [`WaveletErrorKind::Raster`] if there is no pixel or more than 2^31.
+/// [`WaveletErrorKind::Range`] unless there are 1 to 16 weights from -1e30 to 1e30, [`WaveletErrorKind::NotFinite`] if
+/// one is NaN or infinite, [`WaveletErrorKind::NotDivisible`] if a side is not a multiple of `2^n` for `n` weights,
+/// and [`WaveletErrorKind::Raster`] if there is no pixel or more than 2^31.
 ///
 /// # Examples
 ///
@@ -50,7 +50,7 @@ pub fn wavelet_tile(
     seed: Seed,
 ) -> Result<Raster<f32>, WaveletError> {
     check_weights(weights)?;
-    // There are at most 16.
+    // There are at most 16 weights.
     let levels = weights.len() as u32;
     check_size(size, levels)?;
     let mut tile = Raster::filled(size.map(|side| side >> (levels - 1)), 0.0)?;
@@ -59,7 +59,7 @@ pub fn wavelet_tile(
         if size != tile.size() {
             tile = SplineFilter::default().up(&tile, size, PERIODIC)?;
         }
-        // A band with the weight zero is skipped.
+        // Skip bands with weight zero.
         let weight = weights[level as usize];
         if weight != 0.0 {
             tile = add_band(&tile, weight, level, seed)?;
@@ -81,7 +81,7 @@ fn check_size(size: [u32; 2], levels: u32) -> Result<(), WaveletError> {
     }
 }
 
-/// Adds a band to a raster of its size, which is to be doubled `level` more times.
+/// Adds a band to a raster of its size, which will be doubled `level` more times.
 fn add_band(
     raster: &Raster<f32>,
     weight: f32,

@@ -23,7 +23,7 @@ pub(crate) const DEGREES: [Degree; 4] = [
     Degree::Cubic,
 ];
 
-/// Numbers from -1 to 1 without any order (Knuth's linear congruential generator, its upper bits).
+/// Pseudorandom numbers from -1 to 1 (upper bits of Knuth's linear congruential generator).
 pub(crate) fn noise(count: usize) -> Vec<f64> {
     let mut state = 0x1234_5678_u64;
     let mut next = || {
@@ -35,7 +35,7 @@ pub(crate) fn noise(count: usize) -> Vec<f64> {
     (0..count).map(|_| next()).collect()
 }
 
-/// The greatest difference of two lines of equal length.
+/// Maximum difference of two lines of equal length.
 pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len(), "lines of different lengths");
     a.iter()
@@ -43,7 +43,7 @@ pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
         .fold(0.0, |most, (a, b)| most.max((a - b).abs()))
 }
 
-/// First and last fine coefficient under coarse coefficient 0: the table of [`Phase`].
+/// First and last fine coefficient of coarse coefficient 0: the table of [`Phase`].
 pub(crate) fn spread(filter: SplineFilter) -> (i64, i64) {
     let (first, last) = match filter.degree {
         Degree::Constant => (0, 1),
@@ -55,7 +55,7 @@ pub(crate) fn spread(filter: SplineFilter) -> (i64, i64) {
     (first - earlier, last - earlier)
 }
 
-/// One period of the repeating line that this line with its border is a part of.
+/// One period of the repeating line that this line and its border are part of.
 fn extended(filter: SplineFilter, line: &[f64], border: Border) -> Vec<f64> {
     let even = matches!(filter.degree, Degree::Constant | Degree::Quadratic);
     let mut line = line.to_vec();
@@ -68,7 +68,7 @@ fn extended(filter: SplineFilter, line: &[f64], border: Border) -> Vec<f64> {
     line
 }
 
-/// The stored coarse coefficients: those whose centers lie between the mirrors.
+/// Stored coarse coefficients: those with centers between the mirrors.
 fn kept(filter: SplineFilter, len: usize, border: Border) -> Vec<i64> {
     let (first, last) = spread(filter);
     if border == Border::Periodic {
@@ -85,7 +85,7 @@ fn kept(filter: SplineFilter, len: usize, border: Border) -> Vec<i64> {
     (-4..len as i64 + 4).filter(inside).collect()
 }
 
-/// A line halved by least squares, of the functions or of the coefficients, over its extension.
+/// Halves a line by least squares, of the functions or of the coefficients, over its extension.
 pub(crate) fn down(filter: SplineFilter, fine: &[f64], border: Border) -> Vec<f64> {
     let line = extended(filter, fine, border);
     let (period, coarse_period) = (line.len(), line.len() / 2);
@@ -118,7 +118,7 @@ pub(crate) fn down(filter: SplineFilter, fine: &[f64], border: Border) -> Vec<f6
         .collect()
 }
 
-/// A line doubled: every coarse spline in turn, spread over the extended line.
+/// Doubles a line: spreads every coarse spline over the extended line.
 pub(crate) fn up(
     filter: SplineFilter,
     coarse: &[f64],
@@ -128,7 +128,7 @@ pub(crate) fn up(
     let period = extended(filter, &vec![0.0; fine_len], border).len();
     let (first, last) = spread(filter);
     let kept = kept(filter, fine_len, border);
-    // All coarse coefficients of one period: the stored ones, and their mirror images.
+    // All coarse coefficients of one period: the stored ones, and their mirror images
     let value = |j: i64| {
         let coarse_period = period as i64 / 2;
         let mirror = match filter.degree {
@@ -171,7 +171,7 @@ pub(crate) fn binomials(degree: Degree) -> Vec<f64> {
     row.iter().map(|c| c / f64::from(1 << d)).collect()
 }
 
-/// The weight of coarse coefficient `j` in fine coefficient `i` of a periodic line.
+/// Weight of coarse coefficient `j` in fine coefficient `i` of a periodic line.
 fn tap(filter: SplineFilter, period: usize, i: usize, j: usize) -> f64 {
     let (first, last) = spread(filter);
     let h = binomials(filter.degree);
@@ -183,7 +183,7 @@ fn tap(filter: SplineFilter, period: usize, i: usize, j: usize) -> f64 {
         .sum()
 }
 
-/// The integral of the product of two coarse splines, in fine units, over one period.
+/// Integral of the product of two coarse splines, in fine units, over one period.
 fn function_product(filter: SplineFilter, period: usize, j: usize, k: usize) -> f64 {
     let [j, k] = [j, k].map(|j| coarse_center(filter, j));
     let copy = |copy: i32| {
@@ -196,7 +196,7 @@ fn function_product(filter: SplineFilter, period: usize, j: usize, k: usize) -> 
     (-8..=8).map(copy).sum()
 }
 
-/// The integral of the product of a coarse and a fine spline, in fine units, over one period.
+/// Integral of the product of a coarse and a fine spline, in fine units, over one period.
 fn mixed_product(filter: SplineFilter, period: usize, j: usize, i: usize) -> f64 {
     let j = coarse_center(filter, j);
     let copy = |copy: i32| {
@@ -209,15 +209,15 @@ fn mixed_product(filter: SplineFilter, period: usize, j: usize, i: usize) -> f64
     (-8..=8).map(copy).sum()
 }
 
-/// The center of coarse spline `j`, in fine units.
+/// Center of coarse spline `j`, in fine units.
 pub(crate) fn coarse_center(filter: SplineFilter, j: usize) -> f64 {
     let (first, last) = spread(filter);
     2.0 * j as f64 + (first + last) as f64 / 2.0
 }
 
-/// The integral of the product of two splines, each with its center and the distance of its knots.
+/// Integral of the product of two splines, each given by its center and knot distance.
 ///
-/// Knots are at multiples of one half; Gauss's rule with four points is exact for degree 7 in between.
+/// Knots are at multiples of one half; four-point Gaussian quadrature is exact for degree 7 in between.
 fn integral(degree: Degree, a: (f64, f64), b: (f64, f64)) -> f64 {
     if (a.0 - b.0).abs() > 8.0 {
         return 0.0;
@@ -238,7 +238,7 @@ fn integral(degree: Degree, a: (f64, f64), b: (f64, f64)) -> f64 {
     sum
 }
 
-/// Gaussian elimination with pivots, of a system whose last column is the right side.
+/// Gaussian elimination with pivoting; the last column is the right-hand side.
 fn solve(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
     let n = rows.len();
     for column in 0..n {

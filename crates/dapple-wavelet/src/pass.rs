@@ -1,8 +1,8 @@
-//! Filtering of all lines of an array, several side by side, on all cores.
+//! Filtering of all lines of an array, several in parallel lanes, on all cores.
 //!
-//! The lines of an array are contiguous, and the result has the axes exchanged: the direction along the lines becomes
-//! the direction across them. Two passes filter a raster along both axes, three a volume along its three, and restore
-//! the order of the axes. No pass reads or writes single values with the stride of a row, which would cost more than
+//! The lines of an array are contiguous, and the result is transposed: the direction along the lines becomes the
+//! direction across them. Two passes filter a raster along both axes, three passes a volume along its three axes, and
+//! restore the order of the axes. No pass accesses single values with the stride of a row, which would cost more than
 //! the filter.
 
 use crate::recursion::{Lanes, LineFilter};
@@ -10,14 +10,14 @@ use dapple_raster::simd::dispatch;
 use dapple_raster::{parallel, simd};
 use fearless_simd::{Level, f32x8, prelude::*};
 
-/// The number of lines that are filtered side by side.
+/// Number of lines that are filtered in parallel lanes.
 const LANES: usize = 8;
 
-/// The number of groups of lines that are filtered before they are written to the result: they stay in the cache until
+/// Number of groups of lines that are filtered before they are written to the result; they stay in the cache until
 /// then.
 const BATCH: usize = 32;
 
-/// The number of rows of the result that are written at a time, so that their sources are read in whole cache lines.
+/// Number of rows of the result that are written at a time, so that their sources are read in whole cache lines.
 const ROWS: usize = 8;
 
 /// Filters the lines of an array, and rounds to `f32`. Value `i` of line `l` is at `i * lines + l` of the result.
@@ -27,7 +27,7 @@ pub(crate) fn filter_lines(filter: &LineFilter, values: &[f32]) -> Vec<f32> {
     result
 }
 
-/// Filters lines, as [`filter_lines`] does, at a SIMD level, into memory for the result. `batch` is scratch memory.
+/// Filters lines like [`filter_lines`], at a SIMD level, into an existing result. `batch` is scratch memory.
 pub(crate) fn filter_lines_into(
     level: Level,
     filter: &LineFilter,
@@ -45,11 +45,13 @@ pub(crate) fn filter_lines_into(
     for (values, first_line) in batches {
         let n_groups = (values.len() / len).div_ceil(LANES);
         let groups = &mut batch[..n_groups * group_len];
+        // Filter the groups of a batch.
         parallel::for_each_chunk_with(groups, group_len, Lanes::default, |lanes, group, target| {
             let lines = &values[group * LANES * len..];
             let lines = &lines[..lines.len().min(LANES * len)];
             dispatch!(level, simd => filter_group(simd, filter, lanes, lines, target));
         });
+        // Transpose the batch into the result.
         parallel::for_each_chunk(result, ROWS * n_lines, |chunk, rows| {
             let parts = groups
                 .chunks_exact(group_len)
@@ -61,7 +63,7 @@ pub(crate) fn filter_lines_into(
     }
 }
 
-/// Filters up to `LANES` lines side by side.
+/// Filters up to `LANES` lines in parallel lanes.
 #[inline(always)]
 fn filter_group<S: Simd>(
     simd: S,
@@ -76,12 +78,12 @@ fn filter_group<S: Simd>(
     }
 }
 
-/// Interleaves up to `LANES` lines: in squares of values, and the rest one by one.
+/// Interleaves up to `LANES` lines: in square blocks of values, and the remainder one by one.
 #[inline(always)]
 fn interleave<S: Simd>(simd: S, lines: &[f32], target: &mut [[f64; LANES]]) {
     let len = target.len();
     let n_lines = lines.len() / len;
-    // Only the last group can be partial.
+    // Only the last group can be incomplete.
     let n_squares = if n_lines == LANES { len / LANES } else { 0 };
     let (squares, rest) = target.split_at_mut(n_squares * LANES);
     for (square, target) in squares.chunks_exact_mut(LANES).enumerate() {
@@ -94,10 +96,10 @@ fn interleave<S: Simd>(simd: S, lines: &[f32], target: &mut [[f64; LANES]]) {
     }
 }
 
-/// Interleaves the first `LANES` values of as many lines, which begin `len` apart.
+/// Interleaves the first `LANES` values of `LANES` lines, whose starts are `len` apart.
 ///
-/// A perfect shuffle of all 64 values turns the six bits of their places by one; three of them exchange the three bits
-/// of the line and of the place in it.
+/// A perfect shuffle of all 64 values rotates the six bits of their indices by one; three shuffles exchange the three
+/// bits of the line with those of the position.
 #[inline(always)]
 fn transpose<S: Simd>(simd: S, lines: &[f32], len: usize, target: &mut [[f64; LANES]]) {
     let mut square = [f32x8::splat(simd, 0.0); LANES];
@@ -119,12 +121,13 @@ fn transpose<S: Simd>(simd: S, lines: &[f32], len: usize, target: &mut [[f64; LA
     }
 }
 
-/// Writes the values of up to `LANES` lines into the columns from `column` on, one in each row of `width`.
+/// Writes the values of up to `LANES` lines into consecutive columns, starting at `column`, of rows with length
+/// `width`.
 fn write_columns(values: &[f32], rows: &mut [f32], width: usize, column: usize) {
     let (parts, _) = values.as_chunks::<LANES>();
     for (row, part) in rows.chunks_exact_mut(width).zip(parts) {
         let row = &mut row[column..];
-        // Only the last group can be partial.
+        // Only the last group can be incomplete.
         match row.first_chunk_mut::<LANES>() {
             Some(row) => *row = *part,
             None => row.copy_from_slice(&part[..row.len()]),

@@ -1,7 +1,7 @@
 //! Filters of rasters along rows and columns.
 //!
-//! Halving goes along rows and then along columns, doubling along columns and then along rows; in between values are rounded
-//! to `f32`. All arithmetic is `f64`.
+//! Halving filters rows and then columns; doubling filters columns and then rows. Values are rounded to `f32` in
+//! between. All arithmetic is `f64`.
 //!
 //! Reference: Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis",
 //! equations 8, 9, 12 and 13.
@@ -15,8 +15,7 @@ use crate::{Border, SplineFilter, WaveletError};
 use dapple_raster::{Raster, simd};
 use fearless_simd::Level;
 
-/// Scratch memory of [`SplineFilter::down_into`], which is reused from raster to raster: about 2 bytes for each fine
-/// pixel of the largest raster.
+/// Reusable scratch memory of [`SplineFilter::down_into`]: about 2 bytes per fine pixel of the largest raster.
 #[derive(Clone, Debug, Default)]
 pub struct FilterMemory {
     columns: Vec<f32>,
@@ -24,10 +23,10 @@ pub struct FilterMemory {
 }
 
 impl SplineFilter {
-    /// Equations 9 and 12: the nearest raster of half the size.
+    /// Equations 9 and 12: halves a raster to the nearest raster of half the size.
     ///
-    /// No absolute value of a pixel exceeds 14.6 times the largest of `fine`, or 5.4 times for degrees below the cubic.
-    /// Pixels are finite up to `f32::MAX / 15`; beyond it some may be infinite or NaN.
+    /// Absolute pixel values are at most 14.6 times the largest one of `fine`, or 5.4 times for degrees below the
+    /// cubic. Pixels are finite up to `f32::MAX / 15`; beyond it some may be infinite or NaN.
     ///
     /// # Errors
     ///
@@ -43,13 +42,13 @@ impl SplineFilter {
         Ok(coarse)
     }
 
-    /// Halves a raster, as [`down`](Self::down) does, into one of half the size, with reusable scratch memory: for many
-    /// rasters, and for large ones, where new memory costs more time than the filter.
+    /// Halves a raster like [`down`](Self::down), into an existing raster and with reusable scratch memory. Use it for
+    /// many or large rasters, where allocation takes more time than the filter.
     ///
     /// # Errors
     ///
-    /// The errors of [`down`](Self::down), and `Raster` if `coarse` has another size than half of `fine`, as
-    /// [`coarse_len`](Self::coarse_len) says.
+    /// The errors of [`down`](Self::down), and `Raster` if the size of `coarse` does not match, as defined by
+    /// [`coarse_len`](Self::coarse_len).
     pub fn down_into(
         &self,
         fine: &Raster<f32>,
@@ -72,7 +71,7 @@ impl SplineFilter {
         Ok(())
     }
 
-    /// Equations 8 and 13: the same function on `fine_size` pixels.
+    /// Equations 8 and 13: represents the same function with `fine_size` pixels.
     ///
     /// # Errors
     ///
@@ -87,14 +86,14 @@ impl SplineFilter {
             self.doubling(coarse.size()[axis], fine_size[axis], borders[axis])
                 .map(drop)
         };
-        // This checks the size before its memory is allocated.
+        // Check the size before allocating memory.
         doubled(0).and(doubled(1))?;
         let mut fine = Raster::filled(fine_size, 0.0)?;
         self.up_into(coarse, borders, &mut fine)?;
         Ok(fine)
     }
 
-    /// Doubles a raster, as [`up`](Self::up) does, into an existing raster of the fine size.
+    /// Doubles a raster like [`up`](Self::up), into an existing raster of the fine size.
     ///
     /// # Errors
     ///
@@ -122,14 +121,15 @@ impl SplineFilter {
         Doubling::new(*self, coarse as usize, fine as usize, border)
     }
 
-    /// Halves a raster `levels` times along each axis and doubles it as often; zero levels return the raster itself.
+    /// Halves a raster `levels` times along each axis and doubles it `levels` times; zero levels return the raster
+    /// itself.
     ///
-    /// Each level mirrors its own lines anew: see [`Border::Mirror`].
+    /// Each level mirrors its own lines: see [`Border::Mirror`].
     ///
     /// # Errors
     ///
-    /// The errors of [`down`](Self::down), for each level: `NotFinite` also if a level has made infinite pixels from
-    /// finite ones, which cannot happen up to `f32::MAX / 15^levels`. `Range` for more than 32 levels.
+    /// The errors of [`down`](Self::down), for each level. `NotFinite` also occurs if a level has made infinite pixels
+    /// from finite ones, which cannot happen up to `f32::MAX / 15^levels`. `Range` for more than 32 levels.
     pub fn project(
         &self,
         fine: &Raster<f32>,
@@ -151,7 +151,7 @@ impl SplineFilter {
         Ok(raster)
     }
 
-    /// The sizes of a raster that is halved `levels` times, from its own to the last.
+    /// Sizes of a raster that is halved `levels` times, from its own size to the last.
     ///
     /// # Errors
     ///
@@ -171,7 +171,7 @@ impl SplineFilter {
     }
 }
 
-/// The raster, filtered along its rows and then along its columns.
+/// Filters a raster along its rows and then along its columns.
 pub(crate) fn filter(
     raster: &Raster<f32>,
     filters: [&LineFilter; 2],
@@ -195,7 +195,7 @@ impl FilterMemory {
         let Self { columns, batch } = self;
         let n_values = along_rows.target.len * raster.height() as usize;
         if columns.len() < n_values {
-            // New memory comes zeroed from the system; clearing would touch it once more.
+            // Allocate zeroed memory instead of clearing, which would touch the memory once more.
             *columns = vec![0.0; n_values];
         }
         let columns = &mut columns[..n_values];

@@ -1,32 +1,31 @@
-//! The filter that halves a line, and the prefilters: a short sum, then recursions, over several lines side by side.
+//! Halving filter and prefilters: a short sum followed by recursions, over several lines in parallel lanes.
 //!
-//! A recursion depends on the values before the first. The lines are therefore extended past their ends, by as many
-//! values as the recursion needs until its start with zero has no more influence than the last bit of a result. This
-//! one rule serves periodic and mirrored lines of any length. For a periodic line it equals, up to rounding, the usual
-//! start `s / (1 − pⁿ)` from one whole turn `s`.
+//! A recursion depends on the values before the first one. The lines are therefore extended beyond their ends, until a
+//! start with zero influences a result by less than its last bit. This rule covers periodic and mirrored lines of any
+//! length. For a periodic line it equals, up to rounding, the usual start `s / (1 − pⁿ)` from one whole period `s`.
 //!
-//! All arithmetic is `f64`, with the same operations in the same order for every lane, so that a line has the same bits
-//! whatever lies beside it.
+//! All arithmetic is `f64`, with the same operations in the same order for every lane. The bits of a line do not
+//! depend on the lines in other lanes.
 
 use crate::ends::{Halving, Line};
 use crate::kernel::Kernel;
 use crate::{Border, SplineFilter, WaveletError};
 
-/// A filter from a line to another.
+/// A filter from one line to another.
 #[derive(Clone, Debug)]
 pub(crate) struct LineFilter {
     kernel: Kernel,
     pub(crate) source: Line,
     pub(crate) target: Line,
-    /// The number of source values per target value: 1 or 2.
+    /// Number of source values per target value: 1 or 2.
     step: usize,
-    /// The index in the source of the first tap of the first target value.
+    /// Source index of the first tap of the first target value.
     start: i64,
-    /// The number of values by which the target is extended past each end.
+    /// Number of values by which the target is extended at each end.
     reach: usize,
 }
 
-/// The memory in which `L` lines are filtered side by side.
+/// Scratch memory for filtering `L` lines in parallel lanes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Lanes<const L: usize> {
     source: Vec<[f64; L]>,
@@ -34,7 +33,7 @@ pub(crate) struct Lanes<const L: usize> {
 }
 
 impl LineFilter {
-    /// The filter of equation 7, for lines of `len`.
+    /// Filter of equation 7, for lines of length `len`.
     pub(crate) fn halving(
         filter: SplineFilter,
         len: usize,
@@ -52,7 +51,7 @@ impl LineFilter {
         })
     }
 
-    /// A filter whose target is as long as its source.
+    /// Filter whose target has the length of its source.
     pub(crate) fn in_place(kernel: Kernel, line: Line) -> Self {
         Self {
             start: kernel.first,
@@ -72,6 +71,7 @@ impl LineFilter {
         load: impl FnOnce(&mut [[f64; L]]),
     ) -> &'lanes [[f64; L]] {
         let Lanes { source, target } = lanes;
+        // Extend the source by the reach of the taps.
         let end = self.start + (self.step * (self.target.len - 1) + self.kernel.taps.len()) as i64;
         let before = (-self.start).max(0) as usize;
         let after = (end - self.source.len as i64).max(0) as usize;
@@ -79,6 +79,7 @@ impl LineFilter {
         load(&mut source[before..before + self.source.len]);
         go_on(&self.source, source, before);
 
+        // Compute the weighted sums, and extend them by the reach of the recursions.
         let kept = self.reach..self.reach + self.target.len;
         target.resize(self.target.len + 2 * self.reach, [0.0; L]);
         let first = (before as i64 + self.start) as usize;
@@ -89,6 +90,7 @@ impl LineFilter {
             &mut target[kept.clone()],
         );
         go_on(&self.target, target, self.reach);
+        // Run the recursions of all poles in one pass.
         match *self.kernel.poles {
             [p] => recur([p], target),
             [p, q] => recur([p, q], target),
@@ -103,7 +105,7 @@ impl LineFilter {
     }
 }
 
-/// Extends the line that begins at `before` to both ends of the slice.
+/// Extends the line that starts at `before` to both ends of the slice.
 #[inline(always)]
 fn go_on<const L: usize>(line: &Line, values: &mut [[f64; L]], before: usize) {
     let after = before + line.len..values.len();
@@ -112,10 +114,10 @@ fn go_on<const L: usize>(line: &Line, values: &mut [[f64; L]], before: usize) {
     }
 }
 
-/// Computes each target value as the sum of `taps`, which are symmetric, times the source values from its place on.
+/// Computes each target value as a sum of symmetric `taps` times consecutive source values.
 #[inline(always)]
 fn weigh<const L: usize>(taps: &[f64], source: &[[f64; L]], step: usize, target: &mut [[f64; L]]) {
-    // The paper's filter has eight taps, which then stay in registers.
+    // The filter of the paper has eight taps, which then stay in registers.
     match <&[f64; 8]>::try_from(taps) {
         Ok(taps) => weigh_by(taps, source, step, target),
         Err(_) => weigh_by(taps, source, step, target),
@@ -147,14 +149,14 @@ fn weigh_by<const L: usize>(
     }
 }
 
-/// Runs the recursion of each pole over the lines, forward and then backward.
+/// Runs the recursions of all poles over the lines, forward and then backward.
 #[inline(always)]
 fn recur<const L: usize, const P: usize>(poles: [f64; P], lines: &mut [[f64; L]]) {
     sweep(poles, lines.iter_mut());
     sweep(poles, lines.iter_mut().rev());
 }
 
-/// Adds to each value the previous one times the pole, for each pole in turn.
+/// Adds to each value the pole times the previous value, for each pole in turn.
 #[inline(always)]
 fn sweep<'lines, const L: usize, const P: usize>(
     poles: [f64; P],

@@ -1,8 +1,8 @@
-//! Interpolating splines through given values, and the values of splines.
+//! Interpolating splines through given values, and evaluation of splines.
 //!
-//! The filters read pixels as coefficients. Where pixels are samples of a picture, [`SplineFilter::coefficients`] first
-//! finds, by recursion, the spline that has them as its values at pixel centers, and [`SplineFilter::samples`] converts
-//! back in the end. For steps and tents, coefficients and samples are equal.
+//! The filters interpret pixels as coefficients. If the pixels are samples of an image, [`SplineFilter::coefficients`]
+//! first computes, by recursion, the spline that has them as its values at pixel centers, and
+//! [`SplineFilter::samples`] converts back at the end. For degrees 0 and 1, coefficients and samples are equal.
 //!
 //! Reference: Michael Unser, "Splines: A Perfect Fit for Signal and Image Processing", IEEE Signal Processing Magazine 16(6),
 //! 1999, <https://doi.org/10.1109/79.799930>.
@@ -16,12 +16,12 @@ use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
 use dapple_raster::Raster;
 
 impl SplineFilter {
-    /// Equation 1: the value at `x` of the spline with these coefficients; coefficient `i` is centered on `i`.
+    /// Equation 1: value at `x` of the spline with these coefficients; coefficient `i` is centered on `i`.
     ///
     /// # Errors
     ///
-    /// `Range` if `x` is not finite or further than 2^52 from 0; `TooShort` without coefficients, and for a mirrored one;
-    /// `NotFinite`.
+    /// `Range` if `x` is not finite or beyond 2^52 in absolute value; `TooShort` without coefficients, and for a
+    /// single mirrored one; `NotFinite`.
     ///
     /// # Examples
     ///
@@ -38,7 +38,7 @@ impl SplineFilter {
         x: f64,
         border: Border,
     ) -> Result<f64, WaveletError> {
-        // Below it a position has a fraction, and its whole part is an index.
+        // Below this limit, a position has a fraction and its integer part is an index.
         const FARTHEST: f64 = (1_u64 << 52) as f64;
         let line = Line::new(*self, coefficients.len(), border)?;
         if !(-FARTHEST..=FARTHEST).contains(&x) {
@@ -51,7 +51,7 @@ impl SplineFilter {
         check_finite(coefficients)?;
         let below = x.floor();
         let mut sum = 0.0;
-        // No spline is wider than 4.
+        // Splines are at most 4 wide.
         for step in -1..=2 {
             let coefficient = coefficients[line.index(below as i64 + step)];
             sum += coefficient * self.degree.value(x - below - step as f64);
@@ -59,11 +59,11 @@ impl SplineFilter {
         Ok(sum)
     }
 
-    /// The coefficients of the spline with these values at whole numbers.
+    /// Computes the coefficients of the spline with these values at integers.
     ///
     /// # Errors
     ///
-    /// `TooShort` for no values, and for a mirrored one; `NotFinite`.
+    /// `TooShort` for no values, and for a single mirrored one; `NotFinite`.
     pub fn coefficients_line(
         &self,
         samples: &[f64],
@@ -72,7 +72,7 @@ impl SplineFilter {
         self.filter_samples(Kernel::coefficients(self.degree), samples, border)
     }
 
-    /// The values at whole numbers of the spline with these coefficients.
+    /// Evaluates the spline with these coefficients at integers.
     ///
     /// # Errors
     ///
@@ -85,7 +85,7 @@ impl SplineFilter {
         self.filter_samples(Kernel::samples(self.degree), coefficients, border)
     }
 
-    /// The coefficients of the spline with these values at pixel centers.
+    /// Computes the coefficients of the spline with these values at pixel centers.
     ///
     /// # Errors
     ///
@@ -98,7 +98,7 @@ impl SplineFilter {
         self.filter_raster(&Kernel::coefficients(self.degree), samples, borders)
     }
 
-    /// The values at pixel centers of the spline with these coefficients.
+    /// Evaluates the spline with these coefficients at pixel centers.
     ///
     /// # Errors
     ///

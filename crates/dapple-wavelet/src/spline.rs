@@ -1,8 +1,8 @@
 //! B-splines and the options of a filter.
 //!
-//! The spline of degree `d` is the step of width 1, smoothed `d` times with itself. It is `d + 1` wide, and the sum of
-//! `d + 2` splines of half the width, weighted by binomial coefficients (equation 4 of the paper). Positions are in units of
-//! the distance between coefficients, and a spline is centered on its coefficient.
+//! The spline of degree `d` is the box function of width 1, convolved `d` times with itself. Its width is `d + 1`. It
+//! is a sum of `d + 2` splines of half the width, weighted by binomial coefficients (equation 4 of the paper).
+//! Positions are in units of the distance between coefficients, and a spline is centered on its coefficient.
 //!
 //! Reference: Carl de Boor, "A Practical Guide to Splines", Springer 1978.
 
@@ -25,10 +25,10 @@ dapple_raster::named! {
 }
 
 impl Degree {
-    /// The B-spline centered on 0, at `x`: the basis function φ of equations 1 to 4.
+    /// Value at `x` of the B-spline centered on 0: the basis function φ of equations 1 to 4.
     ///
-    /// At least 0, with a sum of 1 over all whole steps; 0 from half its width of `degree + 1` on. Where the step jumps, it has
-    /// the value to the right.
+    /// Values are at least 0, and the sum over all integer shifts is 1. The value is 0 at and beyond half of the width
+    /// `degree + 1`. At a discontinuity of the constant spline, it is the limit from the right.
     ///
     /// # Examples
     ///
@@ -55,7 +55,8 @@ impl Degree {
         }
     }
 
-    /// The slope of [`value`](Self::value) at `x`. Where a tent bends it is the slope to the right, and for steps 0.
+    /// Derivative of [`value`](Self::value) at `x`. At a kink of the linear spline it is the derivative to the right;
+    /// for the constant spline it is 0.
     #[must_use]
     pub fn derivative(self, x: f64) -> f64 {
         let distance = x.abs();
@@ -70,7 +71,7 @@ impl Degree {
         }
     }
 
-    /// The degree as a number.
+    /// Degree as a number.
     pub(crate) fn order(self) -> i64 {
         match self {
             Self::Constant => 0,
@@ -147,25 +148,25 @@ dapple_raster::named! {
     }
 }
 
-/// A filter pair: `h` that doubles a line and `a` that halves it.
+/// A filter pair: `h` doubles a line and `a` halves it.
 ///
-/// The default is the paper's: quadratic, pixel-centered, nearest as functions.
+/// The default is the pair of the paper: quadratic, pixel-centered, least squares of the functions.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/spline-filter.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct SplineFilter {
-    /// The degree of the spline; quadratic by default.
+    /// Degree of the spline [default: quadratic].
     pub degree: Degree,
-    /// The position of the coarse coefficients; centered by default.
+    /// Position of the coarse coefficients [default: centered].
     pub phase: Phase,
-    /// The distance that is minimized; that of the functions by default.
+    /// Distance that halving minimizes [default: between the functions].
     pub fit: Fit,
 }
 
 impl SplineFilter {
-    /// The first of the fine coefficients over which coarse coefficient 0 is spread.
+    /// Index of the first fine coefficient of coarse coefficient 0.
     pub(crate) fn first_tap(self) -> i64 {
         let centered = -((self.degree.order() + 1) / 2);
         match self.phase {

@@ -1,7 +1,7 @@
 //! Filters of volumes along three axes.
 //!
-//! A volume is a slice of values, x fastest, then y, then z. Halving goes along x, y and z, doubling along z, y and x; in
-//! between values are rounded to `f32`. All arithmetic is `f64`.
+//! A volume is a slice of values, x fastest, then y, then z. Halving filters along x, y and z, doubling along z, y and
+//! x; values are rounded to `f32` in between. All arithmetic is `f64`.
 
 use crate::doubling::Doubling;
 use crate::ends::lengths;
@@ -12,13 +12,14 @@ use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
 use dapple_raster::{parallel, simd};
 
 impl SplineFilter {
-    /// The nearest volume of half the size, along each axis as [`coarse_len`](Self::coarse_len) says.
+    /// Halves a volume to the nearest volume of half the size; [`coarse_len`](Self::coarse_len) gives the length of
+    /// each axis.
     ///
     /// Values are finite up to `f32::MAX / 56`; beyond it some may be infinite or NaN.
     ///
     /// # Errors
     ///
-    /// `Length` if the number of values is not that of `size`, and the errors of [`down_line`](Self::down_line).
+    /// `Length` if the number of values does not match `size`, and the errors of [`down_line`](Self::down_line).
     pub fn down_volume(
         &self,
         volume: &[f32],
@@ -28,17 +29,17 @@ impl SplineFilter {
         let halving = |axis: usize| LineFilter::halving(*self, size[axis] as usize, borders[axis]);
         let [x, y, z] = [halving(0)?, halving(1)?, halving(2)?];
         check_volume(volume, size)?;
-        // Each pass brings the next axis to the front, so that three restore the order.
+        // Each pass brings the next axis to the front, so that three passes restore the order.
         let along_x = filter_lines(&x, volume);
         let along_y = filter_lines(&y, &along_x);
         Ok(filter_lines(&z, &along_y))
     }
 
-    /// Doubles a volume: its function on `fine_size` values.
+    /// Doubles a volume: represents the same function with `fine_size` values.
     ///
     /// # Errors
     ///
-    /// `Length` if the number of values is not that of the halved `fine_size`, and the errors of
+    /// `Length` if the number of values does not match the halved `fine_size`, and the errors of
     /// [`up_line`](Self::up_line).
     pub fn up_volume(
         &self,
@@ -71,12 +72,14 @@ impl SplineFilter {
         Ok(fine)
     }
 
-    /// Halves a volume `levels` times along each axis and doubles it as often; zero levels return the volume itself.
+    /// Halves a volume `levels` times along each axis and doubles it `levels` times; zero levels return the volume
+    /// itself.
     ///
     /// # Errors
     ///
-    /// The errors of [`down_volume`](Self::down_volume), for each level: `NotFinite` also if a level has made infinite
-    /// values from finite ones, which cannot happen up to `f32::MAX / 56^levels`. `Range` for more than 32 levels.
+    /// The errors of [`down_volume`](Self::down_volume), for each level. `NotFinite` also occurs if a level has made
+    /// infinite values from finite ones, which cannot happen up to `f32::MAX / 56^levels`. `Range` for more than 32
+    /// levels.
     pub fn project_volume(
         &self,
         volume: &[f32],
@@ -99,7 +102,7 @@ impl SplineFilter {
     }
 }
 
-/// Checks that a volume has the given size, and only finite values.
+/// Checks that a volume matches the given size, and that all values are finite.
 fn check_volume(volume: &[f32], size: [u32; 3]) -> Result<(), WaveletError> {
     let needed = size.iter().fold(1_usize, |product, &side| {
         product.saturating_mul(side as usize)

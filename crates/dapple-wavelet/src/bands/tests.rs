@@ -1,4 +1,4 @@
-//! Reconstruction of rasters from their bands.
+//! Tests of the reconstruction from bands.
 
 use super::*;
 use crate::WaveletErrorKind;
@@ -36,7 +36,7 @@ fn synthesize_undoes_analyze() {
                 .zip(raster.pixels())
                 .map(|(a, b)| (a - b).abs());
             let gap = gaps.fold(0.0, f32::max);
-            // Two roundings to f32 per level, of values up to 2.
+            // Tolerance: two roundings to f32 per level, of values up to 2.
             assert!(gap < 1e-6, "{filter:?}, {size:?}, {levels} levels: {gap}");
         }
     }
@@ -70,7 +70,7 @@ fn details_are_what_is_lost() {
     assert_eq!(bands.details[0], lost, "the first detail");
     assert_eq!(bands.details[1].size(), [12, 8], "the second detail");
     assert_eq!(bands.coarse.size(), [6, 4], "the rest");
-    // A second halving of the detail finds nothing.
+    // Halving the detail again gives zero.
     let rest = filter
         .down(&bands.details[0], PERIODIC)
         .expect("a good raster");

@@ -1,4 +1,4 @@
-//! Ends of lines beside lines written out.
+//! Tests of extensions against written-out lines.
 
 use super::*;
 use crate::oracle::all_filters;

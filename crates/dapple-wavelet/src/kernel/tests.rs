@@ -1,9 +1,9 @@
-//! Taps and poles beside their definitions.
+//! Tests of taps and poles against their definitions.
 
 use super::*;
 use crate::oracle::{DEGREES, all_filters, binomials};
 
-/// The value at `z` of a symmetric polynomial whose powers are centered on 0.
+/// Value at `z` of a symmetric polynomial whose powers are centered on 0.
 fn at(polynomial: &[f64], z: f64) -> f64 {
     let mut powers = 1.0;
     let mut sum = 0.0;
@@ -19,7 +19,7 @@ fn poles_are_roots_of_what_they_invert() {
     for degree in DEGREES {
         let h = two_scale(degree);
         let autocorrelation = convolve(&h, &h);
-        // The powers of equal parity as the middle one.
+        // Powers with the parity of the middle one
         let even: Vec<f64> = autocorrelation
             .iter()
             .skip((degree.order() as usize + 1) % 2)
@@ -43,7 +43,7 @@ fn poles_are_roots_of_what_they_invert() {
                     pole.abs() < 1.0,
                     "{degree:?}: {pole} is outside of the unit circle"
                 );
-                // The pole is rounded to 53 bits, and the polynomial is as steep as its sum at most.
+                // The pole is rounded to 53 bits, and the slope of the polynomial is at most its sum.
                 let value = at(&polynomial, pole);
                 assert!(value.abs() < 1e-15 * scale, "{degree:?}: {value} at {pole}");
             }
@@ -66,7 +66,7 @@ fn halving_taps_are_those_of_the_note() {
     assert_eq!(kernel.first, -3, "the first tap");
     assert_eq!(kernel.taps.len(), note.len(), "the number of taps");
     for (tap, note) in kernel.taps.iter().zip(note) {
-        // Two roundings.
+        // Tolerance: two roundings.
         assert!(
             (tap / sum - note / 960.0).abs() < 1e-15,
             "{tap} for {note}/960"

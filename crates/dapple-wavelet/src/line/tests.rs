@@ -1,4 +1,4 @@
-//! The properties of the filters; `vectors` has their pinned values.
+//! Tests of the properties of the filters; `vectors` has their pinned values.
 
 mod vectors;
 
@@ -27,7 +27,7 @@ fn project(filter: SplineFilter, fine: &[f64], levels: u32) -> Vec<f64> {
         .expect("a line that can be halved")
 }
 
-/// Within 1e-12: a few dozen roundings of values of about 1.
+/// Tolerance of 1e-12: a few dozen roundings of values of about 1.
 fn assert_near(line: &[f64], needed: &[f64], what: &str) {
     let distance = distance(line, needed);
     assert!(distance < 1e-12, "{what}: {distance} apart");
@@ -99,7 +99,7 @@ fn project_keeps_constants() {
             let line = filter
                 .project_line(&[0.7; 32], 2, border)
                 .expect("a good length");
-            // 1e-13 is asked of a constant of 1.
+            // Required: 1e-13 for a constant of 1.
             assert!(
                 distance(&line, &[0.7; 32]) < 1e-13,
                 "{filter:?}, {border:?}"
@@ -119,7 +119,7 @@ fn project_of_no_levels_is_the_line() {
 
 #[test]
 fn residual_is_orthogonal_to_coarse_functions() {
-    // The fine Gram matrix times the residual, under H transposed.
+    // Transpose of H applied to the fine Gram matrix times the residual
     for degree in DEGREES {
         let filter = SplineFilter {
             degree,
@@ -282,9 +282,9 @@ fn mirrored_levels_are_those_of_the_mirrored_line_where_its_mirrors_fit() {
             let fits =
                 filter.phase == Phase::Centered && halved_again.iter().all(|len| len % 2 == odd);
             let is_exact = levels == 1 || fits;
-            // Pairs of steps in a line of even length do not touch its mirrors.
+            // Pairs of steps in a line of even length do not overlap its mirrors.
             let may_be_exact = filter.degree == Degree::Constant;
-            // Roundings of values of about 1, or a difference that is far from them.
+            // Either rounding errors of values of about 1, or a clear difference.
             let holds = if is_exact {
                 gap < 1e-12
             } else {
@@ -295,7 +295,7 @@ fn mirrored_levels_are_those_of_the_mirrored_line_where_its_mirrors_fit() {
     }
 }
 
-/// Eight periods of the mirrored line, for up to three levels, with its end values `once` or twice.
+/// Eight periods of the mirrored line, for up to three levels. `once` is 1 if its end values occur once, else 0.
 fn mirrored_eight_times(line: &[f64], once: usize) -> Vec<f64> {
     let back = line[once..line.len() - once].iter().rev();
     let period: Vec<f64> = line.iter().chain(back).copied().collect();
@@ -309,7 +309,7 @@ fn down_stays_within_its_bound_and_comes_near_to_it() {
         let taps: Vec<f64> = (0..128)
             .map(|k| down(filter, &impulse_at(k), PERIODIC)[0])
             .collect();
-        // The values that give most: each with the sign of its tap.
+        // Values with the maximum response: each has the sign of its tap.
         let worst =
             |size: f64| -> Vec<f64> { taps.iter().map(|tap| size.copysign(*tap)).collect() };
         let cubic = usize::from(filter.degree == Degree::Cubic);
@@ -328,13 +328,13 @@ fn down_stays_within_its_bound_and_comes_near_to_it() {
         let coarse = down(filter, &worst(f64::MAX), PERIODIC)[0];
         assert!(!coarse.is_finite(), "{filter:?}: {coarse}");
     }
-    // The bounds that the documentation names, rounded up.
+    // Bounds in the documentation, rounded up
     for (most, bound) in most.into_iter().zip([2.33, 3.82]) {
         assert!((bound - 0.01..bound).contains(&most), "{most}, not {bound}");
     }
 }
 
-/// A line of 128 with a one.
+/// A line of 128 with an impulse.
 fn impulse_at(index: usize) -> Vec<f64> {
     let mut line = vec![0.0; 128];
     line[index] = 1.0;

@@ -1,20 +1,20 @@
-//! The bands of a noise: the same tile, scaled and shifted.
+//! Bands of a noise: scaled and shifted copies of the tile.
 
 use super::place::{Period, Place, floor};
 use dapple_hash::{Seed, hash1};
 
-/// One band of a noise.
+/// A band of a noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Band<const N: usize> {
     pub(super) weight: f32,
-    /// The number of cells of this band in a cell of the first band: a power of two.
+    /// Number of cells of this band per cell of the first band: a power of two.
     pub(super) frequency: f64,
-    /// The shift of the tile in cells along each axis, below its size there. Zero for the first band.
+    /// Offset of the tile in cells along each axis, below its size. Zero for the first band.
     pub(super) offset: [f64; N],
 }
 
 impl<const N: usize> Band<N> {
-    /// The bands whose weight is not zero.
+    /// Creates the bands whose weight is not zero.
     pub(super) fn all(weights: &[f32], size: [u32; N], seed: Seed) -> Vec<Self> {
         let bands = (0_u64..).zip(weights);
         let bands = bands.filter(|(_, weight)| **weight != 0.0);
@@ -36,7 +36,7 @@ impl<const N: usize> Band<N> {
         }
     }
 
-    /// Maps places of the noise to this band.
+    /// Maps tile coordinates of the noise to this band.
     #[inline(always)]
     pub(super) fn places(&self, periods: [Period; N], mut places: [Place; N]) -> [Place; N] {
         for (axis, place) in places.iter_mut().enumerate() {
@@ -45,7 +45,7 @@ impl<const N: usize> Band<N> {
         places
     }
 
-    /// Maps a place along one axis, with the given period, to this band.
+    /// Maps a tile coordinate along one axis, with the given period, to this band.
     #[inline(always)]
     pub(super) fn place(&self, period: Period, place: Place, axis: usize) -> Place {
         // The first band is the noise itself.
@@ -55,7 +55,8 @@ impl<const N: usize> Band<N> {
         let fine = self.frequency * place.fraction;
         let whole = floor(fine);
         Place {
-            // All parts are whole numbers below 2^41: a side has at most 2^25 cells, and a band at most 2^15 of its own in one.
+            // All parts are integers below 2^41: a side has at most 2^25 cells, and a band at most 2^15 of its cells
+            // in one of them.
             cell: period.wrap(self.frequency * place.cell + (self.offset[axis] + whole)),
             fraction: fine - whole,
         }

@@ -1,4 +1,4 @@
-//! Values of noise: the sum of its bands at a position.
+//! Evaluation of noise: the sum of its bands at a position.
 
 use super::WaveletNoise;
 use super::band::Band;
@@ -15,9 +15,9 @@ impl WaveletNoise<2> {
         self.sum(position.into(), |places| self.tile.value(places))
     }
 
-    /// The value at a position in cells, equal to that of [`sample`](Self::sample), and its gradient per cell.
+    /// Returns the value at a position in cells, equal to [`sample`](Self::sample), and its gradient per cell.
     ///
-    /// The gradient is the spline's own, not a difference; where a coordinate is not finite it is NaN.
+    /// The gradient is the analytic derivative of the spline; it is NaN if a coordinate is not finite.
     #[must_use]
     #[inline]
     pub fn sample_with_gradient(&self, position: impl Into<[f64; 2]>) -> (f32, DVec2) {
@@ -28,7 +28,7 @@ impl WaveletNoise<2> {
     }
 }
 
-/// Positions in cells; windows are filled on all cores where the feature `rayon` is on.
+/// Positions are in cells. Windows are rendered on all cores if the feature `rayon` is enabled.
 impl Field for WaveletNoise<2> {
     #[inline]
     fn value(&self, position: [f64; 2]) -> f32 {
@@ -46,16 +46,16 @@ impl Field for WaveletNoise<2> {
 }
 
 impl WaveletNoise<3> {
-    /// The value at a position in cells.
+    /// Returns the value at a position in cells.
     #[must_use]
     #[inline]
     pub fn sample(&self, position: impl Into<[f64; 3]>) -> f32 {
         self.sum(position.into(), |places| self.tile.value(places))
     }
 
-    /// The value at a position in cells, equal to that of [`sample`](Self::sample), and its gradient per cell.
+    /// Returns the value at a position in cells, equal to [`sample`](Self::sample), and its gradient per cell.
     ///
-    /// The gradient is the spline's own, not a difference; where a coordinate is not finite it is NaN.
+    /// The gradient is the analytic derivative of the spline; it is NaN if a coordinate is not finite.
     #[must_use]
     #[inline]
     pub fn sample_with_gradient(&self, position: impl Into<[f64; 3]>) -> (f32, DVec3) {
@@ -66,8 +66,8 @@ impl WaveletNoise<3> {
     }
 }
 
-/// Positions in cells. Of a window, the whole slice of the tile is computed first, once for each band, which does not
-/// pay for windows much smaller than a slice.
+/// Positions are in cells. Rendering a window first computes the whole slice of the tile for each band, which is
+/// inefficient for windows much smaller than a slice.
 impl Field<3> for WaveletNoise<3> {
     #[inline]
     fn value(&self, position: [f64; 3]) -> f32 {
@@ -111,7 +111,7 @@ impl Gradient<3> for WaveletNoise<3> {
 }
 
 impl<const N: usize> WaveletNoise<N> {
-    /// The weighted values of the bands, summed in their order.
+    /// Weighted sum of the bands, in order.
     #[inline(always)]
     fn sum(&self, position: [f64; N], value: impl Fn([Place; N]) -> f32) -> f32 {
         let Some(places) = Period::places(self.periods, position) else {

@@ -10,16 +10,16 @@ use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::Raster;
 
-/// The largest number of cells of a tile: half a gigabyte.
+/// Maximum number of cells of a tile: half a gigabyte.
 const MOST_CELLS: u32 = 1 << 27;
 
-/// The smallest number of cells along an axis that can be halved and doubled.
+/// Minimum number of cells along an axis that can be halved and doubled.
 const FEWEST_CELLS: u32 = 4;
 
 impl WaveletNoise2 {
-    /// Noise of the plane that repeats after `size` cells along both axes: one band, of weight 1.
+    /// Creates noise of the plane with a period of `size` cells along both axes: one band of weight 1.
     ///
-    /// The tile takes `4 (size + 2)²` bytes, and several times as many while it is made.
+    /// The tile takes `4 (size + 2)²` bytes, and several times as much while it is created.
     ///
     /// # Errors
     ///
@@ -28,14 +28,14 @@ impl WaveletNoise2 {
         Self::of_size([size; 2], seed)
     }
 
-    /// Noise of the plane that repeats after `size` cells along each axis: one band, of weight 1.
+    /// Creates noise of the plane with a period of `size` cells along each axis: one band of weight 1.
     ///
-    /// For two equal numbers it equals that of [`new`](Self::new). The variance is 1 for any size.
+    /// For equal sizes, the result equals [`new`](Self::new). The variance is 1 for any size.
     ///
     /// # Errors
     ///
-    /// [`WaveletErrorKind::Range`] below 4 cells along an axis and above 2^27 in all, [`WaveletErrorKind::NotDivisible`] if
-    /// one number is odd.
+    /// [`WaveletErrorKind::Range`] below 4 cells along an axis and above 2^27 in total,
+    /// [`WaveletErrorKind::NotDivisible`] if a size is odd.
     ///
     /// # Examples
     ///
@@ -56,9 +56,9 @@ impl WaveletNoise2 {
 }
 
 impl WaveletNoise3 {
-    /// Noise of space that repeats after `size` cells along each axis: one band, of weight 1.
+    /// Creates noise of space with a period of `size` cells along each axis: one band of weight 1.
     ///
-    /// The tile takes `4 (size + 2)³` bytes, and several times as many while it is made.
+    /// The tile takes `4 (size + 2)³` bytes, and several times as much while it is created.
     ///
     /// # Errors
     ///
@@ -67,19 +67,19 @@ impl WaveletNoise3 {
         Self::of_size([size; 3], seed)
     }
 
-    /// Noise of space that repeats after `size` cells along each axis: one band, of weight 1.
+    /// Creates noise of space with a period of `size` cells along each axis: one band of weight 1.
     ///
-    /// For three equal numbers it equals that of [`new`](Self::new). The variance is 1 for any size.
+    /// For equal sizes, the result equals [`new`](Self::new). The variance is 1 for any size.
     ///
     /// # Errors
     ///
-    /// [`WaveletErrorKind::Range`] below 4 cells along an axis and above 2^27 in all, [`WaveletErrorKind::NotDivisible`] if
-    /// one number is odd.
+    /// [`WaveletErrorKind::Range`] below 4 cells along an axis and above 2^27 in total,
+    /// [`WaveletErrorKind::NotDivisible`] if a size is odd.
     pub fn of_size(size: [u32; 3], seed: Seed) -> Result<Self, WaveletError> {
         check_size(size)?;
         let [width, height, depth] = size;
         let words = white_words(seed);
-        // The slices, one below the other.
+        // Stack the slices vertically in one raster.
         let white = Raster::from_rows([width, height * depth], |row| {
             let [row, slice] = [row % height, row / height].map(i64::from);
             let row = CellHash::new(words, [row, slice]);
@@ -92,7 +92,7 @@ impl WaveletNoise3 {
 }
 
 impl<const N: usize> WaveletNoise<N> {
-    /// One band, of weight 1, of the difference of white noise and its projection.
+    /// Creates one band of weight 1 from the difference of white noise and its projection.
     fn from_white(
         size: [u32; N],
         seed: Seed,
@@ -119,7 +119,7 @@ impl<const N: usize> WaveletNoise<N> {
     }
 }
 
-/// Checks that sides are even, long enough to be halved and doubled, and that the tile has no more cells than the
+/// Checks that sides are even and long enough for halving and doubling, and that the number of cells is within the
 /// limit.
 fn check_size<const N: usize>(size: [u32; N]) -> Result<(), WaveletError> {
     let range = |what, value, range| {
@@ -146,7 +146,7 @@ fn check_size<const N: usize>(size: [u32; N]) -> Result<(), WaveletError> {
     }
 }
 
-/// The seed of the white noise.
+/// Seed of the white noise.
 fn white_words(seed: Seed) -> Seed {
     seed.child("wavelet noise", 0)
 }

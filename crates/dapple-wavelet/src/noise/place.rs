@@ -1,15 +1,16 @@
-//! Places on a tile that repeats: a cell, and a fraction of it.
+//! Coordinates on a periodic tile: a cell, and a fraction of it.
 //!
-//! All steps are exact, so that positions one period apart have the same place, however far they are from the origin.
+//! All steps are exact, so that positions one period apart have the same tile coordinate, at any distance from the
+//! origin.
 
-/// From here on coordinates are reduced by a remainder, which is exact but slow. Below, whole numbers and their
-/// products with the period are exact.
+/// At this distance and beyond, coordinates are reduced by a remainder, which is exact but slow. Below it, integers
+/// and their products with the period are exact.
 const FAR: f64 = (1_u64 << 50) as f64;
 
-/// Added to a number below 2^51 and taken away again, this rounds it to a whole one: no fraction has room beside it.
+/// Adding and subtracting this constant rounds a number below 2^51 to an integer: the sum has no bits for a fraction.
 const ROUND: f64 = (3_u64 << 51) as f64;
 
-/// A period of a whole number of cells along an axis.
+/// A period of an integer number of cells along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Period {
     cells: f64,
@@ -19,9 +20,9 @@ pub(super) struct Period {
 /// A coordinate on the tile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Place {
-    /// A whole number, at least 0 and below the period.
+    /// Integer from 0 to the period, exclusive.
     pub(super) cell: f64,
-    /// From 0 to 1; it is 1 only where a coordinate just below a whole number has no closer fraction.
+    /// From 0 to 1; exactly 1 only for a coordinate just below an integer, where no closer fraction is representable.
     pub(super) fraction: f64,
 }
 
@@ -34,7 +35,7 @@ impl Period {
         }
     }
 
-    /// The places of the coordinates of a position, one for each period; none if it is not finite.
+    /// Tile coordinates of a position, one per period; `None` if the position is not finite.
     #[inline(always)]
     pub(super) fn places<const N: usize>(
         periods: [Self; N],
@@ -54,7 +55,7 @@ impl Period {
         Some(places)
     }
 
-    /// The place of a coordinate; none if it is not finite.
+    /// Tile coordinate of a coordinate; `None` if it is not finite.
     pub(super) fn place_of(self, coordinate: f64) -> Option<Place> {
         Self::places([self], [coordinate]).map(|[place]| place)
     }
@@ -68,7 +69,7 @@ impl Period {
         }
     }
 
-    /// The number in the period, from 0 on, that is a whole number of periods away.
+    /// Reduces a number to the range from 0 to the period.
     #[inline(always)]
     pub(super) fn wrap(self, cell: f64) -> f64 {
         let rest = cell - round(cell * self.inverse) * self.cells;
@@ -88,14 +89,14 @@ impl Place {
         fraction: 0.0,
     };
 
-    /// The cell as an index.
+    /// Cell as an index.
     #[inline(always)]
     pub(super) fn index(self) -> usize {
-        // A whole number in the low bits of the sum; other bits are above them.
+        // The low bits of the sum contain the integer.
         (self.cell + (1_u64 << 52) as f64).to_bits() as u32 as usize
     }
 
-    /// The weights of the coefficients of the cell before, of the cell and of the cell after: a quadratic B-spline.
+    /// Weights of the coefficients of the previous cell, this cell and the next cell: a quadratic B-spline.
     #[inline(always)]
     pub(super) fn weights(self) -> [f32; 3] {
         let after = self.fraction as f32;
@@ -107,7 +108,7 @@ impl Place {
         ]
     }
 
-    /// The derivatives of the weights.
+    /// Derivatives of the weights.
     #[inline(always)]
     pub(super) fn slopes(self) -> [f32; 3] {
         let after = self.fraction as f32;
@@ -116,15 +117,15 @@ impl Place {
     }
 }
 
-/// The largest whole number not above `x`. (`f64::floor` is a function call unless the processor is known to have an
-/// instruction for it.)
+/// Largest integer not above `x`. (`f64::floor` is a function call unless the target processor has an instruction for
+/// it.)
 #[inline(always)]
 pub(super) fn floor(x: f64) -> f64 {
     let near = round(x);
     if near > x { near - 1.0 } else { near }
 }
 
-/// The nearest whole number.
+/// Nearest integer.
 #[inline(always)]
 fn round(x: f64) -> f64 {
     (x + ROUND) - ROUND
@@ -157,7 +158,7 @@ mod tests {
             for index in 0..2000 {
                 let shift = 13 + index % 50;
                 let whole = hash1(Seed(u64::from(cells)), [index], 0).cast_signed() >> shift;
-                // Past 2^53 not every whole number has a number of its own.
+                // Above 2^53, not every integer is representable.
                 let x = whole as f64;
                 let place = period.place_of(x).expect("the coordinate is finite");
                 let expected = (x as i64).rem_euclid(i64::from(cells));

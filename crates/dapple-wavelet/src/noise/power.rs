@@ -1,20 +1,20 @@
-//! The power of a band in and beside its octave, by a Fourier transform of its samples.
+//! Test of the power of a band inside and outside of its octave, by a Fourier transform of its samples.
 
 use super::WaveletNoise2;
 use dapple_hash::Seed;
 use dapple_raster::glam::DVec2;
 
-/// The cells along a side of a tile.
+/// Number of cells along a side of a tile.
 const CELLS: usize = 32;
 
-/// The samples per cell. Frequencies that finer ones would resolve have less than a thousandth of the power.
+/// Number of samples per cell. Frequencies above its resolution have less than a thousandth of the power.
 const PER_CELL: usize = 4;
 
 const SIDE: usize = CELLS * PER_CELL;
 
-/// The complex roots of unity of the side, by half angles, so that they need no trigonometric function.
+/// Complex roots of unity of order `SIDE`, by half-angle formulas without trigonometric functions.
 fn roots() -> Vec<[f64; 2]> {
-    // A quarter turn, halved until it is a step of the side.
+    // Start with a quarter turn and halve it until it is one step.
     let (mut cosine, mut sine, mut steps) = (0.0_f64, 1.0_f64, 4);
     while steps < SIDE {
         (cosine, sine) = (((1.0 + cosine) / 2.0).sqrt(), ((1.0 - cosine) / 2.0).sqrt());
@@ -26,7 +26,7 @@ fn roots() -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// The Fourier transform of a line.
+/// Fourier transform of a line.
 fn transform(line: &[[f64; 2]], roots: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let at = |frequency: usize| {
         let mut sum = [0.0; 2];
@@ -40,7 +40,7 @@ fn transform(line: &[[f64; 2]], roots: &[[f64; 2]]) -> Vec<[f64; 2]> {
     (0..SIDE).map(at).collect()
 }
 
-/// The power by the larger frequency of both axes, in cycles per tile.
+/// Power by the larger frequency of both axes, in cycles per tile.
 fn power(seed: u64, roots: &[[f64; 2]]) -> Vec<f64> {
     let noise = WaveletNoise2::new(CELLS as u32, Seed(seed)).unwrap();
     let sample = |x: usize, y: usize| {
@@ -76,7 +76,7 @@ fn most_power_of_a_band_is_in_its_octave() {
     let all: f64 = sums.iter().sum();
     let [quarter, half] = [CELLS / 4, CELLS / 2];
     let ends = (sums[quarter] + sums[half]) / 2.0;
-    // Frequencies at an end count for both sides of it.
+    // Split the frequencies at the ends equally between both sides.
     let within = (sums[quarter + 1..half].iter().sum::<f64>() + ends) / all;
     let below = (sums[..quarter].iter().sum::<f64>() + sums[quarter] / 2.0) / all;
     let above = 1.0 - within - below;

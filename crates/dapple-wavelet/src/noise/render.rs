@@ -1,17 +1,18 @@
-//! Rendering of windows of noise: the terms that the pixels of a column or of a row share are computed once.
+//! Rendering of noise windows: terms shared by the pixels of a column or row are computed once.
 //!
-//! A row of pixels lies in one row of places. The three rows of coefficients around it are blended into one, and then
-//! each pixel needs three of its numbers instead of nine. The sums are those of a single position, in the same order.
+//! All pixels of a row have the same y. The three rows of coefficients around it are blended into one, so that each
+//! pixel needs three values instead of nine. The sums have the same order as for a single position.
 
 use super::band::Band;
 use super::place::{Period, Place};
 use super::tile::{Tile, across};
 use dapple_raster::{RasterError, RasterViewMut, Window};
 
-/// How many rows of pixels a thread takes at once.
+/// Number of pixel rows in a band, the unit of parallel work.
 const ROWS: u32 = 16;
 
-/// Fills a window with the weighted values of bands, each with its tile, on all cores where the feature `rayon` is on.
+/// Renders a window with the weighted sum of bands, each with its tile, on all cores if the feature `rayon` is
+/// enabled.
 pub(super) fn render<const N: usize>(
     bands: &[(&Band<N>, &Tile<2>)],
     periods: [Period; 2],
@@ -33,7 +34,7 @@ struct Picture<'a, const N: usize> {
     periods: [Period; 2],
     window: &'a Window,
     sheets: Vec<Sheet<'a, N>>,
-    /// The columns whose coordinate is not finite.
+    /// Columns whose coordinate is not finite.
     blind: Vec<usize>,
 }
 
@@ -88,7 +89,7 @@ impl<const N: usize> Sheet<'_, N> {
     /// Adds the weighted values of a row of pixels.
     fn add_row(&self, y: Place, values: &mut [f32]) {
         let (tile, weight) = (self.tile, self.band.weight);
-        // Blending a row of the tile pays only if it is read often enough.
+        // Blending a row of the tile is worthwhile only if enough pixels read it.
         if self.columns.len() < tile.row_len() / 4 {
             for (value, &x) in values.iter_mut().zip(&self.columns) {
                 *value += weight * tile.value([x, y]);

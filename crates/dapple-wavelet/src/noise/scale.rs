@@ -1,9 +1,9 @@
-//! The scale of noise: its mean square over all seeds, exactly, for tiles of any size.
+//! Normalization of noise: its exact mean square over all seeds, for tiles of any size.
 //!
-//! Noise is `(I − P) R` with `R` white and `P` the projection along every axis. Its mean square, in a metric `M` that is a
-//! product of one per axis, is `tr((I − P)ᵀ M (I − P))` divided by the number of coefficients, and that is
-//! `Π whole − 2 Π cross + Π low` over the axes, with three sums along a line for each. An impulse suffices to find
-//! them: shifted by two cells it gives the same sums, and shifted by one their mirror images.
+//! The noise is `(I − P) R`, where `R` is white and `P` is the projection along every axis. Its mean square, in a
+//! metric `M` that is a product of one metric per axis, is `tr((I − P)ᵀ M (I − P))` divided by the number of
+//! coefficients. This equals `Π whole − 2 Π cross + Π low` over the axes, with three sums per axis. An impulse
+//! suffices to compute them: shifting it by two cells gives the same sums, and by one cell their mirror images.
 
 use crate::kernel::gram;
 use crate::{Border, Degree, SplineFilter, WaveletError};
@@ -20,7 +20,7 @@ pub(crate) struct LineSums {
 }
 
 impl LineSums {
-    /// The sums for the values of a periodic spline of `length` coefficients, over all positions.
+    /// Sums for the values of a periodic spline with `length` coefficients, over all positions.
     pub(crate) fn of_values(length: usize) -> Result<Self, WaveletError> {
         let [impulse, low] = impulses(length)?;
         Ok(Self {
@@ -30,7 +30,7 @@ impl LineSums {
         })
     }
 
-    /// The sums for coefficients that are doubled `levels` times, over all of them.
+    /// Sums for coefficients after doubling them `levels` times, over all of them.
     pub(crate) fn of_coefficients(length: usize, levels: u32) -> Result<Self, WaveletError> {
         let [mut impulse, mut low] = impulses(length)?;
         for _ in 0..levels {
@@ -50,7 +50,7 @@ impl LineSums {
         })
     }
 
-    /// The factor that gives noise along these axes a mean square of 1.
+    /// Factor that normalizes noise along these axes to a mean square of 1.
     pub(crate) fn factor<const N: usize>(axes: [Self; N]) -> f64 {
         let product = |part: fn(&Self) -> f64| axes.iter().map(part).product::<f64>();
         let mean_square = product(|sums| sums.whole) - 2.0 * product(|sums| sums.cross)
@@ -66,9 +66,9 @@ fn impulses(length: usize) -> Result<[Vec<f64>; 2], WaveletError> {
     Ok([impulse, low])
 }
 
-/// The integral of the product of two periodic quadratic splines.
+/// Integral of the product of two periodic quadratic splines.
 fn inner(a: &[f64], b: &[f64]) -> f64 {
-    // The integrals of the product of a B-spline and another that is 2, 1 or 0 cells away, all times their sum.
+    // Integrals of products of a B-spline with copies 2, 1 and 0 cells away, all times their sum
     let overlaps = gram(Degree::Quadratic);
     let sum: f64 = overlaps.iter().sum();
     let [far_overlap, near_overlap, overlap] = [0, 1, 2].map(|i| overlaps[i] / sum);
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn mean_squares_equal_those_of_the_dense_matrices() {
-        // From dense matrices in another program: traces of 256 × 256 matrices.
+        // Computed from dense matrices in another program: traces of 256 × 256 matrices.
         let values = LineSums::of_values(256).unwrap();
         let coefficients = LineSums::of_coefficients(256, 0).unwrap();
         for (sums, expected) in [
@@ -113,7 +113,7 @@ mod tests {
             LineSums::of_coefficients(16, 8).unwrap(),
         ];
         let [values, coefficients] = [[values; 2], [coefficients; 2]].map(LineSums::factor);
-        // Each level brings the coefficients four times nearer to the function.
+        // Each level brings the coefficients four times closer to the function.
         assert!(
             (values / coefficients - 1.0).abs() < 1e-3,
             "{values} {coefficients}"

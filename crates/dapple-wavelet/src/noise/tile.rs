@@ -2,20 +2,20 @@
 
 use super::place::Place;
 
-/// Coefficients with a margin of one more cell before the tile and one after it along each axis: three are read around
-/// a place, so no reader has to wrap.
+/// Coefficients with a margin of one cell on each side along each axis. Three cells are read around a position, so
+/// that readers need not wrap.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tile<const N: usize> {
-    /// The number of cells along each axis, including the margins.
+    /// Number of cells along each axis, including the margins.
     sides: [usize; N],
     coefficients: Vec<f32>,
 }
 
-/// The number of margin cells along each axis.
+/// Number of margin cells along each axis.
 const MORE: usize = 2;
 
 impl<const N: usize> Tile<N> {
-    /// The tile of `size` cells along the axes, from its coefficients, the first axis fastest.
+    /// Creates a tile of `size` cells from its coefficients, first axis fastest.
     pub(super) fn new(size: [usize; N], coefficients: &[f32]) -> Self {
         let sides = size.map(|cells| cells + MORE);
         let n_rows: usize = sides[1..].iter().product();
@@ -37,20 +37,20 @@ impl<const N: usize> Tile<N> {
         }
     }
 
-    /// The coefficient that is furthest from zero.
+    /// Maximum absolute coefficient.
     pub(super) fn largest(&self) -> f32 {
         let magnitudes = self.coefficients.iter().map(|value| value.abs());
         magnitudes.fold(0.0, f32::max)
     }
 
-    /// The coefficient of a cell.
+    /// Coefficient of a cell.
     #[cfg(test)]
     pub(super) fn coefficient(&self, cell: [usize; N]) -> f32 {
         let axes = cell.iter().zip(&self.sides).rev();
         self.coefficients[axes.fold(0, |at, (cell, side)| at * side + cell + 1)]
     }
 
-    /// Three consecutive coefficients of a row, from an index in memory on.
+    /// Three consecutive coefficients of a row, starting at a memory index.
     #[inline(always)]
     fn three(&self, at: usize) -> [f32; 3] {
         let row = &self.coefficients[at..at + 3];
@@ -59,13 +59,13 @@ impl<const N: usize> Tile<N> {
 }
 
 impl Tile<2> {
-    /// The value at a place.
+    /// Value at a position.
     #[inline(always)]
     pub(super) fn value(&self, [x, y]: [Place; 2]) -> f32 {
         across(x.weights(), down(y.weights(), self.rows([x, y])))
     }
 
-    /// The value at a place, and its gradient per cell.
+    /// Value at a position, and its gradient per cell.
     #[inline(always)]
     pub(super) fn value_with_gradient(&self, [x, y]: [Place; 2]) -> (f32, [f32; 2]) {
         let rows = self.rows([x, y]);
@@ -75,13 +75,13 @@ impl Tile<2> {
         (across(x.weights(), row), gradient)
     }
 
-    /// The weighted sum of the rows around a place, as long as a row in memory.
+    /// Weighted sum of the rows around a position, with the length of a row in memory.
     pub(super) fn blend_row(&self, y: Place, row: &mut [f32]) {
         let rows = &self.coefficients[y.index() * self.sides[0]..][..3 * self.sides[0]];
         blend(y.weights(), rows, row);
     }
 
-    /// The length of a row in memory, in cells.
+    /// Length of a row in memory, in cells.
     pub(super) fn row_len(&self) -> usize {
         self.sides[0]
     }
@@ -98,14 +98,14 @@ impl Tile<2> {
 }
 
 impl Tile<3> {
-    /// The value at a place.
+    /// Value at a position.
     #[inline(always)]
     pub(super) fn value(&self, [x, y, z]: [Place; 3]) -> f32 {
         let rows = self.rows(z.weights(), [x, y, z]);
         across(x.weights(), down(y.weights(), rows))
     }
 
-    /// The value at a place, and its gradient per cell.
+    /// Value at a position, and its gradient per cell.
     #[inline(always)]
     pub(super) fn value_with_gradient(&self, [x, y, z]: [Place; 3]) -> (f32, [f32; 3]) {
         let rows = self.rows(z.weights(), [x, y, z]);
@@ -123,7 +123,7 @@ impl Tile<3> {
         (across(x.weights(), row), gradient)
     }
 
-    /// The two-dimensional tile at a depth. Its values equal those of this tile there, to the last bit.
+    /// Two-dimensional tile at a depth. Its values equal those of this tile, bit for bit.
     pub(super) fn slice(&self, z: Place) -> Tile<2> {
         let [width, height, _] = self.sides;
         let area = width * height;
@@ -136,7 +136,7 @@ impl Tile<3> {
         }
     }
 
-    /// The rows around a place, each blended from three slices.
+    /// Rows around a position, each blended from three slices.
     #[inline(always)]
     fn rows(&self, weights: [f32; 3], [x, y, z]: [Place; 3]) -> [[f32; 3]; 3] {
         let [width, height, _] = self.sides;
@@ -161,7 +161,7 @@ impl Tile<3> {
     }
 }
 
-/// The weighted sum of three rows, or slices, that lie one after another.
+/// Weighted sum of three consecutive rows or slices.
 fn blend(weights: [f32; 3], three: &[f32], sum: &mut [f32]) {
     let (first, others) = three.split_at(sum.len());
     let (second, third) = others.split_at(sum.len());
@@ -171,7 +171,7 @@ fn blend(weights: [f32; 3], three: &[f32], sum: &mut [f32]) {
     }
 }
 
-/// The weighted sum of three pieces of rows.
+/// Weighted sum of three row segments.
 #[inline(always)]
 fn down(weights: [f32; 3], [first, second, third]: [[f32; 3]; 3]) -> [f32; 3] {
     [
@@ -181,7 +181,7 @@ fn down(weights: [f32; 3], [first, second, third]: [[f32; 3]; 3]) -> [f32; 3] {
     ]
 }
 
-/// The weighted sum of a piece of a row.
+/// Weighted sum of a row segment.
 #[inline(always)]
 pub(super) fn across(weights: [f32; 3], row: [f32; 3]) -> f32 {
     (weights[0] * row[0] + weights[1] * row[1]) + weights[2] * row[2]

@@ -1,14 +1,14 @@
-//! White noise by place, from which the bands are made.
+//! White noise by cell, from which the bands are made.
 //!
-//! A value is the sum of the four 16-bit words of a hash, shifted and scaled so that its mean is 0 and its variance 1.
-//! It is nearly normal (its kurtosis is 2.7, that of a normal distribution 3), never further than 3.47 from zero, and
-//! needs no logarithm, whose bits would differ between platforms.
+//! A value is the sum of the four 16-bit words of a hash, shifted and scaled to a mean of 0 and a variance of 1. It is
+//! nearly normally distributed (its kurtosis is 2.7 instead of 3), at most 3.47 in absolute value, and computed
+//! without logarithms, whose bits would differ between platforms.
 
 use crate::WaveletError;
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::Raster;
 
-/// A raster of white noise.
+/// Creates a raster of white noise.
 pub(crate) fn white_raster(size: [u32; 2], words: Seed) -> Result<Raster<f32>, WaveletError> {
     Ok(Raster::from_rows(size, |row| {
         let row = CellHash::new(words, [row.into()]);
@@ -16,7 +16,7 @@ pub(crate) fn white_raster(size: [u32; 2], words: Seed) -> Result<Raster<f32>, W
     })?)
 }
 
-/// The value of a cell, from the hash of its row and its column.
+/// Value of a cell, from the hash of its row and its column.
 #[inline]
 pub(crate) fn white(row: CellHash, column: u32) -> f32 {
     let bits = row.axis(column.into()).at(0);
@@ -45,7 +45,7 @@ mod tests {
             }
         }
         let moments = sums.map(|sum| sum / f64::from(n));
-        // Four standard deviations of the estimates, of which that of the last is the square root of (E x⁸ - 2.7²) / n.
+        // Four standard deviations of the estimates; the last one is the square root of (E x⁸ - 2.7²) / n.
         for (moment, expected, tolerance) in [
             (moments[0], 0.0, 0.004),
             (moments[1], 1.0, 0.0055),

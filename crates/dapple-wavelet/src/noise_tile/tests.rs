@@ -1,4 +1,4 @@
-//! Tiles of noise: no seam, stated powers, the same bits.
+//! Tests of noise tiles: no seam, documented powers, value stability.
 
 use super::wavelet_tile;
 use crate::{Border, SplineFilter, WaveletErrorKind};
@@ -28,7 +28,7 @@ fn bands_have_the_mean_squares_of_their_weights() {
         let seeds = 32 << level;
         let tiles = (0..seeds).map(|seed| wavelet_tile([64, 32], &weights, Seed(seed)).unwrap());
         let mean = tiles.map(|tile| mean_square(&tile)).sum::<f64>() / seeds as f64;
-        // At the coarsest level 256 tiles with 24 independent values each: the mean is right to 2 %.
+        // At the coarsest level, 256 tiles with 24 independent values each: the mean is accurate to 2 %.
         assert!((mean / 0.25 - 1.0).abs() < 0.06, "{level}: {mean}");
     }
 }
@@ -38,7 +38,7 @@ fn tiny_tiles_have_the_mean_squares_of_their_weights() {
     for (size, weights) in [([2, 2], &[1.0][..]), ([4, 8], &[0.0, 1.0])] {
         let tiles = (0..4000).map(|seed| wavelet_tile(size, weights, Seed(seed)).unwrap());
         let mean = tiles.map(|tile| mean_square(&tile)).sum::<f64>() / 4000.0;
-        // At least 12000 independent values: 1.3 %, four times over.
+        // At least 12000 independent values: 1.3 %, four standard deviations.
         assert!((mean - 1.0).abs() < 0.05, "{size:?}: {mean}");
     }
 }
@@ -62,7 +62,7 @@ fn analysis_finds_the_bands_again() {
         let bands = alone(&weights);
         for other in 0..3 {
             let detail = &bands.details[other];
-            // Values below 10 that were rounded to `f32` a few times.
+            // Values below 10 that were rounded to `f32` a few times
             if other == level {
                 let difference = detail
                     .zip_map(&together.details[level], |a, b| a - b)
@@ -85,11 +85,11 @@ fn seam_is_like_any_other_boundary_of_its_phase() {
             let row = tile.row(row);
             let step = |at: usize| f64::from((row[(at + 1) % 64] - row[at]).abs());
             sums[0] += step(63);
-            // The noise is the same only after shifts by eight pixels.
+            // The noise is stationary only under shifts by eight pixels.
             sums[1] += (7..63).step_by(8).map(step).sum::<f64>() / 7.0;
         }
     }
-    // 1600 steps, some hundreds of them independent.
+    // 1600 steps, some hundreds of them independent
     let ratio = sums[0] / sums[1];
     assert!((0.9..1.1).contains(&ratio), "{ratio}");
 }

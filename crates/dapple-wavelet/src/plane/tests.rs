@@ -1,4 +1,4 @@
-//! Rasters against lines.
+//! Tests of rasters against lines.
 
 use super::*;
 use crate::WaveletErrorKind;
@@ -77,7 +77,7 @@ fn down_and_up_equal_lines_bit_for_bit() {
 
 #[test]
 fn every_simd_level_gives_the_same_bits() {
-    // Full groups of lines and one that is not, squares of values and what is left over.
+    // Complete and incomplete groups of lines, square blocks of values and remainders
     for size in [[38, 46], [16, 24], [6, 4]] {
         let fine = noise_raster(size);
         for filter in all_filters() {
@@ -141,7 +141,7 @@ fn memory_that_was_used_before_changes_nothing() {
 
 #[test]
 fn down_is_the_same_on_any_number_of_threads() {
-    // Wide enough for more than one batch of lines, and for groups that are not full.
+    // Wide enough for more than one batch of lines, and for incomplete groups
     let fine = noise_raster([70, 301]);
     let borders = [Border::Mirror; 2];
     let filter = SplineFilter::default();
@@ -180,7 +180,7 @@ fn rasters_stay_near_lines_without_roundings() {
     }
 }
 
-/// Projects rows, and then columns, in `f64` all the way.
+/// Projects rows, and then columns, entirely in `f64`.
 fn projected_in_f64(filter: SplineFilter, fine: &Raster<f32>, levels: u32) -> Vec<f64> {
     let project = |line: &[f64]| {
         let line = filter.project_line(line, levels, Border::Periodic);
@@ -208,7 +208,7 @@ fn project_changes_nothing_twice_and_keeps_constants() {
             |raster: &Raster<f32>| filter.project(raster, 2, PERIODIC).expect("a good raster");
         let once = project(&noise_raster([32, 16]));
         let gap = greatest_gap(&project(&once), &once);
-        // Eight roundings to f32 of values up to 2.
+        // Tolerance: eight roundings to f32 of values up to 2.
         assert!(gap < 2e-6, "{filter:?}: {gap}");
         let flat = Raster::filled([16, 8], 0.7_f32).expect("a good size");
         assert!(greatest_gap(&project(&flat), &flat) < 1e-6, "{filter:?}");
@@ -243,7 +243,7 @@ fn axes_commute() {
             .project(&flip(&fine), 1, [borders[1], borders[0]])
             .expect("a good raster");
         let gap = greatest_gap(&straight, &flip(&flipped));
-        // Four roundings to f32 of values up to 2.
+        // Tolerance: four roundings to f32 of values up to 2.
         assert!(gap < 1e-6, "{filter:?}: {gap}");
     }
 }
@@ -264,7 +264,7 @@ fn residual_of_white_noise_has_the_variance_of_the_note() {
             .map(|(fine, kept)| fine - kept),
     );
     let ratio = lost / power(&mut fine.pixels().iter().copied());
-    // 2^18 values know a variance to about 0.2 %.
+    // 2^18 values estimate a variance to about 0.2 %.
     assert!((ratio / 0.752_821_340_2 - 1.0).abs() < 0.01, "{ratio}");
 }
 
@@ -352,7 +352,7 @@ fn huge_values_stay_finite_up_to_their_bound_only() {
                     .expect("a good line")[0]
             })
             .collect();
-        // The pixels that give most: each with the sign of its tap.
+        // Pixels with the maximum response: each has the sign of its tap.
         let worst = |size: f32| {
             let pixel =
                 |x: u32, y: u32| size.copysign((taps[x as usize] * taps[y as usize]) as f32);

@@ -1,4 +1,4 @@
-//! Prefilters beside the values of splines.
+//! Tests of prefilters against the values of splines.
 
 use super::*;
 use crate::Degree;
@@ -31,7 +31,7 @@ fn samples_are_values_at_whole_numbers() {
                     })
                     .collect();
                 let gap = distance(&samples(degree, &line, border), &values);
-                // A few roundings.
+                // Tolerance: a few roundings.
                 assert!(gap < 1e-15, "{degree:?}, {border:?}, {len}: {gap}");
             }
         }
@@ -104,7 +104,7 @@ fn coefficients_of_rasters_undo_samples() {
                 .zip(picture.pixels())
                 .map(|(a, b)| (a - b).abs());
             let gap = gaps.fold(0.0, f32::max);
-            // Roundings to f32 of coefficients of up to about 10.
+            // Tolerance: roundings to f32 of coefficients of up to about 10.
             assert!(gap < 4e-6, "{degree:?}, {borders:?}: {gap}");
         }
     }
@@ -119,7 +119,7 @@ fn value_line_repeats_and_mirrors() {
                 .value_line(&line, x, border)
                 .expect("a good line")
         };
-        // Positions that are sums of powers of two, so that all of them are exact; and no jump of a step.
+        // Positions are exact sums of powers of two, away from discontinuities.
         for x in [-0.375, 0.25, 1.875, 3.125, 4.375] {
             let periodic = value(x, Border::Periodic);
             assert_eq!(

@@ -1,9 +1,9 @@
-//! B-splines compared with their definition.
+//! Tests of B-splines against their definition.
 
 use super::*;
 use crate::oracle::{DEGREES, all_filters, spread};
 
-/// The spline of degree `d` by the recursion of Cox and de Boor, from the step.
+/// Spline of degree `d` by the recursion of Cox and de Boor, starting with the box function.
 fn cox_de_boor(d: i64, x: f64) -> f64 {
     if d == 0 {
         return f64::from(u8::from((-0.5..0.5).contains(&x)));
@@ -14,7 +14,7 @@ fn cox_de_boor(d: i64, x: f64) -> f64 {
 }
 
 fn positions() -> impl Iterator<Item = f64> {
-    // Not multiples of a half, where lower degrees jump.
+    // Avoid multiples of one half, where low degrees are discontinuous.
     (-200..200).map(|i| (f64::from(i) + 0.37) / 64.0)
 }
 

@@ -1,4 +1,4 @@
-//! Volumes beside lines.
+//! Tests of volumes against lines.
 
 use super::*;
 use crate::Degree;
@@ -12,7 +12,7 @@ fn noise_volume(size: [u32; 3]) -> Vec<f32> {
     noise(count).iter().map(|&value| value as f32).collect()
 }
 
-/// Changes all lines along an axis, and rounds to `f32`.
+/// Filters all lines along an axis, and rounds to `f32`.
 fn along(
     volume: &[f32],
     size: [u32; 3],
@@ -84,7 +84,7 @@ fn huge_volumes_stay_finite_up_to_their_bound_only() {
             coarse.expect("a good line")[0]
         };
         let taps: Vec<f64> = (0..SIDE).map(tap).collect();
-        // The values that give most: each with the sign of its tap.
+        // Values with the maximum response: each has the sign of its tap.
         let down = |size: f32| {
             let places = (0..SIDE.pow(3)).map(|at| [at % SIDE, at / SIDE % SIDE, at / SIDE / SIDE]);
             let taps = places.map(|place| place.map(|k| taps[k]).iter().product::<f64>());
@@ -94,7 +94,7 @@ fn huge_volumes_stay_finite_up_to_their_bound_only() {
         };
         let below = down(f32::MAX / 56.0);
         assert!(below.iter().all(|value| value.is_finite()), "{filter:?}");
-        // The mean of steps is in `f64` and does not overflow.
+        // The mean of the constant degree is computed in `f64` and does not overflow.
         let is_finite = filter.degree == Degree::Constant;
         assert_eq!(down(f32::MAX)[0].is_finite(), is_finite, "{filter:?}");
     }
@@ -115,7 +115,7 @@ fn project_volume_changes_nothing_twice() {
         .zip(&once)
         .map(|(a, b)| (a - b).abs())
         .collect::<Vec<_>>();
-    // Twelve roundings to f32 of values below 1.
+    // Tolerance: twelve roundings to f32 of values below 1.
     assert!(gaps.iter().all(|&gap| gap < 1e-6), "{gaps:?}");
     let none = filter.project_volume(&once, size, 0, PERIODIC);
     assert_eq!(none, Ok(once), "zero levels");
@@ -132,7 +132,7 @@ fn residual_of_white_noise_has_the_variance_of_the_note() {
         |values: &mut dyn Iterator<Item = f32>| values.map(|v| f64::from(v * v)).sum::<f64>();
     let lost = power(&mut volume.iter().zip(&kept).map(|(fine, kept)| fine - kept));
     let ratio = lost / power(&mut volume.iter().copied());
-    // 2^18 values know a variance to about 0.2 %.
+    // 2^18 values estimate a variance to about 0.2 %.
     assert!((ratio / 0.877_121_964 - 1.0).abs() < 0.01, "{ratio}");
 }
 

@@ -1,4 +1,4 @@
-//! The vectors of the filters: exact fractions, and the numbers of the note.
+//! Test vectors of the filters: exact fractions, and numbers of the research note.
 
 use super::*;
 
@@ -49,7 +49,7 @@ fn vectors_of_an_impulse_are_exact() {
 
 #[test]
 fn vectors_of_an_impulse_are_exact_for_every_degree() {
-    // The dense normal equations of a periodic line of 8, solved in fractions by another program.
+    // Dense normal equations of a periodic line of 8, solved in fractions by another program
     let steps = (
         2.0,
         [1.0, 0.0, 0.0, 0.0],
@@ -108,7 +108,7 @@ fn vectors_of_a_step_are_exact() {
 
 #[test]
 fn vectors_of_a_cosine_are_exact() {
-    // Three turns, each of them near zero, where the series is exact.
+    // Three periods, each reduced to a range near zero, where the series is exact.
     let turn = |i: i32| f64::from((3 * i + 8) % 16 - 8) / 8.0;
     let cosine = |i: i32| series_of_cosine(turn(i) * std::f64::consts::PI);
     let fine: Vec<f64> = (0..16)
@@ -131,7 +131,7 @@ fn vectors_of_a_cosine_are_exact() {
     );
 }
 
-/// The cosine by its series, since the one of the standard library has other bits on other platforms.
+/// Cosine by its series, since the bits of the standard library differ between platforms.
 fn series_of_cosine(x: f64) -> f64 {
     let mut term = 1.0;
     let mut sum = 0.0;
@@ -143,7 +143,7 @@ fn series_of_cosine(x: f64) -> f64 {
     sum
 }
 
-/// The taps `a_1` to `a_20` of the halving filter: `a_k = a_(1 - k)`.
+/// Taps `a_1` to `a_20` of the halving filter: `a_k = a_(1 - k)`.
 const TAPS: [f64; 20] = [
     0.655_340_341_7,
     0.033_978_975_0,
@@ -175,7 +175,7 @@ fn down_has_the_taps_of_the_note() {
             let mut line = vec![0.0; 512];
             line[index] = 1.0;
             let value = down(SplineFilter::default(), &line, PERIODIC)[0];
-            // The table has ten places.
+            // The table has ten digits.
             assert!((value - tap).abs() < 1e-10, "tap {k} is {value}, not {tap}");
         }
     }
@@ -204,7 +204,7 @@ fn project_reproduces_polynomials_up_to_its_degree() {
             .map(|i| (0..power).fold(1.0, |y, _| y * (f64::from(i) - 128.0) / 64.0))
             .collect()
     };
-    // Far from the wrap, where the recursion has forgotten the jump.
+    // Far from the wrap, where the recursion no longer depends on the jump
     let worst = |power| {
         let line = polynomial(power);
         distance(
@@ -226,9 +226,9 @@ fn step_at_the_wrap_is_left_as_the_note_says() {
     for (filter, table) in [(SplineFilter::default(), centered), (cook_de_rose(), early)] {
         for (levels, needed) in (1..).zip(table) {
             let line = project(filter, &step(128), levels);
-            // The tables are of 128 pixels, where four levels just feel the step in the middle.
+            // The tables are for 128 pixels, where four levels are slightly affected by the step in the middle.
             let left = line[127] - line[0];
-            // The table has six places.
+            // The table has six digits.
             assert!(
                 (left - needed).abs() < 1e-6,
                 "{filter:?}, {levels} levels: {left}"
@@ -254,7 +254,7 @@ fn step_overshoots_as_the_note_says() {
         for (levels, needed) in (1..).zip(table) {
             let line = project(filter, &step(128), levels);
             let over = 100.0 * (line.iter().fold(0.0_f64, |most, &value| most.max(value)) - 1.0);
-            // The table has one place.
+            // The table has one digit.
             assert!(
                 (over - needed).abs() < 0.06,
                 "{filter:?}, {levels} levels: {over} %"
@@ -270,7 +270,7 @@ fn residual_of_white_noise_has_the_variance_of_the_note() {
     let power = |line: &mut dyn Iterator<Item = f64>| line.map(|value| value * value).sum::<f64>();
     let lost = power(&mut fine.iter().zip(&kept).map(|(fine, kept)| fine - kept));
     let ratio = lost / power(&mut fine.iter().copied());
-    // 2^18 values know a variance to about 0.2 %.
+    // 2^18 values estimate a variance to about 0.2 %.
     assert!((ratio / 0.502_813_424_9 - 1.0).abs() < 0.01, "{ratio}");
 }
 

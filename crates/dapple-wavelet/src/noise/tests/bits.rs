@@ -1,4 +1,4 @@
-//! Promises to the last bit, and inputs that are refused.
+//! Tests of bit-exact guarantees, and of invalid input.
 
 use super::positions;
 use crate::{WaveletError, WaveletErrorKind, WaveletNoise2, WaveletNoise3, wavelet_tile};
@@ -73,7 +73,7 @@ fn render_slice_equals_sample_bit_for_bit() {
     }
 }
 
-/// Wide, narrow, far and upside down, and one with columns and rows that have no position.
+/// Wide, narrow, distant and flipped windows, and one with columns and rows at infinity.
 fn windows() -> Vec<Window> {
     let window = |x, y, pixel, size| Window {
         origin: [x, y],

@@ -1,4 +1,4 @@
-//! Mean, variance and spectrum.
+//! Tests of mean, variance and spectrum.
 
 use super::super::LineSums;
 use super::scattered;
@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 #[test]
 fn coefficients_have_the_variance_of_theory_and_no_mean() {
     let plane = coefficients(&WaveletNoise2::new(512, Seed(1)).unwrap());
-    // For white noise of variance 1: of the coefficients, and of the values.
+    // For white noise of variance 1: variance of the coefficients over variance of the values
     check_moments(plane.pixels(), 0.7528213402 / 0.1349676017);
     let space = WaveletNoise3::new(64, Seed(1)).unwrap();
     let cells = (0..64 * 64 * 64).map(|at| [at % 64, at / 64 % 64, at / 4096]);
@@ -23,9 +23,9 @@ fn check_moments(values: &[f32], expected: f64) {
     let mean = values.iter().map(|&value| f64::from(value)).sum::<f64>() / n;
     let squares = values.iter().map(|&value| square(value));
     let variance = squares.sum::<f64>() / n;
-    // Projection keeps the mean, so noise has a mean of zero up to rounding to `f32`.
+    // Projection preserves the mean, so the noise has a mean of zero up to rounding to `f32`.
     assert!(mean.abs() < 1e-6, "{mean}");
-    // A quarter of a million squares, nearly independent, have a mean that is right to 0.3 %.
+    // The mean of a quarter of a million nearly independent squares is accurate to 0.3 %.
     assert!(
         (variance / expected - 1.0).abs() < 0.01,
         "{variance} {expected}"
@@ -45,7 +45,7 @@ fn values_have_a_variance_of_one_for_large_and_tiny_tiles() {
             let plane = WaveletNoise2::of_size([x, y], Seed(seed)).unwrap();
             let space = WaveletNoise3::of_size(size, Seed(seed)).unwrap();
             for position in scattered::<3>(count, 1000.0) {
-                // Other fractions for every seed.
+                // Different fractions for every seed
                 let shift = seed as f64 * DVec3::new(0.618, 0.414, 0.732);
                 let position = DVec3::from(position) + shift;
                 sum[0] += square(plane.sample(position.truncate()));
@@ -61,7 +61,7 @@ fn values_have_a_variance_of_one_for_large_and_tiny_tiles() {
         ([4, 64, 6], 100, 400),
     ] {
         for mean_square in mean_square(size, seeds, count) {
-            // About 20000 independent values, each with a square of variance 2: 1 %, four times over.
+            // About 20000 independent values whose squares have a variance of 2: 1 %, four standard deviations.
             assert!((mean_square - 1.0).abs() < 0.04, "{size:?}: {mean_square}");
         }
     }
@@ -70,14 +70,14 @@ fn values_have_a_variance_of_one_for_large_and_tiny_tiles() {
 #[test]
 fn variance_depends_on_the_place_between_coefficients_as_documented() {
     const N: usize = 32;
-    // The projection as a matrix, a column for each impulse.
+    // Projection as a matrix, one column per impulse
     let column = |at: usize| {
         let impulse: Vec<f64> = (0..N).map(|i| f64::from(u8::from(i == at))).collect();
         let projected = SplineFilter::default().project_line(&impulse, 1, Border::Periodic);
         projected.unwrap()
     };
     let columns: Vec<Vec<f64>> = (0..N).map(column).collect();
-    // Along an axis a value is the sum of coefficients times weights `w`: w·w, w·Pw and the square of Pᵀw.
+    // Along an axis, a value is the sum of coefficients times weights `w`: w·w, w·Pw and the square of Pᵀw.
     let sums = |x: f64| {
         let weight = |i: usize| super::b_spline(x - (i as f64 + 0.5));
         let transposed = columns.iter().map(|column| {
@@ -96,7 +96,7 @@ fn variance_depends_on_the_place_between_coefficients_as_documented() {
     let factor = LineSums::factor([LineSums::of_values(N).unwrap(); 2]);
     let variance =
         |[x, y]: [[f64; 3]; 2]| factor * factor * (x[0] * y[0] - 2.0 * x[1] * y[1] + x[2] * y[2]);
-    // Over two cells along each axis, far from the wrap, in steps of a 32nd.
+    // Over two cells along each axis, far from the wrap, in steps of 1/32
     let lines: Vec<[f64; 3]> = (0..64).map(|i| sums(16.0 + f64::from(i) / 32.0)).collect();
     let variances = lines.iter().map(|&y| lines.iter().map(move |&x| [x, y]));
     let variances: Vec<f64> = variances.flatten().map(variance).collect();
@@ -108,7 +108,7 @@ fn variance_depends_on_the_place_between_coefficients_as_documented() {
         .filter(|&&value| value < least - 1e-9)
         .count();
     assert_eq!(lower, 0, "no place has less than {least}, of {corners:?}");
-    // The documentation has two places.
+    // The documentation has two digits.
     assert!((least - 0.31).abs() < 0.005, "{corners:?}");
     assert!((most - 1.38).abs() < 0.005, "{most}");
     let mean = variances.iter().sum::<f64>() / variances.len() as f64;
@@ -124,7 +124,7 @@ fn variances_of_bands_add_up() {
     let positions = scattered::<2>(40_000, 1000.0);
     let squares = positions.map(|position| square(noise.sample(position)));
     let mean_square = squares.sum::<f64>() / 40_000.0;
-    // The tolerance is that of independent bands, plus the correlation of neighboring bands.
+    // Tolerance for independent bands, plus the correlation of neighboring bands
     assert!((mean_square / 1.3125 - 1.0).abs() < 0.05, "{mean_square}");
 }
 
@@ -138,7 +138,7 @@ fn halving_leaves_nothing() {
             .pixels()
             .iter()
             .fold(0.0, |most: f32, value| most.max(value.abs()));
-        // Coefficients are below 16, and each was rounded three times on its way.
+        // Coefficients are below 16, and each was rounded three times.
         assert!(most < 1e-5, "{size}: {most}");
     }
 }
@@ -186,12 +186,12 @@ fn power_lies_between_a_quarter_and_half_a_cycle_per_cell() {
     );
 }
 
-/// The power at each frequency of `N × N` real values, by the definition of the Fourier transform along rows and columns.
+/// Power at each frequency of `N × N` real values, by the definition of the Fourier transform along rows and columns.
 fn power_spectrum<const N: usize>(values: &[f64]) -> Vec<f64> {
     let roots = roots_of_unity::<N>();
     let mut lines: Vec<[f64; 2]> = values.iter().map(|&value| [value, 0.0]).collect();
     for _ in 0..2 {
-        // The second time along what were columns.
+        // The second pass runs along the former columns.
         let term = |line: usize, frequency: usize, place: usize| {
             multiply(lines[line * N + place], roots[place * frequency % N])
         };
@@ -205,7 +205,7 @@ fn power_spectrum<const N: usize>(values: &[f64]) -> Vec<f64> {
     lines.iter().map(|[re, im]| re * re + im * im).collect()
 }
 
-/// The powers of the root of unity, for a power of two from 4 on; by halving a right angle.
+/// Powers of the root of unity, for powers of two from 4, by halving a right angle.
 fn roots_of_unity<const N: usize>() -> Vec<[f64; 2]> {
     let mut root: [f64; 2] = [0.0, 1.0];
     for _ in 2..N.trailing_zeros() {
@@ -226,7 +226,7 @@ fn values_stay_within_the_bound_and_come_near_to_it() {
     let most = (0..64 * 64).fold(0.0, |most: f32, at| {
         most.max(noise.sample(center(at)).abs())
     });
-    // At its center a coefficient has 9/16 of the weight.
+    // At its center, a coefficient has 9/16 of the weight.
     assert!(
         most <= noise.bound() && most > 0.4 * noise.bound(),
         "{most} {}",

@@ -1,4 +1,4 @@
-//! Values and gradients against the oracle.
+//! Tests of values and gradients against the oracle.
 
 use super::{oracle, positions};
 use crate::{WaveletNoise2, WaveletNoise3};
@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 
 const WEIGHTS: [f32; 5] = [0.5, -1.0, 0.0, 0.25, 2.0];
 
-/// Values are sums of nine or 27 products in `f32` of numbers below 10, in bands of up to 4 in weight together.
+/// Tolerance: sums of nine or 27 products in `f32` of numbers below 10, in bands with a total weight of up to 4.
 const TOLERANCE: f64 = 3e-5;
 
 #[test]
@@ -68,7 +68,7 @@ fn gradient_equals_differences_of_the_oracle() {
     }
 }
 
-/// Central differences, exact but for rounding where both positions are on one piece of the spline.
+/// Central differences, exact up to rounding if both positions are on one piece of the spline.
 fn differences<const N: usize>(position: [f64; N], value: impl Fn([f64; N]) -> f64) -> [f64; N] {
     let step = 1.0 / 1_048_576.0;
     core::array::from_fn(|axis| {
@@ -81,8 +81,8 @@ fn differences<const N: usize>(position: [f64; N], value: impl Fn([f64; N]) -> f
 
 fn check_gradient(gradient: &[f64], expected: &[f64]) {
     for (slope, expected) in gradient.iter().zip(expected) {
-        // The finest band has a weight of 2 and 16 cells per unit: slopes of up to some hundreds, rounded to `f32`, and
-        // second derivatives of some thousands, which may jump between the two positions.
+        // The finest band has a weight of 2 and 16 cells per unit: slopes of up to some hundreds, rounded to `f32`,
+        // and second derivatives of some thousands, which may jump between the two positions.
         let tolerance = 2e-2;
         assert!(
             (slope - expected).abs() < tolerance,
