@@ -1,30 +1,30 @@
-//! Construction of a graph from the axes that each point chose on its own.
+//! Construction of a graph from the axes that each point chooses.
 
 use crate::lattice::Lattice;
 use crate::{Axis, Graph, GraphError, GraphErrorKind};
 use dapple_points::PointIdx;
 use glam::DVec2;
 
-/// Whether an edge counts for the point that chose it or for both of its ends.
+/// Whether an edge belongs to the point that chose it or to both of its ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum EdgeDirection {
-    /// Each point has the axes that it chose itself.
+    /// Each point has only the axes that it chose.
     #[default]
     Directed,
-    /// Each point has the axes that it chose, and the opposites of those that lead to it.
+    /// Each point has the axes that it chose, and the opposites of axes that lead to it.
     Symmetric,
 }
 
-/// A candidate for an axis: the point, and the offset of its image, in steps, from the point that chooses.
+/// A candidate axis: the target point, and the offset of its image from the choosing point, in steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Choice {
     pub(crate) to: u32,
     pub(crate) steps: DVec2,
 }
 
-/// Builds the graph of the chosen axes: `rows` has one list for each site, in any order.
+/// Builds the graph of the chosen axes. `rows` has one list per site, in any order.
 pub(crate) fn graph_of(
     lattice: Lattice,
     sites: Vec<DVec2>,

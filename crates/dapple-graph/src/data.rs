@@ -1,6 +1,6 @@
-//! A graph as data, and the checks of data that is read.
+//! Serialized form of a graph, and its validation.
 //!
-//! Positions and vectors are whole numbers of steps, so that no format rounds them.
+//! Positions and vectors are integers in steps, so that no format rounds them.
 
 use crate::delaunay::is_delaunay;
 use crate::lattice::Lattice;
@@ -8,22 +8,22 @@ use crate::{Axis, Graph, GraphError, GraphErrorKind};
 use dapple_points::PointIdx;
 use glam::DVec2;
 
-/// The data of a graph.
+/// Serialized form of a graph.
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename = "Graph", deny_unknown_fields)]
 pub(crate) struct GraphData {
-    /// The origin of the domain.
+    /// Origin of the domain.
     origin: DVec2,
-    /// The length of a step.
+    /// Length of a step.
     step: f64,
     /// Width and height of the domain, in steps.
     size: [i64; 2],
     wrap: [bool; 2],
-    /// The positions of the points from the origin, in steps.
+    /// Positions of the points relative to the origin, in steps.
     sites: Vec<[i64; 2]>,
-    /// The axes of each point: where an axis leads, and its vector in steps.
+    /// Axes of each point: the target and the vector in steps.
     axes: Vec<Vec<(PointIdx, [i64; 2])>>,
-    /// Whether the graph was made as a Delaunay graph.
+    /// Whether the graph was created as a Delaunay graph.
     delaunay: bool,
 }
 
@@ -83,7 +83,7 @@ impl TryFrom<GraphData> for Graph {
         for (from, row) in (0..).map(PointIdx).zip(data.axes) {
             for (to, steps) in row {
                 let vector = lattice.vector(steps.map(|part| part as f64).into());
-                // Longer vectors, which no graph has, are not exact.
+                // Longer vectors do not occur in a graph and would not be exact.
                 if steps.iter().any(|part| part.unsigned_abs() > 1 << 53) {
                     let kind = GraphErrorKind::Vector { from, to, vector };
                     return Err(GraphError::new(kind));
@@ -201,7 +201,7 @@ mod tests {
             let error = read(path, value.clone());
             assert!(error.contains(cause), "{path} {value}: {error}");
         }
-        // Another graph that claims to be a Delaunay graph.
+        // A graph that incorrectly claims to be a Delaunay graph
         let mut other = serde_json::to_value(gabriel(&points([true, false])).unwrap()).unwrap();
         other["delaunay"] = json!(true);
         let error = serde_json::from_value::<Graph>(other)
@@ -212,7 +212,7 @@ mod tests {
 
     #[test]
     fn changed_data_never_panics() {
-        // Every number of a small graph is changed to each of some others; what is read is sound.
+        // Replace every number of a small graph by several others; whatever is read must be valid.
         let graph = delaunay(&white_noise(Domain::paper_torus(), 4, Seed(1)).unwrap()).unwrap();
         let text = serde_json::to_string(&graph).unwrap();
         let mut n_read = 0;

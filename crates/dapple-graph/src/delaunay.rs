@@ -1,16 +1,18 @@
 //! The Delaunay graph, in the plane and on domains that wrap.
 //!
-//! Reference: Boris Delaunay, "Sur la sphère vide", Izvestia Akademii Nauk SSSR, 1934. The triangulations come from the
-//! crate `spade`.
+//! Reference: Boris Delaunay, "Sur la sphère vide", Izvestia Akademii Nauk SSSR, 1934. The crate `spade` computes the
+//! triangulations.
 //!
 //! On a domain that wraps, the graph is that of the points and all of their images, restricted to the points in the
-//! domain. Only few of the images are needed: first those in a margin around the domain, then, disc by disc, the ones
-//! that lie in the circumcircle of a triangle at a point of the domain. When no such circumcircle holds another image,
-//! all of these triangles belong to the true triangulation. Any number of points is accepted, one or two as well, and
-//! points may be connected to their own images.
+//! domain. Only few images are needed: first the images in a margin around the domain, then, circle by circle, images
+//! inside of the circumcircle of a triangle at a point of the domain. When no such circumcircle contains another
+//! image, all of these triangles belong to the true triangulation. Any number of points is accepted, including one or
+//! two, and points may be connected to their own images.
 //!
-//! Where four or more points (images counted) lie on one empty circle, the triangulation is not unique; the diagonals
-//! in that circle are dropped, by exact predicates. What is left is unique: the pairs of points whose Voronoi cells
+//! If four or more points (including images) are on one empty circle, the triangulation is not unique. The diagonals
+//! in that circle are dropped, by exact predicates. The remaining graph is unique: it connects the pairs of points
+//! whose Voronoi cells share a side of positive length. It is the same for all images and does not depend on the
+//! origin of the domain.
 //! share a side of positive length. It is the same for all images and does not depend on where the domain begins.
 
 mod buckets;
@@ -34,19 +36,20 @@ use images::Cover;
 use patch::{Patch, Rows};
 use tiles::Tiles;
 
-/// The Delaunay graph of the points: two are connected if some circle through both has no other point on it or in it,
-/// counting all images.
+/// Creates the Delaunay graph of the points: two points are connected if some circle through both has no other point
+/// on it or inside, including images.
 ///
 /// Equivalently, their Voronoi cells share a side of positive length: diagonals of squares and other co-circular
-/// points are left out. The graph is symmetric, bit for bit. Without wrapping, points on one line are connected to a
-/// path; on a wrapped axis a single point is connected to its own images.
+/// points are omitted. The graph is symmetric, bit for bit. Without wrapping, collinear points are connected to a
+/// path; on a wrapped axis, a single point is connected to its own images.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/delaunay.md"))]
 ///
 /// # Errors
 ///
-/// [`GraphErrorKind::Coincident`](crate::GraphErrorKind::Coincident) if two points lie at the same place;
-/// [`GraphErrorKind::Thin`](crate::GraphErrorKind::Thin) on a domain that wraps and is too thin for the distance of its points.
+/// [`GraphErrorKind::Coincident`](crate::GraphErrorKind::Coincident) if two points coincide;
+/// [`GraphErrorKind::Thin`](crate::GraphErrorKind::Thin) on a domain that wraps and is too thin for the distance of
+/// its points.
 ///
 /// # Examples
 ///
@@ -65,11 +68,11 @@ pub fn delaunay(points: &PointSet) -> Result<Graph, GraphError> {
     delaunay_cancellable(points, &|| false)
 }
 
-/// The graph of [`delaunay`], unless `is_cancelled` returns true.
+/// Creates the graph of [`delaunay`], unless `is_cancelled` returns true.
 ///
-/// On domains that wrap along both axes it is called about once for 8192 points, on any thread. Elsewhere all points
-/// belong to a single triangulation, which cannot be stopped and takes about a second for a million points; it is called
-/// before and after that.
+/// On domains that wrap along both axes, the callback is called about once per 8192 points, on any thread. On other
+/// domains all points belong to a single triangulation, which cannot be stopped and takes about a second for a million
+/// points; the callback is called before and after it.
 ///
 /// # Errors
 ///
@@ -97,7 +100,7 @@ pub fn delaunay_cancellable(
         Err(refusal) => {
             check_distinct(&sites)?;
             return Err(match refusal {
-                // Images of different sites never coincide, so this is never reached.
+                // Images of different sites never coincide, so this is unreachable.
                 Refusal::Coincident => GraphError::coincident(PointIdx(0), PointIdx(0)),
                 Refusal::Thin | Refusal::Cancelled => GraphError::thin(points),
             });
@@ -113,25 +116,25 @@ pub fn delaunay_cancellable(
     })
 }
 
-/// Whether the axes of a graph are those of the Delaunay graph of its points.
+/// Returns whether the axes of a graph equal the Delaunay graph of its points.
 #[cfg(feature = "serde")]
 pub(crate) fn is_delaunay(graph: &Graph) -> bool {
     let expected = rows(&graph.lattice, &graph.sites, &|| false);
     expected.is_ok_and(|rows| rows.offsets == graph.offsets && rows.axes == graph.axes)
 }
 
-/// The reason why no rows could be made.
+/// Reason why the rows could not be computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Refusal {
     /// Two sites coincide.
     Coincident,
-    /// Too many images are needed.
+    /// Too many images would be needed.
     Thin,
-    /// The caller asked to stop.
+    /// The caller canceled the operation.
     Cancelled,
 }
 
-/// Fails if the caller asked to stop.
+/// Fails if the caller canceled the operation.
 pub(crate) fn check(is_cancelled: &IsCancelled) -> Result<(), Refusal> {
     match is_cancelled() {
         true => Err(Refusal::Cancelled),
@@ -145,7 +148,7 @@ impl From<TooThin> for Refusal {
     }
 }
 
-/// The rows of the graph.
+/// Computes the rows of the graph.
 fn rows(lattice: &Lattice, sites: &[DVec2], is_cancelled: &IsCancelled) -> Result<Rows, Refusal> {
     let margin = MARGIN * (lattice.size.x * (lattice.size.y / sites.len().max(1) as f64)).sqrt();
     if let Some(tiles) = Tiles::new(lattice, sites.len(), margin) {
@@ -154,7 +157,7 @@ fn rows(lattice: &Lattice, sites: &[DVec2], is_cancelled: &IsCancelled) -> Resul
     whole(lattice, sites, margin, is_cancelled)
 }
 
-/// The rows, from a single triangulation.
+/// Computes the rows from a single triangulation.
 fn whole(
     lattice: &Lattice,
     sites: &[DVec2],
@@ -169,7 +172,7 @@ fn whole(
     Ok(patch.rows(&LazyGrid::new(lattice, sites))?)
 }
 
-/// The initial margin of images around the domain, in mean distances (the root of the area per point).
+/// Initial margin of images around the domain, in mean distances (the square root of the area per point).
 const MARGIN: f64 = 1.6;
 
 #[cfg(test)]
@@ -183,7 +186,7 @@ mod tests {
     use dapple_points::hash::{Seed, rand_core::Rng, unit_f64};
     use glam::DVec2;
 
-    /// Random points; with `power` above one they crowd towards the origin.
+    /// Random points; `power` above one concentrates them near the origin.
     fn random(n: usize, power: i32, size: DVec2) -> PointSet {
         let mut stream = Seed(n as u64).stream();
         let mut unit = || {
@@ -222,10 +225,10 @@ mod tests {
     fn cancelled_graphs_stop_at_the_next_tile() {
         let points = random(100_000, 1, DVec2::ONE);
         let n_calls = AtomicUsize::new(0);
-        // The third call asks to stop.
+        // The third call cancels.
         let error = delaunay_cancellable(&points, &|| n_calls.fetch_add(1, Relaxed) >= 2);
         assert_eq!(error.unwrap_err().kind(), &GraphErrorKind::Cancelled);
-        // There are 9 tiles. One call for each of them, and no other work, is left after the third.
+        // There are 9 tiles. After the third call, each remaining tile makes one call and does no other work.
         assert_eq!(n_calls.load(Relaxed), 9);
         let same = delaunay_cancellable(&points, &|| false).unwrap();
         assert_eq!(same, delaunay(&points).unwrap());
@@ -240,7 +243,7 @@ mod tests {
     #[test]
     fn graphs_are_sane_and_do_not_depend_on_where_the_domain_begins() {
         for (nx, ny) in [(1, 1), (2, 2), (4, 4), (10, 10), (3, 7)] {
-            // Quarters are exact, so that the moved points are the same ones.
+            // Quarters are exact, so that the shifted points are equal.
             let size = DVec2::new(f64::from(nx), f64::from(ny)) * 0.25;
             let grid: Vec<DVec2> = (0..nx * ny)
                 .map(|i| DVec2::new(f64::from(i % nx), f64::from(i / nx)) * 0.25)

@@ -3,25 +3,26 @@
 //! Reference: K. Ruben Gabriel and Robert R. Sokal, "A New Statistical Approach to Geographic Variation Analysis",
 //! Systematic Zoology 18(3), 1969, doi:10.2307/2412323.
 //!
-//! The Gabriel graph is a part of the Delaunay graph. A point on the circle itself counts as inside of it, as in the
-//! paper, so that the remaining edges are those that cross the side that the Voronoi cells of their ends share.
+//! The Gabriel graph is a subgraph of the Delaunay graph. A point on the circle counts as inside, as in the paper. The
+//! remaining edges are those that cross the shared side of the Voronoi cells of their ends.
 
 use crate::build::{Choice, EdgeDirection, graph_of};
 use crate::{Axis, Graph, GraphError, IsCancelled, delaunay_cancellable};
 use dapple_points::PointSet;
 use glam::DVec2;
 
-/// The Gabriel graph: two points are connected if the circle whose diameter they are has no other point on it or in
-/// it, counting all images.
+/// Creates the Gabriel graph: two points are connected if the circle with the segment between them as its diameter has
+/// no other point on it or inside, including images.
 ///
-/// It is symmetric, and contains the way from each point to its nearest one if that is unique.
+/// It is symmetric, and connects each point to its nearest neighbor if that is unique.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/gabriel.md"))]
 ///
 /// # Errors
 ///
-/// [`GraphErrorKind::Coincident`](crate::GraphErrorKind::Coincident) if two points lie at the same place;
-/// [`GraphErrorKind::Thin`](crate::GraphErrorKind::Thin) on a domain that wraps and is too thin for the distance of its points.
+/// [`GraphErrorKind::Coincident`](crate::GraphErrorKind::Coincident) if two points coincide;
+/// [`GraphErrorKind::Thin`](crate::GraphErrorKind::Thin) on a domain that wraps and is too thin for the distance of
+/// its points.
 ///
 /// # Examples
 ///
@@ -38,7 +39,8 @@ pub fn gabriel(points: &PointSet) -> Result<Graph, GraphError> {
     gabriel_cancellable(points, &|| false)
 }
 
-/// The graph of [`gabriel`], unless `is_cancelled` returns true, which is called as by [`delaunay_cancellable`].
+/// Creates the graph of [`gabriel`], unless `is_cancelled` returns true. The callback is called as in
+/// [`delaunay_cancellable`].
 ///
 /// # Errors
 ///
@@ -57,8 +59,8 @@ pub fn gabriel_cancellable(
     let steps = |axis: &Axis| lattice.steps(axis.vector);
     let rows = offsets.windows(2).map(|range| {
         let star = &axes[range[0] as usize..range[1] as usize];
-        // If a point lies in the circle, then so does the third corner of a triangle at the edge; of several triangles
-        // in one circle, all corners lie on it.
+        // If the circle contains a point, it also contains the third corner of a triangle at the edge. If several
+        // triangles share a circle, all their corners are on it.
         let empty = |axis: &&Axis| {
             let edge = steps(axis);
             star.iter().all(|other| is_outside(edge, steps(other)))
@@ -73,9 +75,10 @@ pub fn gabriel_cancellable(
     graph_of(lattice, sites, rows, EdgeDirection::Directed)
 }
 
-/// Whether a place lies outside of the circle with the diameter from the origin to `edge`, or is its end; exact.
+/// Returns whether a position is outside of the circle with the diameter from the origin to `edge`, or equal to
+/// `edge`; exact.
 fn is_outside(edge: DVec2, at: DVec2) -> bool {
-    // The angle at the place is acute: at · (at - edge) > 0. Whole numbers below 2^53 have products below 2^106.
+    // The angle at the position is acute: at · (at - edge) > 0. Products of integers below 2^53 are below 2^106.
     let dot = at.x as i128 * (at.x - edge.x) as i128 + at.y as i128 * (at.y - edge.y) as i128;
     dot > 0 || at == edge
 }

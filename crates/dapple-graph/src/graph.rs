@@ -1,4 +1,4 @@
-//! A graph in compressed rows: the axes of each point.
+//! Graph in compressed rows: the axes of each point.
 
 use crate::angle::{by_angle, is_lower};
 use crate::build::{Choice, graph_of};
@@ -9,24 +9,25 @@ use crate::{EdgeDirection, GraphError, GraphErrorKind};
 use dapple_points::{PointIdx, PointSet};
 use glam::DVec2;
 
-/// One edge, as seen from one of its ends.
+/// An edge, as seen from one of its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axis {
-    /// The point that the axis leads to.
+    /// Target point of the axis.
     pub to: PointIdx,
-    /// The vector from the point to that image of `to`, in the units of the positions; never zero.
+    /// Vector from the point to an image of `to`, in the units of the positions; never zero.
     pub vector: DVec2,
 }
 
 /// A graph over a point set: a list of axes for each point.
 ///
-/// Vectors are exact differences of the positions after these were snapped to the nearest multiple (from the origin
-/// of the domain) of a power of two between 2^-50 and 2^-49 of the domain's larger side.
+/// Vectors are exact differences of positions. Positions are first snapped to the nearest multiple (relative to the
+/// origin of the domain) of a power of two between 2^-50 and 2^-49 of the larger side of the domain.
 ///
-/// As data (feature `serde`), a graph has its positions and vectors in whole steps of that power of two. Reading checks all
-/// that [`sanity_check`](Graph::sanity_check) does, and triangulates the points of a Delaunay graph once more to compare.
+/// The serialized form (feature `serde`) stores positions and vectors as integer multiples of that power of two.
+/// Reading performs all checks of [`sanity_check`](Graph::sanity_check), and triangulates the points of a Delaunay
+/// graph again for comparison.
 ///
-/// Two graphs are equal if they have the same points and axes, whatever function made them.
+/// Two graphs are equal if they have the same points and axes, regardless of the function that created them.
 #[derive(Clone, Debug)]
 #[cfg_attr(
     feature = "serde",
@@ -39,7 +40,7 @@ pub struct Graph {
     pub(crate) offsets: Vec<u32>,
     pub(crate) axes: Vec<Axis>,
     pub(crate) symmetric: bool,
-    /// Whether the graph was made as a Delaunay graph.
+    /// Whether the graph was created as a Delaunay graph.
     pub(crate) delaunay: bool,
 }
 
@@ -53,15 +54,16 @@ impl PartialEq for Graph {
 }
 
 impl Graph {
-    /// The graph given by the caller: row `i` names the points that point `i` is connected to.
+    /// Creates a graph from an adjacency list: row `i` lists the points that point `i` is connected to.
     ///
-    /// Each axis takes the shortest way around the wrapped axes. A name that comes twice in a row counts once. Edges
-    /// are directed: name both ends in each other's rows for a symmetric graph.
+    /// Each axis is the shortest vector across the wrapped axes. Duplicates in a row count once. Edges are directed:
+    /// for a symmetric graph, list both ends in each other's rows.
     ///
     /// # Errors
     ///
-    /// [`GraphErrorKind::Rows`] for another number of rows than points, [`GraphErrorKind::NoSuchPoint`] for an index
-    /// that is too large, [`GraphErrorKind::Coincident`] if a row names a point at the same place or its own point.
+    /// [`GraphErrorKind::Rows`] if the number of rows does not match the number of points,
+    /// [`GraphErrorKind::NoSuchPoint`] for an index that is too large, [`GraphErrorKind::Coincident`] if a row lists
+    /// its own point or a point at the same position.
     pub fn from_adjacency<R: AsRef<[PointIdx]>>(
         points: &PointSet,
         rows: &[R],
@@ -95,12 +97,12 @@ impl Graph {
         graph_of(lattice, sites, rows, EdgeDirection::Directed)
     }
 
-    /// The axes of a point, counterclockwise, from the smallest angle in `[0, 2π)` from the x axis towards y; axes with
-    /// the same angle by length, then by index.
+    /// Axes of a point, counterclockwise (from x toward y), starting at the smallest angle from the x axis in `[0,
+    /// 2π)`. Axes with the same angle are ordered by length, then by index.
     ///
     /// # Panics
     ///
-    /// If the graph has no such point.
+    /// If the point does not exist.
     #[must_use]
     #[inline]
     pub fn axes(&self, point: PointIdx) -> &[Axis] {
@@ -108,52 +110,52 @@ impl Graph {
         &self.axes[self.offsets[at] as usize..self.offsets[at + 1] as usize]
     }
 
-    /// The number of points.
+    /// Number of points.
     #[must_use]
     pub fn n_points(&self) -> usize {
         self.offsets.len() - 1
     }
 
-    /// The number of axes: twice the number of edges if the graph is symmetric.
+    /// Number of axes: twice the number of edges if the graph is symmetric.
     #[must_use]
     pub fn n_axes(&self) -> usize {
         self.axes.len()
     }
 
-    /// The index of each point's first axis in [`all_axes`](Self::all_axes), and at the end the number of axes.
+    /// Index of the first axis of each point in [`all_axes`](Self::all_axes), followed by the number of axes.
     #[must_use]
     pub fn offsets(&self) -> &[u32] {
         &self.offsets
     }
 
-    /// The axes of all points, one point after another.
+    /// Axes of all points, point by point.
     #[must_use]
     pub fn all_axes(&self) -> &[Axis] {
         &self.axes
     }
 
-    /// The edges of a symmetric graph, each once: a point, and its axis along the edge. The axis leads towards larger
-    /// y, or, where y is the same, towards larger x.
+    /// Edges of a symmetric graph, each once: a point, and its axis along the edge. The axis leads toward larger y or,
+    /// for equal y, toward larger x.
     pub fn edges(&self) -> impl Iterator<Item = (PointIdx, Axis)> + '_ {
         let points = (0..self.n_points() as u32).map(PointIdx);
         let axes = points.flat_map(|from| self.axes(from).iter().map(move |&axis| (from, axis)));
         axes.filter(|(_, axis)| !is_lower(axis.vector))
     }
 
-    /// Whether every axis has its opposite: from the other end back, with exactly the negated vector.
+    /// Returns whether every axis has an opposite: from the other end back, with exactly the negated vector.
     #[must_use]
     pub fn is_symmetric(&self) -> bool {
         self.symmetric
     }
 
-    /// Whether the graph was made as a Delaunay graph, so that it has [`triangles`](Self::triangles) and a
-    /// [`Voronoi`](crate::Voronoi) diagram.
+    /// Returns whether the graph was created as a Delaunay graph and therefore has [`triangles`](Self::triangles) and
+    /// a [`Voronoi`](crate::Voronoi) diagram.
     #[must_use]
     pub fn is_delaunay(&self) -> bool {
         self.delaunay
     }
 
-    /// Fails if the graph was not made as a Delaunay graph.
+    /// Fails if the graph was not created as a Delaunay graph.
     pub(crate) fn check_delaunay(&self) -> Result<(), GraphError> {
         if self.delaunay {
             Ok(())
@@ -164,15 +166,15 @@ impl Graph {
 }
 
 impl Axis {
-    /// The order of a point's axes.
+    /// Order of the axes of a point.
     pub(crate) fn order(&self, other: &Self) -> core::cmp::Ordering {
         let scale = scale(self.vector.abs().max(other.vector.abs()).max_element());
         by_angle(self.vector * scale, other.vector * scale).then(self.to.cmp(&other.to))
     }
 }
 
-/// The power of two that scales a length to between 1 and 2, so that products of tiny or huge ones do not underflow or
-/// overflow. On a lattice, vectors of such lengths are multiplied without rounding.
+/// Power of two that scales a length to between 1 and 2, so that products do not underflow or overflow. On a lattice,
+/// vectors of such lengths are multiplied without rounding.
 fn scale(length: f64) -> f64 {
     let exponent_only = f64::from_bits(length.to_bits() & f64::INFINITY.to_bits());
     1.0 / exponent_only.max(f64::MIN_POSITIVE)

@@ -1,32 +1,32 @@
-//! Sites in buckets, to find the images near a place.
+//! Bucket grid of sites, for finding the images near a position.
 
 use crate::lattice::Lattice;
 use glam::DVec2;
 use std::sync::OnceLock;
 
-/// The error of a domain so thin that a search goes through too many copies of it.
+/// Error for a domain so thin that a search would visit too many copies of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TooThin;
 
-/// The number of images that the searches around the points of a set may still go through, all together.
+/// Number of images that the searches for a point set may still visit in total.
 ///
-/// On any domain this can take up to the square of the number of points where they crowd into one spot, and a square
-/// torus has up to 25 copies within the reach of a search that finds little. On a domain that is thin beside the
-/// distance of its points the number of copies would have no bound.
+/// If the points of any domain are concentrated in one spot, the number of visits approaches the square of the number
+/// of points. On a square torus, up to 25 copies are within the reach of a search that finds little. On a domain that
+/// is thin relative to the distance of its points, the number of copies would be unbounded.
 #[derive(Debug)]
 pub(crate) struct Budget {
     left: u64,
 }
 
 impl Budget {
-    /// The budget of `n` points.
+    /// Creates the budget for `n` points.
     pub(crate) fn new(n: usize) -> Self {
         Self {
             left: Self::limit(n),
         }
     }
 
-    /// The largest number of images for `n` points. For few points, this is the work of a tenth of a second.
+    /// Maximum number of images for `n` points. For few points, this corresponds to a tenth of a second.
     pub(crate) fn limit(n: usize) -> u64 {
         let n = n as u64;
         (1 << 21) + 32_u64.saturating_mul(n.saturating_mul(n))
@@ -38,27 +38,27 @@ impl Budget {
     }
 }
 
-/// The largest number of images of `n` points for the start of a triangulation, or for insertion into it.
+/// Maximum number of images of `n` points for the initial triangulation, or for insertion into it.
 ///
-/// If they lie on one line, as the images of a single point do, the time grows with the square of their number.
+/// If the images are collinear, such as the images of a single point, the time is quadratic in their number.
 pub(crate) fn triangulated_limit(n: usize) -> u64 {
     64 * n as u64 + 4096
 }
 
-/// Sites sorted into equal cells that hold about two each.
+/// Sites sorted into equal cells of about two sites each.
 #[derive(Debug)]
 pub(crate) struct Grid<'a> {
     lattice: &'a Lattice,
     sites: &'a [DVec2],
     cells: [usize; 2],
     per_step: DVec2,
-    /// The index of each cell's first site in `order`, and at the end the number of sites.
+    /// Index of the first site of each cell in `order`, followed by the number of sites.
     starts: Vec<u32>,
     order: Vec<u32>,
 }
 
 impl<'a> Grid<'a> {
-    /// Sorts the sites; within a cell they keep their order.
+    /// Sorts the sites by cell, with a stable order within each cell.
     pub(crate) fn new(lattice: &'a Lattice, sites: &'a [DVec2]) -> Self {
         let size = lattice.size;
         let n = sites.len().max(1);
@@ -89,9 +89,9 @@ impl<'a> Grid<'a> {
         grid
     }
 
-    /// Calls `visit` with the number and the place of every image in the box, and maybe of some beside it.
+    /// Calls `visit` with the index and position of every image in the box, and possibly of some near it.
     ///
-    /// Fails past the budget, possibly after some calls of `visit`.
+    /// Fails if the budget is exhausted, possibly after some calls of `visit`.
     pub(crate) fn visit_box(
         &self,
         low: DVec2,
@@ -113,7 +113,7 @@ impl<'a> Grid<'a> {
                 let row = row * self.cells[0];
                 let first = self.starts[row + columns.start()] as usize;
                 let end = self.starts[row + columns.end() + 1] as usize;
-                // A row of a copy takes a while even where it is empty.
+                // Visiting a row takes time even if it is empty.
                 budget.take((end - first) as u64 + 1)?;
                 for &index in &self.order[first..end] {
                     visit(index, self.sites[index as usize] + shift);
@@ -127,16 +127,16 @@ impl<'a> Grid<'a> {
         Ok(())
     }
 
-    /// The root of the area per point.
+    /// Mean distance: square root of the area per point.
     pub(crate) fn mean_distance(&self) -> f64 {
         let size = self.lattice.size;
         (size.x * (size.y / self.sites.len().max(1) as f64)).sqrt()
     }
 
-    /// A radius that is large enough for all neighbors that a graph may need; within it images are still exact.
+    /// Radius that contains all neighbors that a graph may need; images within it are exact.
     ///
-    /// Without wrapping, all points lie within the domain's diagonal. With wrapping, each point has at least ten images
-    /// within five periods, and one in each cone of 1/32 of a turn that has any: 1 / sin(2π / 32) is below 5.2.
+    /// Without wrapping, all points are within the diagonal of the domain. With wrapping, each point has at least ten
+    /// images within five periods, and one in each nonempty cone of 1/32 of a turn: 1 / sin(2π / 32) is below 5.2.
     pub(crate) fn farthest(&self) -> f64 {
         let size = self.lattice.size;
         if self.lattice.wraps() {
@@ -150,10 +150,10 @@ impl<'a> Grid<'a> {
         self.bucket(1, site.y) * self.cells[0] + self.bucket(0, site.x)
     }
 
-    /// The column or row of a coordinate; those outside of the domain belong to the first or last one.
+    /// Column or row of a coordinate, clamped to the domain.
     #[inline]
     fn bucket(&self, axis: usize, coordinate: f64) -> usize {
-        // The conversion saturates, so that negative numbers become zero.
+        // The cast saturates, so negative numbers become zero.
         ((coordinate * self.per_step[axis]) as usize).min(self.cells[axis] - 1)
     }
 }

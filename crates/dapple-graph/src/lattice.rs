@@ -1,24 +1,24 @@
-//! Positions as whole numbers, so that differences and images are exact.
+//! Positions as integers, so that differences and images are exact.
 //!
-//! Unit: one step, a power of two of the caller's unit.
+//! Unit: one step, a power of two of the unit of the caller.
 
 use crate::GraphError;
 use dapple_points::{Domain, PointIdx, PointSet};
 use glam::DVec2;
 
-/// The lattice of a domain: its larger side has between 2^49 and 2^50 steps.
+/// Lattice of a domain: its larger side has between 2^49 and 2^50 steps.
 ///
-/// A site is a position in steps from the domain's origin: a whole number in an `f64`. Images up to three larger
-/// sides away are below 2^52, so that sites, their images and their differences are all exact.
+/// A site is a position in steps relative to the origin of the domain: an integer in an `f64`. Images up to three
+/// times the larger side away are below 2^52, so that sites, their images and their differences are exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Lattice {
     origin: DVec2,
-    /// One step in the caller's unit.
+    /// Length of a step in the unit of the caller.
     step: f64,
     per_step: f64,
     /// Width and height in steps.
     pub(crate) size: DVec2,
-    /// Whether x and y wrap around.
+    /// Whether x and y wrap.
     pub(crate) wrap: [bool; 2],
 }
 
@@ -29,13 +29,13 @@ impl Lattice {
             origin: domain.origin,
             step,
             per_step: 1.0 / step,
-            // A side that is tiny beside the other one still has a length.
+            // A side that is tiny relative to the other one must still have a length.
             size: round(domain.size / step).max(DVec2::ONE),
             wrap: domain.wrap,
         }
     }
 
-    /// The lattice from its parts, if some domain has it.
+    /// Creates the lattice from its parts; `None` if no domain has it.
     #[cfg(feature = "serde")]
     pub(crate) fn from_parts(
         origin: DVec2,
@@ -45,7 +45,7 @@ impl Lattice {
     ) -> Option<Self> {
         let is_power_of_two = step.is_normal() && step > 0.0 && step.to_bits() << 12 == 0;
         let [shorter, longer] = [size[0].min(size[1]), size[0].max(size[1])];
-        // Only tiny domains have steps that are longer than they would be.
+        // Steps are only longer than usual for tiny domains.
         let is_long = longer >= 1 << 49 || step == f64::MIN_POSITIVE;
         if !(is_power_of_two && shorter >= 1 && is_long && longer <= 1 << 50) {
             return None;
@@ -62,24 +62,24 @@ impl Lattice {
         is_domain.then_some(lattice)
     }
 
-    /// The origin of the domain and the length of a step, in the caller's unit.
+    /// Origin of the domain and length of a step, in the unit of the caller.
     #[cfg(feature = "serde")]
     pub(crate) fn origin_and_step(&self) -> (DVec2, f64) {
         (self.origin, self.step)
     }
 
-    /// The sites of all points, in the order of the points.
+    /// Sites of all points, in order.
     pub(crate) fn sites(&self, points: &PointSet) -> Vec<DVec2> {
         points.positions().iter().map(|&p| self.site(p)).collect()
     }
 
-    /// The site of a position, in steps, brought into the domain along the wrapped axes.
+    /// Site of a position, in steps, wrapped into the domain along the wrapped axes.
     pub(crate) fn site(&self, position: DVec2) -> DVec2 {
         self.snapped((position - self.origin) * self.per_step)
     }
 
-    /// The nearest place of the lattice to any position, in steps, brought into the domain along the wrapped axes. `None`
-    /// if the position is not finite or lies outside along an axis that does not wrap.
+    /// Lattice position nearest to any position, in steps, wrapped into the domain along the wrapped axes. `None` if
+    /// the position is not finite or outside along an axis that does not wrap.
     pub(crate) fn place(&self, position: DVec2) -> Option<DVec2> {
         let mut offset = position - self.origin;
         let size = self.vector(self.size);
@@ -87,12 +87,12 @@ impl Lattice {
             let size = size[axis];
             if self.wrap[axis] && !(offset[axis] >= 0.0 && offset[axis] < size) {
                 offset[axis] -= (offset[axis] / size).floor() * size;
-                // Far from the domain, rounding may leave a place outside.
+                // Far from the domain, rounding may leave the result outside.
                 offset[axis] = offset[axis].clamp(0.0, size);
             }
         }
         let steps = offset * self.per_step;
-        // A place half a step beyond the end snaps to it.
+        // A position up to half a step beyond the end snaps to the end.
         let is_inside = steps.cmpge(DVec2::ZERO) & steps.cmplt(self.size + 0.5);
         if !is_inside.all() {
             return None;
@@ -100,7 +100,7 @@ impl Lattice {
         Some(self.snapped(steps))
     }
 
-    /// A place rounded to whole steps; the end of a wrapped axis is its start.
+    /// Rounds a position to whole steps; the end of a wrapped axis is its start.
     fn snapped(&self, steps: DVec2) -> DVec2 {
         let mut site = round(steps);
         for axis in 0..2 {
@@ -111,24 +111,24 @@ impl Lattice {
         site
     }
 
-    /// The position of a site, in the caller's unit.
+    /// Position of a site, in the unit of the caller.
     pub(crate) fn position(&self, site: DVec2) -> DVec2 {
         self.origin + self.vector(site)
     }
 
-    /// A difference of sites, in the caller's unit; exact.
+    /// Converts a difference of sites to the unit of the caller; exact.
     #[inline]
     pub(crate) fn vector(&self, steps: DVec2) -> DVec2 {
         steps * self.step
     }
 
-    /// A vector in the caller's unit, converted to steps.
+    /// Converts a vector in the unit of the caller to steps.
     #[inline]
     pub(crate) fn steps(&self, vector: DVec2) -> DVec2 {
         vector * self.per_step
     }
 
-    /// The shortest way from one site to an image of the other; of two equally long ones the one without wrapping.
+    /// Shortest vector from one site to an image of the other; on a tie, the vector without wrapping.
     pub(crate) fn delta(&self, from: DVec2, to: DVec2) -> DVec2 {
         let mut delta = to - from;
         for axis in 0..2 {
@@ -139,7 +139,7 @@ impl Lattice {
         delta
     }
 
-    /// The first and the last image of the domain that an interval along an axis touches.
+    /// First and last image of the domain that an interval along an axis touches.
     pub(crate) fn images(&self, axis: usize, low: f64, high: f64) -> (f64, f64) {
         if self.wrap[axis] {
             let size = self.size[axis];
@@ -149,7 +149,7 @@ impl Lattice {
         }
     }
 
-    /// Whether either axis wraps.
+    /// Returns whether either axis wraps.
     pub(crate) fn wraps(&self) -> bool {
         self.wrap[0] || self.wrap[1]
     }
@@ -171,14 +171,14 @@ pub(crate) fn check_distinct(sites: &[DVec2]) -> Result<(), GraphError> {
     coincident.map_or(Ok(()), |(a, b)| Err(GraphError::coincident(a, b)))
 }
 
-/// The power of two that goes into `side` between 2^49 and 2^50 times, or the smallest positive number.
+/// Power of two of which `side` has between 2^49 and 2^50, or the smallest positive normal number.
 fn step_of(side: f64) -> f64 {
     let exponent_only = f64::from_bits(side.to_bits() & f64::INFINITY.to_bits());
     (exponent_only / (1_u64 << 49) as f64).max(f64::MIN_POSITIVE)
 }
 
-/// Rounds to the nearest whole number, for numbers from 0 to 2^51.
+/// Rounds to the nearest integer, for numbers from 0 to 2^51.
 fn round(v: DVec2) -> DVec2 {
-    // Without a call of `floor`, which is slow on processors that have no instruction for it.
+    // Avoid `floor`, which is slow on processors without an instruction for it.
     DVec2::new((v.x + 0.5) as i64 as f64, (v.y + 0.5) as i64 as f64)
 }

@@ -1,4 +1,4 @@
-//! The graph of nearest neighbors, and the search for neighbors, nearest first, which other graphs use as well.
+//! Nearest-neighbor graph, and the neighbor search, nearest first, which other graphs use as well.
 
 use crate::build::{Choice, EdgeDirection, graph_of};
 use crate::delaunay::{Refusal, check};
@@ -8,19 +8,19 @@ use crate::{Graph, GraphError, GraphErrorKind, IsCancelled};
 use dapple_points::PointSet;
 use glam::DVec2;
 
-/// The graph in which each point has axes to its `k` nearest neighbors.
+/// Creates the graph in which each point has axes to its `k` nearest neighbors.
 ///
-/// Images count as separate neighbors, including those of the point itself. Of equally near ones, those with the
-/// smaller index come first, then those with the smaller angle from the x axis.
+/// Images count as separate neighbors, including images of the point itself. On a tie, smaller indices come first,
+/// then smaller angles from the x axis.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/k-nearest.md"))]
 ///
 /// # Errors
 ///
-/// [`GraphErrorKind::Neighbors`] for `k = 0` and past 4096, on a rectangle for more neighbors than there are other
-/// points, and on a domain that wraps for more than ten times as many as there are points;
-/// [`GraphErrorKind::Coincident`] if two points lie at the same place; [`GraphErrorKind::TooManyAxes`] past 2^32 axes;
-/// [`GraphErrorKind::Thin`] on a domain that wraps and is too thin for the distance of its points.
+/// [`GraphErrorKind::Neighbors`] for `k = 0`, above 4096, on a rectangle above the number of other points, and on a
+/// domain that wraps above ten times the number of points; [`GraphErrorKind::Coincident`] if two points coincide;
+/// [`GraphErrorKind::TooManyAxes`] past 2^32 axes; [`GraphErrorKind::Thin`] on a domain that wraps and is too thin for
+/// the distance of its points.
 ///
 /// # Examples
 ///
@@ -37,7 +37,8 @@ pub fn k_nearest(points: &PointSet, k: u32, direction: EdgeDirection) -> Result<
     k_nearest_cancellable(points, k, direction, &|| false)
 }
 
-/// The graph of [`k_nearest`], unless `is_cancelled` returns true, which is called about once for 256 points.
+/// Creates the graph of [`k_nearest`], unless `is_cancelled` returns true. The callback is called about once per 256
+/// points.
 ///
 /// # Errors
 ///
@@ -75,7 +76,7 @@ pub fn k_nearest_cancellable(
     let wanted = k as usize;
     let mut budget = Budget::new(sites.len());
     let rows = rows_of(&sites, is_cancelled, |site| {
-        // A disc of this radius holds about twice the number of neighbors needed.
+        // A disc of this radius contains about twice the required number of neighbors.
         let mut radius = 0.8 * grid.mean_distance() * f64::from(k + 1).sqrt();
         loop {
             radius = radius.min(grid.farthest());
@@ -90,11 +91,11 @@ pub fn k_nearest_cancellable(
     graph_of(lattice, sites, made(rows, points)?, direction)
 }
 
-/// The number of points whose neighbors are searched before it is asked again whether the graph is still wanted. With
-/// the most neighbors a point takes a tenth of a millisecond.
+/// Number of points between checks for cancellation. With the maximum number of neighbors, a point takes a tenth of a
+/// millisecond.
 const POINTS: usize = 256;
 
-/// The row of each site, until the caller asks to stop.
+/// Computes the row of each site until a cancellation.
 pub(crate) fn rows_of(
     sites: &[DVec2],
     is_cancelled: &IsCancelled,
@@ -110,7 +111,7 @@ pub(crate) fn rows_of(
     Ok(rows)
 }
 
-/// The rows, or the reason why there are none, as an error of the graph of some points.
+/// Converts the reason for missing rows to an error of the graph.
 pub(crate) fn made<T>(rows: Result<T, Refusal>, points: &PointSet) -> Result<T, GraphError> {
     rows.map_err(|refusal| match refusal {
         Refusal::Cancelled => GraphError::new(GraphErrorKind::Cancelled),
@@ -118,7 +119,7 @@ pub(crate) fn made<T>(rows: Result<T, Refusal>, points: &PointSet) -> Result<T, 
     })
 }
 
-/// The largest number of neighbors that can be asked for.
+/// Maximum number of neighbors.
 const MAX_NEIGHBORS: u32 = 4096;
 
 /// All images within a distance of a site, except the site itself, nearest first.
@@ -145,7 +146,7 @@ pub(crate) fn near(
     Ok(found.into_iter().map(|(_, choice)| choice).collect())
 }
 
-/// The squared length in steps, exact: products of whole numbers below 2^53.
+/// Exact squared length in steps: products of integers below 2^53.
 fn length_sq(steps: DVec2) -> i128 {
     let [x, y] = [steps.x, steps.y].map(|coordinate| coordinate as i128);
     x * x + y * y
@@ -158,7 +159,7 @@ mod tests {
     use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
     use dapple_points::{Domain, hash::Seed, white_noise};
 
-    /// Makes a graph, unless it is cancelled.
+    /// Creates a graph unless it is canceled.
     type Make<'a> = &'a dyn Fn(&IsCancelled) -> Result<Graph, GraphError>;
 
     #[test]
@@ -170,7 +171,7 @@ mod tests {
         ];
         for make in makers {
             let whole = make(&|| false);
-            // One call for 256 points.
+            // One call per 256 points
             for last in 0..=8 {
                 let n_calls = AtomicUsize::new(0);
                 let made = make(&|| n_calls.fetch_add(1, Relaxed) >= last);

@@ -1,4 +1,4 @@
-//! The check of the invariants of a graph.
+//! Check of the invariants of a graph.
 
 use crate::{Axis, Graph, GraphError, GraphErrorKind};
 use core::cmp::Ordering;
@@ -8,9 +8,9 @@ use glam::DVec2;
 impl Graph {
     /// Checks the invariants of the whole graph: for tests, and for graphs that passed through other code.
     ///
-    /// Every axis leads to a point of the graph, with a vector that is not zero and leads exactly to an image of that
-    /// point; the axes of each point are in their order, and none comes twice; and if the graph
-    /// [says so](Self::is_symmetric), every axis has its opposite.
+    /// Every axis leads to a point of the graph, with a nonzero vector that leads exactly to an image of that point.
+    /// The axes of each point are in order, without duplicates. If the graph [is symmetric](Self::is_symmetric), every
+    /// axis has an opposite.
     ///
     /// # Errors
     ///
@@ -46,7 +46,7 @@ impl Graph {
         (0..self.n_points() as u32).map(PointIdx)
     }
 
-    /// Whether the vector differs by whole periods from the one between the positions of the two points.
+    /// Returns whether the vector differs by whole periods from the difference of the positions of the two points.
     fn leads_to_an_image(&self, from: PointIdx, axis: &Axis) -> bool {
         let steps = self.lattice.steps(axis.vector);
         let direct = self.sites[axis.to.index()] - self.sites[from.index()];
@@ -54,11 +54,11 @@ impl Graph {
         let is_whole = |k: f64, wraps: bool| k == 0.0 || (wraps && k.floor() == k);
         let whole =
             is_whole(around.x, self.lattice.wrap[0]) && is_whole(around.y, self.lattice.wrap[1]);
-        // A square of a tiny vector may round to zero.
+        // Compare the vector itself: the square of a tiny vector may be rounded to zero.
         whole && axis.vector.is_finite() && axis.vector != DVec2::ZERO
     }
 
-    /// Whether the axis has its opposite, if the axes of its other end are in their order.
+    /// Returns whether the axis has an opposite, provided that the axes of its other end are in order.
     fn has_opposite(&self, from: PointIdx, axis: &Axis) -> bool {
         let opposite = Axis {
             to: from,

@@ -1,13 +1,13 @@
-//! The Voronoi diagram of a point set, in the plane and on domains that wrap.
+//! Voronoi diagram of a point set, in the plane and on domains that wrap.
 //!
 //! Reference: Georges Voronoi, "Nouvelles applications des paramètres continus à la théorie des formes quadratiques",
-//! Journal für die reine und angewandte Mathematik 134, 1908, <https://doi.org/10.1515/crll.1908.134.198>. The nearest site
-//! is found by walking from neighbor to neighbor, as by P. J. Green and R. Sibson ("Computing Dirichlet Tessellations in
+//! Journal für die reine und angewandte Mathematik 134, 1908, <https://doi.org/10.1515/crll.1908.134.198>. The nearest
+//! site is found by walking between neighbors, as in P. J. Green and R. Sibson ("Computing Dirichlet Tessellations in
 //! the Plane", The Computer Journal 21(2), 1978, <https://doi.org/10.1093/comjnl/21.2.168>).
 //!
-//! The diagram is the dual of the Delaunay graph: each axis has a side of a cell, and each face has a vertex, the
-//! circumcenter of its corners. The graph has no diagonals in faces of co-circular points, so that no two vertices are
-//! the same, and no side has length zero. All coordinates are relative to a site, so that cells on a torus need no
+//! The diagram is the dual of the Delaunay graph: each axis corresponds to a side of a cell, and each face to a
+//! vertex, the circumcenter of its corners. The graph has no diagonals in faces of co-circular points, so vertices are
+//! distinct and sides have positive length. All coordinates are relative to a site, so that cells on a torus need no
 //! images.
 
 use crate::angle::by_angle;
@@ -20,11 +20,11 @@ use glam::DVec2;
 /// The index of no vertex.
 const NONE: u32 = u32::MAX;
 
-/// The Voronoi diagram of a point set: for each point (site), the cell of all places that are nearest to it.
+/// The Voronoi diagram of a point set: for each point (site), the cell of all positions nearest to it.
 ///
-/// On a torus every cell is a bounded polygon, in coordinates relative to its site. In the plane the cells of the sites
-/// on the convex hull are unbounded: their outermost sides are rays, and [`VoronoiCell::clipped`] cuts them off. Where
-/// four sites or more lie on one empty circle, there is one vertex of as many sides.
+/// On a torus every cell is a bounded polygon, in coordinates relative to its site. In the plane, the cells of sites
+/// on the convex hull are unbounded: their outermost sides are rays, and [`VoronoiCell::clipped`] clips them. Four or
+/// more sites on one empty circle share a single vertex.
 ///
 /// # Examples
 ///
@@ -46,52 +46,52 @@ const NONE: u32 = u32::MAX;
 pub struct Voronoi {
     graph: Graph,
     vertices: Vec<VoronoiVertex>,
-    /// The sites around all vertices, one vertex after another, and the index of each vertex's first one.
+    /// Sites around all vertices, vertex by vertex, and the index of the first site of each vertex.
     vertex_sites: Vec<PointIdx>,
     first_sites: Vec<u32>,
-    /// For each axis, the vertex on its left, or [`NONE`], relative to the point where the axis starts.
+    /// For each axis, the vertex on its left, or [`NONE`], relative to the start point of the axis.
     left: Vec<(u32, DVec2)>,
 }
 
-/// A place where three cells or more meet: the circumcenter of their sites.
+/// A vertex where three or more cells meet: the circumcenter of their sites.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VoronoiVertex {
     /// One of the nearest sites.
     pub site: PointIdx,
-    /// The vector from that site to the vertex.
+    /// Vector from that site to the vertex.
     pub offset: DVec2,
 }
 
-/// The cell of a site in a [`Voronoi`] diagram.
+/// Cell of a site in a [`Voronoi`] diagram.
 #[derive(Clone, Copy, Debug)]
 pub struct VoronoiCell<'a> {
     voronoi: &'a Voronoi,
     site: PointIdx,
 }
 
-/// A side of a Voronoi cell: the places as near to its site as to a neighbor's, and nearer than to all others.
+/// A side of a Voronoi cell: the positions equally near to its site and a neighbor's, and nearer than to all others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VoronoiSide {
-    /// The axis of the Delaunay graph that leads to the neighbor's site.
+    /// Axis of the Delaunay graph that leads to the site of the neighbor.
     pub neighbor: Axis,
-    /// The vertices at both ends, in counterclockwise order (from x towards y) around the cell; `None` where the side is
-    /// an unbounded ray.
+    /// Vertices at both ends, counterclockwise (from x toward y) around the cell; `None` where the side is an
+    /// unbounded ray.
     pub vertices: [Option<u32>; 2],
-    /// The ends, relative to the site of the cell.
+    /// Ends relative to the site of the cell.
     pub ends: [Option<DVec2>; 2],
 }
 
-/// The site nearest to a position.
+/// Site nearest to a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestSite {
-    /// The site.
+    /// The nearest site.
     pub site: PointIdx,
-    /// The vector from the nearest image of the site to the position.
+    /// Vector from the nearest image of the site to the position.
     pub offset: DVec2,
 }
 
 impl Voronoi {
-    /// The Voronoi diagram of the points, by way of their [`delaunay`] graph.
+    /// Creates the Voronoi diagram of the points, from their [`delaunay`] graph.
     ///
     /// # Errors
     ///
@@ -100,11 +100,11 @@ impl Voronoi {
         Self::of_graph(delaunay(points)?)
     }
 
-    /// The Voronoi diagram of a Delaunay graph.
+    /// Creates the Voronoi diagram of a Delaunay graph.
     ///
     /// # Errors
     ///
-    /// [`GraphErrorKind::NotDelaunay`] unless the graph [was made as one](Graph::is_delaunay).
+    /// [`GraphErrorKind::NotDelaunay`] unless the graph [was created as a Delaunay graph](Graph::is_delaunay).
     pub fn of_graph(graph: Graph) -> Result<Self, GraphError> {
         graph.check_delaunay()?;
         let mut vertices = Vec::new();
@@ -112,7 +112,7 @@ impl Voronoi {
         let mut left = vec![(NONE, DVec2::ZERO); graph.n_axes()];
         visit_faces(&graph, |first, face| {
             let number = vertices.len() as u32;
-            // The vertex relative to the first corner, then to each further one.
+            // Track the vertex relative to the current corner while walking around the face.
             let mut offset = graph.lattice.vector(circumcenter(&graph, face));
             vertices.push(VoronoiVertex {
                 site: first,
@@ -137,13 +137,13 @@ impl Voronoi {
         })
     }
 
-    /// The Delaunay graph that the diagram is the dual of.
+    /// The dual Delaunay graph.
     #[must_use]
     pub fn graph(&self) -> &Graph {
         &self.graph
     }
 
-    /// The number of cells, one for each site.
+    /// Number of cells, one per site.
     #[must_use]
     pub fn n_cells(&self) -> usize {
         self.graph.n_points()
@@ -155,23 +155,23 @@ impl Voronoi {
         &self.vertices
     }
 
-    /// The sites whose cells meet at a vertex, counterclockwise around it. On a domain that wraps, a site comes as often as
-    /// images of its cell meet there.
+    /// Sites whose cells meet at a vertex, counterclockwise around it. On a domain that wraps, a site occurs once per
+    /// image of its cell at the vertex.
     ///
     /// # Panics
     ///
-    /// If the diagram has no such vertex.
+    /// If the vertex does not exist.
     #[must_use]
     pub fn vertex_sites(&self, vertex: u32) -> &[PointIdx] {
         let at = vertex as usize;
         &self.vertex_sites[self.first_sites[at] as usize..self.first_sites[at + 1] as usize]
     }
 
-    /// The cell of a site.
+    /// Cell of a site.
     ///
     /// # Panics
     ///
-    /// If the diagram has no such site.
+    /// If the site does not exist.
     #[must_use]
     pub fn cell(&self, site: PointIdx) -> VoronoiCell<'_> {
         assert!(
@@ -186,16 +186,16 @@ impl Voronoi {
         }
     }
 
-    /// The site nearest to a position, found by walking from the site `hint` to ever nearer neighbors.
+    /// Finds the site nearest to a position by walking from the site `hint` to ever nearer neighbors.
     ///
-    /// The position is snapped as points are (see [`Graph`]), and distances are compared exactly. Of equally near sites the
-    /// one with the lowest index is taken, and of its images the one with the smallest angle of `offset` in `[0, 2π)` from
-    /// the x axis. The hint changes the time alone, which grows with the number of cells between the two.
+    /// The position is snapped like points (see [`Graph`]), and distances are compared exactly. On a tie, the site
+    /// with the lowest index is returned, and of its images the one with the smallest angle of `offset` from the x
+    /// axis in `[0, 2π)`. The hint affects only the time, which grows with the number of cells between the two.
     ///
     /// # Errors
     ///
-    /// [`GraphErrorKind::Outside`] for a position that is not finite or lies outside of the domain along an axis that does
-    /// not wrap; [`GraphErrorKind::NotThere`] if there is no site `hint`.
+    /// [`GraphErrorKind::Outside`] for a position that is not finite or is outside of the domain along an axis that
+    /// does not wrap; [`GraphErrorKind::NotThere`] if the site `hint` does not exist.
     pub fn locate(
         &self,
         position: impl Into<[f64; 2]>,
@@ -227,7 +227,7 @@ impl Voronoi {
         })
     }
 
-    /// The neighbor nearest to the position, if it is nearer than the site.
+    /// Neighbor nearest to the position, if it is nearer than the site.
     fn nearest_neighbor(&self, from: &Step) -> Option<Step> {
         let mut best = None;
         let mut best_sq = from.distance_sq();
@@ -240,8 +240,8 @@ impl Voronoi {
         best
     }
 
-    /// Of all sites as near to the position as this one, which is a nearest one, the first in order. They lie on an empty
-    /// circle, along which neighbors are connected.
+    /// Among all sites at the same minimum distance as `start`, the first in order. They are on an empty circle, along
+    /// which neighbors are connected.
     fn first_of_equals(&self, start: Step) -> Step {
         let mut equals = vec![start];
         let mut at = 0;
@@ -257,7 +257,7 @@ impl Voronoi {
         equals.into_iter().min_by(Step::order).unwrap_or(start)
     }
 
-    /// The neighbors of a site, seen from the same position.
+    /// Neighbors of a site, relative to the same position.
     fn neighbors<'a>(&'a self, from: &'a Step) -> impl Iterator<Item = Step> + 'a {
         let axes = self.graph.axes(from.site).iter();
         axes.map(move |axis| Step {
@@ -267,7 +267,7 @@ impl Voronoi {
     }
 }
 
-/// A site, and the steps from an image of it to the position that is looked for.
+/// A site, and the steps from an image of it to the searched position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Step {
     site: PointIdx,
@@ -275,7 +275,7 @@ struct Step {
 }
 
 impl Step {
-    /// Exact: steps are whole numbers below 2^53.
+    /// Exact squared distance: steps are integers below 2^53.
     fn distance_sq(&self) -> i128 {
         let [x, y] = self.steps.to_array().map(|part| part as i128);
         x * x + y * y
@@ -288,21 +288,21 @@ impl Step {
 }
 
 impl<'a> VoronoiCell<'a> {
-    /// The site of the cell.
+    /// Site of the cell.
     #[must_use]
     pub fn site(&self) -> PointIdx {
         self.site
     }
 
-    /// The position of the site, snapped as [`Graph`] says.
+    /// Position of the site, snapped as described in [`Graph`].
     #[must_use]
     pub fn position(&self) -> DVec2 {
         let graph = &self.voronoi.graph;
         graph.lattice.position(graph.sites[self.site.index()])
     }
 
-    /// The sides of the cell, counterclockwise (from x towards y), one for each neighbor. Next to each other on a torus,
-    /// two cells may share several sides, and a cell may be its own neighbor.
+    /// Sides of the cell, counterclockwise (from x toward y), one per neighbor. On a torus, two cells may share
+    /// several sides, and a cell may be its own neighbor.
     pub fn sides(&self) -> impl ExactSizeIterator<Item = VoronoiSide> + 'a {
         let voronoi = self.voronoi;
         let axes = voronoi.graph.axes(self.site);
@@ -318,15 +318,15 @@ impl<'a> VoronoiCell<'a> {
         })
     }
 
-    /// Whether the cell is a polygon; cells of the convex hull in the plane are not.
+    /// Returns whether the cell is a polygon; cells on the convex hull in the plane are not.
     #[must_use]
     pub fn is_bounded(&self) -> bool {
         let mut sides = self.sides();
-        // A single site of the plane has the whole plane and no sides.
+        // The cell of a single site in the plane is the whole plane and has no sides.
         sides.len() > 0 && sides.all(|side| side.ends[0].is_some() && side.ends[1].is_some())
     }
 
-    /// The corners of the cell, counterclockwise and relative to its site; `None` for an unbounded cell.
+    /// Corners of the cell, counterclockwise and relative to its site; `None` for an unbounded cell.
     #[must_use]
     pub fn polygon(&self) -> Option<Vec<DVec2>> {
         if !self.is_bounded() {
@@ -335,14 +335,14 @@ impl<'a> VoronoiCell<'a> {
         self.sides().map(|side| side.ends[1]).collect()
     }
 
-    /// The area of the cell; `None` for an unbounded cell.
+    /// Area of the cell; `None` for an unbounded cell.
     #[must_use]
     pub fn area(&self) -> Option<f64> {
         self.polygon().map(|corners| area(&corners))
     }
 
-    /// The part of the cell in the rectangle from `min` to `max`, in the coordinates of the points: its corners,
-    /// counterclockwise and relative to the site. It is empty if the cell does not meet the rectangle.
+    /// Clips the cell to the rectangle from `min` to `max`, in the coordinates of the points. Returns the corners,
+    /// counterclockwise and relative to the site; empty if the cell does not intersect the rectangle.
     ///
     /// # Examples
     ///
@@ -375,19 +375,19 @@ impl<'a> VoronoiCell<'a> {
 }
 
 impl VoronoiSide {
-    /// The direction of the side, counterclockwise around its cell, as long as the axis to the neighbor. A ray without a
-    /// start comes from infinity in this direction, one without an end goes there; a side without both is the line through
-    /// half of the axis.
+    /// Direction of the side, counterclockwise around its cell, with the length of the axis to the neighbor. A ray
+    /// without a start comes from infinity in this direction; a ray without an end extends in this direction. A side
+    /// without both is the line through the midpoint of the axis.
     #[must_use]
     pub fn direction(&self) -> DVec2 {
         self.neighbor.vector.perp()
     }
 }
 
-/// The part of a convex polygon on this side of the bisector between the origin and a neighbor (I. E. Sutherland and G. W.
+/// Clips a convex polygon to this side of the bisector between the origin and a neighbor (I. E. Sutherland and G. W.
 /// Hodgman, "Reentrant Polygon Clipping", Communications of the ACM 17(1), 1974).
 fn cut(corners: &[DVec2], neighbor: DVec2) -> Vec<DVec2> {
-    // Above zero beyond the bisector.
+    // Positive beyond the bisector
     let beyond = |corner: DVec2| (corner - 0.5 * neighbor).dot(neighbor);
     let mut kept = Vec::with_capacity(corners.len() + 1);
     for (at, &to) in corners.iter().enumerate() {
@@ -403,22 +403,22 @@ fn cut(corners: &[DVec2], neighbor: DVec2) -> Vec<DVec2> {
     kept
 }
 
-/// The area of a polygon.
+/// Area of a polygon.
 fn area(corners: &[DVec2]) -> f64 {
     let [first, rest @ ..] = corners else {
         return 0.0;
     };
-    // Triangles at the first corner.
+    // Sum the triangles at the first corner.
     let pairs = rest.windows(2);
     0.5 * pairs
         .map(|pair| (pair[0] - first).perp_dot(pair[1] - first))
         .sum::<f64>()
 }
 
-/// The circumcenter of a face in steps, relative to its first corner.
+/// Circumcenter of a face in steps, relative to its first corner.
 ///
-/// The determinant is exact. The corner opposite to the longest edge of a triangle is the origin, since no difference of
-/// nearly equal products is taken there: the error is below 10^-15 circumradii, however thin the triangle is.
+/// The determinant is exact. The corner opposite to the longest edge of a triangle is used as the origin, since this
+/// avoids cancellation of nearly equal products: the error is below 10^-15 circumradii, however thin the triangle is.
 fn circumcenter(graph: &Graph, face: &[FaceAxis]) -> DVec2 {
     let steps = |at: usize| graph.lattice.steps(face[at].axis.vector);
     let corners = [DVec2::ZERO, steps(0), steps(0) + steps(1)];

@@ -4,9 +4,9 @@
 //! Problems", SIAM Journal on Computing 11(4), 1982, doi:10.1137/0211059. Caron and Mould name it as future work for
 //! partition of unity parametrics.
 //!
-//! Cone `i` of `k` has the directions from the angle `2π i / k` (included) to `2π (i + 1) / k`. The borders are vectors
-//! that are computed once, the same for all points and on every machine; which side of a border a neighbor lies on is
-//! exact. The borders in the directions of the axes are exact themselves, the other ones are rounded.
+//! Cone `i` of `k` contains the directions from the angle `2π i / k` (included) to `2π (i + 1) / k`. The borders are
+//! vectors that are computed once, and are equal for all points and on every machine. The side of a border that a
+//! neighbor is on is determined exactly. Borders along the axes are exact; the others are rounded.
 
 use crate::angle::{by_angle, turn};
 use crate::build::{Choice, EdgeDirection, graph_of};
@@ -19,20 +19,20 @@ use core::f64::consts::TAU;
 use dapple_points::PointSet;
 use glam::DVec2;
 
-/// The Yao graph: each point has an axis to its nearest neighbor in each of `cones` equal cones, the first of which
-/// begins at the x axis.
+/// Creates the Yao graph: each point has an axis to its nearest neighbor in each of `cones` equal cones, the first of
+/// which starts at the x axis.
 ///
-/// Images count as separate neighbors, including those of the point itself. Of equally near ones, the one with the
-/// smaller index is taken, then the one with the smaller angle. A point has no axis in an empty cone, as at the border
-/// of a domain that does not wrap.
+/// Images count as separate neighbors, including images of the point itself. On a tie, the neighbor with the smaller
+/// index is chosen, then the one with the smaller angle. A point has no axis in an empty cone, which occurs at the
+/// border of a domain that does not wrap.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/yao.md"))]
 ///
 /// # Errors
 ///
-/// [`GraphErrorKind::Cones`] for no cones and for more than 32; [`GraphErrorKind::Coincident`] if two points lie at the
-/// same place; [`GraphErrorKind::TooManyAxes`] past 2^32 axes; [`GraphErrorKind::Thin`] on a domain that wraps and is
-/// too thin for the distance of its points.
+/// [`GraphErrorKind::Cones`] for no cones and for more than 32; [`GraphErrorKind::Coincident`] if two points coincide;
+/// [`GraphErrorKind::TooManyAxes`] past 2^32 axes; [`GraphErrorKind::Thin`] on a domain that wraps and is too thin for
+/// the distance of its points.
 ///
 /// # Examples
 ///
@@ -48,7 +48,7 @@ pub fn yao(points: &PointSet, cones: u32, direction: EdgeDirection) -> Result<Gr
     yao_cancellable(points, cones, direction, &|| false)
 }
 
-/// The graph of [`yao`], unless `is_cancelled` returns true, which is called about once for 256 points.
+/// Creates the graph of [`yao`], unless `is_cancelled` returns true. The callback is called about once per 256 points.
 ///
 /// # Errors
 ///
@@ -84,15 +84,15 @@ pub fn yao_cancellable(
     graph_of(lattice, sites, made(rows, points)?, direction)
 }
 
-/// The largest number of cones.
+/// Maximum number of cones.
 const MAX_CONES: u32 = 32;
 
-/// The first of the neighbors in each cone, if any.
+/// First of the neighbors in each cone, if any.
 fn nearest_per_cone(neighbors: &[Choice], borders: &[DVec2]) -> Vec<Option<Choice>> {
     let mut chosen = vec![None; borders.len()];
     let mut left = borders.len();
     for &neighbor in neighbors {
-        // The first border is the x axis, where angles begin, so that none comes before it.
+        // The first border is the x axis, where angles start, so no neighbor precedes it.
         let after = borders.partition_point(|&border| is_at_or_after(neighbor.steps, border));
         let slot: &mut Option<Choice> = &mut chosen[after - 1];
         if slot.is_none() {
@@ -106,12 +106,12 @@ fn nearest_per_cone(neighbors: &[Choice], borders: &[DVec2]) -> Vec<Option<Choic
     chosen
 }
 
-/// Whether the angle of `v` is at least that of `border`.
+/// Returns whether the angle of `v` is at least the angle of `border`.
 fn is_at_or_after(v: DVec2, border: DVec2) -> bool {
     turn(border, v) == 0.0 && v.dot(border) > 0.0 || by_angle(v, border) == Ordering::Greater
 }
 
-/// The direction at which a cone begins; exact in multiples of a quarter turn.
+/// Start direction of a cone; exact for multiples of a quarter turn.
 fn border(index: u32, cones: u32) -> DVec2 {
     let quarter = 4 * index / cones;
     let rest = f64::from(4 * index % cones) / f64::from(4 * cones);

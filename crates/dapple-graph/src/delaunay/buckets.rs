@@ -1,12 +1,12 @@
-//! Sites in cells that can be edited, to find the images in a rectangle.
+//! Editable buckets of sites, for finding the images in a rectangle.
 
 use crate::lattice::Lattice;
 use glam::DVec2;
 
-/// How many sites a cell has at first.
+/// Initial number of sites per cell.
 const SITES_PER_CELL: f64 = 2.0;
 
-/// The sites of each cell of a domain, by their numbers.
+/// Sites of each cell of a domain, by their numbers.
 #[derive(Clone, Debug)]
 pub(super) struct Buckets {
     size: [usize; 2],
@@ -15,10 +15,10 @@ pub(super) struct Buckets {
 }
 
 impl Buckets {
-    /// Empty cells, suited to `n` sites.
+    /// Creates empty cells for about `n` sites.
     pub(super) fn new(lattice: &Lattice, n: usize) -> Self {
         let side = (lattice.size.x * (lattice.size.y * SITES_PER_CELL / n.max(1) as f64)).sqrt();
-        // A thin domain has one row; no more cells than that are ever worth it.
+        // A thin domain has one row; more cells than sites are never useful.
         let size = [0, 1].map(|axis| ((lattice.size[axis] / side) as usize).clamp(1, n.max(1)));
         Self {
             size,
@@ -41,13 +41,13 @@ impl Buckets {
         self.cells[cell].retain(|&other| other != number);
     }
 
-    /// The sites in the cell of a site.
+    /// Sites in the same cell as a site.
     pub(super) fn beside(&self, site: DVec2) -> &[u32] {
         &self.cells[self.cell(site)]
     }
 
-    /// Calls `visit` with every site of a rectangle, and some beside it, with the periods by which its image there is moved.
-    /// Stops where `visit` returns false.
+    /// Calls `visit` with every site whose image is in a rectangle, and some near it, and with the shift of that
+    /// image. Stops if `visit` returns false.
     pub(super) fn visit(
         &self,
         lattice: &Lattice,
@@ -83,7 +83,7 @@ impl Buckets {
     }
 
     fn bucket(&self, axis: usize, coordinate: f64) -> usize {
-        // The conversion saturates, so that negative numbers become zero.
+        // The cast saturates, so negative numbers become zero.
         ((coordinate * self.per_step[axis]) as usize).min(self.size[axis] - 1)
     }
 }

@@ -1,16 +1,16 @@
-//! A Delaunay graph whose points can be inserted, moved and removed, one at a time.
+//! A Delaunay graph whose points can be inserted, moved and removed individually.
 //!
-//! An edit changes the axes of the point itself and of the points that it is or was connected to. So the points near
-//! the place are triangulated anew, like a tile of [`delaunay`], in a square that grows until no image outside of it
-//! can change one of these stars. Where there are few points, or at the hull of points that do not wrap, all points are
+//! An edit changes the axes of the point and of the points that it is or was connected to. The points near the edit
+//! are triangulated again, like a tile of [`delaunay`], in a square that grows until no image outside of it can affect
+//! one of these stars. If there are few points, or at the hull of points that do not wrap, all points are
 //! triangulated.
 //!
-//! The triangulation itself is not stored: on a torus it would hold several images of points at its border, which an
-//! edit would all have to update, and to triangulate a hundred points takes no longer than to locate a place in a large
-//! triangulation.
+//! The triangulation is not stored. On a torus it would contain several images of points at its border, all of which
+//! an edit would have to update, and triangulating a hundred points takes no longer than locating a position in a
+//! large triangulation.
 //!
-//! Each point has an internal number, which is never used again, so that an edit does not touch points far away. The
-//! index of a point is the rank of its number among those in use.
+//! Each point has an internal number, which is never reused, so that an edit does not affect distant points. The index
+//! of a point is the rank of its number among the numbers in use.
 
 use super::buckets::Buckets;
 use super::images::Cover;
@@ -22,19 +22,19 @@ use dapple_points::{Domain, PointIdx, PointSet};
 use glam::DVec2;
 use std::collections::BTreeMap;
 
-/// The number of points up to which all of them are triangulated anew.
+/// Maximum number of points for which an edit triangulates all points.
 const FEW: usize = 256;
 
-/// Half the sides of the squares in which points are triangulated, tried one after the other, in mean distances.
+/// Half side lengths of the squares in which points are triangulated, tried in order, in mean distances.
 const REACHES: [f64; 3] = [4.0, 7.0, 14.0];
 
-/// The largest number of images in such a square. It is exceeded only where points crowd, or on thin domains.
+/// Maximum number of images in such a square. Only clustered points and thin domains exceed it.
 const IMAGES_LIMIT: usize = 4096;
 
-/// The number of points for each cell of the buckets above which the number of cells grows.
+/// Number of points per cell of the buckets above which the number of cells grows.
 const CROWD: usize = 8;
 
-/// The Delaunay graph of points that can be inserted, moved and removed, at any time equal to the result of
+/// A Delaunay graph of points that can be inserted, moved and removed. At any time it equals the result of
 /// [`delaunay`], bit for bit.
 ///
 /// # Examples
@@ -54,26 +54,26 @@ const CROWD: usize = 8;
 pub struct EditableDelaunay {
     domain: Domain,
     lattice: Lattice,
-    /// For each number: the position, the site, and the axes, which refer to numbers. Entries of removed points remain.
+    /// Position, site and axes of each number; axes refer to numbers. Entries of removed points remain.
     positions: Vec<DVec2>,
     sites: Vec<DVec2>,
     rows: Vec<Vec<Axis>>,
-    /// The numbers of the points in their order, ascending.
+    /// Numbers of the points in order, ascending.
     numbers: Vec<u32>,
     buckets: Buckets,
 }
 
-/// A point with the vectors of its axes, in their order.
+/// A point with the vectors of its axes, in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Star {
-    /// The position of the point.
+    /// Position of the point.
     pub center: DVec2,
-    /// The vectors from the point along its axes.
+    /// Vectors from the point along its axes.
     pub vectors: Vec<DVec2>,
 }
 
 impl EditableDelaunay {
-    /// The Delaunay graph of some points.
+    /// Creates the Delaunay graph of a point set.
     ///
     /// # Errors
     ///
@@ -97,41 +97,41 @@ impl EditableDelaunay {
         })
     }
 
-    /// The number of points.
+    /// Number of points.
     #[must_use]
     pub fn n_points(&self) -> usize {
         self.numbers.len()
     }
 
-    /// The domain of the points.
+    /// Domain of the points.
     #[must_use]
     pub fn domain(&self) -> &Domain {
         &self.domain
     }
 
-    /// A point with its axes.
+    /// Returns a point with its axes.
     ///
     /// # Errors
     ///
-    /// [`NotThere`](GraphErrorKind::NotThere) if there is no such point.
+    /// [`NotThere`](GraphErrorKind::NotThere) if the point does not exist.
     pub fn star(&self, point: PointIdx) -> Result<Star, GraphError> {
         Ok(self.star_of(self.number(point)?))
     }
 
-    /// The points with an image in a rectangle, and some beside it, in the order of their indices.
+    /// Returns the points with an image in a rectangle, and possibly some near it, in index order.
     #[must_use]
     pub fn points_in(&self, low: DVec2, high: DVec2) -> Vec<PointIdx> {
         let steps = |at: DVec2, slack: f64| self.lattice.steps(at - self.domain.origin) + slack;
         let mut found = Vec::new();
         let limit = self.n_points();
-        // Positions are snapped to whole steps.
+        // Positions are snapped to whole steps, so extend the rectangle by one step.
         let corners = [steps(low, -1.0), steps(high, 1.0)];
         if !corners[0].is_finite() || !corners[1].is_finite() {
             return (0..limit as u32).map(PointIdx).collect();
         }
         self.buckets.visit(&self.lattice, corners, |number, _| {
             found.push(number);
-            // In a rectangle of more than a period every point is found more than once.
+            // In a rectangle of more than a period, every point is found more than once.
             found.len() <= 2 * limit
         });
         if found.len() > 2 * limit {
@@ -142,18 +142,18 @@ impl EditableDelaunay {
         found.into_iter().map(|number| self.index(number)).collect()
     }
 
-    /// The points as a set.
+    /// Returns the points as a set.
     ///
     /// # Errors
     ///
-    /// None in practice: each position was accepted before.
+    /// None in practice: each position was validated before.
     pub fn to_points(&self) -> Result<PointSet, dapple_points::PointsError> {
         let numbers = self.numbers.iter();
         let positions = numbers.map(|&number| self.positions[number as usize]);
         PointSet::new(self.domain, positions.collect())
     }
 
-    /// The graph, equal to that of [`delaunay`].
+    /// Returns the graph, which equals the result of [`delaunay`].
     #[must_use]
     pub fn to_graph(&self) -> Graph {
         let mut graph = Graph {
@@ -176,12 +176,12 @@ impl EditableDelaunay {
         graph
     }
 
-    /// Adds a point after the last one. Returns the stars that changed, in their old and in their new state.
+    /// Appends a point. Returns the stars that changed, in their old and new states.
     ///
     /// # Errors
     ///
-    /// [`Outside`](GraphErrorKind::Outside) for a position that is not in the domain,
-    /// [`Coincident`](GraphErrorKind::Coincident) where another point is, [`Thin`](GraphErrorKind::Thin) as for
+    /// [`Outside`](GraphErrorKind::Outside) for a position outside of the domain,
+    /// [`Coincident`](GraphErrorKind::Coincident) if another point is there, [`Thin`](GraphErrorKind::Thin) as for
     /// [`delaunay`]. The graph is unchanged after an error.
     pub fn insert(&mut self, position: DVec2) -> Result<Vec<Star>, GraphError> {
         let (position, site) = self.accepted(position, None)?;
@@ -201,7 +201,7 @@ impl EditableDelaunay {
             self.positions.pop();
         }
         let mut stars = replaced?;
-        // The new point had no star.
+        // The new point had no star before.
         stars.retain(|star| star.center != position || !star.vectors.is_empty());
         if self.n_points() > CROWD * self.buckets.n_cells() {
             self.buckets = Buckets::new(&self.lattice, self.n_points());
@@ -212,12 +212,12 @@ impl EditableDelaunay {
         Ok(stars)
     }
 
-    /// Moves a point; along wrapped axes the position is brought into the domain. Returns the stars that changed, in
-    /// their old and in their new state.
+    /// Moves a point; along wrapped axes the position is wrapped into the domain. Returns the stars that changed, in
+    /// their old and new states.
     ///
     /// # Errors
     ///
-    /// The errors of [`insert`](Self::insert), and [`NotThere`](GraphErrorKind::NotThere) if there is no such point.
+    /// The errors of [`insert`](Self::insert), and [`NotThere`](GraphErrorKind::NotThere) if the point does not exist.
     pub fn move_to(&mut self, point: PointIdx, position: DVec2) -> Result<Vec<Star>, GraphError> {
         let number = self.number(point)?;
         let (position, site) = self.accepted(position, Some(number))?;
@@ -236,18 +236,18 @@ impl EditableDelaunay {
             self.put(number, former);
         }
         let mut stars = replaced?;
-        // A star that moves changes even if its axes do not.
+        // The star of the moved point changes even if its axes do not.
         stars.retain(|star| star.center != position);
         stars.extend([before, self.star_of(number)]);
         Ok(stars)
     }
 
-    /// Removes a point; the indices of those after it decrease by one. Returns the stars that changed, in their old and
-    /// in their new state.
+    /// Removes a point; the indices of later points decrease by one. Returns the stars that changed, in their old and
+    /// new states.
     ///
     /// # Errors
     ///
-    /// [`NotThere`](GraphErrorKind::NotThere) if there is no such point, [`Thin`](GraphErrorKind::Thin) as for
+    /// [`NotThere`](GraphErrorKind::NotThere) if the point does not exist, [`Thin`](GraphErrorKind::Thin) as for
     /// [`delaunay`]. The graph is unchanged after an error.
     pub fn remove(&mut self, point: PointIdx) -> Result<Vec<Star>, GraphError> {
         let number = self.number(point)?;
@@ -276,7 +276,7 @@ impl EditableDelaunay {
     }
 
     fn index(&self, number: u32) -> PointIdx {
-        // The number is in use; otherwise this would be the index at which to insert it.
+        // The number is in use; otherwise this would be its insertion index.
         let (Ok(index) | Err(index)) = self.numbers.binary_search(&number);
         PointIdx(index as u32)
     }
@@ -289,7 +289,7 @@ impl EditableDelaunay {
         }
     }
 
-    /// The numbers of the other points that a point is connected to.
+    /// Numbers of the other points that a point is connected to.
     fn neighbors(&self, number: u32) -> Vec<u32> {
         let axes = self.rows[number as usize].iter();
         let mut neighbors: Vec<u32> = axes.map(|axis| axis.to.0).collect();
@@ -310,7 +310,7 @@ impl EditableDelaunay {
         self.buckets.insert(number, site);
     }
 
-    /// Checks that a position lies in the domain and no other point is there; returns the position and its site.
+    /// Checks that a position is in the domain and not occupied; returns the wrapped position and its site.
     fn accepted(&self, position: DVec2, own: Option<u32>) -> Result<(DVec2, DVec2), GraphError> {
         let wrapped = self.domain.wrap(position);
         if !position.is_finite() || !self.domain.contains(wrapped) {
@@ -325,8 +325,8 @@ impl EditableDelaunay {
         Ok((wrapped, site))
     }
 
-    /// The axes of the `asked` points near a place, and of the point `hub` there with all its neighbors; `None` if too
-    /// many points would have to be triangulated.
+    /// Computes the axes of the `asked` points near a position, and of the point `hub` there with all its neighbors;
+    /// `None` if too many points would have to be triangulated.
     fn rows_about(
         &self,
         place: DVec2,
@@ -353,7 +353,7 @@ impl EditableDelaunay {
         })
     }
 
-    /// The axes of those points in the square about a place that no image outside of it can change.
+    /// Computes the axes of the points in the square around a position that no image outside of it can affect.
     fn certain_rows(&self, place: DVec2, reach: f64) -> Option<BTreeMap<u32, Vec<Axis>>> {
         let cover = Cover::about(&self.lattice, place, reach);
         let mut images = Vec::new();
@@ -380,8 +380,7 @@ impl EditableDelaunay {
         Some(numbers.into_iter().filter_map(taken).collect())
     }
 
-    /// Replaces some rows, or all if none are given. Returns the stars that changed, in their old and in their new
-    /// state.
+    /// Replaces the given rows, or all rows for `None`. Returns the stars that changed, in their old and new states.
     fn replace(&mut self, rows: Option<Vec<(u32, Vec<Axis>)>>) -> Result<Vec<Star>, GraphError> {
         let rows = match rows {
             Some(rows) => rows,
@@ -398,11 +397,11 @@ impl EditableDelaunay {
         Ok(stars)
     }
 
-    /// The axes of all points.
+    /// Computes the axes of all points.
     fn all_rows(&self) -> Result<Vec<(u32, Vec<Axis>)>, GraphError> {
         let rows = match rows(&self.lattice, &self.dense_sites(), &|| false) {
             Ok(rows) => rows,
-            // No two sites are the same, and nobody asks to stop.
+            // Sites are distinct, and the callback never cancels.
             Err(Refusal::Thin | Refusal::Coincident | Refusal::Cancelled) => {
                 return Err(GraphError::new(GraphErrorKind::Thin {
                     size: self.domain.size,

@@ -1,4 +1,4 @@
-//! The images of points that a patch needs.
+//! Images of points that a patch needs.
 
 use super::patch::Image;
 use super::star::Star;
@@ -8,7 +8,7 @@ use glam::DVec2;
 use robust::{Coord, incircle};
 use std::collections::BTreeSet;
 
-/// A rectangle of which a patch has all images; unbounded along the axes that do not wrap.
+/// A rectangle of which a patch contains all images; unbounded along axes that do not wrap.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cover {
     low: DVec2,
@@ -16,7 +16,7 @@ pub(super) struct Cover {
 }
 
 impl Cover {
-    /// The rectangle from `low` to `high` and a margin around it.
+    /// Creates the rectangle from `low` to `high`, extended by a margin.
     pub(super) fn new(lattice: &Lattice, low: DVec2, high: DVec2, margin: f64) -> Self {
         let margin = lattice
             .wrap
@@ -28,8 +28,8 @@ impl Cover {
         }
     }
 
-    /// The square that reaches some steps to each side of a place. Where it reaches past an end of the domain that does
-    /// not wrap, it is unbounded, since there are no more images.
+    /// Creates the square with the half side `reach` around a position. Where it extends beyond an end of the domain
+    /// that does not wrap, it is unbounded, since there are no further images.
     pub(super) fn about(lattice: &Lattice, place: DVec2, reach: f64) -> Self {
         let (mut low, mut high) = (place - reach, place + reach);
         for axis in (0..2).filter(|&axis| !lattice.wrap[axis]) {
@@ -43,20 +43,20 @@ impl Cover {
         Self { low, high }
     }
 
-    /// The corners of the rectangle.
+    /// Corners of the rectangle.
     pub(super) fn corners(&self) -> [DVec2; 2] {
         [self.low, self.high]
     }
 
-    /// How far a place in the rectangle is from its border.
+    /// Distance of a position in the rectangle from its border.
     #[inline]
     pub(super) fn depth(&self, at: DVec2) -> f64 {
         (at - self.low).min(self.high - at).min_element()
     }
 
-    /// All images of all points in the rectangle; those in the domain itself have a row.
+    /// Returns all images of all points in the rectangle; images in the domain itself have a row.
     ///
-    /// Fails for more images than one search may go through.
+    /// Fails if their number exceeds the limit.
     pub(super) fn images(&self, lattice: &Lattice, sites: &[DVec2]) -> Result<Vec<Image>, TooThin> {
         let size = lattice.size;
         let copies = [0, 1].map(|axis| {
@@ -96,22 +96,22 @@ impl Cover {
     }
 }
 
-/// Searches the images that a patch lacks.
+/// Search for the images that a patch lacks.
 pub(super) struct Missing<'g, 'a> {
     lattice: &'a Lattice,
     cover: Cover,
     grid: &'g LazyGrid<'a>,
-    /// The distance, along each axis, that the circumcircles of a point's true triangles do not exceed (inside of the
-    /// domain's strip).
+    /// Maximum extent, along each axis, of the circumcircles of a point's true triangles (inside of the strip of the
+    /// domain).
     reach: DVec2,
-    /// Where images were inserted before.
+    /// Positions of images that were already inserted.
     inserted: BTreeSet<(i64, i64)>,
-    /// Where images were found since.
+    /// Positions of images found since the last insertion.
     pending: BTreeSet<(i64, i64)>,
-    /// The images to insert next, each with the row that it was found for.
+    /// Images to insert next, each with the row that requires it.
     found: Vec<(Image, u32)>,
     scaffolded: bool,
-    /// The row whose star is searched.
+    /// Row whose star is searched.
     row: u32,
     /// Whether the star will change.
     changes: bool,
@@ -127,9 +127,9 @@ impl<'g, 'a> Missing<'g, 'a> {
             lattice,
             cover,
             grid,
-            // On a torus an empty disc has at most the domain's diagonal for a diameter. On a cylinder it may be larger,
-            // but both borders of the strip hold a point in each period; width and height change places for the
-            // two kinds of cylinder.
+            // On a torus, the diameter of an empty circle is at most the diagonal of the domain. On a cylinder it may
+            // be larger, but both borders of the strip contain a point in each period; the two kinds of cylinder
+            // exchange width and height.
             reach: 1.01 * (2.0 * size.element_sum() - size),
             inserted: BTreeSet::new(),
             pending: BTreeSet::new(),
@@ -142,8 +142,8 @@ impl<'g, 'a> Missing<'g, 'a> {
         }
     }
 
-    /// Adds the missing images nearest to the centers of the circumcircles of the star at `center`, one for each
-    /// circumcircle that holds any. Returns whether the star will change.
+    /// For each circumcircle of the star at `center`, adds the missing image inside of it that is nearest to its
+    /// center, if there is one. Returns whether the star will change.
     pub(super) fn search(&mut self, row: u32, center: DVec2, star: &Star) -> bool {
         self.row = row;
         self.changes = false;
@@ -164,9 +164,9 @@ impl<'g, 'a> Missing<'g, 'a> {
         self.changes
     }
 
-    /// Adds the nearest missing image on an edge beside a gap, or the scaffold if there should be no gap.
+    /// Adds the nearest missing image on an edge next to a gap, or the scaffold if there should be no gap.
     fn search_border(&mut self, p: DVec2, vector: DVec2) {
-        // On a cylinder, only the borders of the strip that it becomes when it is unrolled have a gap beside them.
+        // On a cylinder, only edges on the borders of the unrolled strip may be next to a gap.
         let is_border = match self.lattice.wrap {
             [true, false] => vector.y == 0.0,
             [false, true] => vector.x == 0.0,
@@ -193,7 +193,7 @@ impl<'g, 'a> Missing<'g, 'a> {
         }
     }
 
-    /// Adds images around the domain that close all stars in it.
+    /// Adds images around the domain that close all stars inside of it.
     fn scaffold(&mut self) {
         self.changes = true;
         if core::mem::replace(&mut self.scaffolded, true) {
@@ -237,7 +237,7 @@ impl<'g, 'a> Missing<'g, 'a> {
         if low.cmpgt(depth.low).all() && high.cmplt(depth.high).all() {
             return;
         }
-        // Comparisons with a center that is not a number are false, so that the whole reach is searched then.
+        // Comparisons with a NaN center are false, so the whole reach is searched.
         let low = (p - self.reach).max(low);
         let high = (p + self.reach).min(high);
         let mut nearest: Option<(f64, u32, DVec2)> = None;
@@ -261,7 +261,7 @@ impl<'g, 'a> Missing<'g, 'a> {
         }
     }
 
-    /// Adds an image, if it is not there and was not found before.
+    /// Adds an image, unless it was inserted or found before.
     fn add(&mut self, point: u32, at: DVec2) {
         if self.cover.depth(at) >= 0.0 || self.inserted.contains(&key(at)) {
             return;
@@ -273,9 +273,9 @@ impl<'g, 'a> Missing<'g, 'a> {
         }
     }
 
-    /// Takes the images that were found, to be inserted now.
+    /// Takes the images that were found, for insertion.
     ///
-    /// Fails if there were too many images to search, or if more were found than one search may go through.
+    /// Fails if there were too many images to search, or if their number exceeds the limit.
     pub(super) fn take(&mut self) -> Result<Vec<(Image, u32)>, TooThin> {
         self.inserted.append(&mut self.pending);
         if self.too_thin || self.inserted.len() as u64 > triangulated_limit(self.grid.sites().len())
@@ -286,12 +286,12 @@ impl<'g, 'a> Missing<'g, 'a> {
     }
 }
 
-/// A site as whole numbers, which have an order.
+/// A site as integers, which have a total order.
 fn key(at: DVec2) -> (i64, i64) {
     (at.x as i64, at.y as i64)
 }
 
-/// The circle through the origin and two other places, a little enlarged for rounding.
+/// Circle through the origin and two other positions, slightly enlarged for rounding.
 struct Circle {
     center: DVec2,
     radius: f64,

@@ -1,13 +1,13 @@
-//! The order in which `spade` wants its vertices.
+//! Insertion order of the vertices for `spade`.
 
 use super::patch::Image;
 use core::cmp::Ordering;
 
-/// Sorts the images by their distance from their mean, farthest first.
+/// Sorts images by their distance from their mean, farthest first.
 ///
-/// This is the order in which `spade` sorts them, which then has nothing to do. For images that are spread evenly,
-/// squared distances are as well, and one pass through as many buckets as images is faster than a sort by comparison. A
-/// rounding error in the mean costs time, but does not change the result.
+/// `spade` sorts them in the same order, and then has nothing to do. If images are evenly distributed, squared
+/// distances are as well, and one pass of bucket sort with as many buckets as images is faster than a comparison sort.
+/// A rounding error in the mean affects the time, but not the result.
 pub(super) fn farthest_first(images: &[Image]) -> Vec<Image> {
     let n = images.len();
     let share = 1.0 / n as f64;
@@ -19,8 +19,9 @@ pub(super) fn farthest_first(images: &[Image]) -> Vec<Image> {
     };
     let farthest = images.iter().map(distance_sq).fold(0.0, f64::max);
     let per_step = n as f64 / farthest.max(1.0);
-    // The conversion saturates.
+    // The cast saturates.
     let bucket = |image: &Image| ((farthest - distance_sq(image)) * per_step) as usize;
+    // Count the images per bucket, and convert the counts to ends of ranges.
     let mut starts = vec![0_u32; n + 2];
     for image in images {
         starts[bucket(image)] += 1;
@@ -33,6 +34,7 @@ pub(super) fn farthest_first(images: &[Image]) -> Vec<Image> {
     let Some(&any) = images.first() else {
         return Vec::new();
     };
+    // Distribute the images, then sort within each bucket.
     let mut sorted = vec![any; n];
     for image in images {
         let start = &mut starts[bucket(image)];

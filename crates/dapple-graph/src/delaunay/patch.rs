@@ -1,4 +1,4 @@
-//! Patch: a triangulated part of the periodic plane, and the rows of the graph for the points inside of it.
+//! Patch: a triangulated part of the periodic plane, and the graph rows of the points inside of it.
 
 use super::Refusal;
 use super::images::{Cover, Missing};
@@ -15,14 +15,14 @@ use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Image {
     pub(super) position: Point2<f64>,
-    /// The number of the point.
+    /// Index of the point.
     pub(super) point: u32,
-    /// The row of the image in the patch, or [`Image::FOREIGN`].
+    /// Row of the image in the patch, or [`Image::FOREIGN`].
     pub(super) row: u32,
 }
 
 impl Image {
-    /// The row of an image whose axes are not needed.
+    /// Row of an image whose axes are not needed.
     pub(super) const FOREIGN: u32 = u32::MAX;
 
     pub(super) fn new(at: DVec2, point: u32, row: u32) -> Self {
@@ -52,17 +52,17 @@ pub(super) struct Rows {
     pub(super) axes: Vec<Axis>,
 }
 
-/// The triangulation of all images in a rectangle, and of some outside of it.
+/// Triangulation of all images in a rectangle, and of some outside of it.
 pub(super) struct Patch<'a> {
     lattice: &'a Lattice,
     cover: Cover,
     triangulation: DelaunayTriangulation<Image>,
-    /// The vertex of each row.
+    /// Vertex of each row.
     vertices: Vec<FixedVertexHandle>,
 }
 
 impl<'a> Patch<'a> {
-    /// Triangulates the images, of which `n_rows` have a row; all images in `cover` must be there.
+    /// Triangulates the images, of which `n_rows` have a row; `images` must contain all images in `cover`.
     pub(super) fn new(
         lattice: &'a Lattice,
         cover: Cover,
@@ -70,7 +70,7 @@ impl<'a> Patch<'a> {
         n_rows: usize,
     ) -> Result<Self, Refusal> {
         let n_images = images.len();
-        // Sites are finite whole numbers, which are always accepted.
+        // Sites are finite integers, which are always accepted.
         let triangulation = DelaunayTriangulation::<Image>::bulk_load(farthest_first(images))
             .map_err(|_| Refusal::Coincident)?;
         if triangulation.num_vertices() < n_images {
@@ -91,12 +91,12 @@ impl<'a> Patch<'a> {
         })
     }
 
-    /// The axes of all points that have a row, after inserting the images that are missing for them.
+    /// Computes the axes of all points with a row, after inserting the missing images.
     pub(super) fn rows(&mut self, grid: &LazyGrid<'a>) -> Result<Rows, TooThin> {
         let mut star = Star::default();
         let mut rows = Rows {
             offsets: Vec::with_capacity(self.vertices.len() + 1),
-            // In a triangulation the mean number of neighbors is below six.
+            // The mean number of neighbors in a triangulation is below six.
             axes: Vec::with_capacity(6 * self.vertices.len() + 6),
         };
         rows.offsets.push(0);
@@ -116,7 +116,7 @@ impl<'a> Patch<'a> {
         Ok(rows)
     }
 
-    /// The axes of each point that has a row, if no image outside of the patch can change them.
+    /// Computes the axes of each point with a row; `None` if an image outside of the patch could affect them.
     pub(super) fn certain_rows(&self) -> Vec<Option<Vec<Axis>>> {
         let mut star = Star::default();
         let row = |&vertex: &FixedVertexHandle| {
@@ -131,14 +131,14 @@ impl<'a> Patch<'a> {
         self.vertices.iter().map(row).collect()
     }
 
-    /// Inserts images until the stars of the given rows are true. Returns whether there were any to insert.
+    /// Inserts images until the stars of the given rows are correct. Returns whether any image was inserted.
     fn complete(&mut self, doubtful: &[u32], grid: &LazyGrid<'a>) -> Result<bool, TooThin> {
         let mut star = Star::default();
         let mut missing = Missing::new(self.lattice, self.cover, grid);
         let mut changed = false;
         let mut doubtful = doubtful.to_vec();
         loop {
-            // A star whose circumcircles hold no missing image is true, and no other image changes it any more.
+            // A star whose circumcircles contain no missing image is correct, and no other image affects it.
             doubtful.retain(|&row| {
                 let vertex = self.triangulation.vertex(self.vertices[row as usize]);
                 star.read(vertex, f64::INFINITY);
@@ -151,13 +151,13 @@ impl<'a> Patch<'a> {
             changed = true;
             for (image, row) in found {
                 let near = self.vertices[row as usize];
-                // Sites are finite whole numbers, which are always accepted.
+                // Sites are finite integers, which are always accepted.
                 let _ = self.triangulation.insert_with_hint(image, near);
             }
         }
     }
 
-    /// The rows, with the given ones read again.
+    /// Rows in which the rows `again` are read again from the triangulation.
     fn replaced(&self, rows: &Rows, again: &[u32]) -> Rows {
         let mut star = Star::default();
         let mut result = Rows {
@@ -181,7 +181,7 @@ impl<'a> Patch<'a> {
     }
 }
 
-/// Where a vertex lies.
+/// Position of a vertex.
 fn at(vertex: Vertex<'_>) -> DVec2 {
     let position = vertex.position();
     DVec2::new(position.x, position.y)

@@ -1,6 +1,6 @@
-//! The edges around one vertex of a triangulation, and those among them that are axes.
+//! Edges around a vertex of a triangulation, and the edges among them that are axes.
 //!
-//! Unit: steps of the lattice, relative to the vertex; whole numbers.
+//! Unit: lattice steps relative to the vertex, integers.
 
 use super::patch::Vertex;
 use crate::Axis;
@@ -13,30 +13,30 @@ use robust::{Coord, incircle};
 /// A neighbor of a vertex.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spoke {
-    /// The place of the neighbor, relative to the vertex, in steps.
+    /// Position of the neighbor relative to the vertex, in steps.
     pub(super) at: DVec2,
-    /// The number of its point.
+    /// Index of its point.
     to: u32,
-    /// Whether there is no triangle between it and the next neighbor.
+    /// Whether there is no triangle between this neighbor and the next one.
     pub(super) gap_after: bool,
 }
 
-/// The neighbors of a vertex, counterclockwise.
+/// Neighbors of a vertex, counterclockwise.
 #[derive(Debug, Default)]
 pub(super) struct Star {
     spokes: Vec<Spoke>,
     has_gaps: bool,
-    /// A bit for each neighbor with an angle in `[π, 2π)`.
+    /// Mask of the neighbors with an angle in `[π, 2π)`.
     lower: u64,
-    /// Whether two neighboring circumcircles may be equal.
+    /// Whether two adjacent circumcircles may be equal.
     co_circular: bool,
     /// Whether a circumcircle may exceed the reach.
     far: bool,
 }
 
 impl Star {
-    /// Reads the star of a vertex, with a quick test for equal circumcircles and for ones that reach farther than
-    /// `reach` steps.
+    /// Reads the star of a vertex, with a quick test for equal circumcircles and for circumcircles beyond `reach`
+    /// steps.
     #[inline]
     pub(super) fn read(&mut self, vertex: Vertex<'_>, reach: f64) {
         self.spokes.clear();
@@ -53,7 +53,7 @@ impl Star {
                 gap_after: edge.is_outer_edge(),
             };
             self.has_gaps |= spoke.gap_after;
-            // This mask is not used past 64 neighbors.
+            // The mask is not used for more than 64 neighbors.
             self.lower |= u64::from(is_lower(spoke.at)).wrapping_shl(self.spokes.len() as u32);
             look.pass(spoke.at);
             self.spokes.push(spoke);
@@ -64,18 +64,18 @@ impl Star {
         (self.co_circular, self.far) = (look.co_circular, look.far);
     }
 
-    /// Whether a triangle may exceed the reach, or is missing.
+    /// Returns whether a triangle may exceed the reach, or is missing.
     pub(super) fn is_doubtful(&self) -> bool {
         self.far || self.has_gaps || self.spokes.len() < 3
     }
 
-    /// Each neighbor and the next one.
+    /// Pairs of each neighbor and the next one.
     pub(super) fn wedges(&self) -> impl Iterator<Item = (Spoke, Spoke)> + '_ {
         let next = self.spokes.iter().cycle().skip(1);
         self.spokes.iter().copied().zip(next.copied())
     }
 
-    /// Appends the axes of the star in their order.
+    /// Appends the axes of the star, in order.
     #[inline]
     pub(super) fn push_axes(&self, lattice: &Lattice, axes: &mut Vec<Axis>) {
         let first = self.first();
@@ -93,25 +93,25 @@ impl Star {
         }
     }
 
-    /// The neighbor with the smallest angle.
+    /// Index of the neighbor with the smallest angle.
     #[inline]
     fn first(&self) -> usize {
         let n = self.spokes.len();
         if n > 0 && n <= 64 {
-            // An upper neighbor after a lower one.
+            // Find an upper neighbor that follows a lower one.
             let previous = self.lower << 1 | self.lower >> (n - 1);
             let first = (previous & !self.lower).trailing_zeros() as usize;
             if first < n {
                 return first;
             }
         }
-        // All lie on one side, or there are many.
+        // All neighbors are on one side, or there are more than 64.
         let order = |&a: &usize, &b: &usize| by_angle(self.spokes[a].at, self.spokes[b].at);
         (0..n).min_by(order).unwrap_or(0)
     }
 
-    /// Whether the triangles on both sides of an edge have the same circumcircle, so that the edge is one of several
-    /// possible diagonals.
+    /// Returns whether the triangles on both sides of an edge have the same circumcircle, which makes the edge one of
+    /// several possible diagonals.
     #[cold]
     fn is_diagonal(&self, index: usize) -> bool {
         let n = self.spokes.len();
@@ -125,10 +125,10 @@ impl Star {
     }
 }
 
-/// A quick test of the neighbors as they are read. It may report circumcircles that are fine, but it overlooks none.
+/// Quick test of the neighbors while they are read. It may have false positives, but no false negatives.
 struct Look {
     reach_sq: f64,
-    /// The last two neighbors, their squared distances and their cross product; NaN at first.
+    /// Last two neighbors, their squared lengths and their cross product; NaN at first.
     a: DVec2,
     b: DVec2,
     a_sq: f64,
@@ -142,7 +142,7 @@ impl Look {
     fn new(reach: f64) -> Self {
         let reach = reach.max(0.0);
         Self {
-            // Rounding takes less than a millionth of the products.
+            // Rounding changes the products by less than a millionth.
             reach_sq: reach * reach * 0.999_999,
             a: DVec2::NAN,
             b: DVec2::NAN,
@@ -154,7 +154,7 @@ impl Look {
         }
     }
 
-    /// Passes on to the next neighbor. Every comparison with a value that is still NaN is false.
+    /// Processes the next neighbor. Comparisons with values that are still NaN are false.
     #[inline]
     fn pass(&mut self, c: DVec2) {
         let Self {
@@ -168,10 +168,10 @@ impl Look {
         let c_sq = c.length_squared();
         let bc = b.perp_dot(c);
         let determinant = a_sq * bc - b_sq * a.perp_dot(c) + c_sq * ab;
-        // Shewchuk's bound, 10 · 2^-53 times the permanent, which in turn is at most this sum of products.
+        // Shewchuk's bound is 10 · 2^-53 times the permanent, which is at most this sum of products.
         let bound = 1.2e-15 * (a_sq * b_sq + (a_sq + b_sq) * c_sq);
         self.co_circular |= determinant.abs() < bound;
-        // The diameter is the product of the sides over the cross product.
+        // The diameter of the circumcircle is the product of the sides over the cross product.
         self.far |= b_sq * c_sq * (c - b).length_squared() > self.reach_sq * (bc * bc);
         (self.a, self.b, self.a_sq, self.b_sq, self.ab) = (b, c, b_sq, c_sq, bc);
     }

@@ -1,4 +1,4 @@
-//! Large sets on a torus, tile by tile: each triangulation fits into the cache, and the tiles are independent.
+//! Tiling of large sets on a torus: each triangulation fits the cache, and tiles are independent.
 
 use super::images::Cover;
 use super::patch::{Image, Patch, Rows};
@@ -9,18 +9,18 @@ use crate::lattice::Lattice;
 use dapple_raster::parallel;
 use glam::DVec2;
 
-/// The approximate number of points of a tile.
+/// Approximate number of points per tile.
 const POINTS_PER_TILE: f64 = 8192.0;
 
-/// The tiles of a domain.
+/// Tiles of a domain.
 pub(super) struct Tiles<'a> {
     lattice: &'a Lattice,
     margin: f64,
-    /// The coordinates at which the columns and rows begin, and the end of the last one.
+    /// Start coordinates of the columns and rows, and the end of the last one.
     starts: [Vec<f64>; 2],
 }
 
-/// A tile's images, and the points for which it makes rows.
+/// Images of a tile, and the points whose rows it computes.
 #[derive(Default)]
 struct Tile {
     images: Vec<Image>,
@@ -28,12 +28,13 @@ struct Tile {
 }
 
 impl<'a> Tiles<'a> {
-    /// The tiles for `n` points; `None` if there are too few to be worth it, or if the domain does not wrap both ways.
+    /// Creates tiles for `n` points; `None` if there are too few points, or if the domain does not wrap along both
+    /// axes.
     pub(super) fn new(lattice: &'a Lattice, n: usize, margin: f64) -> Option<Self> {
         let size = lattice.size;
         let edge = (size.x * (size.y * POINTS_PER_TILE / n.max(1) as f64)).sqrt();
         let counts = [size.x, size.y].map(|side| (side / edge).floor());
-        // Each tile needs images from its eight neighbors only.
+        // Each tile must only need images from its eight neighbors.
         let fits = counts[0].min(counts[1]) >= 2.0 && 2.0 * margin < edge;
         let starts = |axis: usize| {
             let count = counts[axis];
@@ -48,7 +49,7 @@ impl<'a> Tiles<'a> {
         })
     }
 
-    /// The rows of all points.
+    /// Computes the rows of all points.
     pub(super) fn rows(
         &self,
         sites: &[DVec2],
@@ -67,7 +68,7 @@ impl<'a> Tiles<'a> {
             let mut patch = Patch::new(self.lattice, cover, &tile.images, tile.points.len())?;
             Ok::<Rows, Refusal>(patch.rows(&grid)?)
         });
-        // Returns the error of the first tile that has one, whatever the order of the threads.
+        // Return the error of the first failing tile, regardless of the order of threads.
         let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
         Ok(merged(&tiles, &parts, sites.len()))
     }
@@ -76,7 +77,7 @@ impl<'a> Tiles<'a> {
         self.starts[axis].len() - 1
     }
 
-    /// Assigns its points, and the images within the margin, to each tile.
+    /// Assigns to each tile its points, and the images within the margin.
     fn fill(&self, sites: &[DVec2]) -> Vec<Tile> {
         let mut tiles: Vec<Tile> = Vec::new();
         tiles.resize_with(self.count(0) * self.count(1), Tile::default);
@@ -98,7 +99,7 @@ impl<'a> Tiles<'a> {
         tiles
     }
 
-    /// The column (or row) of a coordinate, then those that it is near, each with the period to add.
+    /// Column (or row) of a coordinate, followed by those within the margin, each with the shift to add.
     fn near(&self, axis: usize, at: f64) -> [Option<(usize, f64)>; 3] {
         let starts = &self.starts[axis];
         let (count, size) = (self.count(axis), self.lattice.size[axis]);
@@ -121,7 +122,7 @@ impl<'a> Tiles<'a> {
     }
 }
 
-/// The rows of all tiles in the order of the points.
+/// Rows of all tiles, in the order of the points.
 fn merged(tiles: &[Tile], parts: &[Rows], n: usize) -> Rows {
     let mut places = vec![(0_u32, 0_u32); n];
     for (index, tile) in (0..).zip(tiles) {

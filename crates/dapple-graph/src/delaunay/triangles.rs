@@ -1,7 +1,7 @@
-//! The triangles of a Delaunay graph: its faces, walked around from axis to axis.
+//! Triangles of a Delaunay graph: its faces, traversed axis by axis.
 //!
-//! Every face but the outer one lies in an empty circle with all its corners on it. A face with more than three corners
-//! is a polygon, which is cut into a fan.
+//! Every face except the outer one is inscribed in an empty circle. A face with more than three corners is a polygon,
+//! which is divided into a fan.
 
 use super::delaunay_cancellable;
 use crate::IsCancelled;
@@ -13,16 +13,16 @@ use glam::DVec2;
 /// A triangle of points, or of images of points on a domain that wraps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
-    /// The points at its corners, in the direction from x towards y.
+    /// Points at its corners, ordered from x toward y.
     pub corners: [PointIdx; 3],
-    /// The vectors from the first corner to the images of the second and the third, in the units of the positions.
+    /// Vectors from the first corner to the images of the second and third, in the units of the positions.
     pub sides: [DVec2; 2],
 }
 
-/// The triangles of the Delaunay triangulation: their circumcircles hold no other point, counting all images.
+/// Computes the triangles of the Delaunay triangulation: their circumcircles contain no other point, including images.
 ///
-/// On a torus there are twice as many as points, and they cover it once. Where more than three points lie on an empty
-/// circle, the triangulation is not unique: the polygon of these points is cut by the diagonals from one of them.
+/// On a torus there are twice as many triangles as points, and they cover it once. If more than three points are on an
+/// empty circle, the triangulation is not unique: their polygon is divided by the diagonals from one of them.
 ///
 /// # Errors
 ///
@@ -44,7 +44,7 @@ pub fn delaunay_triangles(points: &PointSet) -> Result<Vec<Triangle>, GraphError
     delaunay_triangles_cancellable(points, &|| false)
 }
 
-/// The triangles of [`delaunay_triangles`], unless `is_cancelled` returns true, which is called as by
+/// Computes the triangles of [`delaunay_triangles`], unless `is_cancelled` returns true. The callback is called as in
 /// [`delaunay_cancellable`].
 ///
 /// # Errors
@@ -58,12 +58,12 @@ pub fn delaunay_triangles_cancellable(
 }
 
 impl Graph {
-    /// The triangles of a Delaunay graph, as [`delaunay_triangles`] makes them from its points.
+    /// Computes the triangles of a Delaunay graph, like [`delaunay_triangles`] for its points.
     ///
     /// # Errors
     ///
-    /// [`GraphErrorKind::NotDelaunay`](crate::GraphErrorKind::NotDelaunay) unless the graph
-    /// [was made as one](Self::is_delaunay).
+    /// [`GraphErrorKind::NotDelaunay`](crate::GraphErrorKind::NotDelaunay) unless the graph [was created as a Delaunay
+    /// graph](Self::is_delaunay).
     ///
     /// # Examples
     ///
@@ -84,8 +84,8 @@ impl Graph {
     }
 }
 
-/// Calls `visit` for every face that lies in an empty circle: with its first point, and the axes around it, in the
-/// direction from x towards y. Skips the outer face.
+/// Calls `visit` for every face that is inscribed in an empty circle, with its first point and the axes around it,
+/// ordered from x toward y. Skips the outer face.
 pub(crate) fn visit_faces(graph: &Graph, mut visit: impl FnMut(PointIdx, &[FaceAxis])) {
     let next = next_around_faces(graph);
     let mut is_walked = vec![false; graph.n_axes()];
@@ -106,7 +106,8 @@ pub(crate) fn visit_faces(graph: &Graph, mut visit: impl FnMut(PointIdx, &[FaceA
             let [a, b, ..] = &face[..] else {
                 continue;
             };
-            // All corners of an inner face turn one way; those of the outer face turn the other way, or lie on a line.
+            // All corners of an inner face turn one way; corners of the outer face turn the other way or are
+            // collinear.
             let steps = |axis: &FaceAxis| graph.lattice.steps(axis.axis.vector);
             if turn(steps(a), steps(b)) > 0.0 {
                 visit(first, &face);
@@ -118,17 +119,17 @@ pub(crate) fn visit_faces(graph: &Graph, mut visit: impl FnMut(PointIdx, &[FaceA
 /// An axis on the border of a face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FaceAxis {
-    /// Its index among all axes.
+    /// Index among all axes.
     pub(crate) index: usize,
     pub(crate) axis: Axis,
 }
 
-/// For each axis, the next one around the face beside it, in the direction from x towards y.
+/// For each axis, the next axis around its face, in the direction from x toward y.
 fn next_around_faces(graph: &Graph) -> Vec<u32> {
     let next = |from: PointIdx, axis: &Axis| {
         let row = graph.axes(axis.to);
         let is_back = |back: &Axis| back.to == from && back.vector == -axis.vector;
-        // The graph is symmetric, so that there is one.
+        // The graph is symmetric, so the opposite axis exists.
         let back = row.iter().position(is_back).unwrap_or(0);
         graph.offsets[axis.to.index()] + ((back + row.len() - 1) % row.len()) as u32
     };
@@ -137,7 +138,7 @@ fn next_around_faces(graph: &Graph) -> Vec<u32> {
     axes.collect()
 }
 
-/// Cuts a face into triangles at its first corner.
+/// Divides a face into triangles at its first corner.
 fn push_fan(first: PointIdx, face: &[FaceAxis], triangles: &mut Vec<Triangle>) {
     let mut corner = face[0].axis;
     let mut side = corner.vector;
@@ -177,7 +178,7 @@ mod tests {
             assert_eq!(triangles.len(), 2 * points.len());
             assert!(triangles.iter().all(|triangle| area(triangle) > 0.0));
             let covered: f64 = triangles.iter().map(area).sum();
-            // A few hundred roundings.
+            // Tolerance: a few hundred roundings.
             assert!((covered - 2.0).abs() < 1e-12, "{covered}");
             for triangle in triangles.iter().take(50) {
                 let [a, b, c] = triangle.corners.map(|corner| points.position(corner));
