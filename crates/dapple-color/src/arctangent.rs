@@ -1,12 +1,13 @@
-//! The arctangent of a register of numbers, with the same bits on every platform.
+//! Arctangent of 16 numbers at once, with identical bits on every platform.
 //!
-//! Above 1 it is a right angle less the arctangent of the reciprocal. Up to 1 it is `x P(x²)` with the polynomial of
-//! degree 8 whose largest relative error is least (found by the exchange algorithm of Remez), 1.5e-8 before rounding.
-//! Only `+ - × ÷` and choices are used. The result is in radians, errs by less than 2e-7, and is odd to the last bit.
+//! For `|x|` up to 1 the result is `x P(x²)`, where `P` is the polynomial of degree 8 with the minimum largest
+//! relative error (1.5e-8 before rounding), found by the Remez exchange algorithm. Above 1 it is a right angle minus
+//! the arctangent of the reciprocal. The code uses only `+ - × ÷` and selects. The result is in radians, its error is
+//! below 2e-7, and the function is exactly odd.
 
 use fearless_simd::{f32x16, prelude::*};
 
-/// The polynomial in `x²`, from the highest power down to the constant.
+/// Coefficients of the polynomial in `x²`, from the highest power down to the constant.
 const COEFFICIENTS: [f32; 9] = [
     0.002_849_879_2,
     -0.016_068_587,
@@ -19,7 +20,7 @@ const COEFFICIENTS: [f32; 9] = [
     1.0,
 ];
 
-/// The angles whose tangents are `x`, in radians from -π/2 to π/2. NaN stays NaN.
+/// Returns the arctangent of each number in radians, from -π/2 to π/2. NaN stays NaN.
 #[inline(always)]
 pub(crate) fn arctangent<S: Simd>(simd: S, x: f32x16<S>) -> f32x16<S> {
     let one = f32x16::splat(simd, 1.0);
@@ -27,6 +28,7 @@ pub(crate) fn arctangent<S: Simd>(simd: S, x: f32x16<S>) -> f32x16<S> {
     let is_steep = size.simd_gt(one);
     let ratio = is_steep.select(one, size) / is_steep.select(size, one);
     let ratio_sq = ratio * ratio;
+    // Horner's scheme.
     let mut factor = f32x16::splat(simd, COEFFICIENTS[0]);
     for coefficient in &COEFFICIENTS[1..] {
         factor = factor * ratio_sq + *coefficient;
@@ -47,7 +49,7 @@ mod tests {
         dispatch!(level, simd => arctangent(simd, f32x16::from_slice(simd, &tangents)).into())
     }
 
-    /// Tangents of all sizes, dense around 1.
+    /// Returns tangents of all magnitudes, most of them around 1.
     fn tangents() -> impl Iterator<Item = [f32; 16]> {
         let tangent = |i: u32| match i % 2 {
             0 => f32::from_bits(0x3000_0000 + (i << 14)),

@@ -1,20 +1,21 @@
-//! Color under clear pixels: the color of the nearest pixel that is seen.
+//! Color bleeding: gives transparent pixels the color of the nearest visible pixel.
 //!
-//! A mip level averages the straight colors of pixels, clear ones too. Whatever lies under alpha 0 then shows as a rim around
-//! what is seen, unless its color goes on there ("fix alpha border", "alpha is transparency" of game engines).
+//! A mip level averages the straight (not premultiplied) colors of all pixels, transparent ones too. If the color of
+//! the visible area does not continue into pixels of alpha 0, their color shows as a rim around that area. Game
+//! engines call this step "fix alpha border" or "alpha is transparency".
 //!
 //! Reference: Pedro F. Felzenszwalb and Daniel P. Huttenlocher, "Distance Transforms of Sampled Functions", Theory of
-//! Computing 8 (2012), <https://doi.org/10.4086/toc.2012.v008a019>. Distances along columns come from two sweeps, and those in
-//! the plane from the lower envelope of the parabolas of each row, here in whole numbers. Two pixels at one distance are told
-//! apart by their place, so the result is the same on all machines.
+//! Computing 8 (2012), <https://doi.org/10.4086/toc.2012.v008a019>. Two sweeps find the distances along columns. The
+//! distances in the plane come from the lower envelope of the parabolas of each row, here in integers. Ties between
+//! pixels at equal distance are broken by position, so the result is the same on all machines.
 
 use crate::LinearRgba;
 use dapple_raster::{Raster, parallel};
 
-/// Gives each pixel of alpha 0 the color of the nearest pixel whose alpha is above 0; its alpha remains 0.
+/// Gives each pixel of alpha 0 the color of the nearest pixel with alpha above 0. Its alpha remains 0.
 ///
-/// Along an axis on which the image wraps, the nearest pixel may lie past its edge. An image without a pixel of alpha above 0
-/// is left as it is. The time is proportional to the number of pixels.
+/// Along an axis that wraps, the nearest pixel may lie past the edge of the image. An image without a visible pixel
+/// stays unchanged. The time is proportional to the number of pixels.
 ///
 /// # Examples
 ///
@@ -57,15 +58,15 @@ fn is_seen(pixel: &LinearRgba) -> bool {
     pixel.alpha > 0.0
 }
 
-/// A column without a pixel that is seen.
+/// Number of rows in a column without a visible pixel.
 const NONE: i32 = i32::MAX;
 
-/// For each pixel the rows to the nearest pixel of its column that is seen, downward; [`NONE`] if there is none. Of two, the
-/// upper one.
+/// Returns for each pixel the signed number of rows, positive downward, to the nearest visible pixel of its column, or
+/// [`NONE`] if the column has no such pixel. Of two at equal distance the upper one wins.
 fn steps_to_seen(image: &Raster<LinearRgba>, wraps: bool) -> Vec<i32> {
     let [width, height] = image.size().map(|side| side as usize);
     let mut steps = vec![NONE; width * height];
-    // Along a column that wraps, a second sweep knows what lies past the edge.
+    // In a column that wraps, the second sweep in a direction starts with the pixels found past the edge.
     let n_sweeps = if wraps { 2 } else { 1 };
     let sweep = |steps: &mut [i32], rows: &mut dyn Iterator<Item = usize>, back: i32| {
         let mut last = vec![NONE; width];
@@ -78,7 +79,8 @@ fn steps_to_seen(image: &Raster<LinearRgba>, wraps: bool) -> Vec<i32> {
                     NONE => NONE,
                     rows => rows + back,
                 };
-                // The first sweep goes downward, so equal distances stay with the upper pixel.
+                // The downward sweep comes first and only a shorter distance replaces it, so the upper pixel wins a
+                // tie.
                 if *last != NONE && (*step == NONE || last.abs() < step.abs()) {
                     *step = *last;
                 }
@@ -92,11 +94,11 @@ fn steps_to_seen(image: &Raster<LinearRgba>, wraps: bool) -> Vec<i32> {
     steps
 }
 
-/// The lower envelope of the parabolas of a row: the columns that are nearest to some pixel, from left to right.
+/// Lower envelope of the parabolas of a row: the columns that are nearest to at least one pixel, from left to right.
 struct Envelope {
-    /// A column, counted past the edges of a row that wraps, and the first pixel to which it is the nearest.
+    /// A column, counted past the edges of a row that wraps, and the first pixel to which it is nearest.
     parts: Vec<(i64, i64)>,
-    /// The width of a row that wraps.
+    /// Width of the row if it wraps.
     period: Option<i64>,
 }
 
@@ -115,13 +117,14 @@ impl Envelope {
             }
             let mut from = i64::MIN;
             while let Some(&(before, first)) = parts.last() {
-                // The last pixel that is at least as near to the column before.
+                // Last pixel that is at least as close to the column `before` as to `column`.
                 let rise = square(column) + column * column - square(before) - before * before;
                 let last = rise.div_euclid(2 * (column - before));
                 if last >= first {
                     from = last + 1;
                     break;
                 }
+                // The column `before` is nearest to no pixel: drop it from the envelope.
                 parts.pop();
             }
             parts.push((column, from));
@@ -132,7 +135,7 @@ impl Envelope {
         }
     }
 
-    /// The nearest column of each pixel of the row. There is one, since a pixel is seen in some column.
+    /// Returns the nearest column of each pixel of the row. At least one column has a visible pixel.
     fn nearest(&self, width: usize) -> impl Iterator<Item = usize> {
         let mut part = 0;
         (0..width as i64).map(move |pixel| {
@@ -156,7 +159,7 @@ mod tests {
     use crate::{LinearRgb, LinearRgba};
     use dapple_raster::Raster;
 
-    /// Some pixels that are seen, each of another color, among clear ones.
+    /// Returns an image with a few visible pixels, each of a different color, among transparent ones.
     fn scattered(size: [u32; 2], one_in: u32) -> Raster<LinearRgba> {
         Raster::from_fn(size, |x, y| {
             let random = (x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA6B))
@@ -170,7 +173,7 @@ mod tests {
         .unwrap()
     }
 
-    /// The square of the distance of two pixels.
+    /// Returns the squared distance between two pixels.
     fn distance_sq(a: [i64; 2], b: [i64; 2], size: [i64; 2], wraps: [bool; 2]) -> i64 {
         let along = |axis: usize| {
             let distance = (a[axis] - b[axis]).abs();
@@ -243,7 +246,7 @@ mod tests {
                     };
                     if mean(|pixel| pixel.alpha) > 0.0 {
                         let green = mean(|pixel| pixel.color.g);
-                        // The darkest is 0.3; the rest is rounding.
+                        // The minimum of the visible colors is 0.3; the difference is rounding.
                         assert!(green > 0.2999, "{green} on level {level}");
                     }
                 }

@@ -1,11 +1,11 @@
-//! Whole-number codes of values in a file: quantization, and the sRGB curve by exact tables.
+//! Integer codes of values in a file: linear quantization, and the sRGB curve by exact tables.
 //!
 //! Data (heights, masks, normals) is quantized with `round(value · max)`. Color goes through the sRGB transfer
-//! function of IEC 61966-2-1, whose two directions are in [`crate::srgb`].
+//! function of IEC 61966-2-1; both directions are in [`crate::srgb`].
 
 use crate::srgb;
 
-/// A whole number that codes a value from 0 to 1 in a file: `u8` or `u16`.
+/// An integer that encodes a value from 0 to 1 in a file: `u8` or `u16`.
 ///
 /// # Examples
 ///
@@ -17,27 +17,27 @@ use crate::srgb;
 /// assert_eq!(u8::srgb_from_linear(0.5), 188);
 /// ```
 pub trait Code: Copy + Send + Sync + sealed::Sealed + 'static {
-    /// The largest code, which codes the value 1.
+    /// Maximum code, which encodes the value 1.
     const MAX: u16;
 
-    /// The code nearest to a value: `round(value · max)`, halves up.
+    /// Returns the code nearest to a value: `round(value · max)`, where halves round up.
     ///
-    /// Values below 0 become 0, values above 1 the largest code, and NaN becomes 0.
+    /// Values below 0 become 0, values above 1 become the maximum code, and NaN becomes 0.
     #[must_use]
     fn from_unit(value: f32) -> Self;
 
-    /// The value of a code, from 0 to 1: `code / max`, correctly rounded.
+    /// Returns the value of a code, from 0 to 1: `code / max`, correctly rounded.
     #[must_use]
     fn to_unit(self) -> f32;
 
-    /// The code of a linear value under the sRGB curve: the exact curve, times the largest code, rounded.
+    /// Encodes a linear value with the sRGB curve: the exact curve times the maximum code, rounded to nearest.
     ///
-    /// The result is that of exact arithmetic, for every `f32`. Values below 0 become 0, values above 1 the largest
+    /// The result equals exact arithmetic for every `f32`. Values below 0 become 0, values above 1 become the maximum
     /// code, and NaN becomes 0.
     #[must_use]
     fn srgb_from_linear(linear: f32) -> Self;
 
-    /// The linear value, from 0 to 1, of a code under the sRGB curve: the `f32` nearest to the true value.
+    /// Decodes a code with the sRGB curve to a linear value from 0 to 1: the `f32` nearest to the exact value.
     #[must_use]
     fn linear_from_srgb(self) -> f32;
 }
@@ -47,7 +47,7 @@ impl Code for u8 {
 
     #[inline]
     fn from_unit(value: f32) -> Self {
-        // The product and the sum are exact in `f64`; the cast truncates, saturates, and takes NaN to zero.
+        // The product and the sum are exact in `f64`. The cast truncates, saturates, and maps NaN to 0.
         (f64::from(value) * 255.0 + 0.5) as Self
     }
 
@@ -58,7 +58,7 @@ impl Code for u8 {
 
     #[inline]
     fn srgb_from_linear(linear: f32) -> Self {
-        // The table of this depth has no larger code.
+        // The table for 8 bits contains no code above 255.
         srgb::curve_u8().encode(linear) as Self
     }
 
@@ -93,7 +93,7 @@ impl Code for u16 {
 }
 
 mod sealed {
-    /// Restricts [`super::Code`] to the two depths of files.
+    /// Restricts [`super::Code`] to the two bit depths of files.
     pub trait Sealed {}
     impl Sealed for u8 {}
     impl Sealed for u16 {}

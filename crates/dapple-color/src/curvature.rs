@@ -1,26 +1,27 @@
-//! Mean curvature of heights: where a surface bulges, and where it is hollow.
+//! Mean curvature of heights: positive on ridges and hills, negative in grooves and pits.
 //!
-//! The surface `z = s h(x, y)` has, with subscripts for derivatives, the mean curvature
+//! With subscripts for derivatives, the surface `z = s h(x, y)` has the mean curvature
 //!
 //! ```text
-//! -((1 + z_y²) z_xx - 2 z_x z_y z_xy + (1 + z_x²) z_yy) / (2 (1 + z_x² + z_y²)^(3/2)),
+//! -((1 + z_y²) z_xx - 2 z_x z_y z_xy + (1 + z_x²) z_yy) / (2 (1 + z_x² + z_y²)^(3/2)).
 //! ```
 //!
-//! which is positive where the surface is convex, on ridges and hills, and negative in grooves and pits. A hill that is part
-//! of a sphere has one over the radius of the sphere, at every place of any slope.
+//! It is positive where the surface is convex and negative where it is concave. Every point of a spherical hill has
+//! the reciprocal of the sphere's radius, whatever its slope.
 //!
-//! Reference: Manfredo P. do Carmo, "Differential Geometry of Curves and Surfaces", 1976, section 3.3, example 5, with the
-//! sign turned, as maps of curvature have it.
+//! Reference: Manfredo P. do Carmo, "Differential Geometry of Curves and Surfaces", 1976, section 3.3, example 5, with
+//! the opposite sign, as is usual in curvature maps.
 //!
-//! Derivatives are central differences over a radius of whole pixels to each side: second differences are weighted means of
-//! the derivative over that radius. Lengths are in units of the plane and curvature in one over them: it does not depend on
-//! the resolution as long as the radius is at least a pixel. Where a part is not finite the curvature is 0.
+//! Derivatives are central differences over a radius of whole pixels in each direction, and second derivatives are
+//! second differences over the same radius: weighted means of the derivative over it. Lengths are in units of the
+//! plane and curvature is in reciprocal units, so the result does not depend on the resolution if the radius is at
+//! least a pixel. Where a term is not finite, the curvature is 0.
 
 use crate::{ColorError, HeightPlane, plane};
 use dapple_raster::Raster;
 use dapple_raster::glam::DVec2;
 
-/// Options of curvature: the plane and the scale.
+/// Options of curvature: the plane of the heights and the radius of the differences.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -28,10 +29,10 @@ use dapple_raster::glam::DVec2;
     serde(default, deny_unknown_fields)
 )]
 pub struct CurvatureOptions {
-    /// The plane of the heights.
+    /// Plane of the heights.
     pub plane: HeightPlane,
-    /// The scale of the measurement: the radius of its differences in units of the plane, at least zero. By default
-    /// 1/128. It is rounded to whole pixels, and at least one pixel.
+    /// Radius of the differences in units of the plane, at least 0. [default: 1/128] It is rounded to whole pixels and
+    /// is at least one pixel.
     pub radius: f64,
 }
 
@@ -42,7 +43,7 @@ impl Default for CurvatureOptions {
 }
 
 impl From<HeightPlane> for CurvatureOptions {
-    /// The options for heights in a plane, with the default radius.
+    /// Returns options for heights in a plane, with the default radius.
     fn from(plane: HeightPlane) -> Self {
         Self {
             plane,
@@ -52,35 +53,37 @@ impl From<HeightPlane> for CurvatureOptions {
 }
 
 impl CurvatureOptions {
-    /// The numbers of columns and rows around a pixel on which its value depends, in a raster of `size` pixels.
+    /// Returns the margin in columns and rows around a pixel on which its value depends, in a raster of `size` pixels.
     ///
-    /// A crop that has these margins on each side has the same bits inside: see [`curvature_of_part`]. Options that
-    /// [`curvature`] refuses have a halo of 1 × 1.
+    /// A crop with these margins has the same bits inside: see [`curvature_of_part`]. For options that [`curvature`]
+    /// rejects, the halo is 1 × 1.
     #[must_use]
     pub fn halo(&self, size: [u32; 2]) -> [u32; 2] {
         self.spans(size).unwrap_or([1; 2])
     }
 
-    /// The radius in columns and rows.
+    /// Returns the radius in columns and rows.
     fn spans(&self, size: [u32; 2]) -> Result<[u32; 2], ColorError> {
         self.plane.check("strength of the curvature")?;
         let pixel = self.plane.pixel(size);
         plane::check_radius("radius of the curvature", self.radius, pixel)?;
-        // The margin rounds half a pixel up, whatever the extent rounds to.
+        // The small term makes exact half pixels round up, whatever the rounding error of the extent.
         Ok([pixel.x, pixel.y].map(|pixel| ((self.radius / pixel + 0.5 + 1e-9) as u32).max(1)))
     }
 }
 
-/// The mean curvature of a raster of heights, in one over units of the plane, on all cores where the feature `rayon` is on.
+/// Computes the mean curvature of a raster of heights, in reciprocal units of the plane. Uses all cores if the feature
+/// `rayon` is enabled.
 ///
-/// Positive is convex (ridges, hills), negative concave. [`curvature_to_gray`] shows it as a gray.
+/// Positive is convex (ridges, hills), negative is concave. [`curvature_to_gray`] converts it to a gray value.
 ///
 /// # Errors
 ///
 /// [`NotFinite`](crate::ColorErrorKind::NotFinite) if the strength or the radius is NaN or infinite,
 /// [`Extent`](crate::ColorErrorKind::Extent) if the extent is not above zero and finite,
 /// [`Radius`](crate::ColorErrorKind::Radius) if the radius is negative or more than 16384 pixels,
-/// [`Raster`](crate::ColorErrorKind::Raster) if a raster that does not repeat is too large with the radius at its sides.
+/// [`Raster`](crate::ColorErrorKind::Raster) if a raster that does not repeat becomes too large with margins of the
+/// radius.
 ///
 /// # Examples
 ///
@@ -110,11 +113,12 @@ pub fn curvature(
     Ok(bent.crop(margin, height.size())?)
 }
 
-/// The curvature of a part of a raster of `whole` pixels, whose extent is that of the options; see [`curvature`].
+/// Computes the curvature of a part of a raster of `whole` pixels. The extent in the options is that of the whole
+/// raster; see [`curvature`].
 ///
-/// The wrap of the options chooses the neighbors past the edges of the part; heights do not continue there.
-/// Every pixel that is further from the edges of the part than the [halo](CurvatureOptions::halo) of the whole has the
-/// bits that it has in the whole.
+/// The wrap in the options selects the neighbors past the edges of the part; heights are not extrapolated there. Every
+/// pixel that is further from the edges of the part than the [halo](CurvatureOptions::halo) of the whole has the same
+/// bits as in the whole.
 ///
 /// # Errors
 ///
@@ -147,10 +151,10 @@ pub fn curvature_of_part(
     Ok(bent)
 }
 
-/// The gray of a curvature: 0.5 where it is flat, brighter where it is convex, from 0 to 1.
+/// Converts a curvature to a gray value from 0 to 1: 0.5 for flat, brighter for convex.
 ///
-/// `radius` is in units of the plane: a hill that is part of a sphere of that radius, or a sharper one, is white, and a
-/// pit of that radius black. NaN becomes 0.5.
+/// `radius` is in units of the plane. A hill on a sphere of that radius or a smaller one is white, and a pit of that
+/// radius is black. NaN becomes 0.5.
 #[must_use]
 pub fn curvature_to_gray(curvature: f32, radius: f32) -> f32 {
     let part = curvature * radius;
@@ -160,13 +164,13 @@ pub fn curvature_to_gray(curvature: f32, radius: f32) -> f32 {
     0.5 + 0.5 * part.clamp(-1.0, 1.0)
 }
 
-/// Derivatives per difference of heights.
+/// Factors that turn differences of heights into derivatives.
 struct Scales {
-    /// The factors of the difference of a pixel's two neighbors, across and downward.
+    /// Factors for the difference of a pixel's two neighbors, along x and y.
     first: DVec2,
-    /// The factors of the difference of the differences on both sides of a pixel, across and downward.
+    /// Factors for the second difference at a pixel, along x and y.
     second: DVec2,
-    /// The factor of the difference across of the differences downward.
+    /// Factor for the mixed difference: along x of the differences along y.
     mixed: f64,
 }
 
@@ -181,7 +185,7 @@ impl Scales {
         }
     }
 
-    /// The curvature in the middle of 3 × 3 heights.
+    /// Returns the curvature at the center of 3 × 3 heights.
     #[inline(always)]
     fn mean_curvature(&self, heights: [[f32; 3]; 3]) -> f32 {
         let [above, here, below] = heights;
@@ -191,7 +195,7 @@ impl Scales {
         let xx = (difference(here[1], here[2]) - difference(here[0], here[1])) * self.second.x;
         let yy = (difference(here[1], below[1]) - difference(above[1], here[1])) * self.second.y;
         let xy = (difference(below[0], below[2]) - difference(above[0], above[2])) * self.mixed;
-        // Squared lengths of the tangents across and downward, and of the normal whose upward part is 1.
+        // Squared lengths of the tangents along x and y, and of the normal whose z component is 1.
         let [across_sq, down_sq] = [1.0 + x * x, 1.0 + y * y];
         let length_sq = across_sq + y * y;
         let bend = down_sq * xx - 2.0 * x * y * xy + across_sq * yy;

@@ -4,11 +4,11 @@ use crate::{ColorError, ColorErrorKind, LinearRgb};
 use core::str::FromStr;
 
 impl LinearRgb {
-    /// The color of an sRGB code in hexadecimal: `"#ff8000"`, `"ff8000"`, or `"#f80"`, which is short for `"#ff8800"`.
+    /// Parses an sRGB color in hexadecimal: `"#ff8000"`, `"ff8000"`, or `"#f80"`, which is short for `"#ff8800"`.
     ///
     /// # Errors
     ///
-    /// [`ColorErrorKind::Hex`] if the text is anything else.
+    /// [`ColorErrorKind::Hex`] if the text has any other form.
     ///
     /// # Examples
     ///
@@ -34,7 +34,7 @@ impl FromStr for LinearRgb {
     }
 }
 
-/// The codes of red, green and blue.
+/// Parses the codes of red, green and blue.
 fn codes(text: &str) -> Option<[u8; 3]> {
     let text = text.strip_prefix('#').unwrap_or(text);
     let digits: Option<Vec<u8>> = text.chars().map(digit).collect();

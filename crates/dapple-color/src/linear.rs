@@ -3,10 +3,10 @@
 use crate::Code;
 use core::ops::{Add, Mul, Sub};
 
-/// A color in linear light with the primaries and the white of sRGB.
+/// A color in linear light with the primaries and the white point of sRGB.
 ///
-/// Each component is 0 for no light and 1 for the maximum of a screen; values below and above, and NaN, are allowed
-/// between steps. The color can be added and scaled, so a `Raster<LinearRgb>` can be interpolated between its pixels.
+/// Each component is 0 for no light and 1 for the maximum of a screen. Intermediate results may be below 0, above 1,
+/// or NaN. Colors can be added and scaled, so a `Raster<LinearRgb>` can be interpolated between its pixels.
 ///
 /// # Examples
 ///
@@ -19,21 +19,21 @@ use core::ops::{Add, Mul, Sub};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LinearRgb {
-    /// The red component, linear.
+    /// Red component, linear.
     pub r: f32,
-    /// The green component, linear.
+    /// Green component, linear.
     pub g: f32,
-    /// The blue component, linear.
+    /// Blue component, linear.
     pub b: f32,
 }
 
-/// A color in linear light with a coverage that is *not* multiplied into it.
+/// A color in linear light with straight (not premultiplied) alpha.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LinearRgba {
-    /// The color of the covered part.
+    /// Color of the covered part of the pixel.
     pub color: LinearRgb,
-    /// The coverage, from 0 (none) to 1 (full). It is linear in files, too.
+    /// Coverage, from 0 (none) to 1 (full). It is linear in files too.
     pub alpha: f32,
 }
 
@@ -43,60 +43,61 @@ impl LinearRgb {
     /// White: the maximum of a screen.
     pub const WHITE: Self = Self::gray(1.0);
 
-    /// A color from its linear components.
+    /// Creates a color from its linear components.
     #[must_use]
     pub const fn new(r: f32, g: f32, b: f32) -> Self {
         Self { r, g, b }
     }
 
-    /// A gray of the given linear value.
+    /// Creates a gray with the given linear value.
     #[must_use]
     pub const fn gray(value: f32) -> Self {
         Self::new(value, value, value)
     }
 
-    /// The color of sRGB codes in a file, red first.
+    /// Decodes the sRGB codes of a file, red first.
     #[must_use]
     pub fn from_srgb<C: Code>(codes: [C; 3]) -> Self {
         codes.map(C::linear_from_srgb).into()
     }
 
-    /// The nearest sRGB codes, red first; components below 0 or above 1 are clamped, NaN becomes 0.
+    /// Returns the nearest sRGB codes, red first. Components below 0 or above 1 are clamped, NaN becomes 0.
     #[must_use]
     pub fn to_srgb<C: Code>(self) -> [C; 3] {
         self.to_array().map(C::srgb_from_linear)
     }
 
-    /// Red, green and blue.
+    /// Returns red, green and blue.
     #[must_use]
     pub const fn to_array(self) -> [f32; 3] {
         [self.r, self.g, self.b]
     }
 
-    /// The relative luminance: the Y of CIE XYZ under ITU-R BT.709 primaries, linear, 1 for white.
+    /// Returns the relative luminance: the Y of CIE XYZ with ITU-R BT.709 primaries, linear, 1 for white.
     ///
-    /// `0.2126 r + 0.7152 g + 0.0722 b`, as in BT.709-6 item 3.2.
+    /// The formula is `0.2126 r + 0.7152 g + 0.0722 b`, as in BT.709-6 item 3.2.
     #[must_use]
     pub fn luminance(self) -> f32 {
         0.2126 * self.r + 0.7152 * self.g + 0.0722 * self.b
     }
 
-    /// The linear interpolation to another color: this one at 0, `other` at 1; other numbers extrapolate.
+    /// Interpolates linearly to another color: `part` 0 gives this color, 1 gives `other`, numbers outside
+    /// extrapolate.
     #[must_use]
     pub fn lerp(self, other: Self, part: f32) -> Self {
-        // In this form both ends are exact.
+        // In this form both end values are exact.
         self * (1.0 - part) + other * part
     }
 }
 
 impl LinearRgba {
-    /// A color with full coverage.
+    /// Creates a color with full coverage.
     #[must_use]
     pub const fn opaque(color: LinearRgb) -> Self {
         Self { color, alpha: 1.0 }
     }
 
-    /// The color of codes in a file: red, green and blue under the sRGB curve, then alpha, linear.
+    /// Decodes the codes of a file: red, green and blue with the sRGB curve, then linear alpha.
     #[must_use]
     pub fn from_srgb<C: Code>([r, g, b, alpha]: [C; 4]) -> Self {
         Self {
@@ -105,14 +106,14 @@ impl LinearRgba {
         }
     }
 
-    /// The nearest codes: red, green and blue under the sRGB curve, then alpha, linear.
+    /// Returns the nearest codes: red, green and blue with the sRGB curve, then linear alpha.
     #[must_use]
     pub fn to_srgb<C: Code>(self) -> [C; 4] {
         let [r, g, b] = self.color.to_srgb();
         [r, g, b, C::from_unit(self.alpha)]
     }
 
-    /// This color laid over an opaque one.
+    /// Composites this color over an opaque one.
     #[must_use]
     pub fn over(self, background: LinearRgb) -> LinearRgb {
         background.lerp(self.color, self.alpha)
@@ -189,7 +190,7 @@ mod tests {
 
     #[test]
     fn the_luminance_of_white_is_one() {
-        // The three factors sum to 1 in decimal; in `f32` one rounding of 6e-8 may remain.
+        // The three factors sum to 1 in decimal. In `f32` one rounding error of 6e-8 may remain.
         let luminance = LinearRgb::WHITE.luminance();
         assert!((luminance - 1.0).abs() < 1e-6, "{luminance}");
     }

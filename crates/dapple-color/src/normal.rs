@@ -1,29 +1,30 @@
-//! Normal maps from heights, or from gradients that are known exactly.
+//! Normal maps from heights, or from exact gradients.
 //!
-//! A height `h` over the plane has the normal `normalize(-s ∂h/∂x, ±s ∂h/∂y, 1)`, with `s` the strength. Rows go down in
-//! dapple, so with Y up (OpenGL) the sign of the second part is plus, with Y down (DirectX) minus. Derivatives of a raster
-//! are central differences over two pixels, `(h[i+1] - h[i-1]) / (2 pixel)`. Heights that repeat along an axis have their
-//! neighbors at the opposite edge, so the normal map of a tile is a tile. Others [continue](crate::continue_heights) with
-//! their slope.
+//! A height `h` over the plane has the normal `normalize(-s ∂h/∂x, ±s ∂h/∂y, 1)`, where `s` is the strength. Rows go
+//! down in dapple, so the sign of the y component is plus for Y up (OpenGL) and minus for Y down (DirectX). The
+//! derivatives of a raster are central differences over two pixels, `(h[i+1] - h[i-1]) / (2 pixel)`. Heights that
+//! repeat along an axis take their neighbors from the opposite edge, so the normal map of a tile tiles. Other heights
+//! [continue](crate::continue_heights) with their slope.
 //!
 //! Reference: James F. Blinn, "Simulation of Wrinkled Surfaces", SIGGRAPH 1978, for the perturbed normal.
 //!
-//! Slopes are heights per unit of the *plane*, in which the raster has a stated extent, and not per pixel: twice the
-//! resolution gives the same normals, on finer pixels. Where a part of the slope is not finite the normal is flat.
+//! Slopes are heights per unit of the *plane*, in which the raster has a given extent, and not per pixel. Twice the
+//! resolution therefore gives the same normals on finer pixels. Where a component of the slope is not finite, the
+//! normal is flat.
 
 use crate::{Code, ColorError, HeightPlane, plane};
 use dapple_raster::Raster;
 use dapple_raster::glam::DVec2;
 
-/// A unit vector on a surface: x to the right, y up or down as [`NormalY`] says, z out of the surface.
+/// A unit normal vector: x to the right, y up or down according to [`NormalY`], z out of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Normal {
-    /// To the right, from -1 to 1.
+    /// Component to the right, from -1 to 1.
     pub x: f32,
-    /// Up (OpenGL) or down (DirectX), from -1 to 1; see [`NormalY`].
+    /// Component up (OpenGL) or down (DirectX), from -1 to 1; see [`NormalY`].
     pub y: f32,
-    /// Out of the surface, from 0 to 1.
+    /// Component out of the surface, from 0 to 1.
     pub z: f32,
 }
 
@@ -47,14 +48,14 @@ dapple_raster::named! {
     serde(default, deny_unknown_fields)
 )]
 pub struct NormalOptions {
-    /// The plane of the heights.
+    /// Plane of the heights.
     pub plane: HeightPlane,
-    /// The direction of green. By default up.
+    /// Direction of the green channel. [default: up]
     pub y: NormalY,
 }
 
 impl From<HeightPlane> for NormalOptions {
-    /// The options for heights in a plane, with green up.
+    /// Returns options for heights in a plane, with green up.
     fn from(plane: HeightPlane) -> Self {
         let y = NormalY::default();
         Self { plane, y }
@@ -62,7 +63,7 @@ impl From<HeightPlane> for NormalOptions {
 }
 
 impl NormalOptions {
-    /// The normal for a slope: heights per unit of the plane to the right, and downward.
+    /// Returns the normal for a slope: heights per unit of the plane to the right and downward.
     #[must_use]
     pub fn normal(&self, slope: DVec2) -> Normal {
         let strength = self.plane.strength;
@@ -84,7 +85,7 @@ impl NormalOptions {
     }
 }
 
-/// The normals of a raster of heights, on all cores where the feature `rayon` is on.
+/// Computes the normals of a raster of heights. Uses all cores if the feature `rayon` is enabled.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/normal-map.md"))]
 ///
@@ -92,7 +93,8 @@ impl NormalOptions {
 ///
 /// [`NotFinite`](crate::ColorErrorKind::NotFinite) if the strength is NaN or infinite,
 /// [`Extent`](crate::ColorErrorKind::Extent) if the extent is not above zero and finite,
-/// [`Raster`](crate::ColorErrorKind::Raster) if a raster that does not repeat is too large with a pixel more at its sides.
+/// [`Raster`](crate::ColorErrorKind::Raster) if a raster that does not repeat becomes too large with margins of one
+/// pixel.
 ///
 /// # Examples
 ///
@@ -119,10 +121,11 @@ pub fn normal_map(
     Ok(normals.crop(margin, height.size())?)
 }
 
-/// The normals of a part of a raster of `whole` pixels, whose extent is that of the options; see [`normal_map`].
+/// Computes the normals of a part of a raster of `whole` pixels. The extent in the options is that of the whole
+/// raster; see [`normal_map`].
 ///
-/// The wrap of the options chooses the neighbors past the edges of the part; heights do not continue there.
-/// Every pixel that is further from the edges of the part than a pixel has the bits that it has in the whole.
+/// The wrap in the options selects the neighbors past the edges of the part; heights are not extrapolated there. Every
+/// pixel that is more than one pixel from the edges of the part has the same bits as in the whole.
 ///
 /// # Errors
 ///
@@ -134,7 +137,7 @@ pub fn normal_map_of_part(
 ) -> Result<Raster<Normal>, ColorError> {
     options.check()?;
     let size = height.size();
-    // Slope per difference of two neighbors.
+    // Factor from the difference of two neighbors to a slope.
     let scale = DVec2::new(whole[0].into(), whole[1].into()) / (2.0 * options.plane.extent);
     let [wrap_x, wrap_y] = options.plane.wrap;
     let last = size[0] - 1;
@@ -159,10 +162,10 @@ pub fn normal_map_of_part(
     Ok(normals)
 }
 
-/// The normals of a raster of exact slopes: heights per unit of the plane to the right, and downward.
+/// Computes the normals of a raster of exact slopes: heights per unit of the plane to the right and downward.
 ///
-/// Only the strength and the direction of green of the options are used. Runs on all cores where the feature `rayon` is
-/// on.
+/// Only the strength and the direction of green are read from the options. Uses all cores if the feature `rayon` is
+/// enabled.
 ///
 /// # Errors
 ///
@@ -177,34 +180,35 @@ pub fn normal_map_from_gradient(
 }
 
 impl Normal {
-    /// The normal of a flat surface, straight out of it.
+    /// Normal of a flat surface.
     pub const FLAT: Self = Self {
         x: 0.0,
         y: 0.0,
         z: 1.0,
     };
 
-    /// The three parts, x first.
+    /// Returns the three components, x first.
     #[must_use]
     pub const fn to_array(self) -> [f32; 3] {
         [self.x, self.y, self.z]
     }
 
-    /// The codes of an image: `round((part + 1) / 2 · max)`, red for x, green for y, blue for z, without any curve.
+    /// Returns the codes of an image: `round((component + 1) / 2 · max)`, with red for x, green for y and blue for z,
+    /// all linear.
     ///
-    /// A flat normal becomes (128, 128, 255), or (32768, 32768, 65535) with 16 bits.
+    /// A flat normal becomes (128, 128, 255), or (32768, 32768, 65535) in 16 bits.
     #[must_use]
     pub fn to_codes<C: Code>(self) -> [C; 3] {
         self.to_array().map(|part| C::from_unit(part * 0.5 + 0.5))
     }
 
-    /// The normal with those of its parts x and y set to 0 that come from a code next to the middle: 127 or 128 of 8 bits,
-    /// 32767 or 32768 of 16 bits.
+    /// Sets x and y to 0 where they come from a code next to the middle: 127 or 128 in 8 bits, 32767 or 32768 in 16
+    /// bits.
     ///
-    /// No code has the value 0, so images write 128 for it, which is read as a slope of 1/255. Turned or mirrored, that slope
-    /// becomes another code, although a flat surface has no direction. Parts of 8 bits are recognized by their ratios to the
-    /// other parts, which are those of odd numbers up to 255, whatever the length was before it was 1; parts of 16 bits by
-    /// being that small.
+    /// No code has the value 0, so images store 128, which is read as a slope of 1/255. Rotated or mirrored, that
+    /// slope becomes a different code, although a flat surface has no direction. Components from 8 bits are recognized
+    /// by their ratios to the other components: these are ratios of odd numbers up to 255, whatever the length of the
+    /// vector before normalization. Components from 16 bits are recognized by their small size.
     #[must_use]
     pub fn centered(self) -> Self {
         let Self { x, y, z } = self;
@@ -221,16 +225,16 @@ impl Normal {
         Self::unit([x, y, z])
     }
 
-    /// The unit vector for the codes of an image, as programs read it: `2 code / max - 1`, normalized.
+    /// Returns the unit vector for the codes of an image by the usual rule: `2 code / max - 1`, normalized.
     ///
-    /// No code has the value 0, so a flat normal comes back tilted by `1 / max` to the right and in y. Codes whose
-    /// vector cannot be normalized become a flat normal.
+    /// No code has the value 0, so a flat normal is read back tilted by `1 / max` in x and in y. Codes whose vector
+    /// cannot be normalized become a flat normal.
     #[must_use]
     pub fn from_codes<C: Code>(codes: [C; 3]) -> Self {
         Self::unit(codes.map(|code| 2.0 * code.to_unit() - 1.0))
     }
 
-    /// The unit vector in a direction; a flat normal for a direction without a length.
+    /// Returns the unit vector in a direction, or a flat normal if the direction has no length.
     pub(crate) fn unit([x, y, z]: [f32; 3]) -> Self {
         let length = (x * x + y * y + z * z).sqrt();
         if length > 0.0 {
@@ -242,14 +246,14 @@ impl Normal {
     }
 }
 
-/// Parts below this are codes next to the middle of 16 bits: these have 2^-16, the next ones three times as much, and the
-/// codes of a vector are within a quarter of a unit vector.
+/// Components below this come from 16-bit codes next to the middle. Those are 2^-16 for a vector of unit length and
+/// the next codes three times as large; the vector of codes has unit length within a quarter.
 const STEP_OF_16_BITS: f32 = 1.5 / (1 << 16) as f32;
 
-/// The range of 1/255 over the length of a vector of 8-bit codes, which is near 1.
+/// Range of 1/255 divided by the length of a vector of 8-bit codes, which is near 1.
 const STEPS_OF_8_BITS: core::ops::RangeInclusive<f32> = 0.9 / 255.0..=1.1 / 255.0;
 
-/// Whether a ratio is an odd number, but for the rounding of codes to `f32`: 1e-7 of 1/255, times 255.
+/// Returns whether a ratio is an odd number within the rounding of codes to `f32`: 1e-7 of 1/255, times 255.
 fn is_odd(ratio: f32) -> bool {
     let rest = (ratio.abs() * 0.5).fract();
     (rest - 0.5).abs() < 0.01

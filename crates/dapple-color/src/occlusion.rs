@@ -1,28 +1,28 @@
-//! Ambient occlusion of heights: the part of the sky that is visible from each place.
+//! Ambient occlusion of heights: the fraction of the sky that is visible from each point.
 //!
-//! A place on the surface `z = s h(x, y)` with the unit normal `n` is lit by the sky where nothing rises above it. Around
-//! it, in each of 16 azimuths `d`, the horizon is the largest slope `H` from the place to a place on the ray, within the
-//! radius, and not below the slope `t` of the tangent plane. Light from an angle `θ` to the zenith counts with the cosine
-//! to the normal, so the azimuth gives
+//! A point on the surface `z = s h(x, y)` with the unit normal `n` receives light from every part of the sky that no
+//! height hides. In each of 16 azimuths `d`, the horizon is the maximum slope `H` from the point to a point on the ray
+//! within the radius, and at least the slope `t` of the tangent plane. Light from the angle `θ` to the zenith is
+//! weighted by the cosine to the normal, so one azimuth contributes
 //!
 //! ```text
 //! ∫ (n_z cos θ + (n·d) sin θ) sin θ dθ  =  n_z/2 ((1 + t H)/(1 + H²) - t (π/2 - arctan H)),  θ from 0 to arccot H.
 //! ```
 //!
-//! `t π/2` is lost between opposite azimuths. What is divided by is the same sum with nothing above the tangent plane, so
-//! that a plane of any slope sees exactly 1.
+//! The term `t π/2` cancels between opposite azimuths. The divisor is the same sum with nothing above the tangent
+//! plane, so a plane of any slope has a visibility of exactly 1.
 //!
 //! Reference: Louis Bavoil, Miguel Sainz and Rouslan Dimitrov, "Image-space horizon-based ambient occlusion", SIGGRAPH
 //! 2008 talks, for the horizon, and Jorge Jimenez, Xianchun Wu, Angelo Pesce and Adrian Jarabo, "Practical Real-Time
-//! Strategies for Accurate Indirect Occlusion", SIGGRAPH 2016 courses, for the integral about the normal. There are no
-//! random turns of the azimuths here: a value depends on the heights within the halo alone, and is the same in every window.
-//! Toward the radius, slopes above that of the tangent plane are lowered to it, as the fade says.
+//! Strategies for Accurate Indirect Occlusion", SIGGRAPH 2016 courses, for the integral about the normal. The azimuths
+//! are not rotated at random: a value depends only on the heights within the halo, and is the same in every window.
+//! Toward the radius the fade lowers slopes to that of the tangent plane.
 //!
-//! Of the true value, 16 azimuths miss about 0.005 on smooth and 0.015 on broken heights (root mean square). Samples are
-//! one pixel apart, or an eighth of the way, so that a sharp edge far away is seen up to a ninth too low.
+//! The root mean square error from 16 azimuths is about 0.005 for smooth heights and 0.015 for rough ones. Samples are
+//! one pixel apart, or an eighth of their distance, so a distant sharp edge appears lower by up to a ninth.
 //!
 //! Heights times the strength, the radius and the extent are in units of the plane. A height that is not finite
-//! occludes nothing, and the tangent plane beside it is level, as in a normal map.
+//! occludes nothing, and the tangent plane next to it is level, as in a normal map.
 
 use crate::{ColorError, ColorErrorKind, HeightPlane, plane};
 use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -45,13 +45,13 @@ mod sky;
     serde(default, deny_unknown_fields)
 )]
 pub struct OcclusionOptions {
-    /// The plane of the heights.
+    /// Plane of the heights.
     pub plane: HeightPlane,
-    /// The distance within which heights occlude the sky, in units of the plane, at least zero; with less than a pixel
-    /// there is no occlusion. By default 1/16. The computing time grows with its logarithm above 16 pixels.
+    /// Distance within which heights occlude the sky, in units of the plane, at least 0. [default: 1/16] A radius
+    /// below one pixel gives no occlusion. The computing time grows with its logarithm above 16 pixels.
     pub radius: f64,
-    /// The outer part of the radius over which occlusion fades, from 0 to 1. By default 1/2. Without a fade the map is
-    /// exact for heights within the radius, but a height that crosses it occludes the sky all at once.
+    /// Outer fraction of the radius over which occlusion fades out, from 0 to 1. [default: 1/2] At 0 the map is exact
+    /// for heights within the radius, but a height that enters the radius occludes the sky abruptly.
     pub fade: f64,
 }
 
@@ -62,7 +62,7 @@ impl Default for OcclusionOptions {
 }
 
 impl From<HeightPlane> for OcclusionOptions {
-    /// The options for heights in a plane, with the default radius and fade.
+    /// Returns options for heights in a plane, with the default radius and fade.
     fn from(plane: HeightPlane) -> Self {
         Self {
             plane,
@@ -73,13 +73,13 @@ impl From<HeightPlane> for OcclusionOptions {
 }
 
 impl OcclusionOptions {
-    /// The numbers of columns and rows around a pixel on which its value depends, in a raster of `size` pixels.
+    /// Returns the margin in columns and rows around a pixel on which its value depends, in a raster of `size` pixels.
     ///
-    /// A crop that has these margins on each side has the same bits inside: see [`ambient_occlusion_of_part`]. Options
-    /// that [`ambient_occlusion`] refuses have a halo of 1 × 1.
+    /// A crop with these margins has the same bits inside: see [`ambient_occlusion_of_part`]. For options that
+    /// [`ambient_occlusion`] rejects, the halo is 1 × 1.
     #[must_use]
     pub fn halo(&self, size: [u32; 2]) -> [u32; 2] {
-        // The tangent plane needs the neighbors.
+        // The tangent plane needs the adjacent pixels.
         self.rays(size)
             .map_or([1; 2], |rays| rays::reach(&rays).map(|reach| reach.max(1)))
     }
@@ -87,13 +87,13 @@ impl OcclusionOptions {
     fn rays(&self, size: [u32; 2]) -> Result<Vec<Ray>, ColorError> {
         self.plane.check("strength of the occlusion")?;
         let pixel = self.plane.pixel(size);
-        // The number of such pixels in a unit is infinite, and so would be a ray.
+        // If the number of pixels per unit is infinite, the rays would be infinite too.
         if !pixel.recip().is_finite() {
             let extent = self.plane.extent;
             return Err(ColorError::new(ColorErrorKind::Extent { extent }));
         }
         plane::check_radius("radius of the occlusion", self.radius, pixel)?;
-        // Written so that NaN is an error too.
+        // In this form NaN is an error too.
         if !(0.0..=1.0).contains(&self.fade) {
             let fade = self.fade;
             return Err(ColorError::new(ColorErrorKind::Fade { fade }));
@@ -102,19 +102,19 @@ impl OcclusionOptions {
     }
 }
 
-/// The part of the sky that is visible from each place of a raster of heights, from 0 to 1, on all cores where the
-/// feature `rayon` is on.
+/// Computes the fraction of the sky that is visible from each pixel of a raster of heights, from 0 to 1. Uses all
+/// cores if the feature `rayon` is enabled.
 ///
-/// The sky is the half space above the tangent plane, and counts with the cosine to the normal, as for a matte surface
-/// under an even sky. A flat raster is 1 everywhere, the wall of a long groove that opens by an angle `a` is `sin²(a/2)`,
-/// the inside of a hemispherical bowl is 1/2.
+/// The sky is the half space above the tangent plane, weighted by the cosine to the normal, as for a matte surface
+/// under a uniform sky. A flat raster is 1 everywhere, the wall of a long groove with the opening angle `a` is
+/// `sin²(a/2)`, and the inside of a hemispherical bowl is 1/2.
 ///
 /// # Errors
 ///
 /// [`ColorErrorKind::NotFinite`] if the strength or the radius is NaN or infinite, [`ColorErrorKind::Extent`] if the extent
 /// is not above zero and finite, [`ColorErrorKind::Radius`] if the radius is negative or more than 16384 pixels,
-/// [`ColorErrorKind::Fade`] if the fade is not from 0 to 1, [`ColorErrorKind::Raster`] if the raster with the radius at its
-/// sides is too large.
+/// [`ColorErrorKind::Fade`] if the fade is not from 0 to 1, [`ColorErrorKind::Raster`] if the raster becomes too large
+/// with margins of the radius.
 ///
 /// # Examples
 ///
@@ -135,8 +135,8 @@ pub fn ambient_occlusion(
     ambient_occlusion_cancellable(height, options, &|| false)
 }
 
-/// The occlusion of [`ambient_occlusion`], unless `is_cancelled` returns true. It is called on any thread, once for each
-/// row.
+/// Computes [`ambient_occlusion`], and stops when `is_cancelled` returns true. It is called once per row, on any
+/// thread.
 ///
 /// # Errors
 ///
@@ -159,13 +159,13 @@ pub fn ambient_occlusion_cancellable(
     }
 }
 
-/// The occlusion of a part of a raster of `whole` pixels, whose extent is that of the options; see
-/// [`ambient_occlusion`]. The result has the pixels between margins of the given columns and rows at each side; the
+/// Computes the occlusion of a part of a raster of `whole` pixels. The extent in the options is that of the whole
+/// raster; see [`ambient_occlusion`]. The result has the pixels inside `margin` columns and rows at each side; the
 /// margins are only read.
 ///
-/// The wrap of the options chooses the heights past the edges of the part; heights do not continue there.
-/// If the margins are the [halo](OcclusionOptions::halo) of the whole, or wider, every pixel has the bits that it has in
-/// the whole.
+/// The wrap in the options selects the heights past the edges of the part; heights are not extrapolated there. If the
+/// margins are at least the [halo](OcclusionOptions::halo) of the whole, every pixel has the same bits as in the
+/// whole.
 ///
 /// # Errors
 ///
@@ -179,8 +179,8 @@ pub fn ambient_occlusion_of_part(
     ambient_occlusion_of_part_cancellable(height, margin, whole, options, &|| false)
 }
 
-/// The occlusion of [`ambient_occlusion_of_part`], unless `is_cancelled` returns true. It is called on any thread, once
-/// for each row.
+/// Computes [`ambient_occlusion_of_part`], and stops when `is_cancelled` returns true. It is called once per row, on
+/// any thread.
 ///
 /// # Errors
 ///

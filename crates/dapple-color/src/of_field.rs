@@ -1,7 +1,7 @@
-//! Maps of a field in a window, which look at the heights past the sides of the window where the field has them.
+//! Maps of a field in a window, which evaluate the field past the sides of the window.
 //!
-//! A raster ends at its sides, so a map of it needs a rule for the heights beyond. A field does not end: the maps of two
-//! adjacent windows fit, and the map of a window is the same in every window that contains it.
+//! A raster ends at its sides, so its map needs a rule for the heights beyond them. A field has heights everywhere:
+//! the maps of two adjacent windows match, and a point has the same value in every window that contains it.
 
 use crate::{
     ColorError, CurvatureOptions, HeightPlane, Normal, NormalOptions, OcclusionOptions,
@@ -9,13 +9,14 @@ use crate::{
 };
 use dapple_raster::{Field, Raster, Window, Wrap};
 
-/// The normals of a field of heights in a window: [`normal_map`](crate::normal_map) with neighbors from the field.
+/// Computes the normals of a field of heights in a window: [`normal_map`](crate::normal_map) with neighbors from the
+/// field.
 ///
-/// The extent and the wrap of the options do not matter.
+/// The extent and the wrap in the options are ignored.
 ///
 /// # Errors
 ///
-/// The errors of [`normal_map`](crate::normal_map), and those of rendering the field.
+/// The errors of [`normal_map`](crate::normal_map), and the errors of rendering the field.
 ///
 /// # Examples
 ///
@@ -46,14 +47,14 @@ pub fn normal_map_of_field(
     Ok(normals.crop([1; 2], window.size)?)
 }
 
-/// The part of the sky that is seen from a field of heights in a window:
+/// Computes the visible fraction of the sky for a field of heights in a window:
 /// [`ambient_occlusion`](crate::ambient_occlusion) with neighbors from the field.
 ///
-/// The extent and the wrap of the options do not matter.
+/// The extent and the wrap in the options are ignored.
 ///
 /// # Errors
 ///
-/// The errors of [`ambient_occlusion`](crate::ambient_occlusion), and those of rendering the field.
+/// The errors of [`ambient_occlusion`](crate::ambient_occlusion), and the errors of rendering the field.
 pub fn ambient_occlusion_of_field(
     field: &(impl Field + ?Sized),
     window: &Window,
@@ -68,13 +69,14 @@ pub fn ambient_occlusion_of_field(
     ambient_occlusion_of_part(&heights, halo, window.size, &options)
 }
 
-/// The mean curvature of a field of heights in a window: [`curvature`](crate::curvature()) with neighbors from the field.
+/// Computes the mean curvature of a field of heights in a window: [`curvature`](crate::curvature()) with neighbors
+/// from the field.
 ///
-/// The extent and the wrap of the options do not matter.
+/// The extent and the wrap in the options are ignored.
 ///
 /// # Errors
 ///
-/// The errors of [`curvature`](crate::curvature()), and those of rendering the field.
+/// The errors of [`curvature`](crate::curvature()), and the errors of rendering the field.
 pub fn curvature_of_field(
     field: &(impl Field + ?Sized),
     window: &Window,
@@ -90,7 +92,7 @@ pub fn curvature_of_field(
     Ok(bent.crop(halo, window.size)?)
 }
 
-/// The plane of the heights in a window. Neighbors are read from the field, so that the wrap does not matter.
+/// Returns the plane of the heights in a window. The wrap has no effect, since neighbors are read from the field.
 fn in_window(plane: HeightPlane, window: &Window) -> HeightPlane {
     HeightPlane {
         strength: plane.strength,
@@ -98,7 +100,7 @@ fn in_window(plane: HeightPlane, window: &Window) -> HeightPlane {
     }
 }
 
-/// The heights of a field in a window, with margins.
+/// Renders the heights of a field in a window with margins.
 fn with_margin(
     field: &(impl Field + ?Sized),
     window: &Window,
@@ -116,7 +118,7 @@ mod tests {
     use crate::{ambient_occlusion, curvature, normal_map};
     use dapple_raster::{Field as _, Raster, Window, Wrap, field_fn};
 
-    /// Chunks of 64 × 64 positions, a 32nd apart: all numbers are exact.
+    /// Returns a chunk of 64 × 64 positions, 1/32 apart, so that all numbers are exact.
     fn chunk(column: i64, row: i64) -> Window {
         let whole = Window::new([0.0; 2], [6.0; 2], [192; 2]).unwrap();
         whole.crop([64 * column, 64 * row], [64; 2]).unwrap()

@@ -1,12 +1,12 @@
 //! Oklab, a color space in which equal steps look about equal.
 //!
 //! Reference: Björn Ottosson, "A perceptual color space for image processing", 2020,
-//! <https://bottosson.github.io/posts/oklab/>, with his matrices of 2021 from and to linear sRGB. Lightness is 0 for black
-//! and 1 for white; a (green to red) and b (blue to yellow) are 0 for grays. The cube roots come from `libm`.
+//! <https://bottosson.github.io/posts/oklab/>, with the 2021 matrices to and from linear sRGB. Lightness is 0 for
+//! black and 1 for white; a (green to red) and b (blue to yellow) are 0 for grays. The cube roots come from `libm`.
 
 use crate::LinearRgb;
 
-/// Lightness, a and b of a color, which may lie outside of the gamut of a screen.
+/// Returns lightness, a and b of a color, which may lie outside the gamut of a screen.
 pub(crate) fn oklab_from_linear(color: LinearRgb) -> [f64; 3] {
     let [r, g, b] = color.to_array().map(f64::from);
     let l = libm::cbrt(0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b);
@@ -19,7 +19,7 @@ pub(crate) fn oklab_from_linear(color: LinearRgb) -> [f64; 3] {
     ]
 }
 
-/// The color with this lightness, a and b.
+/// Returns the color with the given lightness, a and b.
 pub(crate) fn linear_from_oklab([lightness, a, b]: [f64; 3]) -> LinearRgb {
     let cube = |root: f64| root * root * root;
     let l = cube(lightness + 0.396_337_777_4 * a + 0.215_803_757_3 * b);
@@ -38,8 +38,8 @@ mod tests {
     use crate::LinearRgb;
     use proptest::prelude::*;
 
-    /// The oracle: the definition, by way of CIE XYZ under D65, with the matrices of the paper; those from sRGB to XYZ are
-    /// of IEC 61966-2-1.
+    /// Oracle: the definition through CIE XYZ with D65, with the matrices of the paper. The matrices from sRGB to XYZ
+    /// are from IEC 61966-2-1.
     fn by_definition([r, g, b]: [f64; 3]) -> [f64; 3] {
         let rows = |matrix: [[f64; 3]; 3], [x, y, z]: [f64; 3]| {
             matrix.map(|row| row[0] * x + row[1] * y + row[2] * z)
@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn primaries_are_where_css_color_4_has_them() {
-        // W3C, "CSS Color Module Level 4", its conversions of red, lime and blue, with five digits.
+        // W3C, "CSS Color Module Level 4": its conversions of red, lime and blue, to five digits.
         for (color, expected) in [
             ([1.0, 0.0, 0.0], [0.627_96, 0.224_86, 0.125_85]),
             ([0.0, 1.0, 0.0], [0.866_44, -0.233_89, 0.179_50]),
@@ -115,7 +115,7 @@ mod tests {
             let lab = oklab_from_linear(LinearRgb::new(r, g, b));
             let expected = by_definition([r, g, b].map(f64::from));
             for (found, expected) in lab.iter().zip(expected) {
-                // The matrices of XYZ have seven digits, and a root near black makes their rounding larger.
+                // The matrices through XYZ have seven digits, and a cube root near black amplifies their rounding.
                 prop_assert!((found - expected).abs() < 2e-3, "{found} and {expected}");
             }
             for (back, part) in linear_from_oklab(lab).to_array().into_iter().zip([r, g, b]) {

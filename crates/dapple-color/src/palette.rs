@@ -1,7 +1,7 @@
-//! A few ramps by name, as a start.
+//! Named color ramps.
 //!
-//! The colors are our own, chosen by eye for the textures of the gallery; each list goes from the color of low values to
-//! that of high ones.
+//! The colors are original, chosen by eye for the textures of the gallery. Each list goes from the color of low values
+//! to the color of high values.
 
 use crate::{ColorRamp, LinearRgb};
 
@@ -53,27 +53,27 @@ dapple_raster::named! {
 }
 
 impl Palette {
-    /// The colors, from that of low values to that of high ones.
+    /// Returns the colors, from low values to high values.
     #[must_use]
     pub fn colors(self) -> Vec<LinearRgb> {
         let codes = self.codes().iter();
         codes.map(|&codes| LinearRgb::from_srgb(codes)).collect()
     }
 
-    /// A ramp through the colors at equal distances from 0 to 1.
+    /// Returns a ramp through the colors, equally spaced from 0 to 1.
     #[must_use]
     pub fn ramp(self) -> ColorRamp {
         ColorRamp::even_unchecked(&self.colors())
     }
 
-    /// The color of a label; after the last color the first follows again.
+    /// Returns the color of a label. Labels past the last color start again at the first.
     #[must_use]
     pub fn color(self, label: u32) -> LinearRgb {
         let codes = self.codes();
         LinearRgb::from_srgb(codes[label as usize % codes.len()])
     }
 
-    /// The colors in sRGB.
+    /// Colors as sRGB codes.
     const fn codes(self) -> &'static [[u8; 3]] {
         match self {
             Self::Gray => &[[0, 0, 0], [255, 255, 255]],

@@ -1,17 +1,17 @@
-//! The plane in which heights lie, shared by all maps from heights.
+//! The plane of the heights, shared by all maps from heights.
 //!
-//! Lengths are in units of the plane; a raster covers a stated extent of it.
+//! Lengths are in units of the plane; a raster covers a given extent of it.
 
 use crate::{ColorError, ColorErrorKind};
 use dapple_raster::glam::DVec2;
 use dapple_raster::{Raster, Window, Wrap, parallel};
 
-/// The largest radius in pixels.
+/// Maximum radius in pixels.
 const MAX_RADIUS: u32 = 1 << 14;
 
-/// The position of a raster of heights in the plane, for normals, occlusion and curvature.
+/// Position of a raster of heights in the plane, for normals, occlusion and curvature.
 ///
-/// The options of each map can be made from it with [`From`], and contain it.
+/// The options of each map contain a plane and can be created from it with [`From`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -19,13 +19,13 @@ const MAX_RADIUS: u32 = 1 << 14;
     serde(default, deny_unknown_fields)
 )]
 pub struct HeightPlane {
-    /// The height in units of the plane of a value of 1; negative turns hills into dents. By default 1.
+    /// Height of the value 1 in units of the plane; negative turns hills into dents. [default: 1]
     pub strength: f64,
-    /// The width and height of the raster in the plane, above zero. By default 1 × 1, as in [`Window::unit`]; a raster
-    /// with square pixels that is not square needs its true proportions here.
-    pub extent: DVec2,
-    /// The wrapping past the edges of the height, along x and y. By default both repeat. Past a side that does not
-    /// repeat, heights continue as [`continue_heights`] says, whichever of the other values is given.
+    /// Width and height of the raster in the plane, above 0. The default is 1 × 1, as in [`Window::unit`]. A raster that
+  /// is not square but has square pixels needs its true proportions here.
+  pub extent: DVec2,
+    /// Wrapping of the heights past the edges, along x and y. [default: both repeat] Past a side that does not repeat,
+    /// heights continue as in [`continue_heights`], for both other values.
     pub wrap: [Wrap; 2],
 }
 
@@ -40,9 +40,9 @@ impl Default for HeightPlane {
 }
 
 impl HeightPlane {
-    /// The plane of heights that were rendered in a window, whose sides wrap as given: both repeat in a raster that tiles;
-    /// in a part of a larger plane neither does, and [`normal_map_of_field`](crate::normal_map_of_field) and its siblings
-    /// read the heights past its sides.
+    /// Returns the plane of heights that were rendered in a window, with the given wrap of its sides. Both axes repeat
+    /// in a raster that tiles. In a part of a larger plane neither repeats; then
+    /// [`normal_map_of_field`](crate::normal_map_of_field) and its siblings read the heights past the sides.
     #[must_use]
     pub fn for_window(window: &Window, wrap: [Wrap; 2]) -> Self {
         let side = |axis: usize| {
@@ -56,7 +56,7 @@ impl HeightPlane {
         }
     }
 
-    /// Checks that the strength is finite and the extent is above zero and finite. `what` names the strength.
+    /// Checks that the strength is finite and the extent is above zero and finite. `what` is the name of the strength.
     pub(crate) fn check(&self, what: &'static str) -> Result<(), ColorError> {
         let Self {
             strength, extent, ..
@@ -71,7 +71,7 @@ impl HeightPlane {
         Ok(())
     }
 
-    /// The margins of a map that depends on `halo` pixels around each, past sides that do not repeat.
+    /// Returns the margins past sides that do not repeat, for a map that depends on `halo` pixels around each pixel.
     pub(crate) fn open_margin(&self, halo: [u32; 2]) -> [u32; 2] {
         [0, 1].map(|axis| match self.wrap[axis] {
             Wrap::Repeat => 0,
@@ -79,21 +79,21 @@ impl HeightPlane {
         })
     }
 
-    /// The width and height of a pixel of a raster of `size` pixels.
+    /// Returns the width and height of a pixel of a raster of `size` pixels.
     pub(crate) fn pixel(&self, size: [u32; 2]) -> DVec2 {
         self.extent / DVec2::new(size[0].max(1).into(), size[1].max(1).into())
     }
 }
 
-/// Continues heights past the sides of a picture that does not repeat: `h(-k) = 2 h(0) - h(k)`.
+/// Continues heights past the sides of an image that does not repeat: `h(-k) = 2 h(0) - h(k)`.
 ///
-/// The raster has the picture and margins around it. For an axis along which the picture does not repeat, `sides` has its
-/// first pixel and the one past its last, in pixels of the raster; heights outside of these are replaced. Where a margin is
-/// longer than the picture, heights are reflected again, at the other side.
+/// The raster contains the image and margins around it. For an axis along which the image does not repeat, `sides` is
+/// the range of its pixels in the raster: the first one, and the one after the last. Heights outside this range are
+/// replaced. Where a margin is longer than the image, heights are reflected again at the other side.
 ///
-/// The point reflection at the outermost pixel keeps slopes: a plane stays a plane, so it has one normal, no occlusion and no
-/// curvature up to its last row. Repeated pixels would halve its slope there, and mirrored ones would make a crease.
-/// Heights whose reflection is not in the raster are left as they are.
+/// The point reflection at the outermost pixel keeps slopes. A plane stays a plane, so it has one normal, no occlusion
+/// and no curvature up to its last row. Repeated pixels would halve its slope there, and mirrored pixels would make a
+/// crease. Heights whose reflection is not in the raster stay unchanged.
 pub fn continue_heights(heights: &mut Raster<f32>, sides: [Option<[i64; 2]>; 2]) {
     let [width, height] = heights.size();
     if let Some(sides) = sides[0] {
@@ -115,7 +115,8 @@ pub fn continue_heights(heights: &mut Raster<f32>, sides: [Option<[i64; 2]>; 2])
     }
 }
 
-/// The indices of a line of `length` outside of `sides`, each with its height; without those whose sum needs more.
+/// Returns the indices of a line of `length` outside `sides`, each with the sum that gives its height. Indices whose
+/// sum needs a height outside the line are omitted.
 fn terms_outside([from, end]: [i64; 2], length: u32) -> Vec<(usize, Term)> {
     let is_outside = |at: &i64| !(from..end).contains(at);
     let term = |at: i64| Some((at as usize, Term::new(at, [from, end], length)?));
@@ -125,17 +126,17 @@ fn terms_outside([from, end]: [i64; 2], length: u32) -> Vec<(usize, Term)> {
         .collect()
 }
 
-/// A height past the end of a line, as a sum of heights inside: that at `at` times `sign`, and those at both sides
-/// times their factors.
+/// A height past the end of a line as a sum of heights inside: the height at `at` times `sign`, plus the heights at
+/// both sides times their factors.
 struct Term {
     at: usize,
     sign: f64,
-    /// The heights at the sides of the reflection, and their factors.
+    /// Indices of the outermost heights, and their factors.
     ends: [(usize, f64); 2],
 }
 
 impl Term {
-    /// The term of an index, if all heights of its sum are within the line.
+    /// Returns the sum for an index if all its heights are within the line.
     fn new(index: i64, [from, end]: [i64; 2], length: u32) -> Option<Self> {
         let last = end
             .checked_sub(from)?
@@ -151,7 +152,7 @@ impl Term {
             true => (-1.0, [-turns, turns + 2.0]),
             false => (1.0, [-turns, turns]),
         };
-        // A height that does not count need not be there.
+        // A height with factor 0 may lie outside the line.
         let within = |inside: i64, factor: f64| {
             let inside = from + inside;
             let is_within = (0..i64::from(length)).contains(&inside);
@@ -184,7 +185,7 @@ pub(crate) fn check_radius(
         return Err(ColorError::new(ColorErrorKind::NotFinite { what, value }));
     }
     let pixels = radius / pixel.min_element();
-    // Written so that a pixel without a size, whose quotient is NaN, is an error too.
+    // In this form a pixel of size 0, whose quotient is NaN, is an error too.
     if !(pixels >= 0.0 && pixels <= f64::from(MAX_RADIUS)) {
         return Err(ColorError::new(ColorErrorKind::Radius {
             radius,
@@ -195,7 +196,7 @@ pub(crate) fn check_radius(
     Ok(())
 }
 
-/// The index within the line, like [`Wrap::index`], but fast for indices inside.
+/// Returns the index within the line, like [`Wrap::index`] but fast for indices inside.
 #[inline(always)]
 pub(crate) fn index(wrap: Wrap, index: i64, length: u32) -> usize {
     if (0..i64::from(length)).contains(&index) {
@@ -205,11 +206,11 @@ pub(crate) fn index(wrap: Wrap, index: i64, length: u32) -> usize {
     }
 }
 
-/// Heights with margins into which they [continue](continue_heights).
+/// Returns heights with margins, into which they [continue](continue_heights).
 ///
 /// # Errors
 ///
-/// [`Raster`](ColorErrorKind::Raster) if the raster with its margins is too large.
+/// [`Raster`](ColorErrorKind::Raster) if the raster becomes too large with its margins.
 pub(crate) fn with_margin(
     height: &Raster<f32>,
     margin: [u32; 2],
@@ -231,7 +232,7 @@ pub(crate) fn with_margin(
     Ok(extended)
 }
 
-/// Calls `fill` for every row, on all cores where the feature `rayon` is on.
+/// Calls `fill` for every row. Uses all cores if the feature `rayon` is enabled.
 pub(crate) fn fill_rows(raster: &mut Raster<f32>, fill: impl Fn(u32, &mut [f32]) + Sync) {
     let width = raster.width() as usize;
     parallel::for_each_chunk(raster.pixels_mut(), width, |row, values| {

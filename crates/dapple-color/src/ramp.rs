@@ -1,11 +1,11 @@
 //! Color ramps, which map numbers to colors.
 //!
-//! A ramp is a list of stops, each a position and a color, with positions that never decrease; two stops at one
-//! position make a hard edge, and the later one holds at the position itself. Colors between stops are mixed in a
-//! [`RampSpace`]. The colors of the stops are converted to it when the ramp is made, so that a color in Oklab costs no
-//! root.
+//! A ramp is a list of stops, each with a position and a color. Positions never decrease. Two stops at one position
+//! make a hard edge; at the position itself the later stop applies. Colors between stops are mixed in a [`RampSpace`].
+//! The colors of the stops are converted to this space when the ramp is created, so mixing in Oklab needs no root per
+//! color.
 //!
-//! Reference: our own; the space Oklab has its own in `oklab.rs`.
+//! Reference: original; `oklab.rs` has the reference of Oklab.
 
 use crate::oklab::{linear_from_oklab, oklab_from_linear};
 use crate::srgb::{linear_from_srgb, srgb_from_linear};
@@ -16,9 +16,9 @@ use dapple_raster::Raster;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ColorStop {
-    /// The position, in the unit of the numbers that the ramp colors; mostly from 0 to 1.
+    /// Position, in the unit of the numbers that the ramp maps; usually from 0 to 1.
     pub position: f32,
-    /// The color at the position, linear.
+    /// Color at the position, linear.
     pub color: LinearRgb,
 }
 
@@ -92,14 +92,14 @@ dapple_raster::named! {
 )]
 pub struct ColorRamp {
     stops: Vec<ColorStop>,
-    /// The colors of the stops in the space in which they are mixed.
+    /// Colors of the stops in the mixing space.
     mixed: Vec<[f64; 3]>,
     space: RampSpace,
     interpolation: Interpolation,
     outside: Outside,
 }
 
-/// A ramp as data, before it is checked.
+/// A ramp as data, not yet validated.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 struct RampData {
@@ -113,11 +113,11 @@ struct RampData {
 }
 
 impl ColorRamp {
-    /// A ramp through stops, with straight lines in Oklab between them, and clamped outside.
+    /// Creates a ramp through stops that interpolates linearly in Oklab and clamps outside.
     ///
     /// # Errors
     ///
-    /// [`ColorErrorKind::NoStops`] without a stop, [`ColorErrorKind::NotFinite`] if a number is NaN or infinite,
+    /// [`ColorErrorKind::NoStops`] if there is no stop, [`ColorErrorKind::NotFinite`] if a number is NaN or infinite,
     /// [`ColorErrorKind::Unsorted`] if a position is smaller than the one before it.
     pub fn new(stops: impl Into<Vec<ColorStop>>) -> Result<Self, ColorError> {
         let stops = stops.into();
@@ -125,16 +125,17 @@ impl ColorRamp {
         Ok(Self::unchecked(stops))
     }
 
-    /// A ramp through colors at equal distances, the first at 0 and the last at 1.
+    /// Creates a ramp through equally spaced colors, the first at 0 and the last at 1.
     ///
     /// # Errors
     ///
-    /// [`ColorErrorKind::NoStops`] without a color, [`ColorErrorKind::NotFinite`] if a part of one is NaN or infinite.
+    /// [`ColorErrorKind::NoStops`] if there is no color, [`ColorErrorKind::NotFinite`] if a component is NaN or
+    /// infinite.
     pub fn even(colors: &[LinearRgb]) -> Result<Self, ColorError> {
         Self::new(even_stops(colors))
     }
 
-    /// A ramp of stops at equal distances from 0 to 1, of at least one color, all of them finite.
+    /// Creates a ramp through equally spaced colors from 0 to 1. At least one color is required, and all are finite.
     pub(crate) fn even_unchecked(colors: &[LinearRgb]) -> Self {
         Self::unchecked(even_stops(colors))
     }
@@ -150,11 +151,11 @@ impl ColorRamp {
         ramp.with_space(RampSpace::default())
     }
 
-    /// A ramp through sRGB colors in hexadecimal at equal distances, the first at 0 and the last at 1.
+    /// Creates a ramp through equally spaced sRGB colors in hexadecimal, the first at 0 and the last at 1.
     ///
     /// # Errors
     ///
-    /// [`ColorErrorKind::NoStops`] without a color, [`ColorErrorKind::Hex`] if a text is not one.
+    /// [`ColorErrorKind::NoStops`] if there is no color, [`ColorErrorKind::Hex`] if a text is not a color.
     pub fn from_hex(colors: &[&str]) -> Result<Self, ColorError> {
         let colors: Result<Vec<_>, _> = colors
             .iter()
@@ -163,11 +164,12 @@ impl ColorRamp {
         Self::even(&colors?)
     }
 
-    /// Bands of equal width, without mixing, that share the range from 0 to 1: as many as there are colors.
+    /// Creates bands of equal width from 0 to 1, one per color, without mixing.
     ///
     /// # Errors
     ///
-    /// [`ColorErrorKind::NoStops`] without a color, [`ColorErrorKind::NotFinite`] if a part of one is NaN or infinite.
+    /// [`ColorErrorKind::NoStops`] if there is no color, [`ColorErrorKind::NotFinite`] if a component is NaN or
+    /// infinite.
     pub fn bands(colors: &[LinearRgb]) -> Result<Self, ColorError> {
         let count = colors.len() as f32;
         let stop = |(at, &color): (usize, &LinearRgb)| ColorStop {
@@ -198,23 +200,23 @@ impl ColorRamp {
         }
     }
 
-    /// Sets the color before the first stop and after the last.
+    /// Sets the colors before the first stop and after the last.
     #[must_use]
     pub fn with_outside(self, outside: Outside) -> Self {
         Self { outside, ..self }
     }
 
-    /// The stops, in order.
+    /// Returns the stops in order.
     #[must_use]
     pub fn stops(&self) -> &[ColorStop] {
         &self.stops
     }
 
-    /// The color of a number. NaN has the color of the first stop.
+    /// Returns the color of a number. NaN has the color of the first stop.
     #[must_use]
     pub fn at(&self, value: f32) -> LinearRgb {
         let value = self.bring_inside(value);
-        // The stops at or before the value; the value is below the next.
+        // Number of stops at or before the value; the value is below the next stop.
         let count = self.stops.partition_point(|stop| stop.position <= value);
         let Some(before) = count.checked_sub(1).map(|at| self.stops[at]) else {
             return self.stops[0].color;
@@ -222,7 +224,7 @@ impl ColorRamp {
         let Some(after) = self.stops.get(count) else {
             return before.color;
         };
-        // Halved, so that the difference of two numbers of any size is finite.
+        // Both terms are halved so that the difference of any two finite numbers is finite.
         let length = after.position * 0.5 - before.position * 0.5;
         let part = (value * 0.5 - before.position * 0.5) / length;
         match self.interpolation {
@@ -232,14 +234,14 @@ impl ColorRamp {
         }
     }
 
-    /// The mixture of a stop and the one before it; `part` is 0 at the earlier one.
+    /// Mixes stop `to` and the one before it; `part` is 0 at the earlier one.
     fn mixture(&self, to: usize, part: f32) -> LinearRgb {
         let from = to - 1;
         let (before, after) = (self.stops[from].color, self.stops[to].color);
         if self.space == RampSpace::Linear {
             return before.lerp(after, part);
         }
-        // The conversion there and back rounds, so stops themselves are returned as they are.
+        // The conversion to the space and back rounds, so the colors of stops are returned unchanged.
         if part == 0.0 || before == after {
             return before;
         }
@@ -248,13 +250,13 @@ impl ColorRamp {
         self.space.to_linear([mix(0), mix(1), mix(2)])
     }
 
-    /// The colors of a raster of numbers, on all cores where the feature `rayon` is on.
+    /// Maps a raster of numbers to colors. Uses all cores if the feature `rayon` is enabled.
     #[must_use]
     pub fn apply(&self, values: &Raster<f32>) -> Raster<LinearRgb> {
         values.par_map(|&value| self.at(value))
     }
 
-    /// A number within the stops that has the same color; with [`Outside::Clamp`] the number itself.
+    /// Returns a number within the stops that has the same color, or the number itself with [`Outside::Clamp`].
     fn bring_inside(&self, value: f32) -> f32 {
         let [first, last] =
             [self.stops[0], self.stops[self.stops.len() - 1]].map(|stop| stop.position);
@@ -262,10 +264,10 @@ impl ColorRamp {
         if self.outside == Outside::Clamp || inside || !value.is_finite() || first == last {
             return value;
         }
-        // In `f64` no difference of two `f32` overflows.
+        // In `f64` the difference of two `f32` cannot overflow.
         let (first, last, value) = (f64::from(first), f64::from(last), f64::from(value));
         let wrapped = first + (value - first).rem_euclid(last - first);
-        // Rounding may reach the end, where the ramp begins again.
+        // Rounding may reach the last stop, where the ramp starts again.
         let wrapped = wrapped as f32;
         if f64::from(wrapped) < last {
             wrapped
@@ -287,7 +289,7 @@ impl RampSpace {
         }
     }
 
-    /// Converts a place of this space to a color.
+    /// Converts the components in this space to a color.
     fn to_linear(self, parts: [f64; 3]) -> LinearRgb {
         match self {
             Self::Oklab => linear_from_oklab(parts),
@@ -299,7 +301,7 @@ impl RampSpace {
     }
 }
 
-/// A curve for nonnegative numbers, extended to negative ones with their sign.
+/// Extends a curve for nonnegative numbers to negative ones as an odd function.
 fn signed(value: f64, curve: fn(f64) -> f64) -> f64 {
     curve(value.abs()).copysign(value)
 }

@@ -1,45 +1,45 @@
 //! The sRGB transfer function in both directions, exact for 8 and 16 bits.
 //!
-//! Reference: IEC 61966-2-1:1999. By its curve a code value `v` from 0 to 1 is the linear value `v / 12.92` up to 0.04045
-//! and `((v + 0.055) / 1.055)^2.4` above; the way back is `12.92 x` up to 0.0031308 and `1.055 x^(1/2.4) - 0.055`
-//! above. The standard's two limits do not meet exactly, but no border between two codes of 8 or 16 bits lies in the
-//! gap, so that both directions agree on every border.
+//! Reference: IEC 61966-2-1:1999. Its curve decodes a code value `v` from 0 to 1 to the linear value `v / 12.92` up to
+//! 0.04045 and to `((v + 0.055) / 1.055)^2.4` above. It encodes a linear value `x` as `12.92 x` up to 0.0031308 and as
+//! `1.055 x^(1/2.4) - 0.055` above. The two limits of the standard do not match exactly, but no threshold between two
+//! codes of 8 or 16 bits lies in the gap, so both directions agree on every threshold.
 //!
-//! A table per depth, made at first use, holds the linear value of every code and, for every code, the smallest `f32`
-//! that belongs to it. Encoding guesses the code and then walks until the value lies between two borders: the guess
-//! costs or saves time, and the borders alone decide. The powers come from `libm` in `f64`, so that the tables are the
-//! same on every platform; that each entry is the right one is proved in the tests with whole numbers of any length,
-//! where the curve is `x^5 = y^12`.
+//! A table per bit depth, created at first use, contains the linear value of every code and, for every code, the
+//! smallest `f32` that encodes to it. Encoding guesses a code and then steps until the value lies between two
+//! thresholds. The guess affects only the speed; the thresholds alone decide the result. The powers come from `libm`
+//! in `f64`, so the tables are the same on every platform. The tests prove every entry with integers of arbitrary
+//! size, where the curve is `x^5 = y^12`.
 
 use std::sync::LazyLock;
 
-/// The number of mantissa bits that select a part of the guessing table.
+/// Number of mantissa bits that select a segment of the guess table.
 const GUESS_BITS: u32 = 8;
 
-/// The number of mantissa bits that do not select a part.
+/// Number of remaining mantissa bits, which give the position within a segment.
 const FRACTION_BITS: u32 = 23 - GUESS_BITS;
 
-/// The curve for codes up to a maximum.
+/// The sRGB curve for codes up to a maximum.
 #[derive(Debug)]
 pub(crate) struct Curve {
-    /// The linear value of each code.
+    /// Linear value of each code.
     linear: Vec<f32>,
-    /// `borders[k]` is the smallest number with a code above `k`; the last element is infinity.
+    /// Thresholds: `borders[k]` is the smallest number whose code is above `k`. The last element is infinity.
     borders: Vec<f32>,
-    /// The selecting bits of the first border.
+    /// Segment bits of the first threshold.
     first_part: u32,
-    /// The unrounded code at the start of each part, and at the end of the last.
+    /// Unrounded code at the start of each segment, and at the end of the last one.
     guesses: Vec<f32>,
 }
 
-/// The curve for 8 bits.
+/// Returns the curve for 8 bits.
 #[inline]
 pub(crate) fn curve_u8() -> &'static Curve {
     static CURVE: LazyLock<Curve> = LazyLock::new(|| Curve::new(255));
     &CURVE
 }
 
-/// The curve for 16 bits.
+/// Returns the curve for 16 bits.
 #[inline]
 pub(crate) fn curve_u16() -> &'static Curve {
     static CURVE: LazyLock<Curve> = LazyLock::new(|| Curve::new(65535));
@@ -70,13 +70,13 @@ impl Curve {
         }
     }
 
-    /// The linear value of a code; a code above the maximum counts as the maximum.
+    /// Returns the linear value of a code. Codes above the maximum are clamped.
     #[inline]
     pub(crate) fn decode(&self, code: u16) -> f32 {
         self.linear[usize::from(code).min(self.linear.len() - 1)]
     }
 
-    /// The code of a linear value.
+    /// Returns the code of a linear value.
     #[inline]
     pub(crate) fn encode(&self, linear: f32) -> u16 {
         if linear.is_nan() || linear < self.borders[0] {
@@ -85,6 +85,7 @@ impl Curve {
         if linear >= 1.0 {
             return (self.linear.len() - 1) as u16;
         }
+        // Correct the guess by the thresholds.
         let mut code = self.guess(linear);
         while linear >= self.borders[code] {
             code += 1;
@@ -95,9 +96,9 @@ impl Curve {
         code as u16
     }
 
-    /// An approximate code of a number between the first border and 1: linear within each part.
+    /// Returns an approximate code of a number between the first threshold and 1: linear within each segment.
     ///
-    /// At least 1, since the guess at the first border is, and at most the maximum.
+    /// The code is at least 1 and at most the maximum.
     #[inline]
     fn guess(&self, linear: f32) -> usize {
         let bits = linear.to_bits();
@@ -109,7 +110,7 @@ impl Curve {
     }
 }
 
-/// The standard's curve from a code value to a linear one, both from 0 to 1; it extends beyond 1.
+/// Decodes a code value to a linear value with the standard's curve, both from 0 to 1. It extends beyond 1.
 pub(crate) fn linear_from_srgb(value: f64) -> f64 {
     if value <= 0.040_45 {
         value / 12.92
@@ -118,7 +119,7 @@ pub(crate) fn linear_from_srgb(value: f64) -> f64 {
     }
 }
 
-/// The standard's curve from a linear value to a code value, both from 0 to 1; it extends beyond 1.
+/// Encodes a linear value as a code value with the standard's curve, both from 0 to 1. It extends beyond 1.
 pub(crate) fn srgb_from_linear(value: f64) -> f64 {
     if value <= 0.003_130_8 {
         value * 12.92
@@ -127,7 +128,7 @@ pub(crate) fn srgb_from_linear(value: f64) -> f64 {
     }
 }
 
-/// The smallest `f32` that is not below a positive number.
+/// Returns the smallest `f32` that is at least a positive number.
 fn round_up(value: f64) -> f32 {
     let nearest = value as f32;
     if f64::from(nearest) < value {

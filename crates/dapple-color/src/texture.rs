@@ -1,24 +1,24 @@
-//! Rasters as the bytes of a texture on a GPU, and their mip levels.
+//! Rasters as the bytes of a GPU texture, and their mip levels.
 //!
-//! The bytes have the order of `Rgba8Unorm` and `Rgba8UnormSrgb` in WebGPU and its siblings elsewhere: red, green, blue,
-//! alpha, row by row from the top, without padding. Colors are sRGB codes, which the GPU
-//! decodes to linear light when it samples; data is linear in the texture too.
+//! The bytes have the layout of `Rgba8Unorm` and `Rgba8UnormSrgb` in WebGPU and of the equivalent formats elsewhere:
+//! red, green, blue, alpha, row by row from the top, without padding. Colors are sRGB codes, which the GPU decodes to
+//! linear light when it samples. Data is linear in the texture too.
 //!
-//! A mip level has half of the columns and rows of the level before, rounded down, and at least one. Its pixels are the
-//! means over their areas in linear light; along an odd side the areas share pixels. Such a level of an image that
-//! repeats repeats again.
+//! A mip level has half of the columns and rows of the previous level, rounded down, and at least one. Its pixels are
+//! means over their areas in linear light; along an odd side adjacent areas share pixels. The levels of an image that
+//! repeats also repeat.
 
 use crate::{Code as _, LinearRgb, LinearRgba, Normal};
 use dapple_raster::{Raster, RasterError, parallel};
 
 /// A pixel of a texture: a color, a normal, a number, or three or four numbers that are not a color.
 pub trait TexturePixel: Copy + Send + Sync {
-    /// The linear codes of the pixel, for the format `Rgba8Unorm`: `round(value · 255)`, and for normals
-    /// `round((part + 1) / 2 · 255)`. Alpha is 255 where the pixel has none.
+    /// Returns the linear codes of the pixel for the format `Rgba8Unorm`: `round(value · 255)`, and for normals
+    /// `round((component + 1) / 2 · 255)`. Alpha is 255 if the pixel has none.
     #[must_use]
     fn to_rgba8(self) -> [u8; 4];
 
-    /// The mean of pixels with weights that sum to 1. Colors are weighted by their alpha, too, and normals are
+    /// Returns the mean of pixels with weights that sum to 1. Colors are also weighted by their alpha, and normals are
     /// normalized.
     #[must_use]
     fn mean(parts: &[(Self, f32)]) -> Self;
@@ -26,7 +26,7 @@ pub trait TexturePixel: Copy + Send + Sync {
 
 /// A pixel whose first three numbers are a color in linear light.
 pub trait ColorPixel: TexturePixel {
-    /// The sRGB codes of the pixel and its linear alpha, for the format `Rgba8UnormSrgb`.
+    /// Returns the sRGB codes of the pixel and its linear alpha, for the format `Rgba8UnormSrgb`.
     #[must_use]
     fn to_rgba8_srgb(self) -> [u8; 4];
 }
@@ -48,23 +48,23 @@ pub trait ColorPixel: TexturePixel {
 /// # Ok::<(), dapple_raster::RasterError>(())
 /// ```
 pub trait TextureRaster<T> {
-    /// The linear bytes of all pixels, 4 for each, row by row from the top: see [`TexturePixel::to_rgba8`].
+    /// Returns the linear bytes of all pixels, 4 per pixel, row by row from the top: see [`TexturePixel::to_rgba8`].
     #[must_use]
     fn to_rgba8(&self) -> Vec<u8>
     where
         T: TexturePixel;
 
-    /// The sRGB bytes of all pixels, 4 for each, row by row from the top: see [`ColorPixel::to_rgba8_srgb`].
+    /// Returns the sRGB bytes of all pixels, 4 per pixel, row by row from the top: see [`ColorPixel::to_rgba8_srgb`].
     #[must_use]
     fn to_rgba8_srgb(&self) -> Vec<u8>
     where
         T: ColorPixel;
 
-    /// The mip levels: this raster first, a single pixel last.
+    /// Returns the mip levels: this raster first, a single pixel last.
     ///
     /// # Errors
     ///
-    /// Those of [`Raster::from_rows`], which levels smaller than this raster do not meet.
+    /// The errors of [`Raster::from_rows`]. Levels smaller than this raster never cause them.
     fn mip_levels(&self) -> Result<Vec<Raster<T>>, RasterError>
     where
         T: TexturePixel;
@@ -110,14 +110,14 @@ fn bytes<T: TexturePixel>(raster: &Raster<T>, code: fn(T) -> [u8; 4]) -> Vec<u8>
     bytes
 }
 
-/// The next mip level.
+/// Returns the next mip level.
 fn halved<T: TexturePixel>(raster: &Raster<T>) -> Result<Raster<T>, RasterError> {
     let [columns, rows] = raster.size().map(taps);
     let size = raster.size().map(|side| (side / 2).max(1));
     Raster::from_rows(size, |row| {
         let rows = &rows[row as usize];
         columns.iter().map(move |columns| {
-            // At most three pixels along each axis lie under one of half the size.
+            // A pixel of the next level covers at most three pixels along each axis.
             let mut parts = Vec::with_capacity(9);
             for &(row, height) in rows {
                 for &(column, width) in columns {
@@ -129,7 +129,8 @@ fn halved<T: TexturePixel>(raster: &Raster<T>) -> Result<Raster<T>, RasterError>
     })
 }
 
-/// For each pixel of half a side, the pixels of the whole side under it and the part of its length that each covers.
+/// Returns for each pixel of the halved side the pixels that it covers, and the fraction of its length that each of
+/// them takes.
 fn taps(side: u32) -> Vec<Vec<(u32, f64)>> {
     let half = (side / 2).max(1);
     let (side, length) = (f64::from(side), f64::from(side) / f64::from(half));
@@ -147,12 +148,12 @@ fn taps(side: u32) -> Vec<Vec<(u32, f64)>> {
         .collect()
 }
 
-/// The codes of numbers from 0 to 1.
+/// Returns the codes of numbers from 0 to 1.
 fn codes<const N: usize>(numbers: [f32; N]) -> [u8; N] {
     numbers.map(u8::from_unit)
 }
 
-/// The sum of numbers with weights.
+/// Returns the weighted sum of numbers.
 fn weighted<const N: usize>(parts: impl Iterator<Item = ([f32; N], f32)>) -> [f32; N] {
     let mut sum = [0.0; N];
     for (part, weight) in parts {
@@ -223,7 +224,7 @@ impl TexturePixel for LinearRgba {
     fn mean(parts: &[(Self, f32)]) -> Self {
         let alphas = parts.iter();
         let [alpha] = weighted(alphas.map(|(pixel, weight)| ([pixel.alpha], *weight)));
-        // Clear pixels have no say in the color, unless all are clear.
+        // Transparent pixels do not contribute to the color, unless all are transparent.
         let weight = |pixel: &Self, weight: f32| match alpha > 0.0 {
             true => weight * pixel.alpha / alpha,
             false => weight,
@@ -274,7 +275,7 @@ mod tests {
             for pair in levels.windows(2) {
                 let expected = pair[0].size().map(|side| (side / 2).max(1));
                 assert_eq!(pair[1].size(), expected);
-                // The areas of a level cover the one before evenly. Nine products of f32 are rounded.
+                // The areas of a level cover the previous level uniformly. Nine `f32` products are rounded.
                 let level = pair[1].pixels();
                 let sum = level.iter().sum::<f32>() / level.len() as f32;
                 assert!((sum - mean).abs() < 1e-5, "{size:?}: {sum} and {mean}");
@@ -287,7 +288,7 @@ mod tests {
     fn an_odd_side_is_shared_by_area() {
         let image = Raster::from_fn([5, 1], |x, _| [1.0, 2.0, 4.0, 8.0, 16.0][x as usize]).unwrap();
         let levels = image.mip_levels().unwrap();
-        // Two pixels of 2.5 each: 1 + 2 + 4 / 2, and 4 / 2 + 8 + 16. Weights are rounded to f32.
+        // Two pixels of 2.5 each: 1 + 2 + 4 / 2, and 4 / 2 + 8 + 16. Weights are rounded to `f32`.
         for (value, expected) in levels[1].pixels().iter().zip([2.0_f32, 10.4]) {
             assert!((value - expected).abs() < 1e-5, "{value} and {expected}");
         }

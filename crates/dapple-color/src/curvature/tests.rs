@@ -1,4 +1,4 @@
-//! Curvature: surfaces whose curvature is known, resolution, crops, threads, bad input.
+//! Curvature tests: surfaces of known curvature, resolution, crops, threads, invalid input.
 
 use super::{CurvatureOptions, curvature, curvature_of_part, curvature_to_gray};
 use crate::HeightPlane;
@@ -11,7 +11,7 @@ fn options() -> CurvatureOptions {
     CurvatureOptions::default()
 }
 
-/// Heights of a function over the unit square, and their curvature at a radius.
+/// Renders a function over the unit square as heights, and computes their curvature with a radius.
 fn curvature_of(side: u32, radius: f64, height: impl Fn(DVec2) -> f64 + Sync) -> Raster<f32> {
     let height = Raster::from_window(&Window::unit([side, side]).unwrap(), |at| height(at) as f32);
     let options = CurvatureOptions {
@@ -24,7 +24,7 @@ fn curvature_of(side: u32, radius: f64, height: impl Fn(DVec2) -> f64 + Sync) ->
     curvature(&height.unwrap(), &options).unwrap()
 }
 
-/// Part of a sphere of radius 0.4 over the middle of the unit square.
+/// Height of a ball of radius 0.4 over the center of the unit square.
 fn ball(at: DVec2) -> f64 {
     (0.16 - (at - 0.5).length_squared()).max(0.0).sqrt()
 }
@@ -46,7 +46,8 @@ fn flat_and_tilted_planes_have_none() {
         let tilted = curvature_of(64, radius, |at| 3.0 * at.x - 0.5 * at.y);
         for row in 8..56 {
             for &bent in &tilted.row(row)[8..56] {
-                // Heights up to 3 are rounded by up to 1.2e-7, four of which count over a pixel squared.
+                // Heights up to 3 have rounding errors up to 1.2e-7; four of them are divided by the square of a
+                // pixel.
                 assert!(bent.abs() < 2e-3, "{bent} with the radius {radius}");
             }
         }
@@ -65,8 +66,9 @@ fn a_ball_has_one_over_its_radius_at_every_place() {
             }
             n_checked += 1;
             let error = bent.row(row)[column as usize] - 2.5;
-            // Differences over δ err by δ²/12 times the fourth derivative, at most 1400 within 0.3 of the middle, where it
-            // counts by less than a third: 0.0024. Rounded heights add four times 1.5e-8 over δ².
+            // Differences over δ have an error of δ²/12 times the fourth derivative, which is at most 1400 within 0.3
+            // of the center and enters with a factor below a third: 0.0024. Rounded heights add four times 1.5e-8 over
+            // δ².
             assert!(error.abs() < 0.01, "{error} at {at}");
         }
     }
@@ -75,7 +77,7 @@ fn a_ball_has_one_over_its_radius_at_every_place() {
 
 #[test]
 fn curvature_is_half_the_trace_of_the_shape_operator() {
-    // Differences of a quadratic surface are exact, whatever they span.
+    // Differences of a quadratic surface are exact for any span.
     let [xx, xy, yy, x, y] = [1.5, -0.75, 0.5, -1.0, 0.25];
     let height = |at: DVec2| {
         0.5 * xx * at.x * at.x + xy * at.x * at.y + 0.5 * yy * at.y * at.y + x * at.x + y * at.y
@@ -85,7 +87,7 @@ fn curvature_is_half_the_trace_of_the_shape_operator() {
         for column in 6..58 {
             let at = DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5) / 64.0;
             let slope = DVec2::new(xx * at.x + xy * at.y + x, xy * at.x + yy * at.y + y);
-            // The first fundamental form E, F, G, and the second one L, M, N with the normal upward.
+            // First fundamental form E, F, G, and second fundamental form L, M, N with the upward normal.
             let [e, f, g] = [
                 1.0 + slope.x * slope.x,
                 slope.x * slope.y,
@@ -94,7 +96,8 @@ fn curvature_is_half_the_trace_of_the_shape_operator() {
             let [l, m, n] = [xx, xy, yy].map(|part| part / (e * g - f * f).sqrt());
             let expected = -0.5 * (e * n - 2.0 * f * m + g * l) / (e * g - f * f);
             let error = f64::from(bent.row(row)[column as usize]) - expected;
-            // Heights up to 1 are rounded by up to 3e-8, four of which count over the square of 6 pixels, 0.009.
+            // Heights up to 1 have rounding errors up to 3e-8; four of them are divided by the square of 6 pixels,
+            // 0.009.
             assert!(error.abs() < 3e-5, "{error} at {at}");
         }
     }
@@ -125,7 +128,7 @@ fn a_groove_is_flat_on_its_walls_and_hollow_at_the_bottom() {
     let radius = 1.0 / 32.0;
     let bent = curvature_of(256, radius, |at| (at.x - 127.5 / 256.0).abs());
     for (column, &bent) in bent.row(100).iter().enumerate() {
-        // Of the border, as many pixels as the radius look past the edge.
+        // Pixels whose distance from the border is below the radius read past the edge.
         match column.abs_diff(127) {
             0 => assert_eq!(
                 bent, -32.0,
@@ -154,7 +157,7 @@ fn curvature_does_not_change_with_resolution() {
             let mean = around.map(|(x, y)| fine.row(4 * row + y)[4 * column + x] * 0.25);
             let mean: f32 = mean.iter().sum();
             let here = coarse.row(row)[column];
-            // The four lie 1/2048 from the center, over which curvatures of up to 20 change.
+            // The four pixels lie 1/2048 from the center, over which curvatures of up to 20 change slightly.
             assert!(
                 (here - mean).abs() < 0.02,
                 "{here} and {mean} at {column}, {row}"
@@ -165,7 +168,7 @@ fn curvature_does_not_change_with_resolution() {
 
 #[test]
 fn pixels_need_not_be_square() {
-    // A ball in a window that is twice as wide as high, with as many columns as rows.
+    // A ball in a window twice as wide as high, with equal numbers of columns and rows.
     let window = Window::new(DVec2::new(0.2, 0.35), DVec2::new(0.6, 0.3), [256, 256]).unwrap();
     let ball = Raster::from_window(&window, |at| ball(at) as f32).unwrap();
     let options = CurvatureOptions {
@@ -232,7 +235,7 @@ fn crops_with_the_halo_have_the_same_bits() {
 #[test]
 fn a_plane_is_flat_up_to_sides_that_do_not_repeat() {
     for (height, plane, _) in checks::open_planes() {
-        // The last radius is longer than the raster.
+        // The last radius is larger than the raster.
         for radius in [1.0, 5.0, 40.0] {
             let bent = curvature(&height, &CurvatureOptions { plane, radius }).unwrap();
             let is_flat = bent.pixels().iter().all(|&bent| bent == 0.0);

@@ -1,4 +1,4 @@
-//! Normal maps: directions, resolution, wrapping, codes, threads.
+//! Normal map tests: directions, resolution, wrapping, codes, threads.
 
 use super::{Normal, NormalOptions, NormalY, normal_map, normal_map_from_gradient};
 use crate::plane::checks;
@@ -7,7 +7,7 @@ use dapple_raster::glam::DVec2;
 use dapple_raster::{Raster, Window, Wrap};
 use proptest::prelude::*;
 
-/// A smooth height over the unit square that repeats: products of parabolas, so that no sine is needed.
+/// Smooth periodic height over the unit square: a product of parabolas, so that no sine is needed.
 fn hill(position: DVec2) -> f32 {
     let bump = |t: f64| 16.0 * (t * (1.0 - t)) * (t * (1.0 - t));
     (bump(position.x) * bump(position.y)) as f32
@@ -56,7 +56,7 @@ fn slopes_lean_away_from_the_hill() {
 
 #[test]
 fn a_plane_has_the_normal_of_its_slope() {
-    // Height 3 x - 4 y over an extent of 2 × 0.5; away from the edges central differences are exact.
+    // Height 3 x - 4 y over an extent of 2 × 0.5. Away from the edges central differences are exact.
     let window = Window::new(DVec2::ZERO, DVec2::new(2.0, 0.5), [32, 16]).unwrap();
     let plane = Raster::from_window(&window, |at| (3.0 * at.x - 4.0 * at.y) as f32).unwrap();
     let options = HeightPlane {
@@ -89,7 +89,7 @@ fn strength_does_not_change_with_resolution() {
             });
         }
     }
-    // Central differences err by pixel²/6 times the third derivative, here below 200: 0.008.
+    // Central differences have an error of pixel²/6 times the third derivative, which is below 200 here: 0.008.
     assert!(worst < 0.01, "the largest difference is {worst}");
 }
 
@@ -118,7 +118,7 @@ fn a_plane_keeps_its_normal_up_to_sides_that_do_not_repeat() {
     for (height, plane, slope) in checks::open_planes() {
         let options = NormalOptions::from(plane);
         let normals = normal_map(&height, &options).unwrap();
-        // Heights are exact, so the differences are too.
+        // Heights are exact, so their differences are exact too.
         let expected = options.normal(slope);
         for (index, &normal) in normals.pixels().iter().enumerate() {
             assert_eq!(normal, expected, "{:?}, pixel {index}", plane.wrap);
@@ -159,7 +159,7 @@ fn centered_normals_are_flat_where_their_codes_are_next_to_the_middle() {
             let codes = [x, y].map(|code| u16::from(code) + 32640);
             let flat = Normal::from_codes([codes[0], codes[1], 65535]).centered();
             assert_eq!(flat, Normal::FLAT, "{codes:?}");
-            // An image of 8 bits, as 16 bits.
+            // An 8-bit image, stored in 16 bits.
             let wide = [x, y, 255].map(|code| 257 * u16::from(code));
             assert_eq!(
                 Normal::from_codes(wide).centered(),
@@ -172,7 +172,7 @@ fn centered_normals_are_flat_where_their_codes_are_next_to_the_middle() {
 
 #[test]
 fn centered_normals_keep_their_codes_elsewhere() {
-    // Every code beside a middle one, with a z of about unit length.
+    // Every code together with a middle code, and a z that gives about unit length.
     for code in 0..=255_u8 {
         let y = f64::from(code) / 127.5 - 1.0;
         let z = ((1.0 - y * y).max(0.0).sqrt() * 127.5 + 127.5).round() as u8;
@@ -182,7 +182,7 @@ fn centered_normals_keep_their_codes_elsewhere() {
             let is_middle = [127, 128].contains(&code);
             assert_eq!(centered.x, 0.0, "{code}");
             assert_eq!(centered.y == 0.0, is_middle, "{code}");
-            // The vector is shorter by less than 1e-5 of its length.
+            // The vector became shorter by less than 1e-5 of its length.
             assert!((centered.z - normal.z).abs() < 2e-5, "{code}");
         }
         for other in [126, 129, 64, 200] {
@@ -190,7 +190,7 @@ fn centered_normals_keep_their_codes_elsewhere() {
             assert_eq!(normal.centered(), normal, "{other}, {code}");
         }
     }
-    // Between the codes of 8 bits, parts of 16 bits and of floats stay.
+    // Components between the 8-bit codes, from 16 bits or floats, stay unchanged.
     for x in [0.002, 0.0037, 0.0042, 5e-5, -0.003] {
         let z = (1.0_f32 - x * x - 0.09).sqrt();
         let normal = Normal { x, y: 0.3, z };
@@ -225,7 +225,7 @@ fn wrapping_is_per_axis() {
         .unwrap()
         .row(0)[0]
     };
-    // Around the edge the ramp falls from 7 to 0; continued, it rises by 1 each pixel.
+    // Repeated, the ramp falls from 7 to 0 at the edge; continued, it rises by 1 per pixel.
     let repeated = normal([Wrap::Repeat; 2]);
     assert!(repeated.x > 0.0 && repeated.y < 0.0, "{repeated:?}");
     let mixed = normal([Wrap::Repeat, Wrap::Clamp]);
@@ -300,7 +300,7 @@ proptest! {
         let normal = NormalOptions::from(HeightPlane { strength, ..HeightPlane::default() })
             .normal(DVec2::new(slope[0].into(), slope[1].into()));
         let [x, y, z] = normal.to_array().map(f64::from);
-        // Each part is rounded to `f32` once, by at most 6e-8.
+        // Each component is rounded to `f32` once, by at most 6e-8.
         prop_assert!((x * x + y * y + z * z - 1.0).abs() < 4e-7);
         prop_assert!(z > 0.0);
     }
@@ -313,7 +313,7 @@ proptest! {
             let parts = normal.to_array().into_iter().zip(back);
             parts.fold(0.0, |worst, (part, back)| worst.max((part - back).abs()))
         }
-        // Half a step is 1/max per part; making the length 1 again can double it.
+        // Half a step is 1/max per component; normalization can double it.
         prop_assert!(error::<u8>(normal) <= 2.0 / 255.0);
         prop_assert!(error::<u16>(normal) <= 2.0 / 65535.0);
     }

@@ -1,6 +1,6 @@
-//! The heights with which a row of pixels is compared: one or two lines of them for each sample of each ray.
+//! Heights that a row of pixels is compared with: one or two lines of heights for each sample of each ray.
 //!
-//! Samples lie at whole pixels, so that the heights for a register of neighboring pixels are contiguous.
+//! Samples lie at whole pixels along an axis, so the heights for adjacent pixels of a register are contiguous.
 
 use super::OcclusionOptions;
 use super::rays::{Ray, Sample, reach};
@@ -8,54 +8,54 @@ use super::sky::COLUMNS;
 use crate::{ColorError, plane};
 use dapple_raster::{Raster, Wrap};
 
-/// Heights, extended by columns at both sides according to the wrap, so that whole registers can be read beside every
+/// Heights, extended by columns on both sides according to the wrap, so that whole registers can be read around every
 /// pixel.
 pub(super) struct Heights {
     padded: Raster<f32>,
     wrap_y: Wrap,
-    /// The number of columns to the left of the first one whose pixels are computed.
+    /// Number of columns to the left of the first computed pixel.
     left: i32,
-    /// The number of columns whose pixels are computed, in whole registers.
+    /// Number of computed columns, rounded up to whole registers.
     span: usize,
-    /// The slope per difference of two neighbors, along columns and rows.
+    /// Factors from the difference of two neighbors to a slope, along x and y.
     scale: [f32; 2],
 }
 
-/// The heights with which a row of pixels is compared.
+/// Heights that a row of pixels is compared with.
 pub(super) struct Lines<'a> {
     pub(super) here: &'a [f32],
-    /// The neighbors on the left, on the right, above and below.
+    /// Neighbors on the left, right, above and below.
     pub(super) around: [&'a [f32]; 4],
-    /// The slope per difference of `around`, along columns and rows.
+    /// Factors from differences of `around` to slopes, along x and y.
     pub(super) scale: [f32; 2],
-    /// The rays, each followed by the opposite one.
+    /// Rays, each followed by the opposite one.
     pub(super) views: Vec<View<'a>>,
 }
 
-/// A ray, for a row of pixels.
+/// A ray for a row of pixels.
 pub(super) struct View<'a> {
     pub(super) direction: [f32; 2],
     pub(super) samples: Vec<Line<'a>>,
 }
 
-/// A sample of a ray, for a row of pixels.
+/// A sample of a ray for a row of pixels.
 pub(super) struct Line<'a> {
     pub(super) near: &'a [f32],
     pub(super) far: &'a [f32],
     pub(super) part: f32,
-    /// The slope per difference in height.
+    /// Factor from a height difference to a slope.
     pub(super) scale: f32,
-    /// The weight of a slope above that of the tangent plane.
+    /// Weight of a slope above that of the tangent plane.
     pub(super) weight: f32,
 }
 
 impl Heights {
-    /// The heights of a part of `whole` pixels, less than half of which are its margins; pixels are computed between
-    /// the margins.
+    /// Extends the heights of a part of a raster of `whole` pixels. Its margins take less than half of each side;
+    /// pixels are computed between them.
     ///
     /// # Errors
     ///
-    /// [`Raster`](crate::ColorErrorKind::Raster) if the raster with the columns at its sides is too large.
+    /// [`Raster`](crate::ColorErrorKind::Raster) if the raster becomes too large with the columns at its sides.
     pub(super) fn new(
         height: &Raster<f32>,
         margin: [u32; 2],
@@ -73,7 +73,7 @@ impl Heights {
             let first = i64::from(margin[0]) - i64::from(left);
             for (column, value) in (first..).zip(values) {
                 let height = source[plane::index(wrap_x, column, size[0])];
-                // NaN is above nothing, while infinity would be above everything.
+                // NaN never raises a horizon, while infinity would raise every one.
                 *value = if height.is_finite() { height } else { f32::NAN };
             }
         });
@@ -87,7 +87,7 @@ impl Heights {
         })
     }
 
-    /// The heights at an offset in columns and rows from a row of pixels.
+    /// Returns the heights at an offset in columns and rows from a row of pixels.
     fn line(&self, row: u32, [x, y]: [i32; 2]) -> &[f32] {
         let row = i64::from(row) + i64::from(y);
         let row = plane::index(self.wrap_y, row, self.padded.height());
@@ -95,7 +95,7 @@ impl Heights {
         &self.padded.row(row as u32)[first..first + self.span]
     }
 
-    /// All heights with which a row of pixels is compared.
+    /// Returns all heights that a row of pixels is compared with.
     pub(super) fn lines(&self, row: u32, rays: &[Ray], strength: f64) -> Lines<'_> {
         let line = |sample: &Sample| Line {
             near: self.line(row, sample.near),

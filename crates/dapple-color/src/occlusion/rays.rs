@@ -1,19 +1,19 @@
-//! The rays of occlusion: steps in whole pixels.
+//! Rays of ambient occlusion, in steps of whole pixels.
 //!
-//! Rays leave a pixel at 16 even azimuths of the plane. A ray is followed in whole steps along the axis on which it
-//! crosses more pixels, and between the two pixels beside it on the other axis the height is linear, so that samples lie on
-//! the ray and not near it. Steps are one pixel at first and later an eighth of the way, so that their number grows with
-//! the logarithm of the radius.
+//! Rays leave a pixel at 16 equally spaced azimuths of the plane. A ray advances in whole steps along the axis on
+//! which it crosses more pixels. On the other axis the height is interpolated linearly between the two adjacent
+//! pixels, so samples lie exactly on the ray. Steps are one pixel at first and later an eighth of the distance, so
+//! their number grows with the logarithm of the radius.
 
 use super::OcclusionOptions;
 use dapple_raster::glam::DVec2;
 
-/// The number of azimuths.
+/// Number of azimuths.
 const AZIMUTHS: usize = 16;
 
-/// The directions of the first half, a sixteenth of a turn apart; the other half is opposite.
+/// Directions of the first half turn, a sixteenth of a turn apart. The other half is opposite.
 const DIRECTIONS: [[f64; 2]; AZIMUTHS / 2] = {
-    // The cosine of 1/16, 2/16 and 3/16 of a turn.
+    // Cosines of 1/16, 2/16 and 3/16 of a turn.
     const C: [f64; 3] = [
         0.923_879_532_511_286_7,
         core::f64::consts::FRAC_1_SQRT_2,
@@ -31,38 +31,38 @@ const DIRECTIONS: [[f64; 2]; AZIMUTHS / 2] = {
     ]
 };
 
-/// The approximate number of steps that double the distance, once they are longer than a pixel.
+/// Approximate number of steps that double the distance, once steps are longer than a pixel.
 const STEPS_TO_DOUBLE: u32 = 8;
 
-/// The resolution of places across a ray, in parts of a pixel: the same for every window, whatever its extent rounds
-/// to.
+/// Resolution of positions across a ray, in fractions of a pixel. Rounding to it makes positions equal in all windows,
+/// whatever the rounding error of their extents.
 const PARTS: f64 = (1 << 20) as f64;
 
-/// The samples in one azimuth.
+/// Samples in one azimuth.
 #[derive(Clone, Debug)]
 pub(super) struct Ray {
-    /// The direction of the ray: a unit vector of the plane.
+    /// Direction of the ray: a unit vector in the plane.
     pub(super) direction: DVec2,
-    /// The samples, from near to far.
+    /// Samples in order of distance.
     pub(super) samples: Vec<Sample>,
 }
 
-/// A place on a ray: between two pixels, which are the same pixel or neighbors.
+/// A point on a ray between two pixels, which are identical or adjacent.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
-    /// Columns and rows from the pixel at the start of the ray.
+    /// Offset of the first pixel in columns and rows from the start of the ray.
     pub(super) near: [i32; 2],
-    /// Columns and rows from the start of the ray to the other of the two pixels.
+    /// Offset of the second pixel in columns and rows from the start of the ray.
     pub(super) far: [i32; 2],
-    /// The place between `near` and `far`, from 0 to below 1.
+    /// Position between `near` and `far`, from 0 to below 1.
     pub(super) part: f32,
-    /// The distance from the start of the ray, in units of the plane.
+    /// Distance from the start of the ray, in units of the plane.
     pub(super) distance: f64,
-    /// The weight of heights there above the tangent plane, from 0 to 1.
+    /// Weight of heights above the tangent plane at this distance, from 0 to 1.
     pub(super) weight: f32,
 }
 
-/// The rays for options, each followed by the opposite one. The radius is at most some thousand pixels.
+/// Returns the rays for options, each followed by the opposite one. The radius is at most a few thousand pixels.
 pub(super) fn rays(options: &OcclusionOptions, pixel: DVec2) -> Vec<Ray> {
     let halves = DIRECTIONS.iter().flat_map(|&direction| {
         let direction = DVec2::from(direction);
@@ -75,7 +75,7 @@ pub(super) fn rays(options: &OcclusionOptions, pixel: DVec2) -> Vec<Ray> {
     halves.map(ray).collect()
 }
 
-/// The numbers of columns and rows that rays reach to each side.
+/// Returns how far rays reach to each side, in columns and rows.
 pub(super) fn reach(rays: &[Ray]) -> [u32; 2] {
     let samples = rays.iter().flat_map(|ray| &ray.samples);
     samples.fold([0; 2], |reach, sample| {
@@ -86,9 +86,9 @@ pub(super) fn reach(rays: &[Ray]) -> [u32; 2] {
     })
 }
 
-/// The samples in a direction.
+/// Returns the samples in a direction.
 fn samples(options: &OcclusionOptions, direction: DVec2, pixel: DVec2) -> Vec<Sample> {
-    // Pixels crossed per unit of the way.
+    // Pixels crossed per unit of distance.
     let speed = direction / pixel;
     let [along, across] = if speed.x.abs() >= speed.y.abs() {
         [0, 1]
@@ -114,12 +114,12 @@ fn samples(options: &OcclusionOptions, direction: DVec2, pixel: DVec2) -> Vec<Sa
             weight: weight(distance / options.radius, options.fade),
         }
     };
-    // The margin keeps a radius of a whole number of pixels whole, whatever the extent rounds to.
+    // The small factor keeps a radius of a whole number of pixels whole, whatever the rounding error of the extent.
     let last = (options.radius * crossed * (1.0 + 1e-9)).floor() as u32;
     steps(last).into_iter().map(sample).collect()
 }
 
-/// The weight of a height at this fraction of the radius, from 1 to 0.
+/// Returns the weight of a height at a fraction of the radius, from 1 to 0.
 fn weight(part: f64, fade: f64) -> f32 {
     if part <= 1.0 - fade {
         1.0
@@ -128,7 +128,7 @@ fn weight(part: f64, fade: f64) -> f32 {
     }
 }
 
-/// Whole numbers up to `last`, one apart and then ever further apart, ending with `last`.
+/// Returns increasing step numbers up to and including `last`: one apart at first, then with growing gaps.
 fn steps(last: u32) -> Vec<u32> {
     let mut steps = Vec::new();
     let mut step = 0;

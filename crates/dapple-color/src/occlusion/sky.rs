@@ -1,22 +1,22 @@
-//! The visible sky of a row of pixels, in registers of neighboring pixels.
+//! Visible sky of a row of pixels, computed in registers of adjacent pixels.
 
 use super::lines::{Lines, View};
 use crate::arctangent::arctangent;
 use fearless_simd::{f32x16, prelude::*};
 
-/// The number of columns in a register.
+/// Number of columns in a register.
 const LANES: usize = 16;
 
-/// The number of registers that are processed side by side: the data of a sample is read once for all of them.
+/// Number of registers processed together, so that the data of a sample is read once for all of them.
 const SIDE: usize = 2;
 
-/// The number of columns that are processed side by side.
+/// Number of columns processed together.
 pub(super) const COLUMNS: usize = SIDE * LANES;
 
-/// The largest slope that is not clamped: its square is far from the end of `f32`.
+/// Maximum slope, to which larger ones are clamped. Its square is far from the limit of `f32`.
 const STEEPEST: f32 = 1e9;
 
-/// Computes the visible part of the sky for a row of pixels.
+/// Computes the visible fraction of the sky for a row of pixels.
 #[inline(always)]
 pub(super) fn see_row<S: Simd>(simd: S, lines: &Lines<'_>, values: &mut [f32]) {
     for (values, first) in values.chunks_mut(COLUMNS).zip((0..).step_by(COLUMNS)) {
@@ -28,18 +28,20 @@ pub(super) fn see_row<S: Simd>(simd: S, lines: &Lines<'_>, values: &mut [f32]) {
     }
 }
 
-/// The visible part of the sky for the columns from `first` on.
+/// Returns the visible fraction of the sky for the columns starting at `first`.
 #[inline(always)]
 fn see<S: Simd>(simd: S, lines: &Lines<'_>, first: usize) -> [f32x16<S>; SIDE] {
     let zero = f32x16::splat(simd, 0.0);
     let mut here = [zero; SIDE];
     let mut slopes = [[zero; 2]; SIDE];
+    // Load the heights and the slopes of the tangent planes.
     for register in 0..SIDE {
         let first = first + register * LANES;
         here[register] = load(simd, lines.here, first);
         slopes[register] = slope(simd, lines, first);
     }
     let (mut seen, mut whole) = ([zero; SIDE], [zero; SIDE]);
+    // Add the visible sky of each pair of opposite azimuths, and the sky above the tangent plane.
     for [there, back] in lines.views.as_chunks::<2>().0 {
         let [x, y] = there.direction;
         let (mut tangents, mut opposite) = ([zero; SIDE], [zero; SIDE]);
@@ -57,6 +59,7 @@ fn see<S: Simd>(simd: S, lines: &Lines<'_>, first: usize) -> [f32x16<S>; SIDE] {
             whole[register] += tangent * arctangent(simd, tangent) + 1.0;
         }
     }
+    // Normalize by the sky above the tangent plane.
     for register in 0..SIDE {
         let part = seen[register] / (whole[register] + whole[register]);
         seen[register] = limit(simd, part, 0.0, 1.0);
@@ -64,7 +67,7 @@ fn see<S: Simd>(simd: S, lines: &Lines<'_>, first: usize) -> [f32x16<S>; SIDE] {
     seen
 }
 
-/// The slopes of the tangent planes to the right and downward; level where a part is not finite.
+/// Returns the slopes of the tangent planes to the right and downward; level where a component is not finite.
 #[inline(always)]
 fn slope<S: Simd>(simd: S, lines: &Lines<'_>, first: usize) -> [f32x16<S>; 2] {
     let [left, right, above, below] = lines.around;
@@ -75,7 +78,7 @@ fn slope<S: Simd>(simd: S, lines: &Lines<'_>, first: usize) -> [f32x16<S>; 2] {
     [is_finite.select(x, level), is_finite.select(y, level)]
 }
 
-/// The largest slopes to a sample of a ray, starting from those of the tangent planes. NaN is never larger.
+/// Returns the maximum slopes to the samples of a ray, at least those of the tangent planes. NaN is ignored.
 #[inline(always)]
 fn horizons<S: Simd>(
     simd: S,
@@ -108,8 +111,8 @@ fn horizons<S: Simd>(
     horizons
 }
 
-/// The sky between the zenith and a horizon, twice over the upward part of the normal, without the terms that cancel
-/// between opposite azimuths.
+/// Returns the sky between the zenith and a horizon, as a multiple of half the z component of the normal, without the
+/// terms that cancel between opposite azimuths.
 #[inline(always)]
 fn arc<S: Simd>(simd: S, tangent: f32x16<S>, horizon: f32x16<S>) -> f32x16<S> {
     (tangent * horizon + 1.0) / (horizon * horizon + 1.0) + tangent * arctangent(simd, horizon)
@@ -120,7 +123,7 @@ fn load<S: Simd>(simd: S, line: &[f32], first: usize) -> f32x16<S> {
     f32x16::from_slice(simd, &line[first..first + LANES])
 }
 
-/// Numbers clamped between two ends. The processor's minimum and maximum differ in their treatment of NaN.
+/// Clamps numbers to a range. Processors differ in how their minimum and maximum treat NaN, so this uses selects.
 #[inline(always)]
 fn limit<S: Simd>(simd: S, x: f32x16<S>, low: f32, high: f32) -> f32x16<S> {
     let [low, high] = [f32x16::splat(simd, low), f32x16::splat(simd, high)];

@@ -1,4 +1,4 @@
-//! Ambient occlusion: crops, turns, resolution, fading, levels, threads, bad input.
+//! Ambient occlusion tests: crops, rotations, resolution, fading, SIMD levels, threads, invalid input.
 
 use super::{
     OcclusionOptions, ambient_occlusion, ambient_occlusion_cancellable, ambient_occlusion_of_part,
@@ -18,7 +18,7 @@ fn options() -> OcclusionOptions {
     OcclusionOptions::default()
 }
 
-/// The options for pixels of 1 × 1 without repeats, so that lengths are in pixels.
+/// Options for pixels of 1 × 1 without repetition, so that lengths are in pixels.
 fn in_pixels(size: [u32; 2], radius: f64) -> OcclusionOptions {
     OcclusionOptions {
         radius,
@@ -31,7 +31,7 @@ fn in_pixels(size: [u32; 2], radius: f64) -> OcclusionOptions {
     }
 }
 
-/// Heights without any order, multiples of 1/64 below 1.
+/// Irregular heights, multiples of 1/64 below 1.
 fn rubble(size: [u32; 2]) -> Raster<f32> {
     let height = |x: u32, y: u32| {
         let mixed =
@@ -44,7 +44,7 @@ fn rubble(size: [u32; 2]) -> Raster<f32> {
 #[test]
 fn a_plane_sees_the_whole_sky_up_to_sides_that_do_not_repeat() {
     for (height, plane, _) in checks::open_planes() {
-        // The last radius is longer than the raster.
+        // The last radius is larger than the raster.
         for radius in [1.0, 5.0, 40.0] {
             let options = OcclusionOptions {
                 radius,
@@ -52,7 +52,7 @@ fn a_plane_sees_the_whole_sky_up_to_sides_that_do_not_repeat() {
                 ..OcclusionOptions::default()
             };
             let seen = ambient_occlusion(&height, &options).unwrap();
-            // Arctangents err by 2e-7.
+            // Arctangents have errors of 2e-7.
             let least = seen.pixels().iter().copied().fold(1.0, f32::min);
             assert!(least > 1.0 - 1e-6, "{:?}, {radius}: {least}", plane.wrap);
         }
@@ -166,7 +166,7 @@ fn a_quarter_turn_turns_the_map() {
     for y in 0..24 {
         for x in 0..31 {
             let [before, after] = [seen.row(30 - x)[y as usize], seen_turned.row(y)[x as usize]];
-            // The azimuths are added in another order.
+            // The azimuths are added in a different order.
             assert!(
                 (before - after).abs() < 1e-6,
                 "{before} became {after} at {x}, {y}"
@@ -186,19 +186,19 @@ fn a_fade_lets_walls_vanish_toward_the_radius() {
         ambient_occlusion(&wall, &options).unwrap().row(0)[64..110].to_vec()
     };
     let [hard, soft] = [seen(0.0), seen(0.5)];
-    // The last pixel that the wall reaches sees it 40 pixels away, at a slope of 9/40 in one azimuth.
+    // The last pixel that the wall affects is 40 pixels away and sees it at a slope of 9/40 in one azimuth.
     assert!(
         hard[39] < 0.999 && hard[40] == 1.0,
         "the wall ends all at once: {:?}",
         &hard[39..]
     );
-    // Samples are 36 and 40 pixels away, and the farther one does not count.
+    // Samples are 36 and 40 pixels away, and the farther one has weight 0.
     assert!(
         soft[35] < 1.0 && soft[35] > 0.999,
         "the wall fades: {:?}",
         &soft[35..]
     );
-    // At 67.5 degrees the wall is half the radius away after 20 cos 67.5° = 7.6 pixels.
+    // At 67.5 degrees the wall is at half the radius after 20 cos 67.5° = 7.6 pixels.
     assert_eq!(soft[..7], hard[..7], "nothing fades before half the radius");
     assert!(soft[1..].is_sorted(), "the wall hides ever less: {soft:?}");
 }
@@ -226,7 +226,7 @@ fn occlusion_does_not_change_with_resolution() {
             let mean = around.map(|(x, y)| fine.row(4 * row + y)[4 * column + x] * 0.25);
             let mean: f32 = mean.iter().sum();
             let here = coarse.row(row)[column];
-            // Both search the horizon in steps of up to an eighth of the way, but at other places.
+            // Both search the horizon in steps of up to an eighth of the distance, but at different points.
             assert!(
                 (here - mean).abs() < 0.015,
                 "{here} and {mean} at {column}, {row}"

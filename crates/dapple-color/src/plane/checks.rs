@@ -1,10 +1,10 @@
-//! Checks that the tests of all maps from heights share.
+//! Checks shared by the tests of all maps from heights.
 
 use crate::{ColorErrorKind, HeightPlane};
 use dapple_raster::glam::DVec2;
 use dapple_raster::{Raster, Wrap};
 
-/// Checks that a strength that is not finite and a bad extent are errors.
+/// Checks that a strength that is not finite and an invalid extent are errors.
 pub(crate) fn bad_planes_are_refused(refusal: impl Fn(HeightPlane) -> ColorErrorKind) {
     for strength in [f64::NAN, f64::INFINITY] {
         let refused = refusal(HeightPlane {
@@ -24,7 +24,7 @@ pub(crate) fn bad_planes_are_refused(refusal: impl Fn(HeightPlane) -> ColorError
     }
 }
 
-/// Checks that a radius that is not finite, negative, or of more than 2^14 of 4 × 4 pixels is an error.
+/// Checks that a radius is an error if it is not finite, negative, or above 2^14 pixels in a raster of 4 × 4.
 pub(crate) fn bad_radii_are_refused(refusal: impl Fn(f64) -> ColorErrorKind) {
     for radius in [f64::NAN, f64::INFINITY] {
         let refused = refusal(radius);
@@ -38,8 +38,8 @@ pub(crate) fn bad_radii_are_refused(refusal: impl Fn(f64) -> ColorErrorKind) {
     }
 }
 
-/// A height, also past the edges of the raster: reflected at the outermost pixel along an axis that does not repeat, one
-/// reflection after the other.
+/// Returns a height, also past the edges of the raster: along an axis that does not repeat, it is reflected at the
+/// outermost pixel, repeatedly if necessary.
 pub(crate) fn continued(height: &Raster<f32>, [x, y]: [i64; 2], wrap: [Wrap; 2]) -> f64 {
     let size = height.size().map(i64::from);
     for axis in [1, 0] {
@@ -54,7 +54,7 @@ pub(crate) fn continued(height: &Raster<f32>, [x, y]: [i64; 2], wrap: [Wrap; 2])
     f64::from(*height.at(x, y, wrap))
 }
 
-/// The planes of slopes along the axes that do not repeat, for all four combinations, with the wraps of each.
+/// Returns planes with a slope along the axes that do not repeat, for all four combinations of axes.
 pub(crate) fn open_planes() -> Vec<(Raster<f32>, HeightPlane, DVec2)> {
     let size = [21, 14];
     let mut planes = Vec::new();
@@ -65,7 +65,7 @@ pub(crate) fn open_planes() -> Vec<(Raster<f32>, HeightPlane, DVec2)> {
             [Wrap::Repeat, open],
             [open; 2],
         ] {
-            // Steps of whole eighths are exact in single precision.
+            // Multiples of an eighth are exact in single precision.
             let step = [0, 1].map(|axis| match wrap[axis] {
                 Wrap::Repeat => 0.0,
                 _ => [0.25, -0.625][axis],
@@ -84,7 +84,7 @@ pub(crate) fn open_planes() -> Vec<(Raster<f32>, HeightPlane, DVec2)> {
     planes
 }
 
-/// Checks that a map has the same bits on one, two and seven threads.
+/// Checks that a map has the same bits with one, two and seven threads.
 pub(crate) fn threads_do_not_change_a_bit<T>(bits: impl Fn() -> Raster<T> + Sync)
 where
     T: PartialEq + core::fmt::Debug + Send,
@@ -99,7 +99,7 @@ where
     }
 }
 
-/// Checks that options come back from JSON, and that an unknown name is an error.
+/// Checks that options survive a round trip through JSON, and that an unknown name is an error.
 #[cfg(feature = "serde")]
 pub(crate) fn options_are_data<T>(options: &T)
 where

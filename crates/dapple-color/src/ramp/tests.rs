@@ -1,4 +1,4 @@
-//! Ramps at their stops, between and outside of them, and with bad stops.
+//! Ramp tests: at stops, between and outside them, and with invalid stops.
 
 use super::{ColorRamp, ColorStop, Interpolation, Outside, RampSpace};
 use crate::{ColorErrorKind, LinearRgb};
@@ -10,7 +10,7 @@ fn stop(position: f32, gray: f32) -> ColorStop {
     ColorStop { position, color }
 }
 
-/// Gray 0, 1 and 5 at 1, 2 and 4, in linear light.
+/// Linear-light grays 0, 1 and 5 at the positions 1, 2 and 4.
 fn ramp() -> ColorRamp {
     let ramp = ColorRamp::new([stop(1.0, 0.0), stop(2.0, 1.0), stop(4.0, 5.0)]).unwrap();
     ramp.with_space(RampSpace::Linear)
@@ -53,7 +53,7 @@ fn stepped_and_smooth_ramps_meet_the_stops() {
 #[test]
 fn repeated_ramps_begin_again_at_the_last_stop() {
     let repeated = ramp().with_outside(Outside::Repeat);
-    // The ramp is three long.
+    // The length of the ramp is 3.
     let values = [1.25, 4.25, -1.75, 4.0, 2.0 + 300.0];
     assert_eq!(
         grays(&repeated, values),
@@ -91,7 +91,7 @@ fn every_space_mixes_as_it_is_defined() {
         let part = step as f32 / 16.0;
         let at = |space| of_space(space).at(part);
         assert_eq!(at(RampSpace::Linear), from.lerp(to, part));
-        // Codes of 8 bits, mixed as they are, within their rounding.
+        // Mixed 8-bit codes, within their rounding.
         let codes = at(RampSpace::Srgb).to_srgb::<u8>();
         for (code, [from, to]) in
             codes
@@ -108,7 +108,7 @@ fn every_space_mixes_as_it_is_defined() {
             [from, to, at(RampSpace::Oklab)].map(crate::oklab::oklab_from_linear);
         for axis in 0..3 {
             let expected = from[axis] + (to[axis] - from[axis]) * f64::from(part);
-            // The color between is rounded to single precision.
+            // The mixed color is rounded to single precision.
             assert!((mixed[axis] - expected).abs() < 1e-6, "{mixed:?} at {part}");
         }
     }
@@ -124,7 +124,7 @@ fn every_space_mixes_as_it_is_defined() {
     assert_eq!(middle(RampSpace::Linear), 0.5);
 }
 
-/// Black to white.
+/// Ramp from black to white.
 fn of_space_of_gray(space: RampSpace) -> ColorRamp {
     let ramp = ColorRamp::even(&[LinearRgb::BLACK, LinearRgb::WHITE]).unwrap();
     ramp.with_space(space)
@@ -142,7 +142,7 @@ fn every_space_meets_the_stops_and_keeps_one_color() {
         );
         let near = ramp.at(0.5_f32.next_down()).to_array();
         for (near, part) in near.into_iter().zip(colors[1].to_array()) {
-            // There and back by matrices of ten digits.
+            // The matrices for both directions have ten digits.
             assert!((near - part).abs() < 1e-5, "{space:?}: {near} and {part}");
         }
     }
@@ -242,7 +242,8 @@ proptest! {
             let ramp = ColorRamp::new(stops.clone()).unwrap();
             let ramp = ramp.with_interpolation(interpolation).with_outside(outside).with_space(space);
             let gray = ramp.at(value).r;
-            // Two products and a sum round up by at most 2^-23 of the whole, and the matrices of Oklab have ten digits.
+            // Two products and a sum round up by at most 2^-23 of the total, and the matrices of Oklab have ten
+            // digits.
             prop_assert!((-1e-8..=1.000_001).contains(&gray), "{gray} at {value}");
         }
     }

@@ -1,13 +1,13 @@
-//! The tables, proved with whole numbers of any length.
+//! Proofs of the tables with integers of arbitrary size.
 //!
-//! On the curved part `x = ((v + 0.055) / 1.055)^(12/5)`, so a number `x` is below the curve at `v` exactly if
-//! `x^5 < y^12` with `y = (1000 v + 55) / 1055`. With `v` a fraction of two small whole numbers and `x` a whole
-//! number times a power of two, both sides are whole numbers after multiplication by the denominators.
+//! On the curved part `x = ((v + 0.055) / 1.055)^(12/5)`, so a number `x` is below the curve at `v` exactly if `x^5 <
+//! y^12` with `y = (1000 v + 55) / 1055`. If `v` is a fraction of two small integers and `x` is an integer times a
+//! power of two, both sides become integers after multiplication by the denominators.
 
 use super::{curve_u8, curve_u16};
 use core::cmp::Ordering;
 
-/// A whole number, in digits of 32 bits from the least to the greatest, without zeros at the top.
+/// A nonnegative integer in 32-bit digits, least significant first, without leading zeros.
 #[derive(Clone, PartialEq, Eq)]
 struct Natural(Vec<u32>);
 
@@ -43,7 +43,7 @@ fn compare_with_curve(x: f64, [numerator, denominator]: [u64; 2]) -> Ordering {
     let (mantissa, shift) = (mantissa >> zeros, (shift - zeros) as usize);
     let twos = |count: usize| core::iter::repeat_n(2_u64, count);
     if numerator as f64 <= 0.040_45 * denominator as f64 {
-        // x < v / 12.92, with both sides times 1292 · denominator · 2^shift.
+        // x < v / 12.92, with both sides multiplied by 1292 · denominator · 2^shift.
         let left = Natural::product([mantissa, 1292, denominator]);
         let right = Natural::product([numerator, 100].into_iter().chain(twos(shift)));
         return left.compare(&right);
@@ -54,7 +54,7 @@ fn compare_with_curve(x: f64, [numerator, denominator]: [u64; 2]) -> Ordering {
     left.compare(&right)
 }
 
-/// The number in the middle of two neighbors, which `f64` holds exactly.
+/// Returns the midpoint of two adjacent numbers, which `f64` represents exactly.
 fn middle(a: f32, b: f32) -> f64 {
     f64::midpoint(f64::from(a), f64::from(b))
 }
@@ -124,7 +124,7 @@ fn every_code_survives_the_round_trip() {
 fn encoding_equals_a_search_of_the_borders() {
     for curve in [curve_u8(), curve_u16()] {
         let oracle = |linear: f32| curve.borders.partition_point(|&border| border <= linear);
-        // A prime step through the bits of all numbers from 0 to beyond 1 meets every binade some hundred times.
+        // A prime step through the bits of all numbers from 0 to above 1 visits every binade a few hundred times.
         for bits in (0..1.1_f32.to_bits()).step_by(3079) {
             let linear = f32::from_bits(bits);
             assert_eq!(

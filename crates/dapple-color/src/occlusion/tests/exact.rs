@@ -1,4 +1,4 @@
-//! Occlusion compared with a plain oracle, and known view factors.
+//! Occlusion compared with a simple oracle and with known view factors.
 
 use super::{in_pixels, options, rubble};
 use crate::plane::checks;
@@ -25,7 +25,7 @@ fn occlusion_is_that_of_the_oracle() {
         };
         assert_is_oracle(&rubble([37, 22]), &options);
     }
-    // Longer than the raster, where steps are longer than a pixel.
+    // The radius exceeds the raster, and steps are longer than a pixel.
     for wrap in [[repeat; 2], [clamp, repeat], [mirror, clamp]] {
         let options = OcclusionOptions {
             radius: 3.0,
@@ -78,8 +78,8 @@ fn a_tilted_plane_hides_nothing_of_its_sky() {
             ..OcclusionOptions::default()
         };
         let seen = ambient_occlusion(&plane, &options).unwrap();
-        // Heights up to 90 are rounded by up to 4e-6, over the 8e-3 to the next pixel: slopes of 94 err by up to 5e-4, and
-        // smaller ones by less.
+        // Heights up to 90 have rounding errors up to 4e-6 over the 8e-3 to the next pixel: slopes of 94 have errors
+        // up to 5e-4, smaller slopes less.
         for &seen in seen.pixels() {
             assert!(seen > 1.0 - 1e-5, "{seen} with the slope {slope}");
         }
@@ -88,7 +88,7 @@ fn a_tilted_plane_hides_nothing_of_its_sky() {
 
 #[test]
 fn the_walls_of_a_groove_see_the_squared_sine_of_half_its_angle() {
-    // One line of pixels that goes on across: the groove is endless.
+    // One line of pixels, repeated across: the groove is infinitely long.
     let length = 2049;
     for (half_angle, name) in [(60.0_f64, "wide"), (45.0, "right"), (30.0, "narrow")] {
         let half_angle = half_angle.to_radians();
@@ -102,8 +102,8 @@ fn the_walls_of_a_groove_see_the_squared_sine_of_half_its_angle() {
             let bottom = length as usize / 2;
             for beside in [1, 2, 5] {
                 let error = f64::from(seen.pixels()[bottom + beside]) - expected;
-                // The horizon is lower by twice the way to the bottom over the radius, 0.002 for each pixel, and a part of
-                // that is lost; 16 azimuths make the rest.
+                // The horizon is lower by twice the distance to the bottom over the radius, 0.002 per pixel, and a
+                // fraction of that is lost. The 16 azimuths cause the rest of the error.
                 assert!(
                     error.abs() < 1e-4 + 8e-4 * beside as f64,
                     "{error} at {beside} beside the bottom of a {name} groove of {size:?}"
@@ -127,17 +127,17 @@ fn the_inside_of_a_bowl_sees_half_of_the_sky() {
     let mut mean = 0.0;
     for row in 95..=305 {
         for &seen in &seen.row(row)[95..=305] {
-            // The rim is sharp, and the first sample past it is up to an eighth of the way too far away: the horizon is up to
-            // a ninth too low, which at the bottom is 0.05.
+            // The rim is sharp, and the first sample past it is too far by up to an eighth of its distance: the
+            // horizon is too low by up to a ninth, which is 0.05 at the bottom.
             assert!((-0.01..0.05).contains(&(seen - 0.5)), "{seen} in row {row}");
             mean += f64::from(seen) / (211.0 * 211.0);
         }
     }
-    // On the average a sample is too far away by a sixteenth.
+    // On average a sample is too far by a sixteenth of its distance.
     assert!((mean - 0.5).abs() < 0.025, "the mean is {mean}");
 }
 
-/// The part of the sky that a pixel sees, in `f64`: every ray is walked on its own.
+/// Computes the fraction of the sky that a pixel sees in `f64`, following every ray separately.
 fn oracle(height: &Raster<f32>, options: &OcclusionOptions, at: [i64; 2]) -> f64 {
     let HeightPlane {
         strength,
@@ -151,7 +151,7 @@ fn oracle(height: &Raster<f32>, options: &OcclusionOptions, at: [i64; 2]) -> f64
         (z(at[0] + 1, at[1]) - z(at[0] - 1, at[1])) / (2.0 * pixel.x),
         (z(at[0], at[1] + 1) - z(at[0], at[1] - 1)) / (2.0 * pixel.y),
     );
-    // Over the arc from the zenith down to a slope, without the factor n_z/2.
+    // Integral over the arc from the zenith down to a slope, without the factor n_z/2.
     let arc = |tangent: f64, slope: f64| {
         let angle = core::f64::consts::FRAC_PI_2 - libm::atan(slope);
         let [sine, cosine] = [libm::sin(angle), libm::cos(angle)];
@@ -168,7 +168,7 @@ fn oracle(height: &Raster<f32>, options: &OcclusionOptions, at: [i64; 2]) -> f64
         while step < last {
             step = last.min(step + (step / 8.0).floor().max(1.0));
             let offset = direction * (step / crossed) / pixel;
-            // Linear between the four pixels around; to a millionth, one of the parts is zero.
+            // Linear interpolation between four pixels; one of the fractions is zero within a millionth.
             let [x, y] = [offset.x, offset.y].map(|offset| (offset + 1e-7).floor());
             let [u, v] = [offset.x - x, offset.y - y];
             let corner = |dx: i64, dy: i64| z(at[0] + x as i64 + dx, at[1] + y as i64 + dy);
@@ -192,8 +192,8 @@ fn assert_is_oracle(height: &Raster<f32>, options: &OcclusionOptions) {
         for column in 0..height.width() {
             let ours = f64::from(seen.row(row)[column as usize]);
             let expected = oracle(height, options, [column.into(), row.into()]);
-            // Slopes are rounded to parts of 2e-7 and their arctangents err by 2e-7; places on rays are off by up to
-            // 5e-7 pixels, over which rubble rises by less than 1e-6 of a pixel's width here.
+            // Slopes have relative rounding errors of 2e-7 and their arctangents errors of 2e-7. Positions on rays are
+            // off by up to 5e-7 pixels, over which these heights rise by less than 1e-6 of a pixel's width.
             let error = (ours - expected).abs();
             assert!(
                 error < 3e-6,
