@@ -1,8 +1,9 @@
-//! The graph group: our periodic Delaunay graph beside the plain, bounded triangulation of `spade` on the same points.
+//! The graph group: our periodic Delaunay graph compared with the bounded triangulation of `spade` for the same
+//! points.
 //!
 //! Our side starts from a point set and ends with the axes of every point in compressed rows. `spade` starts from a
-//! list of positions that it takes over. The results of both are freed outside the clock. Confirmed: every point is a
-//! vertex, and each point has exactly six axes on average, as in every periodic triangulation.
+//! list of positions, which it takes over. The results of both are freed outside the timed section. Confirmed: every
+//! point is a vertex, and each point has exactly six axes on average, as in every periodic triangulation.
 
 use crate::harness::Bench;
 use anyhow::Result;
@@ -16,7 +17,7 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// The rows that compare with `spade`.
+/// Rows that compare with `spade`.
 #[cfg(feature = "peers")]
 mod beside_spade {
     use crate::harness::{Bench, Done, Side};

@@ -1,15 +1,16 @@
-//! The measurement of a row.
+//! Measurement of a row.
 //!
-//! **One thread.** Both sides run inside a thread pool of one thread, in turns (ours, theirs, ours, theirs …), and the
-//! clock is the processor time of that thread: other programs on the machine take away wall time, not processor time.
-//! Cache, memory bandwidth and clock speed are also shared with other programs, but since the turns are short both
-//! sides suffer alike. The time of a side is the median of its runs. Preparation of a run (a copy of the input, freeing
-//! the last output) is outside the clock. One warm-up run of our side goes first, outside the clock, so that memory is
+//! **One thread.** Both sides run inside a thread pool of one thread, in turns (ours, theirs, ours, theirs …). The
+//! clock is the processor time of that thread, because other programs on the machine reduce wall time but not
+//! processor time. Other programs also share cache, memory bandwidth and clock speed, but the turns are short, so both
+//! sides are affected equally. The time of a side is the median of its runs. Preparation of a run (a copy of the
+//! input, freeing the last output) is not timed. One untimed warm-up run of our side goes first, so that memory is
 //! mapped.
 //!
 //! **Two threads** are measured differently, see `two_threads`.
 //!
-//! **No side wins by skipping work.** Results pass through [`black_box`]. Every row ends with a check of what both
+//! **No side wins by skipping work.** Results pass through [`black_box`]. Every row ends with a check of the output of
+//! both sides, which also counts it (pixels, points), so that times are per unit of verified work.
 //! sides made, which also counts it (pixels, points), so that times are per unit of verified work.
 
 mod two_threads;
@@ -52,13 +53,14 @@ impl<'a, S: Send> Side<'a, S> {
         }
     }
 
-    /// Adds a preparation that runs before every run, outside the clock.
+    /// Adds a preparation that runs before every run and is not timed.
     pub(crate) fn prepared(mut self, prepare: impl FnMut(&mut S) + Send + 'a) -> Self {
         self.prepare = Box::new(prepare);
         self
     }
 
-    /// Sets the number of runs per turn, each timed on its own, for a job that is short compared with the other side's.
+    /// Sets the number of runs per turn, each timed separately, for a job that is short compared with the other
+    /// side's.
     pub(crate) fn times(mut self, runs_per_turn: u32) -> Self {
         self.runs_per_turn = runs_per_turn;
         self
@@ -76,17 +78,17 @@ impl<'a, S: Send> Side<'a, S> {
     }
 }
 
-/// The amount of work that each side did in one run, counted from its output in the row's unit.
+/// Amount of work that each side did in one run, counted from its output in the row's unit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Done {
-    /// The number of pixels, points or positions of our side.
+    /// Number of pixels, points or positions of our side.
     pub(crate) ours: usize,
-    /// The number of pixels, points or positions of the other side.
+    /// Number of pixels, points or positions of the other side.
     pub(crate) theirs: usize,
 }
 
 impl Done {
-    /// An amount of work that both sides do.
+    /// Returns an amount of work that both sides do.
     pub(crate) const fn both(n: usize) -> Self {
         Self { ours: n, theirs: n }
     }
@@ -119,7 +121,7 @@ impl Bench {
         self.rows
     }
 
-    /// Measures both sides on one thread in `turns` turns and adds the row; does nothing if the case is not selected.
+    /// Measures both sides on one thread in `turns` turns and adds the row. Does nothing if the case is not selected.
     ///
     /// `confirm` checks the output of the last run of both sides, and counts the work.
     pub(crate) fn beside<A: Send, B: Send>(
@@ -156,7 +158,7 @@ impl Bench {
         Ok(())
     }
 
-    /// Runs a job on one thread; returns its processor time in seconds, and its result.
+    /// Runs a job on one thread. Returns its processor time in seconds and its result.
     pub(crate) fn on_one<T: Send>(&self, job: impl FnOnce() -> T + Send) -> (f64, T) {
         self.one.install(|| {
             let start = ThreadTime::now();
@@ -165,7 +167,7 @@ impl Bench {
         })
     }
 
-    /// Adds the row of a case that was measured elsewhere, from the seconds for one unit of work.
+    /// Adds the row of a case that was measured elsewhere, from the seconds per unit of work.
     pub(crate) fn measured(&mut self, case: &Case, ours: f64, theirs: f64) {
         self.keep(case.row(ours, theirs));
     }

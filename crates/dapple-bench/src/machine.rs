@@ -1,4 +1,4 @@
-//! The machine that a run was measured on, as the results name it.
+//! Description of the machine that a run was measured on, for the results.
 
 use std::fmt;
 use std::process::Command;
@@ -6,18 +6,18 @@ use std::process::Command;
 /// Processor, cores, vector instructions and compiler.
 #[derive(Clone, Debug)]
 pub(crate) struct Machine {
-    /// The model of the processor, as the operating system names it.
+    /// Model of the processor, as the operating system reports it.
     pub(crate) processor: String,
-    /// Threads that can run at the same time.
+    /// Number of threads that can run at the same time.
     pub(crate) n_threads: usize,
-    /// The widest vector instructions that run-time dispatch can choose.
+    /// Widest vector instructions that run-time dispatch can choose.
     pub(crate) vectors: &'static str,
-    /// The version of the compiler.
+    /// Version of the compiler.
     pub(crate) compiler: String,
 }
 
 impl Machine {
-    /// Describes the machine that this program runs on; properties that it does not reveal are "unknown".
+    /// Describes the machine that this program runs on. Unknown properties are "unknown".
     pub(crate) fn this() -> Self {
         Self {
             processor: processor().unwrap_or_else(|| "an unknown processor".to_owned()),
@@ -54,7 +54,7 @@ fn processor() -> Option<String> {
     model_name(&text)
 }
 
-/// Returns the first `model name` in the text of `/proc/cpuinfo`, followed by family and model: they identify a
+/// Returns the first `model name` in the text of `/proc/cpuinfo`, followed by family and model, which identify a
 /// processor whose name a virtual machine has shortened.
 fn model_name(cpuinfo: &str) -> Option<String> {
     let field = |name: &str| {

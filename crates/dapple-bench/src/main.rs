@@ -1,12 +1,13 @@
-//! Side-by-side benchmarks against the peers: `cargo xtask bench [filter…] [--json FILE] [--check]`.
+//! Benchmarks against other crates: `cargo xtask bench [filter…] [--json FILE] [--check]`.
 //!
 //! Every row compares a job of ours with the same job of another crate (a peer), or with our own job under other
-//! conditions, in one run. It states the ratio that must be reached. A filter is the name of a group, which selects its
-//! rows, or a part of a case's or peer's name.
+//! conditions, in one run. It states the ratio that must be reached. A filter is the name of a group, which selects
+//! its rows, or a part of the name of a case or peer.
 //!
-//! The module `harness` measures rows, `peers` uses each peer at its best, and each group has a module: `pups`,
-//! `points`, `graph`, `worley`, `noise`, `wavelet`, `tile`, `mesh`, `synth` and `recipe`. The peers are built only with
-//! the feature `peers`, which `cargo xtask bench` turns on; without it only the rows that compare our own jobs run.
+//! The module `harness` measures rows, `peers` calls each peer in its fastest configuration, and each group has a
+//! module: `pups`, `points`, `graph`, `worley`, `noise`, `wavelet`, `tile`, `mesh`, `synth` and `recipe`. The peers
+//! are built only with the feature `peers`, which `cargo xtask bench` enables. Without it only the rows that compare
+//! our own jobs run.
 
 #![forbid(unsafe_code)]
 

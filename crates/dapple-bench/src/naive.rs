@@ -129,7 +129,8 @@ mod tests {
     fn value_between_two_control_points_is_their_blend() {
         let mut row = [0.0; 8];
         grid().row(0.25, &mut row);
-        // Pixel 3 is at 0.4375, at 3/8 of the axis to the right of the first point; pixel 0 is as far to the left.
+        // Pixel 3 is at 0.4375, at 3/8 of the axis to the right of the first point; pixel 0 is equally far to the
+        // left.
         let p = 0.375_f32;
         let expected = 1.0 - p * p * (3.0 - 2.0 * p);
         assert!(

@@ -1,6 +1,6 @@
-//! The noise group: gradient noise beside the fastest peers.
+//! The noise group: gradient noise compared with the fastest peers.
 //!
-//! Confirmed: both sides have the spread expected of noise, and ours stays within its bounds.
+//! Confirmed: both sides have the variance expected of noise, and ours stays within its bounds.
 
 use crate::harness::{Bench, Done, Side};
 use crate::peers::noise;
@@ -61,16 +61,16 @@ const TERRAIN: Case = Case {
     note: "one thread; the warp moves positions by up to half a cell along each axis",
 };
 
-/// Columns and rows of a chunk of terrain: neighbors share a row.
+/// Width and height of a chunk of terrain in positions. Adjacent chunks share a row.
 const CHUNK: u32 = 65;
 
-/// The distance of two positions of a chunk, in cells.
+/// Distance between two positions of a chunk, in cells.
 const CHUNK_STEP: f64 = 1.0 / 32.0;
 
-/// Columns and rows of the pictures.
+/// Width and height of the images in pixels.
 const SIDE: u32 = 1024;
 
-/// The number of positions per run.
+/// Number of positions per run.
 const N_POSITIONS: usize = 1 << 16;
 
 /// Measures the rows of the group.
@@ -188,7 +188,7 @@ fn picture(bench: &mut Bench, case: &Case, px_per_cell: u32) -> Result<()> {
     )
 }
 
-/// The function that fills in values one position after the other.
+/// Returns a function that evaluates values one position at a time.
 pub(crate) fn one_by_one<const N: usize>(
     sample: impl Fn([f64; N]) -> f32,
 ) -> impl Fn(&[[f64; N]], &mut [f32]) {
@@ -199,7 +199,7 @@ pub(crate) fn one_by_one<const N: usize>(
     }
 }
 
-/// Measures values at positions anywhere in a cube of `cells`, in random order, next to Perlin noise of
+/// Measures values at positions anywhere in a cube of `cells`, in random order, compared with Perlin noise of
 /// `noise-functions`.
 pub(crate) fn beside_perlin<const N: usize>(
     bench: &mut Bench,
@@ -248,7 +248,7 @@ fn confirm(values: &[f32]) -> Result<()> {
         .map(|&value| f64::from(value) * f64::from(value))
         .sum();
     let variance = sum / values.len() as f64;
-    // The coarsest picture has few cells.
+    // The coarsest image has few cells.
     ensure!(
         (0.05..0.15).contains(&variance),
         "the variance is {variance}"

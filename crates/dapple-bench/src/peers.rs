@@ -1,14 +1,14 @@
-//! The peers, each used at its best: advice of its documentation about speed is followed, and memory is kept between
-//! calls.
+//! The peers, each in its fastest configuration: the performance advice of its documentation is followed, and memory
+//! is kept between calls.
 //!
-//! * `spade` interpolates inside the convex hull of its points, so a point set of the unit torus is given to it with
-//!   the copies within a margin, and is then defined in the whole unit square. The interpolators keep their buffers.
-//!   An image is scanned in a serpentine, so that the last vertex, at which `spade` begins to look for a position, is
-//!   always near; for scattered positions there is its hierarchy of triangulations.
-//! * `bluenoise` has few tries (10) for each point, as its own examples: more are slower.
-//! * `poisson-diskus` and `fast_poisson` have the 30 tries that they recommend. `fast_poisson` is not periodic.
-//! * `simdnoise` and `noise-functions` are in `noise`, `rustfft` in `fourier`, `texture-synthesis` in `flat`, `kiddo` in
-//!   `kd_tree`.
+//! * `spade` interpolates inside the convex hull of its points. It therefore gets a point set of the unit torus with
+//!   the copies within a margin, which makes it defined in the whole unit square. The interpolators keep their
+//!   buffers. An image is scanned in a serpentine, so that the last vertex, where `spade` starts to search for a
+//!   position, is always near. For scattered positions it uses its hierarchy of triangulations.
+//! * `bluenoise` makes few attempts (10) per point, as in its own examples; more are slower.
+//! * `poisson-diskus` and `fast_poisson` make the 30 attempts that they recommend. `fast_poisson` is not periodic.
+//! * `simdnoise` and `noise-functions` are in `noise`, `rustfft` in `fourier`, `texture-synthesis` in `flat`, `kiddo`
+//!   in `kd_tree`.
 
 pub(crate) mod flat;
 pub(crate) mod fourier;
@@ -37,10 +37,10 @@ impl HasPosition for Site {
     }
 }
 
-/// `spade` with the last used vertex as its hint, for positions near the previous one.
+/// `spade` with the last used vertex as a hint, for positions near the previous one.
 pub(crate) type ScanlineSpade = Spade<LastUsedVertexHintGenerator>;
 
-/// `spade` with a hierarchy of triangulations as its hint, for scattered positions.
+/// `spade` with a hierarchy of triangulations as a hint, for scattered positions.
 pub(crate) type ScatteredSpade = Spade<HierarchyHintGenerator<f64>>;
 
 /// A triangulation of a periodic point set that covers the unit square.
@@ -130,7 +130,7 @@ pub(crate) fn spade_positions(positions: &[DVec2]) -> Vec<Point2<f64>> {
     positions.iter().map(|at| Point2::new(at.x, at.y)).collect()
 }
 
-/// Returns the plain triangulation of a list of positions, which it takes over.
+/// Returns the bounded triangulation of a list of positions, which it takes over.
 ///
 /// # Panics
 ///

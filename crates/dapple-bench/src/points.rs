@@ -1,9 +1,10 @@
-//! The points group: maximal Poisson-disk sets of the unit torus beside other crates that make Poisson-disk points.
+//! The points group: maximal Poisson-disk sets of the unit torus compared with other crates that make Poisson-disk
+//! points.
 //!
-//! All sides get the same radius. They are compared by the time per point made, since they pack differently: no peer is
+//! All sides get the same radius. They are compared by the time per point, since their densities differ: no peer is
 //! maximal, `bluenoise` packs more densely than random darts, the others more loosely, and `fast_poisson` does not
-//! wrap. Confirmed: the density is the one known for the method, and no two points are closer than the radius; ours
-//! also leaves no empty circle larger than the radius.
+//! wrap. Confirmed: the density is the known density of the method, and no two points are closer than the radius. Our
+//! set also leaves no empty circle larger than the radius.
 
 mod alone;
 #[cfg(feature = "peers")]
@@ -21,8 +22,8 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     alone::run(bench)
 }
 
-/// Checks that our set has the known density, that no two points are too close, and that no more fit. Returns the
-/// number of points.
+/// Checks that our set has the known density, that no two points are too close, and that no further point fits.
+/// Returns the number of points.
 fn confirm_maximal(points: &Option<PointSet>, radius: f64) -> Result<usize> {
     let points = points.as_ref().context("no points")?;
     // The density is 0.697, with less than 1 % deviation from 100 k points on.

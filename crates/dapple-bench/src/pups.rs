@@ -1,9 +1,9 @@
 //! The pups group: rasters and single positions of a scalar texture on the unit torus.
 //!
-//! An image is 1000×1000 pixels of the unit square, in memory allocated before. Setup (points, graph, net; the
-//! triangulation of the peer) is outside the clock, except in the row of the whole chain. Confirmed: every pixel of a
-//! peer has a value, and ours equals the naive evaluation of the paper's formulas up to the rounding of `f32`. The
-//! naive evaluation is itself a peer; it runs on some rows of the image, since a whole image would take seconds.
+//! An image has 1000×1000 pixels of the unit square, in preallocated memory. Setup (points, graph, net; the
+//! triangulation of the peer) is not timed, except in the row of the whole chain. Confirmed: every pixel of a peer has
+//! a value, and ours equals the naive evaluation of the paper's formulas up to the rounding of `f32`. The naive
+//! evaluation is itself a peer. It runs on some rows of the image, since a whole image would take seconds.
 
 mod alone;
 #[cfg(feature = "peers")]
@@ -27,10 +27,10 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     edits::run(bench)
 }
 
-/// Columns and rows of the images.
+/// Width and height of the images in pixels.
 const SIDE: u32 = 1000;
 
-/// A texture with about a given number of control points, and the structures it is made of.
+/// A texture with about a given number of control points, and the structures that it consists of.
 struct Scene {
     points: PointSet,
     graph: Graph,
@@ -39,7 +39,7 @@ struct Scene {
 }
 
 impl Scene {
-    /// About `n_points` maximal Poisson-disk points with values, on the unit torus.
+    /// Creates about `n_points` maximal Poisson-disk points with values on the unit torus.
     fn new(n_points: u32) -> Result<Self> {
         let points = sets::poisson_disk(n_points)?;
         let graph = delaunay(&points)?;
@@ -84,7 +84,7 @@ impl Scene {
     fn confirm_values(&self, found: &[f32], expected: &[f32]) -> Result<()> {
         let tolerance = self.tolerance();
         for (index, (found, expected)) in found.iter().zip(expected).enumerate() {
-            // Written so that a NaN difference fails.
+            // In this form a NaN difference fails.
             let near = (found - expected).abs() <= tolerance;
             ensure!(
                 near,
@@ -96,9 +96,9 @@ impl Scene {
 
     /// Returns how much two `f32` evaluations of the same formulas may differ.
     ///
-    /// Some 25 products and sums of numbers up to 1 lose up to 6e-8 each, partly canceling: 5e-7. The naive evaluation
-    /// rounds offsets in the unit torus by up to 1.2e-7. That changes the weight of each of about four supports by at
-    /// most the steepest slope of equation 1, which is 1.5 over an axis no shorter than the radius.
+    /// About 25 products and sums of numbers up to 1 lose up to 6e-8 each, partly canceling: 5e-7. The naive
+    /// evaluation rounds offsets in the unit torus by up to 1.2e-7. That changes the weight of each of about four
+    /// supports by at most the steepest slope of equation 1, which is 1.5 over an axis no shorter than the radius.
     fn tolerance(&self) -> f32 {
         let radius = sets::radius_of(self.points.len() as u32) as f32;
         5e-7 + 4.0 * 1.2e-7 * 1.5 / radius

@@ -1,4 +1,4 @@
-//! The recipe group: baking a part beside baking the whole, and nodes beside what they are made of.
+//! The recipe group: baking a part compared with baking the whole, and nodes compared with the functions they use.
 
 mod maps;
 mod nodes;

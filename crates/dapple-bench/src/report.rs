@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// The titles of the columns, and whether a column is aligned to the right.
+/// Titles of the columns, and whether a column is right-aligned.
 const COLUMNS: [(&str, bool); 8] = [
     ("case", false),
     ("peer", false),

@@ -2,14 +2,14 @@
 
 use serde::Serialize;
 
-/// The direction of a ratio, and the bar that it must reach.
+/// The direction of a ratio, and the threshold that it must reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Goal {
-    /// The time of the other side divided by ours must be at least this: we are that many times faster.
+    /// The time of the other side divided by ours must be at least this: ours is that many times faster.
     Faster(f64),
     /// Our time divided by the time of the other side must be at most this.
     CostAtMost(f64),
-    /// A measure of quality on our side divided by that of the other side must be at least this.
+    /// A quality measure of our side divided by that of the other side must be at least this.
     AtLeast(f64),
 }
 
@@ -22,7 +22,7 @@ impl Goal {
         }
     }
 
-    /// Returns whether a ratio meets the bar. NaN never does.
+    /// Returns whether a ratio meets the threshold. NaN never does.
     pub(crate) fn holds(self, ratio: f64) -> bool {
         match self {
             Self::Faster(bar) | Self::AtLeast(bar) => ratio >= bar,
@@ -31,7 +31,7 @@ impl Goal {
     }
 }
 
-/// The description of a row: the two sides, the unit and the bar.
+/// The description of a row: the two sides, the unit and the threshold.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Case {
     /// The group, which is also a filter: one of [`GROUPS`].
@@ -42,9 +42,9 @@ pub(crate) struct Case {
     pub(crate) peer: &'static str,
     /// The unit of both times, see [`Unit`].
     pub(crate) unit: Unit,
-    /// The bar.
+    /// Threshold of the ratio.
     pub(crate) must: Goal,
-    /// A note that a reader needs to understand the row; empty if there is none.
+    /// Note that a reader needs to understand the row; empty if there is none.
     pub(crate) note: &'static str,
 }
 
@@ -87,17 +87,17 @@ impl Case {
     }
 }
 
-/// The groups, in the order of the table.
+/// Groups in the order of the table.
 pub(crate) const GROUPS: [&str; 10] = [
     "pups", "points", "graph", "worley", "noise", "wavelet", "tile", "mesh", "synth", "recipe",
 ];
 
-/// The unit of a time or of another measure.
+/// Unit of a time or of another measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Unit {
     /// Nanoseconds for each pixel of the image.
     NsPerPixel,
-    /// Nanoseconds for each point of the set that came out.
+    /// Nanoseconds for each point of the resulting set.
     NsPerPoint,
     /// Nanoseconds for each evaluated position.
     #[cfg_attr(
@@ -164,13 +164,13 @@ pub(crate) struct Row {
     pub(crate) theirs: f64,
     /// Their time divided by ours if `at` is `least` and times are compared; ours divided by theirs otherwise.
     pub(crate) ratio: f64,
-    /// The bar.
+    /// Threshold of the ratio.
     pub(crate) must: f64,
-    /// The sense of the bar: the ratio must be at `least` or at `most` the bar.
+    /// Comparison with the threshold: the ratio must be at `least` or at `most` this value.
     pub(crate) at: &'static str,
-    /// Whether the ratio meets the bar.
+    /// Whether the ratio meets the threshold.
     pub(crate) holds: bool,
-    /// A note that a reader needs to understand the row.
+    /// Note that a reader needs to understand the row.
     pub(crate) note: String,
 }
 

@@ -1,18 +1,18 @@
-//! The measurement of a row on two threads.
+//! Measurement of a row on two threads.
 //!
 //! Processor time cannot tell whether two threads ran at the same time, so the run on two threads is timed by the wall
-//! clock. On a machine that others use, a wall time is nearly always too long and never too short; its least value over
-//! many runs comes near the true one. The row divides the least *processor* time of a run on one thread by the least
-//! *wall* time of a run on two. Other programs can only make that ratio smaller. A row that holds can therefore be
-//! trusted, and a row that fails may need a quieter machine; runs go on, in turns, until the time of the row is used
-//! up. A job takes at least [`LEAST_JOB_S`] on one thread, so that the time to wake threads is negligible. Both results
-//! must have the same bits.
+//! clock. On a shared machine a wall time is nearly always too long and never too short, so its minimum over many runs
+//! approaches the true time. The row divides the minimum *processor* time of a run on one thread by the minimum *wall*
+//! time of a run on two threads. Other programs can only make that ratio smaller. A row that holds can therefore be
+//! trusted, and a row that fails may need a quieter machine. Runs continue, in turns, until the time of the row is
+//! used up. A job takes at least [`LEAST_JOB_S`] on one thread, so that the time to wake threads is negligible. Both
+//! results must have the same bits.
 //!
-//! The note of the row helps to judge a failure. It has three numbers. The first is the processor time of both threads
-//! together, divided by that of one thread: 1.00 means that dividing the work costs nothing. The second is the share of
-//! the busier thread: the wall time that would remain without other programs and without waiting. The third is the
-//! speedup of two loops that share nothing and touch no memory, measured turn by turn beside the row: the machine
-//! cannot do better.
+//! The note of the row has three numbers that help to judge a failure. The first is the processor time of both threads
+//! together divided by that of one thread: 1.00 means that dividing the work has no cost. The second is the share of
+//! the busier thread: the relative wall time without other programs and without waiting. The third is the speedup of
+//! two loops that share nothing and touch no memory, measured in the same turns as the row: the upper limit on this
+//! machine.
 
 use super::{Bench, in_case};
 use crate::report::three_digits;
@@ -22,14 +22,14 @@ use cpu_time::ThreadTime;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-/// The least time of a job on one thread, in seconds, in a row on two threads.
+/// Minimum time of a job on one thread, in seconds, in a row on two threads.
 pub(crate) const LEAST_JOB_S: f64 = 0.1;
 
-/// The least number of turns of a row on two threads.
+/// Minimum number of turns of a row on two threads.
 const LEAST_TURNS: u32 = 3;
 
 impl Bench {
-    /// Measures a job on one and on two threads for about `budget`, and adds the row; `same` compares two results bit
+    /// Measures a job on one and on two threads for about `budget`, and adds the row. `same` compares two results bit
     /// for bit.
     pub(crate) fn two_threads<S: Send>(
         &mut self,
@@ -74,14 +74,14 @@ impl Bench {
         Ok(())
     }
 
-    /// Runs a job on two threads; returns its wall time in seconds, and its result.
+    /// Runs a job on two threads. Returns its wall time in seconds and its result.
     pub(crate) fn on_two<T: Send>(&self, job: impl FnOnce() -> T + Send) -> (f64, T) {
         let start = now();
         let made = black_box(self.two.install(job));
         (start.elapsed().as_secs_f64(), made)
     }
 
-    /// Runs one job on one thread, then another on two, and returns their times.
+    /// Runs one job on one thread, then another on two threads, and returns their times.
     fn turn_of_two(&self, on_one: impl FnOnce() + Send, on_two: impl FnOnce() + Send) -> Best {
         let one = self.one.install(|| {
             let start = ThreadTime::now();
@@ -109,12 +109,12 @@ impl Bench {
     }
 }
 
-/// The least times so far of a job on one and on two threads, in seconds.
+/// Minimum times so far of a job on one and on two threads, in seconds.
 #[derive(Clone, Copy, Debug)]
 struct Best {
     /// Processor time on one thread.
     one: f64,
-    /// Wall time on two.
+    /// Wall time on two threads.
     wall: f64,
     /// Processor time of two threads together.
     both: f64,
@@ -135,7 +135,7 @@ impl Default for Best {
 }
 
 impl Best {
-    /// Keeps the lesser of each pair of times.
+    /// Keeps the smaller of each pair of times.
     fn keep(&mut self, turn: &Self) {
         self.one = self.one.min(turn.one);
         self.wall = self.wall.min(turn.wall);
@@ -144,7 +144,7 @@ impl Best {
     }
 }
 
-/// Runs two loops of some 50 ms each that share nothing and touch no memory: the best case for two threads.
+/// Runs two loops of about 50 ms each that share nothing and touch no memory: the best case for two threads.
 fn two_loops() {
     let work =
         || (0..black_box(12_000_000_u64)).fold(1, |sum, i| black_box(sum * 16_807 + i) % 1_000_003);

@@ -1,6 +1,6 @@
-//! The evenness of repelled points beside that of a hexagonal lattice, by the distances to nearest neighbors.
+//! Evenness of repelled points compared with a hexagonal lattice, by the distances to nearest neighbors.
 //!
-//! The points are the default hierarchy on the procedural animal, 262,144 points. The worst of the levels counts.
+//! The points are the default hierarchy on the procedural animal, 262,144 points. The row reports the worst level.
 
 use crate::harness::Bench;
 use crate::row::{Case, Goal, Unit};

@@ -1,12 +1,12 @@
-//! Our stars (the Delaunay neighbors of each site) beside those of `spade`.
+//! Our stars (the Delaunay neighbors of each site) compared with the stars of `spade`.
 //!
-//! Both sides get positions, normals and a spacing. They look up the sites around every site with our grid, project
-//! them to its tangent plane, find its star, and join all stars into a graph. `spade` gets as few sites as a complete
-//! star needs: within 1.8 spacings, or 2.8 or 4 where a smaller radius is not enough. It triangulates them all at once
+//! Both sides get positions, normals and a spacing. They find the sites around every site with our grid, project them
+//! to its tangent plane, find its star, and join all stars into a graph. `spade` gets as few sites as a complete star
+//! needs: within 1.8 spacings, or within 2.8 or 4 if a smaller radius is not enough. It triangulates them all at once
 //! and returns the neighbors of the center.
 //!
-//! Confirmed: both find the same neighbors. At sharp bends even 4 spacings can leave an empty circle that is too large.
-//! There our side connects sites by a rule of its own, and these sites are not compared.
+//! Confirmed: both find the same neighbors. At sharp bends even 4 spacings can leave an empty circle that is too
+//! large. There our side connects sites by a separate rule, and these sites are not compared.
 
 use crate::harness::{Bench, Done, Side};
 use crate::row::{Case, Goal, Unit};
@@ -29,7 +29,7 @@ const STARS: Case = Case {
     note: "both look the sites around each site up with our grid, project them, and join the stars to a graph",
 };
 
-/// The radii of the search for neighbors, in spacings; the next one is tried while empty circles are larger.
+/// Search radii for neighbors, in spacings. The next one is tried while empty circles are larger.
 const REACHES: [f64; 3] = [1.8, 2.8, 2.0 * STAR_RADIUS];
 
 /// A site projected to the tangent plane of another one, as a vertex of `spade`.
@@ -47,7 +47,7 @@ impl HasPosition for Near {
     }
 }
 
-/// The stars that `spade` found, as a graph.
+/// Stars found by `spade`, as a graph.
 #[derive(Default)]
 struct Theirs {
     graph: SiteGraph,
@@ -132,8 +132,8 @@ fn star(sites: &Sites, grid: &SiteGrid, center: SiteIdx, spacing: f64) -> (Vec<u
     (around, true)
 }
 
-/// Returns the sites of the same sheet within a distance, projected so that their distance to the center stays as in
-/// space.
+/// Returns the sites of the same sheet within a distance, projected so that their distance to the center stays equal
+/// to the distance in space.
 fn within(sites: &Sites, grid: &SiteGrid, center: SiteIdx, reach: f64) -> Vec<Near> {
     let [position, normal] =
         [sites.positions(), sites.normals()].map(|of: &[DVec3]| of[center.index()]);

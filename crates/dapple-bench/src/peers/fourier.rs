@@ -1,18 +1,18 @@
-//! The spline projection by `rustfft`: lines are transformed, their frequencies are mixed, and the result is
-//! transformed back.
+//! Spline projection with `rustfft`: lines are transformed, their frequencies are mixed, and the result is transformed
+//! back.
 //!
-//! Projecting a line adds to each frequency its alias half the sampling rate away: with `H` the transform of the
-//! refinement filter and `B` that of the Gram filter on the coarse line, frequency `k` becomes
-//! `H(k) (C(k) G(k) + C(k + n/2) G(k + n/2))`, where `C = conj(H) · B(fine) / B(coarse) / 4`. The filters are real, so
-//! that two lines go through one complex transform; columns go through as rows of the transposed raster. Planner,
-//! scratch and memory are kept. The default planner takes the widest vector code of the machine.
+//! Projecting a line adds to each frequency its alias half the sampling rate away. With `H` the transform of the
+//! refinement filter and `B` the transform of the Gram filter on the coarse line, frequency `k` becomes `H(k) (C(k)
+//! G(k) + C(k + n/2) G(k + n/2))`, where `C = conj(H) · B(fine) / B(coarse) / 4`. The filters are real, so one complex
+//! transform processes two lines. Columns are processed as rows of the transposed raster. Planner, scratch memory and
+//! buffers are kept. The default planner uses the widest vector code of the machine.
 
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// The projection of square rasters, with its buffers.
+/// Projection of square rasters, with its buffers.
 pub(crate) struct FourierProjection {
     side: usize,
     forward: Arc<dyn Fft<f32>>,
@@ -23,7 +23,7 @@ pub(crate) struct FourierProjection {
     line: Vec<Complex<f32>>,
     scratch: Vec<Complex<f32>>,
     transposed: Vec<f32>,
-    /// The result of the last run.
+    /// Result of the last run.
     pub(crate) fine: Vec<f32>,
 }
 
@@ -142,7 +142,7 @@ mod tests {
         ];
         for (at, &value) in fourier.fine.iter().enumerate() {
             let expected: f32 = line[at / 8] * line[at % 8];
-            // The error of an `f32` transform of 8 values.
+            // Error of an `f32` transform of 8 values.
             assert!(
                 (value - expected).abs() < 1e-6,
                 "{value} and not {expected}"

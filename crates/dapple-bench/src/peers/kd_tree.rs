@@ -1,25 +1,25 @@
-//! The k-d tree of `kiddo`, which is not meant for hundreds of dimensions: it holds the rows projected to a few
+//! The k-d tree of `kiddo`. It is not intended for hundreds of dimensions, so it stores the rows projected to a few
 //! directions.
 //!
 //! A projection to orthogonal unit directions never lengthens a distance. Therefore the best of the few nearest
-//! projected points gives a radius; the tree lists all points within it, and the nearest row is among them. These rows
-//! are compared in full. The result is exact up to the rounding of the directions; the radius is enlarged by a
-//! thousandth for it.
+//! projected points gives a radius. The tree lists all points within it, and the nearest row is among them; these rows
+//! are compared in full. The result is exact up to the rounding of the directions, for which the radius is enlarged by
+//! a thousandth.
 //!
-//! The directions are the principal directions of the rows, found by orthogonal iteration.
+//! The directions are the principal directions of the rows, computed by orthogonal iteration.
 
 use anyhow::{Result, anyhow};
 use dapple_synth::distance_sq;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use std::num::NonZero;
 
-/// The largest number of rows from which directions are computed.
+/// Maximum number of rows from which directions are computed.
 const MOST_ROWS: usize = 4096;
 
-/// The number of iterations; the directions need not be exact.
+/// Number of iterations. The directions need not be exact.
 const N_ITERATIONS: usize = 60;
 
-/// The number of nearest projected points that give the radius.
+/// Number of nearest projected points that give the radius.
 const FIRST: NonZero<usize> = NonZero::new(4).unwrap();
 
 /// A few orthogonal unit vectors, stored by dimension: each dimension has its component along every vector.
@@ -52,7 +52,7 @@ impl<'a, const N: usize> KdTree<'a, N> {
         })
     }
 
-    /// Returns the nearest row; the first of several at the same distance.
+    /// Returns the nearest row, the first one if several have the same distance.
     pub(crate) fn nearest(&self, query: &[f32]) -> u32 {
         let at = self.directions.along(query);
         let mut best = (f32::INFINITY, u32::MAX);
@@ -133,7 +133,7 @@ impl<const N: usize> Directions<N> {
 
 /// Returns approximate eigenvectors of the largest eigenvalues.
 fn iterate<const N: usize>(dims: usize, matrix: &[f64]) -> Vec<Vec<f64>> {
-    // Start with lines of the matrix, which are all different.
+    // Start with rows of the matrix, which are all different.
     let mut vectors: Vec<Vec<f64>> = (0..N)
         .map(|index| matrix[index * dims / N * dims..][..dims].to_vec())
         .collect();
@@ -144,13 +144,13 @@ fn iterate<const N: usize>(dims: usize, matrix: &[f64]) -> Vec<Vec<f64>> {
             *vector = matrix.chunks_exact(dims).map(dot).collect();
         }
     }
-    // The second time removes what rounding left after the first.
+    // The second pass removes the rounding errors of the first.
     orthonormalize(&mut vectors);
     orthonormalize(&mut vectors);
     vectors
 }
 
-/// Makes vectors orthogonal, one after the other, and of length 1.
+/// Makes vectors orthogonal, in order, and of length 1.
 fn orthonormalize(vectors: &mut [Vec<f64>]) {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     for index in 0..vectors.len() {

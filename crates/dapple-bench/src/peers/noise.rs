@@ -1,23 +1,23 @@
 //! Grids of `simdnoise` and scattered values of `noise-functions`.
 //!
-//! * `simdnoise` makes whole grids, with the widest of SSE2, SSE4.1 and AVX2 that it finds at run time. Its grids always
-//!   come in a new `Vec` and with their least and largest value, for which there is no way around; the last one is freed
-//!   outside the clock. Of all crates that were tried it has the fastest cellular grids and the fastest grid of one
-//!   octave of gradient noise, which is simplex noise (beside Perlin and simplex noise of `noise-functions`,
-//!   `fastnoise-lite`, `libnoise` and `noise`). Its cellular distances are squared, from one feature point per cell on a
-//!   circle or sphere around the cell's corner; it looks at the 3×3 or 3×3×3 cells next to the position and no further.
-//!   In space it steps `z` from `y`, so that it looks at 18 places rather than 27, some of them wrong; its times are
-//!   taken as they are.
-//! * `noise-functions` has the fastest function for one position (beside `fastnoise-lite`, `libnoise` and `noise`),
-//!   with the square root that Euclidean distances want. Its feature points lie on a circle or sphere, too.
+//! * `simdnoise` makes whole grids, with the widest of SSE2, SSE4.1 and AVX2 that it finds at run time. It always
+//!   returns a grid in a new `Vec`, with its minimum and maximum, which cannot be avoided; the last grid is freed
+//!   outside the timed section. Of all tested crates it has the fastest cellular grids and the fastest grid of one
+//!   octave of gradient noise, which is simplex noise (compared with Perlin and simplex noise of `noise-functions`,
+//!   `fastnoise-lite`, `libnoise` and `noise`). Its cellular distances are squared, from one feature point per cell on
+//!   a circle or sphere around the cell's corner; it searches only the 3×3 or 3×3×3 cells next to the position. In
+//!   space it steps `z` from `y`, so that it visits 18 cells rather than 27, some of them wrong; its times are used
+//!   unchanged.
+//! * `noise-functions` has the fastest function for one position (compared with `fastnoise-lite`, `libnoise` and
+//!   `noise`), with the square root that Euclidean distances need. Its feature points also lie on a circle or sphere.
 
 use noise_functions::{CellDistance, Noise as _, Perlin};
 use simdnoise::{Cell2ReturnType, CellReturnType, NoiseBuilder};
 
-/// A grid of `simdnoise`: the values, the least value and the largest.
+/// A grid of `simdnoise`: the values, their minimum and their maximum.
 pub(crate) type Grid = (Vec<f32>, f32, f32);
 
-/// The distance of feature points from the corners of the cells. It does not change the time.
+/// Distance of feature points from the corners of the cells. It does not affect the time.
 const JITTER: f32 = 0.45;
 
 /// Returns cellular noise of `simdnoise` in the plane: squared F1.

@@ -45,7 +45,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     two_threads(bench)
 }
 
-/// Returns a side that makes a point set of the unit torus and keeps it.
+/// Returns a side that makes a point set of the unit torus and stores it.
 pub(super) fn maximal(radius: f64) -> Side<'static, Option<PointSet>> {
     Side::new(None, move |points| {
         *points = poisson_disk(UNIT_TORUS, radius, SEED).ok();
@@ -80,8 +80,8 @@ fn variable(bench: &mut Bench) -> Result<()> {
     .prepared(|points| *points = None);
     bench.beside(&VARIABLE, 15, ours, maximal(radius), |ours, theirs| {
         let ours = ours.as_ref().context("no points")?;
-        // As dense as with a fixed radius, within the 3 % that the method promises; the least distance is the least
-        // radius of the ramp.
+        // The density equals that of a fixed radius within the 3 % that the method promises. The minimum distance is
+        // the minimum radius of the ramp.
         let n_ours = confirm(ours, radius, 1.0, 0.676..=0.718)?;
         confirm(ours, least, 1e-9, 0.0..=1.0)?;
         Ok(Done {
@@ -93,7 +93,7 @@ fn variable(bench: &mut Bench) -> Result<()> {
 
 fn endless(bench: &mut Bench) -> Result<()> {
     let radius = sets::radius_of(100_000);
-    // Far from the origin by a power of two, so that positions in the window are exact.
+    // The corner is far from the origin by a power of two, so that positions in the window are exact.
     let corner = 64.0;
     let endless = EndlessPoissonDisk::new(radius, SEED)?;
     let ours = Side::new(None, |points: &mut Option<Vec<EndlessPoint>>| {
@@ -114,7 +114,7 @@ fn endless(bench: &mut Bench) -> Result<()> {
 fn two_threads(bench: &mut Bench) -> Result<()> {
     let radius = sets::radius_of(1_000_000);
     let job = |points: &mut Option<PointSet>| *points = poisson_disk(UNIT_TORUS, radius, SEED).ok();
-    // Two failed runs do not count as equal; coordinates are never NaN or −0.
+    // Two failed runs do not count as equal. Coordinates are never NaN or −0.
     let same = |one: &Option<PointSet>, two: &Option<PointSet>| one.is_some() && one == two;
     bench.two_threads(
         &TWO_THREADS,

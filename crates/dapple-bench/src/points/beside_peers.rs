@@ -1,4 +1,4 @@
-//! Our sets beside other crates that make Poisson-disk points.
+//! Our sets compared with other crates that make Poisson-disk points.
 
 use super::alone::maximal;
 use super::{confirm, confirm_maximal};
@@ -60,24 +60,24 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
 
 /// A peer that makes positions of type `P`, with its known properties.
 struct Peer<P> {
-    /// The radius on the unit torus, which our side gets as well.
+    /// Radius on the unit torus, which our side also gets.
     radius: f64,
     /// Makes the points.
     make: Box<dyn Fn() -> Vec<P> + Sync>,
-    /// Returns the position of a made point.
+    /// Returns the position of a point.
     position: fn(&P) -> DVec2,
-    /// The domain of its points.
+    /// Domain of its points.
     domain: Domain,
-    /// The radius in units of its domain.
+    /// Radius in units of its domain.
     own_radius: f64,
-    /// How much closer than the radius two points may be, relative to the radius.
+    /// Tolerance of the minimum distance between two points, relative to the radius.
     slack: f64,
-    /// The expected density: the number of points times squared radius over area.
+    /// Expected density: the number of points times squared radius over area.
     density: RangeInclusive<f64>,
 }
 
 impl<P> Peer<P> {
-    /// Checks the points of the peer; returns their number.
+    /// Checks the points of the peer, and returns their number.
     fn confirm(&self, made: &[P]) -> Result<usize> {
         let points = PointSet::new(self.domain, made.iter().map(self.position).collect())?;
         confirm(&points, self.own_radius, self.slack, self.density.clone())
@@ -107,7 +107,7 @@ fn bluenoise(n_points: u32) -> Peer<[f32; 2]> {
         position: |at| DVec2::new(f64::from(at[0]), f64::from(at[1])),
         domain: Domain::torus(DVec2::ZERO, DVec2::splat(f64::from(side))),
         own_radius: 1.0,
-        // Coordinates go up to 1200, where neighboring `f32` values are 1.2e-4 apart.
+        // Coordinates go up to 1200, where adjacent `f32` values are 1.2e-4 apart.
         slack: 3e-4,
         density: 0.78..=0.82,
     }
@@ -127,7 +127,7 @@ fn diskus(n_points: u32) -> Peer<[f64; 2]> {
     }
 }
 
-/// The crate `fast_poisson`, which does not wrap; the border admits a few more points.
+/// The crate `fast_poisson`, which does not wrap. The border admits a few more points.
 fn fast_poisson(n_points: u32) -> Peer<[f64; 2]> {
     let radius = sets::radius_of(n_points);
     Peer {
@@ -137,7 +137,7 @@ fn fast_poisson(n_points: u32) -> Peer<[f64; 2]> {
     }
 }
 
-/// The number of points times squared radius for Bridson's algorithm with 30 tries per point.
+/// Number of points times squared radius for Bridson's algorithm with 30 attempts per point.
 const BRIDSON: RangeInclusive<f64> = 0.610..=0.640;
 
 #[cfg(test)]

@@ -51,7 +51,7 @@ const TWO_THREADS: Case = Case {
     ..NAIVE
 };
 
-/// Columns and rows of the image on two threads: large enough for a job of at least 100 ms.
+/// Width and height in pixels of the image on two threads: large enough for a job of at least 100 ms.
 const TWO_THREADS_SIDE: u32 = 8192;
 
 /// The naive evaluation runs on every row whose number is a multiple of this.

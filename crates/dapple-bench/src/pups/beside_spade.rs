@@ -1,4 +1,4 @@
-//! Our textures beside the interpolators of `spade`.
+//! Our textures compared with the interpolators of `spade`.
 
 use super::alone::raster;
 use super::{SIDE, Scene, image, window};
@@ -68,7 +68,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     one_position(bench, &POSITIONS_40K, 40_000, 9)
 }
 
-/// The margin around the square in which `spade` has copies of points: more than four radii of 700 points, so that
+/// Margin around the square within which `spade` gets copies of points: more than four radii of 700 points, so that
 /// every pixel has all of its natural neighbors.
 const MARGIN: f64 = 0.15;
 
@@ -95,9 +95,9 @@ fn beside_raster(
     )
 }
 
-/// Checks that a peer has a value in [0, 1] at every position, and not the same value everywhere.
+/// Checks that a peer has a value in [0, 1] at every position, and that the values are not all equal.
 fn has_values(values: &[f32]) -> Result<()> {
-    // Means of numbers in [0, 1] stay there up to the rounding of the weights; NaN is in no range.
+    // Weighted means of numbers in [0, 1] stay in this range up to the rounding of the weights; NaN is in no range.
     let bad = values
         .iter()
         .position(|value| !(-1e-4..=1.0001).contains(value));

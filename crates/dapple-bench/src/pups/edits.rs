@@ -1,7 +1,8 @@
-//! One edit of a control point and a redraw of the changed parts, beside a texture that is made and drawn from scratch.
+//! An edit of a control point and a redraw of the changed parts, compared with making and drawing the texture from
+//! scratch.
 //!
-//! Edits take turns: a point moves by a fraction of the mean distance, a point is added, and that point is removed.
-//! Confirmed: the image kept up to date by edits has the same bits as an image made from scratch.
+//! Edits alternate: a point moves by a fraction of the mean distance, a point is added, and that point is removed.
+//! Confirmed: the image updated by edits has the same bits as an image made from scratch.
 
 use super::{SIDE, image, window};
 use crate::harness::{Bench, Done, Side};
@@ -36,7 +37,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     edits(bench, &EDIT_700, 700)
 }
 
-/// A texture that is edited, and its image.
+/// A texture under edits, and its image.
 struct Edited {
     pups: EditablePups,
     window: Window,

@@ -1,6 +1,6 @@
-//! Each map of each built-in recipe alone, and its height with a margin, beside a bake of all its maps.
+//! Each map of each built-in recipe alone, and its height with a margin, compared with a bake of all its maps.
 //!
-//! A part can cost more than the whole only if it takes a separate path; the two rows have the costliest parts.
+//! A part can cost more than the whole only if it takes a separate path. The two rows report the most expensive parts.
 
 use crate::harness::Bench;
 use crate::row::{Case, Goal, Unit};
@@ -24,13 +24,13 @@ const MARGIN: Case = Case {
     ..ALONE
 };
 
-/// Columns and rows of the tile.
+/// Width and height of the tile in pixels.
 const SIDE: u32 = 256;
 
-/// The widest margin, in pixels.
+/// Maximum margin, in pixels.
 const WIDEST: u32 = 16;
 
-/// The number of runs of each job, of which the fastest counts.
+/// Number of runs of each job. The fastest one counts.
 const RUNS: u32 = 3;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -45,7 +45,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
             let one = fastest(bench, || bake(&plan, &[map])).context(name)?;
             alone.keep([one, all], || format!("the map {} of {name}", map.name()));
         }
-        // A height that depends on the whole tile has nothing around the tile.
+        // A height that depends on the whole tile is not defined around the tile.
         let is_global =
             |error: &RecipeError| matches!(error.kind(), RecipeErrorKind::Global { .. });
         if plan.height().is_err_and(|error| is_global(&error)) {
@@ -67,7 +67,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
 
 /// The job with the largest time relative to a reference job.
 struct Costliest {
-    /// The times of the job and of the reference, in seconds.
+    /// Times of the job and of the reference, in seconds.
     times: [f64; 2],
     what: String,
 }
@@ -90,7 +90,7 @@ impl Costliest {
     }
 }
 
-/// Returns the least processor time of a job on one thread, in seconds.
+/// Returns the minimum processor time of a job on one thread, in seconds.
 fn fastest(bench: &Bench, job: impl Fn() -> Result<(), RecipeError> + Sync) -> Result<f64> {
     let mut least = f64::INFINITY;
     for _ in 0..RUNS {

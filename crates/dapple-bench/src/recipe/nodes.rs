@@ -53,7 +53,7 @@ const WARPED: Case = Case {
     ..WORLEY
 };
 
-/// Columns and rows of the tile.
+/// Width and height of the tile in pixels.
 const SIDE: u32 = 1024;
 
 /// The number of turns of a row.

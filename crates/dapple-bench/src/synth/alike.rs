@@ -1,8 +1,8 @@
-//! The likeness of textures to their exemplars, ours beside `texture-synthesis`.
+//! Similarity of textures to their exemplars, ours compared with `texture-synthesis`.
 //!
-//! Measured are sliced Wasserstein distances (`Likeness`) between images of 256×256 pixels and their exemplars, for
+//! The rows report sliced Wasserstein distances (`Likeness`) between images of 256×256 pixels and their exemplars, for
 //! colors and for 5×5 patches, with the default options of both sides. These are not times: a smaller number is a
-//! better likeness. Bricks are always drawn; the other three exemplars are photographs if the files exist, and drawings
+//! better match. Bricks are always drawn. The other three exemplars are photographs if the files exist, and drawings
 //! otherwise.
 
 use super::drawings::{self, Drawing};
@@ -25,8 +25,8 @@ const COLORS: Case = Case {
     note: "",
 };
 
-/// An exemplar: a photograph, a drawing that replaces it if the file is missing, and its rows: colors and patches of a texture
-/// that was made in a sweep, and of an endless one.
+/// An exemplar: a photograph, a drawing that replaces it if the file is missing, and its rows: colors and patches of a
+/// texture made by a sweep, and of an endless one.
 struct Subject {
     file: &'static str,
     drawing: Drawing,
@@ -96,7 +96,7 @@ const SUBJECTS: [Subject; 4] = [
 /// Width and height of an exemplar in pixels.
 const EXEMPLAR: u32 = 128;
 
-/// Width and height of a made image in pixels.
+/// Width and height of a synthesized image in pixels.
 const SIDE: u32 = 256;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -123,7 +123,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// Returns the likeness to an exemplar of our two images, that of a sweep first, and of the peer's.
+/// Returns the distances to an exemplar of our two images, the one by a sweep first, and of the peer's image.
 fn likenesses(picture: &Picture) -> Result<[Likeness; 3]> {
     let exemplar = picture.exemplar()?;
     let sweep = synthesize_plane(&exemplar, [SIDE; 2], [Edges::Cut; 2], &Options::default())?;

@@ -1,6 +1,7 @@
-//! Our synthesis beside `texture-synthesis`, which makes one flat image of 512×512 pixels of the same exemplar.
+//! Our synthesis compared with `texture-synthesis`, which makes one flat image of 512×512 pixels from the same
+//! exemplar.
 //!
-//! Both run on one thread; times are medians of processor times. The peer makes one image in every turn for all rows.
+//! Both run on one thread. Times are medians of processor times. The peer makes one image in every turn for all rows.
 
 use super::scene::{self, N_SITES, SIDE, endless, exact, leaves, model, synthesizer};
 use super::whole;
@@ -47,7 +48,7 @@ const ENDLESS: Case = Case {
     ..EXACT
 };
 
-/// The peer is our older method, on the same exemplar.
+/// The peer here is our older method, on the same exemplar.
 const ENDLESS_BESIDE_SWEEP: Case = Case {
     peer: "plane 512×512, default options",
     must: Goal::CostAtMost(1.2),
@@ -60,14 +61,14 @@ const LARGE: Case = Case {
     ..EXACT
 };
 
-/// The bar is the result of a prototype with the same search.
+/// The threshold is the result of a prototype with the same search.
 const LARGE_EXACT: Case = Case {
     case: "synthesis, 262,144 sites, 4 levels, 256² exemplar, exact search",
     must: Goal::CostAtMost(1.3),
     ..EXACT
 };
 
-/// The job of a row: makes something and counts it.
+/// Job of a row: makes an output and counts its elements.
 type Job<'a> = Box<dyn Fn() -> Result<usize> + Sync + 'a>;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -167,7 +168,7 @@ fn large(bench: &mut Bench) -> Result<()> {
     beside(bench, 3, &picture, rows.into(), &note)
 }
 
-/// Measures all selected rows beside the flat image.
+/// Measures all selected rows against the flat image.
 fn beside(
     bench: &mut Bench,
     turns: u32,

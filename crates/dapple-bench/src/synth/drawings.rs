@@ -1,6 +1,6 @@
 //! Drawn exemplars, which need no files: of the same kinds as the exemplars of the paper, in short code.
 //!
-//! All repeat. Positions go from 0 to 1 along both axes, v down; colors are sRGB codes from 0 to 255.
+//! All of them repeat. Positions go from 0 to 1 along both axes, v down. Colors are sRGB codes from 0 to 255.
 
 use crate::sets::SEED;
 use anyhow::Result;
@@ -9,13 +9,13 @@ use dapple_hash::{hash2, unit_f64};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// Samples along the side of a pixel.
+/// Number of samples along the side of a pixel.
 const N_SAMPLES: u32 = 4;
 
 /// A drawing: the color at a position.
 pub(super) type Drawing = fn(DVec2) -> [f64; 3];
 
-/// Draws a square picture, rounded to the codes of a file.
+/// Draws a square image, rounded to the codes of a file.
 pub(super) fn draw(drawing: Drawing, side: u32) -> Result<Raster<LinearRgb>> {
     let n_samples = side * N_SAMPLES;
     let place = |index: u32| (f64::from(index) + 0.5) / f64::from(n_samples);
@@ -33,7 +33,7 @@ pub(super) fn draw(drawing: Drawing, side: u32) -> Result<Raster<LinearRgb>> {
     })?)
 }
 
-/// A checkerboard whose lines are not quite straight.
+/// A checkerboard with slightly wavy lines.
 pub(super) fn checker(at: DVec2) -> [f64; 3] {
     let sway = DVec2::new(wave(5.0 * at.y + at.x), wave(5.0 * at.x - at.y + 0.3));
     let square = ((at + 0.013 * sway) * 6.0).floor();
@@ -58,7 +58,7 @@ pub(super) fn suckers(at: DVec2) -> [f64; 3] {
 /// Rows of round scales, each over the one below it.
 pub(super) fn scales(at: DVec2) -> [f64; 3] {
     let [across, down] = [8.0, 12.0];
-    // The rows above lie on top of those below: the first row whose scale reaches this far down is visible.
+    // Upper rows lie on top of lower ones: the first row whose scale reaches this far down is visible.
     let row = (at.y * down).floor() as i64;
     for row in row - 1..=row + 1 {
         let shift = 0.5 * row.rem_euclid(2) as f64;
@@ -86,7 +86,7 @@ pub(super) fn weave(at: DVec2) -> [f64; 3] {
     } else {
         [place.x, place.y, cell.x]
     };
-    // Each strand has its own shade, or all copies of two strands would be the same.
+    // Each strand has its own shade; otherwise all copies of two strands would be equal.
     let strand = roll([(strand as i64).rem_euclid(8), i64::from(over)], 10);
     let shade = (0.7 + 0.4 * strand) * (1.0 - 3.2 * across * across) * (1.0 - 1.2 * along * along);
     let color = if over {
@@ -108,7 +108,7 @@ pub(super) fn text(at: DVec2) -> [f64; 3] {
         (letter.x as i64).rem_euclid(22),
         (letter.y as i64).rem_euclid(14),
     ];
-    // A letter has three by five places, with a gap to the right and below.
+    // A letter has a grid of three by five places, with a gap to the right and below.
     let place = ((scaled - letter) * DVec2::new(4.0, 6.0)).floor();
     let inside = place.x < 3.0 && place.y < 5.0;
     // There are 24 letters; about one cell in six is a space.
@@ -154,17 +154,17 @@ pub(super) fn bricks(at: DVec2) -> [f64; 3] {
     color.map(|code| code * light)
 }
 
-/// The nearest of some jittered points to a position.
+/// The nearest of a set of jittered points to a position.
 struct Nearest {
-    /// The cell of the point, the same in every copy of the picture.
+    /// Cell of the point, the same in every copy of the image.
     cell: [i64; 2],
-    /// The distance to the point, in cells.
+    /// Distance to the point, in cells.
     distance: f64,
-    /// How much farther the second nearest point is, in cells.
+    /// Distance to the second nearest point minus that to the nearest, in cells.
     gap: f64,
 }
 
-/// Returns the nearest of `n` times `n` points, each displaced by up to `jitter` from the middle of its cell.
+/// Returns the nearest of `n` times `n` points, each displaced by up to `jitter` from the center of its cell.
 fn nearest(at: DVec2, n: i64, jitter: f64) -> Nearest {
     let scaled = at * n as f64;
     let mut found: [(f64, [i64; 2]); 2] = [(f64::INFINITY, [0; 2]); 2];
@@ -227,7 +227,7 @@ mod tests {
     fn drawings_repeat() {
         for (name, drawing) in DRAWINGS {
             for step in 0..100 {
-                // These positions stay away from edges, where rounding could change the color.
+                // These positions avoid edges, where rounding could change the color.
                 let at = DVec2::new(0.0371, 0.0213) * f64::from(step) + 0.0017;
                 let at = at - at.floor();
                 let [here, there] = [at, at + 1.0].map(drawing);

@@ -1,8 +1,9 @@
-//! What `texture-synthesis` can do beside textures of one example, ours beside it: several examples, guides, turned examples,
-//! tiles and repairs.
+//! Further features of `texture-synthesis` compared with ours: several exemplars, guides, rotated exemplars, tiles and
+//! repairs.
 //!
-//! Exemplars are drawings of 128² pixels, and images have 192² but for the repair, which has those of its exemplar. Both
-//! sides have their defaults and run on one thread; times are medians of processor times, ours with all preparations.
+//! Exemplars are drawings of 128² pixels, and images have 192² pixels, except for the repair, whose image has the size
+//! of its exemplar. Both sides use their defaults and run on one thread. Times are medians of processor times; ours
+//! include all preparation.
 
 use super::drawings::{bricks, draw, scales};
 use crate::harness::{Bench, median};
@@ -52,19 +53,19 @@ const REPAIR: Case = Case {
 const EXEMPLAR: u32 = 128;
 const SIDE: u32 = 192;
 
-/// The turns of each row.
+/// Number of turns of each row.
 const TURNS: usize = 3;
 
-/// What a row measures, ours and the peer's.
+/// Function that a row measures on our side and on the peer's.
 type Ours = fn(&Inputs) -> Result<Raster<LinearRgb>>;
 type Theirs = fn(&Inputs) -> SessionBuilder<'_>;
 
 struct Inputs {
     scales: Raster<LinearRgb>,
     bricks: Raster<LinearRgb>,
-    /// How light a disk in the middle of the image is, and what is around it.
+    /// Lightness map: a disk in the middle of the image, and its surroundings.
     target: Raster<f32>,
-    /// The pixels that are repaired.
+    /// Mask of the pixels to repair.
     hole: Raster<bool>,
 }
 
@@ -115,7 +116,7 @@ impl Inputs {
     }
 }
 
-/// An endless texture of images side by side.
+/// Makes an endless texture from images side by side.
 fn of_layout(layout: &SideBySide, images: &[&Raster<LinearRgb>]) -> Result<Raster<LinearRgb>> {
     let joined = layout.join(images, LinearRgb::default())?;
     let exemplar = Exemplar::new(&joined, Edges::Cut)?.with_mask(&layout.mask()?)?;

@@ -1,5 +1,5 @@
-//! Layouts of large meshes, each with the synthesis and the bake around it: charts next to triangles by area, and loose
-//! squares with all that the defaults do next to the synthesis of the paper.
+//! Atlases of large meshes, each with the synthesis and the bake: charts compared with triangles by area, and loose
+//! squares with the default options compared with the synthesis of the paper.
 
 use super::scene::{Picture, leaves};
 use crate::harness::Bench;
@@ -31,16 +31,16 @@ const LOOSE: Case = Case {
     ..CHARTS
 };
 
-/// The squares along an edge of the cube.
+/// Number of squares along an edge of the cube.
 const SQUARES: u32 = 82;
 
-/// The side of the texture map in texels.
+/// Width and height of the texture map in texels.
 const MAP_SIDE: u32 = 2048;
 
-/// The number of runs of each side, of which the fastest counts.
+/// Number of runs of each side. The fastest one counts.
 const RUNS: u32 = 2;
 
-/// A way to lay out a map with a side in texels.
+/// Function that lays out a texture map with a given side in texels.
 type Layout = fn(&Surface, u32) -> Result<Atlas, SynthError>;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -53,7 +53,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// Charts next to triangles by area.
+/// Charts compared with triangles by area.
 fn charts(bench: &mut Bench) -> Result<()> {
     let (mesh, _) = bunny(100_000)?.repair();
     let down = Direction {
@@ -75,7 +75,7 @@ fn charts(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// Loose squares with the default options next to those of the paper.
+/// Loose squares with the default options compared with those of the paper.
 fn loose(bench: &mut Bench) -> Result<()> {
     let mesh = loose_squares()?;
     let picture = leaves(64)?;
@@ -96,7 +96,7 @@ fn loose(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// The surface of a cube as squares that share no vertex.
+/// Returns the surface of a cube as squares that share no vertex.
 fn loose_squares() -> Result<Mesh> {
     let mut positions = Vec::new();
     let mut faces = Vec::new();
@@ -108,7 +108,7 @@ fn loose_squares() -> Result<Mesh> {
             let first = positions.len() as u32;
             for corner in [[0.05, 0.05], [0.95, 0.05], [0.95, 0.95], [0.05, 0.95]] {
                 let [x, y] = [square % SQUARES, square / SQUARES].map(f64::from);
-                // Turned over on the other side, so that all squares face out.
+                // On the opposite side the square is flipped, so that all squares face out.
                 let along = [
                     (x + corner[0]) * edge - 1.0,
                     ((y + corner[1]) * edge - 1.0) * out,
@@ -124,7 +124,7 @@ fn loose_squares() -> Result<Mesh> {
     Ok(Mesh::new(positions, &faces)?)
 }
 
-/// Covers a mesh with an example and bakes it.
+/// Synthesizes a texture from an exemplar on a mesh and bakes it.
 fn baked(
     mesh: &Mesh,
     picture: &Picture,

@@ -1,10 +1,11 @@
-//! The matcher on recorded neighborhoods, beside a comparison with all candidates and beside a k-d tree.
+//! The matcher on recorded neighborhoods, compared with an exhaustive search and with a k-d tree.
 //!
-//! The queries are the neighborhoods of the last pass, F(7,0) and F(3,1), on a tile of 320×320 pixels that all earlier
-//! passes made: 102,400 queries of 171 numbers each. Exemplars of 64² and 256² pixels have 3364 and 62,500 candidates.
+//! The queries are the neighborhoods of the last pass, F(7,0) and F(3,1), on a tile of 320×320 pixels made by all
+//! earlier passes: 102,400 queries of 171 numbers each. Exemplars of 64² and 256² pixels have 3364 and 62,500
+//! candidates.
 //!
 //! Confirmed: every query finds the same row as brute force with the same distance function; ties go to the lower
-//! index. Slow methods are timed on a part of the queries, spread evenly.
+//! index. Slow methods are timed on a subset of the queries, spread evenly.
 
 #[cfg(feature = "peers")]
 mod beside_kiddo;
@@ -36,12 +37,12 @@ const PLAIN_LARGE: Case = Case {
     ..PLAIN_SMALL
 };
 
-/// An exemplar size, and how the queries are timed.
+/// An exemplar size, and the timing of the queries.
 struct Setting {
-    /// The side of the exemplar in pixels.
+    /// Width and height of the exemplar in pixels.
     side: u32,
     plain: Case,
-    /// The strides of the timed queries: for our side, for a peer, and for the plain loop.
+    /// Strides of the timed queries: for our side, for a peer, and for the plain loop.
     timed: [usize; 3],
 }
 
@@ -61,7 +62,7 @@ const SETTINGS: [Setting; 2] = [
 /// Width and height in pixels of the tile whose neighborhoods are the queries.
 const TILE: u32 = 320;
 
-/// The number of queries that are compared with a block of rows while it is in the cache.
+/// Number of queries that are compared with a block of rows while it is in the cache.
 const CONFIRMED_AT_ONCE: usize = 512;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -109,7 +110,7 @@ struct Recorded {
     matcher: Matcher,
 }
 
-/// The state of our side: the matcher's memory and the rows found.
+/// State of our side: the scratch memory of the matcher and the rows found.
 #[derive(Default)]
 struct Found {
     memory: MatcherMemory,
@@ -117,7 +118,7 @@ struct Found {
 }
 
 impl Recorded {
-    /// Makes a tile by all passes but the last, and reads its neighborhoods.
+    /// Makes a tile by all passes except the last, and reads its neighborhoods.
     fn new(picture: &Picture) -> Result<Self> {
         let exemplar = picture.exemplar()?;
         let mut passes = Schedule::paper(3).passes;
@@ -176,7 +177,7 @@ impl Recorded {
         nearest
     }
 
-    /// Fails if a query finds another row than brute force, which returns the first of the nearest rows.
+    /// Fails if a query finds a different row from brute force, which returns the first of the nearest rows.
     fn confirm(&self) -> Result<()> {
         let brute_force = BruteForce::new(self.dims, &self.rows);
         let queries: Vec<&[f32]> = self.queries(1).collect();
@@ -201,14 +202,14 @@ impl Recorded {
         Ok(())
     }
 
-    /// Returns the numbers of queries of both sides, of which every `ours`-th and `theirs`-th was asked; fails if the
-    /// other side's rows are not as near as ours.
+    /// Returns the numbers of queries of both sides, where every `ours`-th and `theirs`-th was searched. Fails if the
+    /// rows of the other side are not as near as ours.
     fn done(&self, [ours, theirs]: [usize; 2], found: &[u32], others: &[u32]) -> Result<Done> {
         let row = |row: u32| &self.rows[row as usize * self.dims..][..self.dims];
         let compared = found.iter().step_by(theirs / ours).zip(others);
         for (query, (&found, &other)) in self.queries(theirs).zip(compared) {
             let [found, other] = [found, other].map(|index| distance_sq(query, row(index)));
-            // The loop sums the 171 terms in another order.
+            // The loop sums the 171 terms in a different order.
             ensure!((found - other).abs() <= 1e-4 * found, "{found} and {other}");
         }
         Ok(Done {
@@ -218,7 +219,7 @@ impl Recorded {
     }
 }
 
-/// Returns the length of a neighborhood, and the neighborhoods of an image that a pass compares, one after the other.
+/// Returns the length of a neighborhood, and the concatenated neighborhoods of an image that a pass compares.
 fn neighborhoods(image: &Exemplar, pass: &Pass) -> Result<(usize, Vec<f32>)> {
     let candidates = Candidates::new(&image.pyramid(2)?, pass, CoarserCenter::Exact)?;
     let rows = (0..candidates.len()).flat_map(|row| candidates.row(row).iter().copied());
