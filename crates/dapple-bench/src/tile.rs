@@ -1,7 +1,7 @@
-//! The tile group: a large blend map from a stored tile, beside computing it pixel by pixel.
+//! The tile group: a large blend map from a stored tile, compared with computing it pixel by pixel.
 //!
-//! The map has 4096×4096 pixels, in memory allocated before (the feature map allocates its own, which costs a tenth of
-//! its time); the tile has 128×128. Confirmed: every copy in the map equals the tile.
+//! The map has 4096×4096 pixels in preallocated memory (the feature map allocates its own, which takes a tenth of its
+//! time), and the tile has 128×128. Confirmed: every copy in the map equals the tile.
 
 #[cfg(feature = "peers")]
 mod beside_peers;
@@ -21,7 +21,7 @@ const MAP: u32 = 4096;
 /// Width and height of the tile in pixels.
 const TILE: u32 = 128;
 
-/// A note about memory: a stored tile beside a stored map.
+/// Note about memory: a stored tile compared with a stored map.
 const MEMORY: &str = "the stored tile has 64 KiB, a stored map of this size 64 MiB";
 
 const FEATURES: Case = Case {

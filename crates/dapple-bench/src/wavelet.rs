@@ -1,8 +1,8 @@
 //! The wavelet group: halving and doubling rasters, and wavelet noise.
 //!
 //! A raster of white noise is halved and doubled again with the paper's filters: quadratic, centered, periodic.
-//! Confirmed: the result equals that of the other method, up to the rounding of `f32` and the taps that the other
-//! method leaves out.
+//! Confirmed: the results of both methods are equal, up to the rounding of `f32` and the taps that the other method
+//! omits.
 
 mod alone;
 #[cfg(feature = "peers")]
@@ -38,11 +38,11 @@ fn white_noise(side: u32) -> Result<Raster<f32>> {
     })?)
 }
 
-/// The state of our side: inputs and buffers, all allocated before the clock starts, as for the other side.
+/// State of our side: inputs and buffers, all allocated before the timed section, as for the other side.
 pub(crate) struct Halved {
     coarse: Raster<f32>,
     memory: FilterMemory,
-    /// The result of the last run.
+    /// Result of the last run.
     fine: Raster<f32>,
 }
 

@@ -1,10 +1,10 @@
 //! The worley group: rasters and scattered positions of Worley's cellular basis.
 //!
-//! A raster has 1024×1024 pixels of the plane, 128×128×128 of space, slice by slice, or 64×64×16×16 of four dimensions,
-//! in memory allocated before. `px_per_cell` is the number of pixels of a unit cell along each axis. Our side has three
-//! feature points per cell on average and is exact, and its time includes making the points. Confirmed: the values
-//! equal those of [`Cellular::value`] or [`Worley::sample`] bit for bit, none is negative, and their mean is the known
-//! one.
+//! A raster has 1024×1024 pixels in the plane, 128×128×128 in space, slice by slice, or 64×64×16×16 in four
+//! dimensions, in preallocated memory. `px_per_cell` is the number of pixels of a unit cell along each axis. Our side
+//! has three feature points per cell on average and is exact, and its time includes creating the points. Confirmed:
+//! the values equal [`Cellular::value`] or [`Worley::sample`] bit for bit, none is negative, and their mean equals the
+//! known mean.
 //!
 //! [`Worley::sample`]: dapple_worley::Worley::sample
 
@@ -38,10 +38,10 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     two_builds::run(bench)
 }
 
-/// The size of a raster of the plane, in pixels.
+/// Size of a raster in the plane, in pixels.
 const PLANE: [u32; 2] = [1024; 2];
 
-/// The size of a raster of space, in pixels.
+/// Size of a raster in space, in pixels.
 const SPACE: [u32; 3] = [128; 3];
 
 /// A combination of distances and its known mean over all positions, for three feature points per cell.
@@ -70,7 +70,7 @@ const F2_MINUS_F1_IN_SPACE: Known = Known {
     ..F2_MINUS_F1
 };
 
-/// A cellular texture and the pixels of its raster, cut into slices along the first two axes.
+/// A cellular texture and the pixels of its raster, divided into slices along the first two axes.
 struct Grid<const N: usize>
 where
     Dimensions: Space<N>,
@@ -87,7 +87,7 @@ impl<const N: usize> Grid<N>
 where
     Dimensions: Space<N>,
 {
-    /// Returns a raster of `size` pixels that begins at the origin, with `px_per_cell` pixels per unit cell along each
+    /// Returns a raster of `size` pixels that starts at the origin, with `px_per_cell` pixels per unit cell along each
     /// axis.
     fn new(known: Known, size: [u32; N], px_per_cell: u32) -> Result<Self> {
         Self::of(&Worley::new(SEED), known, size, px_per_cell)
@@ -149,7 +149,7 @@ where
     /// Checks a raster: its values at some pixels, and the range, mean and spread of all values.
     fn confirm(&self, image: &Raster<f32>) -> Result<()> {
         let [width, height] = self.window.size;
-        // The stride is a prime, so that the pixels fall anywhere in a tile.
+        // The stride is a prime, so that the pixels have all positions in a tile.
         for index in (0..self.n_pixels() as u32).step_by(1009) {
             let (column, row) = (index % width, index / width);
             let plane = &self.slices[(row / height) as usize];
@@ -168,8 +168,8 @@ where
             found.n_not_finite == 0 && found.min >= 0.0,
             "differences of sorted distances are not negative: {found:?}"
         );
-        // Three points in each of `n` cells count as at most so many independent values. The tolerance is three
-        // relative standard deviations of their mean, plus the rounding of the known mean to three digits.
+        // The values in `n` cells are counted as `n` independent ones. The tolerance is three relative standard
+        // deviations of their mean (0.5 for one value), plus the rounding of the known mean to three digits.
         let px = f64::from(self.px_per_cell);
         let n_cells: f64 = self.size.iter().map(|&side| f64::from(side) / px).product();
         let stray = 0.01 + 1.5 / n_cells.sqrt();

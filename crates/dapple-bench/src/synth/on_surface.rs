@@ -1,5 +1,5 @@
-//! The orientation and the continuity of a texture on a surface: stripes follow the field, and colors do not jump at
-//! mesh edges.
+//! Orientation and continuity of a texture on a surface: stripes follow the field, and colors do not jump at mesh
+//! edges.
 //!
 //! The direction of a texture is the direction of least change, from the structure tensor of the sites around each
 //! site: Josef Bigün and Gösta Granlund, "Optimal Orientation Detection of Linear Symmetry", ICCV 1987.
@@ -34,10 +34,10 @@ const JUMPS: Case = Case {
     ..ORIENTATION
 };
 
-/// The distance from an edge at which colors are compared, in spacings.
+/// Distance from an edge at which colors are compared, in spacings.
 const ASIDE: f64 = 0.01;
 
-/// The rounding of colors: sums of about five `f32` from 0 to 1, each rounded by up to 2^-24 a few times.
+/// Rounding error of colors: sums of about five `f32` from 0 to 1, each rounded by up to 2^-24 a few times.
 const ROUNDING: f64 = 1e-6;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -78,13 +78,13 @@ fn stripes() -> Result<Exemplar> {
 /// A surface covered with stripes.
 struct Striped<'a> {
     synthesizer: &'a Synthesizer,
-    /// The sRGB code of each site.
+    /// sRGB code of each site.
     values: Vec<f32>,
 }
 
 impl Striped<'_> {
-    /// Returns the gradient that best fits the differences to the neighbors of a site. A sum over edges would be biased
-    /// where neighbors are unevenly spread.
+    /// Returns the gradient that best fits the differences to the neighbors of a site. A sum over edges would be
+    /// biased if neighbors are unevenly spread.
     fn gradient(&self, site: SiteIdx) -> DVec3 {
         let hierarchy = self.synthesizer.hierarchy();
         let sites = hierarchy.sites();
@@ -98,7 +98,7 @@ impl Striped<'_> {
             normal += DMat2::from_cols(step * step.x, step * step.y);
             sums += step * (value(other) - value(site));
         }
-        // If all neighbors lie on a line, the gradient across it is unknown.
+        // If all neighbors lie on a line, the gradient perpendicular to it is unknown.
         let trace = normal.x_axis.x + normal.y_axis.y;
         if normal.determinant() < 1e-6 * trace * trace {
             return DVec3::ZERO;
@@ -123,11 +123,12 @@ impl Striped<'_> {
             xy += x * y;
             yy += y * y;
         });
-        // The direction of most change is P if the texture follows the field.
+        // The direction of maximum change is P if the texture follows the field.
         (0.5 * libm::atan2(2.0 * xy, xx - yy)).abs().to_degrees()
     }
 
-    /// Returns the difference of codes at the edge where it is largest relative to its bound, and that bound.
+    /// Returns the difference of codes at the edge where it is largest relative to its bound, together with that
+    /// bound.
     fn largest_jump(&self) -> Result<[f64; 2]> {
         let surface = self.synthesizer.surface();
         let (mut largest, mut n_edges) = ([0.0, f64::INFINITY], 0);

@@ -1,4 +1,4 @@
-//! The inputs of the group: a model, photographs or drawings of the same kind, and common options.
+//! Inputs of the group: a model, photographs or drawings of the same kind, and common options.
 
 use super::drawings::{self, Drawing, draw};
 use anyhow::{Result, ensure};
@@ -19,14 +19,14 @@ use std::path::PathBuf;
 /// Width and height of flat images in pixels.
 pub(super) const SIDE: u32 = 512;
 
-/// The number of sites in most rows: the number of pixels of the flat image.
+/// Number of sites in most rows: the number of pixels of the flat image.
 pub(super) const N_SITES: usize = 512 * 512;
 
 /// The file of a model in memory.
 pub(super) struct Model {
     pub(super) obj: Vec<u8>,
     pub(super) directions: Vec<Direction>,
-    /// A note that says which model it is.
+    /// Note that says which model it is.
     pub(super) note: &'static str,
 }
 
@@ -37,7 +37,7 @@ pub(super) struct Picture {
     pub(super) is_photograph: bool,
 }
 
-/// A window of an endless texture, with its preparation.
+/// Makes a window of an endless texture, including its preparation.
 pub(super) fn endless(exemplar: &Exemplar) -> Result<PlaneTexture, SynthError> {
     let texture = Endless::new(exemplar, &EndlessOptions::default())?;
     texture.window([0; 2], [SIDE; 2], |_| ControlFlow::Continue(()))
@@ -110,12 +110,12 @@ pub(super) fn picture(file: &str, drawing: Drawing, side: u32) -> Result<Picture
 }
 
 impl Picture {
-    /// Returns the exemplar for matching; it does not continue past its edges.
+    /// Returns the exemplar for matching. It does not continue past its edges.
     pub(super) fn exemplar(&self) -> Result<Exemplar> {
         Ok(Exemplar::new(&self.image, Edges::Cut)?)
     }
 
-    /// Returns a note that says which exemplar a row has.
+    /// Returns a note that says which exemplar a row uses.
     pub(super) fn note(&self) -> &'static str {
         if self.is_photograph {
             "the exemplar is a photograph of leaves"
@@ -125,7 +125,7 @@ impl Picture {
     }
 }
 
-/// Returns the options of the paper's exact search: colors are compared, and the least distance wins.
+/// Returns the options of the paper's exact search: colors are compared, and the minimum distance wins.
 pub(super) fn exact(n_levels: usize) -> Options {
     Options {
         n_levels,
@@ -147,7 +147,7 @@ pub(super) fn synthesizer(model: &Model, n_sites: usize, n_levels: usize) -> Res
     Ok(Synthesizer::new(surface, &model.directions, &sites)?)
 }
 
-/// Returns the number of sites of a texture; fails if a site has no color, or the texture uses few pixels of the
+/// Returns the number of sites of a texture. Fails if a site has no color, or if the texture uses few pixels of the
 /// exemplar.
 pub(super) fn count(texture: &SurfaceTexture) -> Result<usize> {
     let mut sources: Vec<[u32; 2]> = texture.sources(0).collect();
@@ -164,7 +164,7 @@ pub(super) fn count(texture: &SurfaceTexture) -> Result<usize> {
     Ok(n_sites)
 }
 
-/// Returns the path of a file of the data beside the workspace, which may not exist.
+/// Returns the path of a data file next to the workspace. The file may not exist.
 fn data(file: &str) -> PathBuf {
     let crate_dir = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     crate_dir.join("../../../shared/data").join(file)

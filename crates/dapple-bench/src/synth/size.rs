@@ -1,7 +1,7 @@
-//! The time and memory of whole programs with four times as many sites.
+//! Time and memory of whole programs with four times as many sites.
 //!
-//! Each size runs in a separate process, this program with the hidden argument `--synthesize`, on one thread. Linux
-//! reports the peak memory of a process in a file; on other systems that row is left out.
+//! Each size runs in a separate process on one thread: this program with the hidden argument `--synthesize`. Linux
+//! reports the peak memory of a process in a file; on other systems that row is omitted.
 
 use super::scene::{N_SITES, count, exact, leaves, model, synthesizer};
 use crate::harness::Bench;
@@ -30,12 +30,12 @@ const MEMORY: Case = Case {
     ..SYNTHESIS
 };
 
-/// The measurements of one process.
+/// Measurements of one process.
 struct Took {
-    /// The processor time of the setup, in seconds.
+    /// Processor time of the setup, in seconds.
     setup: f64,
     synthesis: f64,
-    /// The peak memory in bytes; 0 if it is unknown.
+    /// Peak memory in bytes; 0 if it is unknown.
     memory: f64,
 }
 
@@ -95,7 +95,7 @@ fn in_process(n_sites: usize) -> Result<Took> {
     })
 }
 
-/// Synthesizes a texture with `n_sites` sites; prints the seconds of its setup and of its synthesis, and the peak
+/// Synthesizes a texture with `n_sites` sites. Prints the seconds of its setup and of its synthesis, and the peak
 /// memory.
 pub(crate) fn synthesize_here(n_sites: usize) -> Result<()> {
     let one = ThreadPoolBuilder::new().num_threads(1).build()?;
@@ -107,7 +107,7 @@ pub(crate) fn synthesize_here(n_sites: usize) -> Result<()> {
         let start = ThreadTime::now();
         let texture = sites.synthesize(&exemplar, &exact(3))?;
         let synthesis = start.elapsed().as_secs_f64();
-        // Read before the check, which needs memory of its own.
+        // Read the memory before the check, which allocates too.
         let memory = most_memory();
         ensure!(count(&texture)? == n_sites, "a site is missing");
         Ok((setup, (synthesis, memory)))

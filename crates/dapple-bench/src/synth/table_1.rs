@@ -1,8 +1,9 @@
-//! Table 1 of Turk's paper: our times beside its times in minutes, for models and exemplars of the same sizes.
+//! Table 1 of Turk's paper: our times compared with its times in minutes, for models and exemplars of the same sizes.
 //!
 //! `cargo xtask bench "table 1"` makes it. Our time is the wall time of the synthesis on two threads with an exact
-//! search, the lesser of two runs. The setup (points, graph, directions and sweep) is in the note, since the paper does
-//! not say whether its times include it. The models come from `dapple_models`, the exemplars are drawn.
+//! search, the smaller of two runs. The note has the time of the setup (points, graph, directions and sweep), since
+//! the paper does not say whether its times include it. The models come from `dapple_models`, and the exemplars are
+//! drawn.
 
 use super::drawings::{self, Drawing, draw};
 use super::scene::{count, exact};
@@ -88,7 +89,7 @@ const BUNNY: Row = Row {
     ..OCTOPUS
 };
 
-/// The row whose model the rows of single steps use as well.
+/// Row whose model the rows of single steps also use.
 pub(super) const TORI: Row = Row {
     case: Case {
         case: "table 1: tori, 256,000 sites, 4 levels, 64² exemplar",
@@ -142,7 +143,7 @@ const ELEPHANT: Row = Row {
     ..TORI
 };
 
-/// The number of triangles of a model; the paper has 10 to 20 thousand.
+/// Number of triangles of a model. The paper has 10,000 to 20,000.
 const N_TRIANGLES: usize = 14_000;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {

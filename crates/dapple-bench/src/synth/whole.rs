@@ -7,15 +7,15 @@ use dapple_mesh::{CREASE, EncodedImage, Mesh};
 use dapple_mesh_io::{gltf, obj};
 use dapple_synth::{Atlas, Exemplar, Options, bake, textured_model};
 
-/// The side of the texture map in texels.
+/// Width and height of the texture map in texels.
 const MAP_SIDE: u32 = 2048;
 
-/// The result of a whole run.
+/// Result of a whole run.
 #[derive(Debug, PartialEq)]
 pub(super) struct Written {
-    /// The GLB file with the texture map.
+    /// GLB file with the texture map.
     pub(super) glb: Vec<u8>,
-    /// The fraction of the map that belongs to a face.
+    /// Fraction of the map that is covered by faces.
     pub(super) coverage: f64,
 }
 

@@ -1,4 +1,4 @@
-//! A map from a tile beside fractal Perlin noise of another crate.
+//! A map from a tile compared with fractal Perlin noise of another crate.
 
 use super::{FEATURES, MAP, confirm, splat, tile};
 use crate::harness::{Bench, Done, Side};

@@ -1,4 +1,4 @@
-//! Our filters beside a plain convolution, and beside themselves at other sizes: rows that need no other crate.
+//! Our filters compared with a plain convolution and with other sizes: rows that need no other crate.
 
 use super::straight::Straight;
 use super::{SIDE, confirm_equal, down_and_up, white_noise};
@@ -23,7 +23,7 @@ const SIZE: Case = Case {
     ..STRAIGHT
 };
 
-/// Sizes between the smallest and the largest, whose cost is measured relative to the smallest.
+/// Sizes between the smallest and the largest one, whose cost is measured relative to the smallest.
 const SIZES: [(u32, Case); 3] = [
     (
         1024,
@@ -55,7 +55,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
             down_and_up(&raster)?,
             theirs,
             |ours, theirs| {
-                // The taps left out sum to less than 1e-3 on either side and axis.
+                // The omitted taps sum to less than 1e-3 on either side and axis.
                 confirm_equal(ours.fine.pixels(), &theirs.fine, 4e-3)?;
                 Ok(Done::both(raster.pixels().len()))
             },

@@ -1,4 +1,4 @@
-//! Our filters beside a Fourier transform, and wavelet noise beside Perlin noise.
+//! Our filters compared with a Fourier transform, and wavelet noise compared with Perlin noise.
 
 use super::{SIDE, confirm_equal, down_and_up, white_noise};
 use crate::harness::{Bench, Done, Side};
@@ -28,7 +28,7 @@ const NOISE: Case = Case {
     note: "positions anywhere in a tile of 128×128 cells, in random order",
 };
 
-/// The number of cells of the noise tile along each axis.
+/// Number of cells of the noise tile along each axis.
 const N_CELLS: u32 = 128;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -44,7 +44,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
             down_and_up(&raster)?,
             theirs,
             |ours, theirs| {
-                // A transform of 2048 values in `f32` has an error of some 1e-6.
+                // An `f32` transform of 2048 values has an error of about 1e-6.
                 confirm_equal(ours.fine.pixels(), &theirs.fine, 1e-5)?;
                 Ok(Done::both(raster.pixels().len()))
             },

@@ -1,26 +1,26 @@
-//! A plain convolution for halving and doubling: 32 taps, one after another, in `f32`.
+//! A plain convolution for halving and doubling: 32 taps, applied one at a time, in `f32`.
 //!
-//! The taps are those of the exact filter, cut off after 16 on either side; the rest sums to less than 1e-3. It is
-//! plain, but not deliberately slow: rows are split into even and odd pixels with a margin, so that no index wraps in a
-//! loop. Each tap is added to a whole row at a time, which the compiler turns into vector code.
+//! The taps are the first 16 of the exact filter on either side; the rest sums to less than 1e-3. The code is simple,
+//! but not deliberately slow: rows are split into even and odd pixels with a margin, so that no index wraps in a loop.
+//! Each tap is added to a whole row at a time, which the compiler turns into vector code.
 
-/// The number of taps on either side.
+/// Number of taps on either side.
 const HALF: usize = 16;
 
-/// The filter pair with its buffers.
+/// Filter pair with its buffers.
 #[derive(Clone, Debug)]
 pub(crate) struct Straight {
     side: usize,
-    /// The tap `a` of pixels `k + 1` and `-k`, for `k` from 0: the filter is symmetric about the middle between two
+    /// Tap `a` of pixels `k + 1` and `-k`, for `k` from 0: the filter is symmetric about the midpoint between two
     /// pixels.
     taps: [f32; HALF],
     even: Vec<f32>,
     odd: Vec<f32>,
-    /// The raster halved along x only.
+    /// Raster halved along x only.
     narrow: Vec<f32>,
     coarse: Vec<f32>,
     tall: Vec<f32>,
-    /// The result of the last run.
+    /// Result of the last run.
     pub(crate) fine: Vec<f32>,
 }
 
@@ -140,7 +140,7 @@ fn taps() -> [f32; HALF] {
     let q = [1.0, 29.0, 147.0, 303.0, 303.0, 147.0, 29.0, 1.0].map(|q: f64| q / 960.0);
     std::array::from_fn(|index| {
         let k = index as i32 + 1;
-        // `q` begins three pixels before pixel 2j.
+        // `q` starts three pixels before pixel 2j.
         let terms = (-40..=40).filter_map(|n| {
             let at = usize::try_from(k - 2 * n + 3).ok()?;
             Some(inverse(n) * q.get(at)?)

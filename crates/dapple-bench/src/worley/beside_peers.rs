@@ -1,4 +1,4 @@
-//! Our rasters beside the grids of other crates.
+//! Our rasters compared with the grids of other crates.
 
 use super::{F1, F2_MINUS_F1, F2_MINUS_F1_IN_SPACE, Grid, PLANE, SPACE};
 use crate::harness::{Bench, Done, Side};
@@ -69,7 +69,7 @@ const BESIDE_SIMPLEX_IN_SPACE: Case = Case {
     ..BESIDE_SIMPLEX
 };
 
-/// The number of turns of a row.
+/// Number of turns of a row.
 const TURNS: u32 = 25;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -93,11 +93,11 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
 
 /// A peer that makes grids with `N` axes, and its known properties.
 struct Peer<const N: usize> {
-    /// Makes the grid; the arguments are its size in pixels and the number of cells per pixel.
+    /// Makes the grid. The arguments are its size in pixels and the number of cells per pixel.
     make: fn([usize; N], f32) -> noise::Grid,
-    /// The range of its values.
+    /// Range of its values.
     range: RangeInclusive<f32>,
-    /// The least difference between the largest and the least value.
+    /// Lower bound of the difference between the maximum and the minimum value.
     spread: f32,
 }
 
@@ -147,7 +147,7 @@ where
         *made = (peer.make)(size, frequency);
     })
     .prepared(|made| made.0 = Vec::new());
-    // As many runs of ours per turn as take about the time of the peer's run.
+    // Our side runs as often per turn as fits in about the time of the peer's run.
     let times = match case.must {
         Goal::Faster(bar) | Goal::AtLeast(bar) => bar,
         Goal::CostAtMost(bar) => 1.0 / bar,

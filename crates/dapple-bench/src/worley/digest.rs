@@ -1,4 +1,4 @@
-//! A hash of rasters, with which the program `worley_raster` and this one compare their results.
+//! A hash of rasters. The program `worley_raster` and this one compare their results with it.
 
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 

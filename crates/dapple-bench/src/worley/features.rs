@@ -1,4 +1,4 @@
-//! All data of the four nearest points beside the distances to two of them.
+//! All data of the four nearest points compared with the distances to two of them.
 //!
 //! The band is small enough to stay in the cache, so that the search is measured and not the memory.
 
@@ -26,11 +26,11 @@ const BAND: [u32; 2] = [256, 32];
 /// Pixels per unit cell along each axis.
 const PX_PER_CELL: f64 = 64.0;
 
-/// The number of turns of the row, and the runs of each side in a turn.
+/// Number of turns of the row, and number of runs of each side in a turn.
 const TURNS: u32 = 101;
 const RUNS: u32 = 5;
 
-/// The data of one of the nearest points at all pixels of the band.
+/// Data of one of the nearest points at all pixels of the band.
 struct Nearest {
     distance: Raster<f32>,
     vector: Raster<[f32; 2]>,

@@ -1,5 +1,5 @@
-//! Our evaluation at scattered positions, of many at once and of one, next to the fastest functions of other crates for
-//! one position.
+//! Our evaluation at scattered positions, many at once or one at a time, compared with the fastest functions of other
+//! crates for one position.
 //!
 //! The positions lie anywhere in 1000×1000 or 1000×1000×1000 cells, in random order, so that consecutive positions do
 //! not share a cell. Both sides get the same positions, the peer in single precision.
@@ -66,18 +66,18 @@ const ONE_POSITION_F2_IN_SPACE: Case = Case {
     ..ONE_POSITION_IN_SPACE
 };
 
-/// The number of positions per run.
+/// Number of positions per run.
 const N_POSITIONS: usize = 1 << 16;
 
-/// The number of cells along each axis.
+/// Number of cells along each axis.
 const N_CELLS: f64 = 1000.0;
 
-/// The number of turns of a row.
+/// Number of turns of a row.
 const TURNS: u32 = 41;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
     let (plane, space) = (noise::noise_functions_f1_2, noise::noise_functions_f1_3);
-    // The means of F1: known for three points per cell, and measured for one with a plain loop over the neighbors.
+    // Means of F1: known for three points per cell, and measured for one with a plain loop over the neighbors.
     poisson::<2>(bench, &F1_AND_F2, 0.282, plane)?;
     poisson::<3>(bench, &F1_AND_F2_IN_SPACE, 0.381, space)?;
     jittered::<2>(bench, &JITTERED, 0.430, plane)?;
@@ -146,7 +146,7 @@ where
     })
 }
 
-/// Measures the distances of one position after the other.
+/// Measures the distances one position at a time.
 fn one_by_one<const N: usize, const K: usize>(
     bench: &mut Bench,
     case: &Case,
@@ -175,7 +175,7 @@ where
     bench.beside(case, TURNS, ours, theirs, |ours, theirs| {
         let sum: f64 = ours.iter().map(|found| f64::from(found[0])).sum();
         let found = sum / ours.len() as f64;
-        // A hundredth is six standard deviations of the mean of this many positions.
+        // A hundredth is six standard deviations of the mean of this number of positions.
         ensure!(
             (found / mean - 1.0).abs() <= 0.01,
             "the mean of F1 is {found}, not {mean}"
@@ -210,7 +210,7 @@ where
         .map(|found| f64::from(found[0].distance))
         .sum();
     let found = sum / features.len() as f64;
-    // A hundredth is six standard deviations of the mean of this many positions.
+    // A hundredth is six standard deviations of the mean of this number of positions.
     ensure!(
         (found / mean - 1.0).abs() <= 0.01,
         "a mean F1 of {found} is not known, {mean} is"

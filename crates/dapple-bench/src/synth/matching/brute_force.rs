@@ -1,31 +1,31 @@
-//! A check of nearest rows: every row is compared with every query, independently of the matcher.
+//! Check of nearest rows: every row is compared with every query, independently of the matcher.
 //!
-//! A row is dropped as soon as its partial sum exceeds the whole distance of the row found. The few rows that remain
+//! A row is rejected as soon as its partial sum exceeds the total distance of the row found. The few remaining rows
 //! are compared by `distance_sq` itself. Sixteen rows at a time are compared term by term, so that the compiler uses
 //! vector registers, and blocks of rows stay in the cache while all queries are compared with them.
 
 use dapple_synth::distance_sq;
 
-/// The number of rows that are compared at once.
+/// Number of rows that are compared at once.
 const LANES: usize = 16;
 
-/// The number of groups of rows in a block: 176 KB for rows of 171 numbers.
+/// Number of groups of rows in a block: 176 KB for rows of 171 numbers.
 const BLOCK: usize = 16;
 
-/// The number of parts of a sum; rows can be dropped after each part.
+/// Number of partial sums; rows can be rejected after each of them.
 const PARTS: usize = 16;
 
-/// Sums of up to 1000 terms in `f32` in two different orders differ by less than this factor: each term is rounded at
+/// Sums of up to 1000 `f32` terms in two different orders differ by less than this factor: each term is rounded at
 /// most 1003 times by 2^-24.
 const MARGIN: f32 = 1.0 - 1.3e-4;
 
-/// The rows to compare with.
+/// Rows to compare with.
 pub(super) struct BruteForce<'a> {
     dims: usize,
     rows: &'a [f32],
-    /// The numbers of each group of rows, in the order of `terms`; infinite past the last row.
+    /// Numbers of each group of rows, in the order of `terms`; infinite past the last row.
     groups: Vec<[f32; LANES]>,
-    /// The order of the terms, in steps of sixteen, so that the first terms come from all over the neighborhood.
+    /// Order of the terms, in steps of sixteen, so that the first terms come from all parts of the neighborhood.
     terms: Vec<usize>,
 }
 
@@ -51,7 +51,7 @@ impl<'a> BruteForce<'a> {
         }
     }
 
-    /// Returns how many queries have a row that is nearer than the one found, or as near with a lower index.
+    /// Returns how many queries have a row that is nearer than the one found, or equally near with a lower index.
     pub(super) fn n_wrong(&self, queries: &[&[f32]], found: &[u32]) -> usize {
         let limits: Vec<f32> = queries
             .iter()
@@ -77,7 +77,7 @@ impl<'a> BruteForce<'a> {
         is_wrong.into_iter().filter(|&is_wrong| is_wrong).count()
     }
 
-    /// Returns whether a row is nearer than the one found, or as near with a lower index.
+    /// Returns whether a row is nearer than the one found, or equally near with a lower index.
     fn is_before(&self, query: &[f32], row: u32, (limit, found): (f32, u32)) -> bool {
         let distance_sq = distance_sq(query, self.row(row));
         distance_sq < limit || distance_sq == limit && row < found
