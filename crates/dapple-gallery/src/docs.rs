@@ -1,15 +1,15 @@
-//! The pictures in the documentation of the crates: small Markdown files that hold their pictures as data URIs.
+//! Images in the documentation of the crates: small Markdown files that contain their images as data URIs.
 //!
-//! A [`Strip`] is a row of pictures that shows one option, such as a metric in all its kinds. All pictures of a strip
-//! use the same seed and the same window, so that only the option differs. `cargo xtask docs-images` writes each strip
-//! as `docs/<name>.md` into the folder of its crate, where the source includes it in a doc comment. The pictures
-//! therefore need no network and are part of the published package. READMEs cannot hold data URIs: their picture is the
-//! file `docs/gallery.png` beside them. A test compares the files with freshly made pictures, pixel by pixel.
+//! A [`Strip`] is a row of images that shows one option, such as a metric in all its kinds. All images of a strip use
+//! the same seed and the same window, so that only the option differs. `cargo xtask docs-images` writes each strip as
+//! `docs/<name>.md` into the folder of its crate, where the source includes it in a doc comment. The images therefore
+//! need no network and are part of the published package. READMEs cannot contain data URIs: their image is the file
+//! `docs/gallery.png` next to them. A test compares the files with new images, pixel by pixel.
 //!
 //! The source includes strips under `cfg(doc)`: rustdoc shows them, also for a crate that another one depends on, but
-//! editors do not. Strips are left out where the documentation of another crate takes in the item (`#[doc(inline)]`).
+//! editors do not. Strips are omitted where the documentation of another crate inlines the item (`#[doc(inline)]`).
 //!
-//! [`documented`] lists the pictures of all crates; each crate has a file with its own.
+//! [`documented`] lists the images of all crates. Each crate has its own file.
 
 mod base64;
 mod color;
@@ -32,31 +32,32 @@ use core::fmt::Write as _;
 use dapple_color::Code;
 use dapple_image::{Limits, PngImage, Transfer, decode_png, encode_png};
 
-/// A folder with a README and with documentation, and the pictures in them.
+/// A folder with a README and with documentation, and their images.
 #[derive(Clone, Copy, Debug)]
 pub struct Documented {
-    /// The path of the folder from the root of the workspace; empty for the root itself.
+    /// Path of the folder from the root of the workspace; empty for the root itself.
     pub folder: &'static str,
-    /// The strips of its documentation, written to `docs/<name>.md`.
+    /// Strips of its documentation, written to `docs/<name>.md`.
     pub strips: &'static [Strip],
-    /// Makes the picture of its README, written to `docs/gallery.png`.
+    /// Makes the image of its README, written to `docs/gallery.png`.
     pub banner: fn() -> anyhow::Result<Panel>,
 }
 
-/// A row of pictures that shows one option in different settings.
+/// A row of images that shows one option in different settings.
 #[derive(Clone, Copy, Debug)]
 pub struct Strip {
-    /// The name of the file, without `.md`.
+    /// Name of the file, without `.md`.
     pub name: &'static str,
-    /// What all pictures of the row have in common; if it is empty, the row has no line of text.
+    /// Common text of all images of the row. If it is empty, the row has no line of text.
     pub caption: &'static str,
-    /// Makes the pictures. Their labels say how they differ.
+    /// Makes the images. Their labels say how they differ.
     pub render: fn() -> anyhow::Result<Vec<Panel>>,
 }
 
-/// All folders that have pictures in their documentation: the workspace, then its crates in the order of the README.
-// A function, and not inlined: a unit test compiles all that a `static` of its crate reaches, and whoever reads a
-// `const` compiles it again.
+/// Returns all folders that have images in their documentation: the workspace, then its crates in the order of the
+/// README.
+// A function that is not inlined, because a unit test compiles everything that a `static` of its crate references, and
+// every user of a `const` compiles it again.
 #[inline(never)]
 #[must_use]
 pub fn documented() -> &'static [Documented] {
@@ -76,16 +77,16 @@ pub fn documented() -> &'static [Documented] {
     ]
 }
 
-/// A file for the folder `docs` of a [`Documented`].
+/// A file in the folder `docs` of a [`Documented`].
 #[derive(Clone, Debug)]
 pub struct File {
-    /// The name of the file, which ends in `.md` or `.png`.
+    /// Name of the file, which ends in `.md` or `.png`.
     pub name: String,
-    /// The contents of the file.
+    /// Contents of the file.
     pub bytes: Vec<u8>,
 }
 
-/// The prefix of every picture in the Markdown.
+/// Prefix of every image in the Markdown.
 const DATA: &str = "data:image/png;base64,";
 
 impl Documented {
@@ -93,7 +94,7 @@ impl Documented {
     ///
     /// # Errors
     ///
-    /// If the code of a strip or of the banner fails, or a strip has no picture.
+    /// If the code of a strip or of the banner fails, or if a strip has no image.
     pub fn files(&self) -> anyhow::Result<Vec<File>> {
         let mut files = vec![File {
             name: "gallery.png".to_owned(),
@@ -111,7 +112,7 @@ impl Documented {
 
 impl File {
     /// Returns whether an older version of the file has the same text and the same pixels. Compression is ignored,
-    /// since it may change with the library that does it.
+    /// since a different library version may change it.
     #[must_use]
     pub fn shows_the_same_as(&self, before: &[u8]) -> bool {
         if self.name.ends_with(".png") {
@@ -125,7 +126,7 @@ impl File {
 }
 
 impl Strip {
-    /// Returns the strip as Markdown: its pictures, then a line that names them from left to right.
+    /// Returns the strip as Markdown: its images, then a line that names them from left to right.
     fn markdown(&self) -> anyhow::Result<String> {
         let panels = (self.render)()?;
         ensure!(!panels.is_empty(), "the strip {} is empty", self.name);
@@ -168,7 +169,7 @@ fn decode(file: &[u8]) -> Option<PngImage> {
     decode_png(file, &Limits::default()).ok()
 }
 
-/// Splits a strip into its text and its pictures, or returns `None` if a picture cannot be decoded.
+/// Splits a strip into its text and its images, or returns `None` if an image cannot be decoded.
 fn decode_markdown(markdown: &[u8]) -> Option<(String, Vec<PngImage>)> {
     let mut parts = core::str::from_utf8(markdown).ok()?.split(DATA);
     let mut text = parts.next()?.to_owned();

@@ -1,7 +1,7 @@
 //! Drawing for figures: points, graphs, lines and contours with smooth edges, in the coordinates of the plane.
 //!
 //! Drawings use only arithmetic and square roots, so they have the same bits on every machine. Shapes on a domain that
-//! wraps are drawn wherever the window shows them.
+//! wraps are drawn at every position where the window shows them.
 
 mod diagram;
 mod enlarged;
@@ -23,7 +23,7 @@ use dapple_points::{Domain, PointSet};
 use dapple_raster::{Raster, RasterError, Texel, Window, glam::DVec2};
 use stencil::Stencil;
 
-/// A raster to draw on. Positions are in the coordinates of its window, widths are in pixels.
+/// A raster to draw on. Positions are in the coordinates of its window, and widths are in pixels.
 #[derive(Clone, Debug)]
 pub struct Canvas<T> {
     window: Window,
@@ -35,7 +35,7 @@ impl<T: Texel> Canvas<T> {
     ///
     /// # Errors
     ///
-    /// If the window has a bad size.
+    /// If the window has an invalid size.
     pub fn new(window: &Window, background: T) -> Result<Self, RasterError> {
         Ok(Self {
             window: *window,
@@ -43,7 +43,7 @@ impl<T: Texel> Canvas<T> {
         })
     }
 
-    /// Returns a canvas that begins with a picture, whose pixels are the pixels of `window`.
+    /// Returns a canvas that starts with an image, whose pixels are the pixels of `window`.
     ///
     /// # Errors
     ///
@@ -95,7 +95,7 @@ impl<T: Texel> Canvas<T> {
         stencil.ink(&mut self.raster, ink);
     }
 
-    /// Draws a line around `corners`, back to the first, with the given width, in pixels.
+    /// Draws a closed line through `corners` with the given width, in pixels.
     pub fn outline(&mut self, corners: &[DVec2], width_px: f64, ink: T) {
         let next = corners.iter().cycle().skip(1);
         let lines: Vec<_> = corners
@@ -145,8 +145,8 @@ impl<T: Texel> Canvas<T> {
         self.raster
     }
 
-    /// Returns the copies of a line that the window may show, on a domain that may wrap. Positions and `margin_px`, the
-    /// margin on both sides, are in pixels.
+    /// Returns the copies of a line that the window may show, on a domain that may wrap. Positions and `margin_px`,
+    /// the margin on both sides, are in pixels.
     fn copies(&self, domain: &Domain, [from, to]: [DVec2; 2], margin_px: f64) -> Vec<[DVec2; 2]> {
         let [shift, size] = [domain.origin, domain.origin + domain.size]
             .map(|corner| self.pixel_from_plane(corner));
@@ -229,7 +229,7 @@ mod tests {
         for (width, tolerance) in [(3.0, 0.5), (1.0, 1.0), (0.5, 1.0)] {
             let mut canvas = canvas(64);
             canvas.lines(&[[DVec2::new(-1.0, 0.4), DVec2::new(2.0, 0.4)]], width, 1.0);
-            // The row of pixels is sampled at its center, so a thin level line is off by a fraction of a row.
+            // The row of pixels is sampled at its center, so a thin horizontal line is off by a fraction of a row.
             let covered = sum(&canvas.into_raster()) / 64.0;
             assert!(
                 (covered - width).abs() < tolerance * 0.5,
@@ -288,7 +288,7 @@ mod tests {
         assert_same(&here, &far);
     }
 
-    /// Shifted copies of a line have rounded ends, so their coverage may differ in the last bits.
+    /// Shifted copies of a line are rounded at their ends, so their coverage may differ in the last bits.
     fn assert_same(a: &Raster<f32>, b: &Raster<f32>) {
         let largest = a
             .zip_map(b, |a, b| (a - b).abs())

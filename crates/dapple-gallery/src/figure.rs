@@ -4,26 +4,26 @@ use crate::Panel;
 use crate::lock::{Hash, hash_panels};
 use anyhow::{Context, ensure};
 
-/// A figure: a file under `src/figures/<paper>/` that renders one or several pictures.
+/// A figure: a file under `src/figures/<paper>/` that renders one or several images.
 ///
 /// The name and the caption are not stored here; they come from the name of the file and its header.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure {
     /// The number of the figure in the paper, such as `"3a"`, or `"extra"` for a figure that the paper does not have.
     pub number: &'static str,
-    /// The parameters that the page shows: pairs of a name and a value. The value of `recipe` is a built-in recipe like
-    /// the figure, which the page says how to open.
+    /// Parameters shown on the page: pairs of a name and a value. The value of `recipe` is a built-in recipe similar
+    /// to the figure; the page has a command to open it.
     pub parameters: &'static [(&'static str, &'static str)],
     /// The source file of the figure: always `source!()`.
     pub source: Source,
-    /// Makes the pictures, with `size` pixels along the longer side of each.
+    /// Makes the images, with `size` pixels along the longer side of each.
     pub render: fn(size: u32) -> anyhow::Result<Vec<Panel>>,
 }
 
 /// A paper and its figures, in the order of the paper.
 #[derive(Clone, Copy, Debug)]
 pub struct Paper {
-    /// The folder of its figures, and the first part of their names.
+    /// Folder of its figures, and the first part of their names.
     pub key: &'static str,
     /// The title of the paper.
     pub title: &'static str,
@@ -42,7 +42,7 @@ pub struct Source {
     pub text: &'static str,
 }
 
-/// The [`Source`] of the file in which it is written.
+/// Returns the [`Source`] of the file that contains the call.
 macro_rules! source {
     () => {
         $crate::Source {
@@ -54,12 +54,12 @@ macro_rules! source {
 pub(crate) use source;
 
 impl Figure {
-    /// Renders the pictures, with `size` pixels along the longer side of each.
+    /// Renders the images, with `size` pixels along the longer side of each.
     ///
     /// # Errors
     ///
-    /// If the code of the figure fails, with the name of the figure as context, or if it made no picture or one of another
-    /// size.
+    /// If the code of the figure fails, with the name of the figure as context, or if it makes no image or one of the
+    /// wrong size.
     pub fn render(&self, size: u32) -> anyhow::Result<Vec<Panel>> {
         let panels = (self.render)(size).with_context(|| format!("figure {}", self.name()))?;
         ensure!(!panels.is_empty(), "figure {} made no picture", self.name());
@@ -74,7 +74,7 @@ impl Figure {
         Ok(panels)
     }
 
-    /// Returns the hash of the pictures at `size` pixels. `figures.lock` holds the hash for
+    /// Returns the hash of the images at `size` pixels. `figures.lock` contains the hash for
     /// [`LOCK_SIZE`](crate::LOCK_SIZE).
     ///
     /// # Errors

@@ -11,9 +11,9 @@ pub use surface::own::{Own, OwnTextured};
 
 use crate::{Figure, Paper};
 
-/// The papers, in the order of the page.
-// A function, and not inlined: a unit test compiles all that a `static` of its crate reaches, and whoever reads a
-// `const` compiles it again.
+/// Returns the papers in the order of the page.
+// A function that is not inlined, because a unit test compiles everything that a `static` of its crate references, and
+// every user of a `const` compiles it again.
 #[inline(never)]
 #[must_use]
 pub fn papers() -> &'static [Paper] {
@@ -26,7 +26,7 @@ pub fn papers() -> &'static [Paper] {
     ]
 }
 
-/// All figures, in the order of the page.
+/// Iterates over all figures, in the order of the page.
 pub fn figures() -> impl Iterator<Item = &'static Figure> {
     papers().iter().flat_map(|paper| paper.figures)
 }

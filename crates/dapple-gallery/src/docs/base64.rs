@@ -7,7 +7,7 @@ use anyhow::{Context, ensure};
 
 const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// Encodes bytes: three bytes become four letters of six bits each, from the highest bits down; `=` pads the end.
+/// Encodes bytes: three bytes become four characters of six bits each, from the highest bits down; `=` pads the end.
 pub(super) fn encode(bytes: &[u8]) -> String {
     let mut text = String::new();
     for group in bytes.chunks(3) {
@@ -24,7 +24,7 @@ pub(super) fn encode(bytes: &[u8]) -> String {
     text
 }
 
-/// Decodes a text that [`encode`] made.
+/// Decodes a text produced by [`encode`].
 pub(super) fn decode(text: &str) -> anyhow::Result<Vec<u8>> {
     ensure!(text.len().is_multiple_of(4), "base64 ends within a group");
     let mut bytes = Vec::new();
@@ -45,7 +45,7 @@ pub(super) fn decode(text: &str) -> anyhow::Result<Vec<u8>> {
 mod tests {
     use super::{decode, encode};
 
-    /// The test vectors of section 10 of the RFC.
+    /// Test vectors from section 10 of the RFC.
     const VECTORS: [(&str, &str); 7] = [
         ("", ""),
         ("f", "Zg=="),

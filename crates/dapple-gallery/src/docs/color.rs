@@ -43,10 +43,10 @@ pub(super) const DOCUMENTED: Documented = Documented {
     },
 };
 
-/// The width and height of a bar, in pixels.
+/// Width and height of a bar, in pixels.
 const BAR: [u32; 2] = [192, 20];
 
-/// Pixels along a side of a picture.
+/// Number of pixels along a side of an image.
 const SMALL: u32 = 72;
 
 const INTERPOLATION: Strip = Strip {
@@ -157,7 +157,7 @@ fn height(side: u32) -> anyhow::Result<Raster<f32>> {
     Ok(bumps.to_raster(&window)?.map(|value| 1.0 - value))
 }
 
-/// A height map colored by a palette, reduced to as many colors as a gray picture has shades.
+/// A height map colored by a palette, reduced to as many colors as a gray image has shades.
 fn painted(label: &str, palette: Palette, height: &Raster<f32>) -> Panel {
     let height = height.map(|&value| rounded(value, GRAYS));
     Panel::color(label, palette.ramp().apply(&height))

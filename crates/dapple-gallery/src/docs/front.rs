@@ -1,4 +1,4 @@
-//! The picture of the workspace's README: models covered from swatches, and below them lit built-in recipes.
+//! The image of the workspace's README: models covered from exemplars, and below them lit built-in recipes.
 
 use super::Documented;
 use super::picture::{below, colored, of_figures, row};
@@ -8,7 +8,7 @@ pub(super) const DOCUMENTED: Documented = Documented {
     strips: &[],
     banner: || {
         let models = [0, 1, 2, 3, 4, 5].map(|model| ("surface-fig-05", model));
-        // The numbers are places in the list of all built-in recipes.
+        // The numbers are indices in the list of all built-in recipes.
         let [
             flagstone,
             giraffe,
@@ -33,8 +33,8 @@ pub(super) const DOCUMENTED: Documented = Documented {
     },
 };
 
-/// The number of shades of each channel, kept low so that the file is small.
+/// Number of shades of each channel, low enough for a small file.
 const COLORS: f32 = 16.0;
 
-/// The height of the pictures of a row, in pixels.
+/// Height of the images of a row, in pixels.
 const HEIGHT: u32 = 171;

@@ -13,7 +13,7 @@ pub(super) const DOCUMENTED: Documented = Documented {
     banner: || banner_of(&panels(BANNER, ["", "", "", "", ""])?),
 };
 
-/// Cells of the noise along a side.
+/// Number of noise cells along a side.
 const CELLS: u32 = 6;
 
 const GRADIENT_NOISE: Strip = Strip {

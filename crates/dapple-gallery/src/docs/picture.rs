@@ -1,4 +1,4 @@
-//! Helpers that all strips share: pictures with few shades, whose files are small, and pictures in a row.
+//! Helpers shared by all strips: images with few shades, whose files are small, and rows of images.
 
 use crate::draw::shrink;
 use crate::figures::figures;
@@ -8,28 +8,28 @@ use dapple_color::{Code, LinearRgb};
 use dapple_raster::{Field, Raster, Window};
 use glam::DVec2;
 
-/// Pixels along a side of a picture.
+/// Number of pixels along a side of an image.
 pub(super) const SIDE: u32 = 92;
 
-/// Pixels along a side of a picture of dots, lines or flat areas, which compresses well.
+/// Number of pixels along a side of an image of dots, lines or flat areas, which compresses well.
 pub(super) const LARGE: u32 = 108;
 
-/// Samples along the side of a pixel, for pictures with edges.
+/// Number of samples along the side of a pixel, for images with edges.
 pub(super) const SAMPLES: u32 = 3;
 
-/// The number of gray levels of a smooth picture: with fewer, steps would be visible.
+/// Number of gray levels of a smooth image; with fewer, steps would be visible.
 pub(super) const SMOOTH_GRAYS: f32 = 32.0;
 
-/// The number of gray levels of other pictures: a file with all 256 is several times as large.
+/// Number of gray levels of other images; a file with all 256 is several times as large.
 pub(super) const GRAYS: f32 = 16.0;
 
-/// The number of shades of each channel of a color picture.
+/// Number of shades of each channel of a color image.
 pub(super) const COLORS: f32 = 10.0;
 
-/// The height of a picture in a README, in pixels.
+/// Height of an image in a README, in pixels.
 pub(super) const BANNER: u32 = 96;
 
-/// Pixels between the pictures of a row.
+/// Gap between the images of a row, in pixels.
 const GAP: u32 = 8;
 
 /// A square window, `units` wide and centered at the origin, with `side` × `side` pixels.
@@ -38,12 +38,12 @@ pub(super) fn square(units: f64, side: u32) -> anyhow::Result<Window> {
     Ok(Window::new(corner, DVec2::splat(units), [side; 2])?)
 }
 
-/// A picture of a smooth field with values from 0 to 1.
+/// An image of a smooth field with values from 0 to 1.
 pub(super) fn smooth(label: &str, field: &dyn Field, window: &Window) -> anyhow::Result<Panel> {
     Ok(shaded(label, &field.to_raster(window)?, SMOOTH_GRAYS))
 }
 
-/// A picture of a field with edges, with values from 0 to 1; `window` is the window of the finished picture.
+/// An image of a field with edges, with values from 0 to 1; `window` is the window of the finished image.
 pub(super) fn edged(label: &str, field: &dyn Field, window: &Window) -> anyhow::Result<Panel> {
     let fine = field.to_raster(&finer(window)?)?;
     Ok(shaded(label, &shrink(&fine, SAMPLES)?, GRAYS))
@@ -56,12 +56,12 @@ pub(super) fn finer(window: &Window) -> anyhow::Result<Window> {
     Ok(Window::new(window.origin, extent, size)?)
 }
 
-/// A gray picture with the given number of shades.
+/// A gray image with the given number of shades.
 pub(super) fn shaded(label: &str, raster: &Raster<f32>, shades: f32) -> Panel {
     Panel::gray(label, raster.map(|&value| rounded(value, shades)))
 }
 
-/// A color picture with the given number of shades in each sRGB channel.
+/// A color image with the given number of shades in each sRGB channel.
 pub(super) fn colored(label: &str, raster: &Raster<LinearRgb>, shades: f32) -> Panel {
     let colors = raster.map(|color| {
         let codes = color
@@ -79,7 +79,7 @@ pub(super) fn rounded(value: f32, shades: f32) -> f32 {
 }
 
 /// Returns panels of figures, all `height` pixels high. A place is the name of a figure and the index of its panel,
-/// from 0.
+/// starting at 0.
 pub(super) fn of_figures(places: &[(&str, usize)], height: u32) -> anyhow::Result<Vec<Panel>> {
     places
         .iter()
@@ -102,17 +102,17 @@ fn of_figure(name: &str, number: usize, height: u32) -> anyhow::Result<Panel> {
     }
 }
 
-/// Puts panels of figures in a row: the picture of a README.
+/// Puts panels of figures in a row: the image of a README.
 pub(super) fn banner(figures: &[(&str, usize)]) -> anyhow::Result<Panel> {
     banner_of(&of_figures(figures, BANNER)?)
 }
 
-/// Puts panels in a row: the picture of a README.
+/// Puts panels in a row: the image of a README.
 pub(super) fn banner_of(panels: &[Panel]) -> anyhow::Result<Panel> {
     Ok(colored("", &row(panels)?, COLORS))
 }
 
-/// Puts pictures side by side with white gaps, cropped to the height of the lowest.
+/// Puts images in a row with white gaps, cropped to the height of the lowest image.
 pub(super) fn row(panels: &[Panel]) -> anyhow::Result<Raster<LinearRgb>> {
     let height = panels.iter().map(|panel| panel.size()[1]).min();
     let height = height.context("there is no picture for the row")?;
@@ -131,7 +131,7 @@ pub(super) fn row(panels: &[Panel]) -> anyhow::Result<Raster<LinearRgb>> {
     Ok(row)
 }
 
-/// Puts rows of the same width below each other, with white gaps.
+/// Stacks rows of the same width with white gaps.
 pub(super) fn below(rows: &[Raster<LinearRgb>]) -> anyhow::Result<Raster<LinearRgb>> {
     let width = rows.first().context("there is no row")?.width();
     let mut pixels = Vec::new();

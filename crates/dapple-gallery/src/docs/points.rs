@@ -33,7 +33,7 @@ pub(super) const DOCUMENTED: Documented = Documented {
 
 const SEED: Seed = Seed(4);
 
-/// The radius of a point in pixels.
+/// Radius of a point in pixels.
 const RADIUS: f64 = 1.6;
 
 const POISSON_DISK: Strip = Strip {

@@ -27,7 +27,7 @@ pub(super) const DOCUMENTED: Documented = Documented {
     },
 };
 
-/// The number of shades of each channel: more than elsewhere, since light changes smoothly.
+/// Number of shades of each channel: more than elsewhere, since light changes smoothly.
 const COLORS: f32 = 20.0;
 
 const SHAPE: Strip = Strip {

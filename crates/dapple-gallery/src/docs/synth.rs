@@ -28,7 +28,7 @@ pub(super) const DOCUMENTED: Documented = Documented {
     },
 };
 
-/// Pixels along a side of a texture.
+/// Number of pixels along a side of a texture.
 const SMALL: u32 = 80;
 
 const PLANE: Strip = Strip {
@@ -85,7 +85,7 @@ fn grown(
     Ok(colored(label, &colors, COLORS))
 }
 
-/// Centers an exemplar on a white picture that is as high as the others of its row.
+/// Centers an exemplar on a white image that is as high as the others of its row.
 fn on_white(image: &Raster<LinearRgb>) -> anyhow::Result<Panel> {
     let [width, height] = image.size();
     let above = BANNER.saturating_sub(height) / 2;

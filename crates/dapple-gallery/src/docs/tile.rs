@@ -44,8 +44,8 @@ pub(super) const DOCUMENTED: Documented = Documented {
     },
 };
 
-/// A height map of pebbles with dark borders, `cells` cells and `side` pixels wide; it repeats, or is a crop that does
-/// not.
+/// A height map of pebbles with dark borders, `cells` cells and `side` pixels wide. It either repeats or is a crop
+/// that does not repeat.
 fn pebbles(cells: u32, side: u32, repeats: bool, seed: Seed) -> anyhow::Result<Raster<f32>> {
     let period = repeats.then_some(cells);
     let worley = Worley2::new(seed).with_period([period; 2])?;

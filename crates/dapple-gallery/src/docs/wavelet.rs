@@ -29,7 +29,7 @@ pub(super) const DOCUMENTED: Documented = Documented {
 
 const BORDERS: [Border; 2] = [Border::Periodic; 2];
 
-/// Cells of the noise along a side.
+/// Number of noise cells along a side.
 const CELLS: f64 = 24.0;
 
 const SPLINE_FILTER: Strip = Strip {
@@ -127,7 +127,7 @@ const TILE: Strip = Strip {
     },
 };
 
-/// A picture that repeats, with edges in it.
+/// An image that repeats and contains edges.
 fn picture(side: u32) -> anyhow::Result<Raster<f32>> {
     let cells = Worley2::new(Seed(6)).with_period([Some(4); 2])?;
     let cracks = cells.combine(Combination::F2_MINUS_F1).normalized()?;
@@ -136,7 +136,7 @@ fn picture(side: u32) -> anyhow::Result<Raster<f32>> {
     Ok(cracks.to_raster(&window)?.map(crack))
 }
 
-/// The two finest bands of a picture, amplified by 2 and shown around middle gray.
+/// The two finest bands of an image, amplified by 2 and shown around middle gray.
 fn details(picture: &Raster<f32>, side: u32) -> anyhow::Result<[Panel; 2]> {
     let bands = SplineFilter::default().analyze(picture, 2, BORDERS)?;
     let panel = |band: usize| -> anyhow::Result<Panel> {

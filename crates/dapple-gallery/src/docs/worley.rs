@@ -73,13 +73,13 @@ pub(super) const DOCUMENTED: Documented = Documented {
     },
 };
 
-/// The number of shades of a gray picture.
+/// Number of shades of a gray image.
 const SHADES: f32 = 32.0;
 
-/// The number of shades of a picture with edges, and of each channel of a color picture.
+/// Number of shades of an image with edges, and of each channel of a color image.
 const SHADES_WITH_EDGES: f32 = 16.0;
 
-/// The number of positions at which a range is measured.
+/// Number of positions at which a range is measured.
 const N_POSITIONS: u32 = 4000;
 
 /// The Worley basis that most strips show.
@@ -92,13 +92,13 @@ fn square(cells: f64) -> anyhow::Result<Window> {
     Ok(Window::new(DVec2::ZERO, DVec2::splat(cells), [SIDE; 2])?)
 }
 
-/// A picture of smooth values from 0 to 1.
+/// An image of smooth values from 0 to 1.
 fn gray(label: &str, cells: f64, value: impl Fn(DVec2) -> f32 + Sync) -> anyhow::Result<Panel> {
     let raster = Raster::from_window(&square(cells)?, value)?;
     Ok(shaded(label, &raster, SHADES))
 }
 
-/// A gray picture of values with edges, from 0 to 1.
+/// A gray image of values with edges, from 0 to 1.
 fn gray_with_edges(
     label: &str,
     cells: f64,
@@ -108,7 +108,7 @@ fn gray_with_edges(
     Ok(shaded(label, &shrink(&fine, SAMPLES)?, SHADES_WITH_EDGES))
 }
 
-/// A color picture with edges.
+/// A color image with edges.
 fn color_with_edges(
     label: &str,
     cells: f64,

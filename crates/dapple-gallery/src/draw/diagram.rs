@@ -1,11 +1,11 @@
-//! Parts of diagrams beside points and lines: arrows, dashed lines and labels.
+//! Parts of diagrams other than points and lines: arrows, dashed lines and labels.
 
 use super::Canvas;
 use super::letters::strokes;
 use super::stencil::Stencil;
 use dapple_raster::{Texel, glam::DVec2};
 
-/// The stroke width of a letter, as a fraction of its height.
+/// Stroke width of a letter, as a fraction of its height.
 const STROKE: f64 = 0.14;
 
 impl<T: Texel> Canvas<T> {
@@ -30,7 +30,8 @@ impl<T: Texel> Canvas<T> {
         self.lines(&dashes, width_px, ink);
     }
 
-    /// Writes a line of text from `start` on, the left end of its baseline. Capitals are `height_px` pixels high.
+    /// Writes a line of text that starts at `start`, the left end of its baseline. Capitals are `height_px` pixels
+    /// high.
     ///
     /// The alphabet has the English letters, `Δ` and a few signs; any other character leaves a space.
     pub fn text(&mut self, start: DVec2, height_px: f64, text: &str, ink: T) {

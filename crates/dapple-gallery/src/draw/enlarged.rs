@@ -1,9 +1,9 @@
-//! Enlarged pictures, whose pixels become visible squares.
+//! Enlarged images, whose pixels become visible squares.
 
 use dapple_raster::{Raster, RasterError};
 
-/// Resizes a raster by taking the nearest pixel, so that its longer side has `size` pixels; enlarging turns every pixel into
-/// a square.
+/// Resizes a raster by taking the nearest pixel, so that its longer side has `size` pixels. Enlarging turns every
+/// pixel into a square.
 ///
 /// # Errors
 ///

@@ -5,10 +5,10 @@ use dapple_graph::Graph;
 use dapple_points::PointIdx;
 use std::collections::BTreeSet;
 
-/// The color of a label, always the same for the same label. Consecutive labels get very different colors.
+/// Returns the color of a label, which is always the same. Consecutive labels get very different colors.
 #[must_use]
 pub fn label_color(label: u32) -> LinearRgb {
-    // Steps of the golden section around the circle keep hues apart, however many there are.
+    // Steps of the golden section around the color wheel keep hues apart for any number of labels.
     let hue = fraction(f64::from(label) * 0.618_033_988_749_895) as f32 * 6.0;
     let value = [0.95, 0.70, 0.85][label as usize % 3];
     let channel = |shift: f32| {
@@ -20,19 +20,19 @@ pub fn label_color(label: u32) -> LinearRgb {
     LinearRgb::new(channel(0.0), channel(4.0), channel(2.0))
 }
 
-/// A shade of gray for a label, from 0.25 to 1.
+/// Returns a shade of gray for a label, from 0.25 to 1.
 #[must_use]
 pub fn label_gray(label: u32) -> f32 {
     let spread = fraction(f64::from(label) * 0.618_033_988_749_895);
     0.25 + 0.75 * spread as f32
 }
 
-/// Returns a shade of gray, from 0.25 to 1, for each label of the points of a graph. Two labels that an edge joins get
-/// different shades out of six, so that they are easy to tell apart.
+/// Returns a shade of gray, from 0.25 to 1, for each label of the points of a graph. Two labels connected by an edge
+/// get different shades out of six, so that they are easy to distinguish.
 ///
-/// Labels are numbers from 0 on without gaps. The next label to get a shade is always the one with the most different
-/// shades around it; it takes the shade that differs most from those. (D. Brélaz, "New methods to color the vertices of
-/// a graph", 1979, `doi:10.1145/359094.359101`.)
+/// Labels are consecutive numbers from 0. The next label to get a shade is always the one with the largest number of
+/// different shades around it. It gets the shade that differs most from these. (D. Brélaz, "New methods to color the
+/// vertices of a graph", 1979, `doi:10.1145/359094.359101`.)
 #[must_use]
 pub fn graph_grays(graph: &Graph, labels: &[u32]) -> Vec<f32> {
     let neighbors = neighbors(graph, labels);
@@ -53,7 +53,7 @@ pub fn graph_grays(graph: &Graph, labels: &[u32]) -> Vec<f32> {
         };
         let around = seen(next);
         let contrast = |shade: u32| around.iter().map(|other| other.abs_diff(shade)).min();
-        // With no shaded neighbors, any shade will do.
+        // If no neighbor has a shade, any shade is possible.
         let candidates = (0..SHADES).map(|turn| (turn + next as u32 * 5) % SHADES);
         taken[next] = candidates.max_by_key(|&shade| contrast(shade).unwrap_or(SHADES));
     }
@@ -64,11 +64,10 @@ pub fn graph_grays(graph: &Graph, labels: &[u32]) -> Vec<f32> {
         .collect()
 }
 
-/// The number of shades for a graph in the plane. Four are enough for every such graph, but this method needs up to
-/// six.
+/// Number of shades for a graph in the plane. Four are enough for every such graph, but this method needs up to six.
 const SHADES: u32 = 6;
 
-/// Returns for each label the set of labels that edges join to it.
+/// Returns for each label the set of labels connected to it by an edge.
 fn neighbors(graph: &Graph, labels: &[u32]) -> Vec<BTreeSet<usize>> {
     let n_labels = labels.iter().max().map_or(0, |&label| label as usize + 1);
     let mut neighbors = vec![BTreeSet::new(); n_labels];

@@ -1,28 +1,28 @@
-//! A small alphabet of strokes, for labels and for text as a picture.
+//! A small alphabet of strokes, for labels and for text as an image.
 //!
 //! A letter is drawn on a grid: `y` is 0 at the top of capitals, 3 at the top of small letters, 9 on the baseline and
-//! 12 at the bottom of descenders. It is a list of strokes, separated by spaces. A stroke is a list of grid points with
-//! two digits (in base 36) each. A plain stroke is straight from point to point; after `~` it is a curve from the first
-//! to the last point, with the points between as control points; after `@` it is a closed curve.
+//! 12 at the bottom of descenders. It is a list of strokes, separated by spaces. A stroke is a list of grid points
+//! with two digits (in base 36) each. A plain stroke is straight from point to point; after `~` it is a curve from the
+//! first to the last point, with the points between as control points; after `@` it is a closed curve.
 
 use dapple_raster::glam::DVec2;
 
-/// The height of a capital, in grid lines.
+/// Height of a capital, in grid lines.
 const CAPITAL: f64 = 9.0;
 
-/// The gap between letters, in grid lines.
+/// Gap between letters, in grid lines.
 const GAP: f64 = 2.3;
 
-/// The width of a space, in grid lines, beside the gap after it.
+/// Width of a space, in grid lines, in addition to the gap after it.
 const SPACE: f64 = 2.5;
 
-/// The number of rounds of corner cutting for a curve.
+/// Number of corner-cutting iterations for a curve.
 const N_CUTS: usize = 3;
 
-/// Returns the straight lines of a text whose capitals are 1 high. It begins at `x = 0` with its baseline at `y = 0`;
-/// `y` points down.
+/// Returns the straight lines of a text whose capitals have the height 1. It starts at `x = 0` with its baseline at `y
+/// = 0`; `y` points down.
 ///
-/// A character that the alphabet lacks leaves a space.
+/// A character that is not in the alphabet leaves a space.
 pub(super) fn strokes(text: &str) -> Vec<[DVec2; 2]> {
     let mut lines = Vec::new();
     let mut left = 0.0;
@@ -54,7 +54,7 @@ fn corners(stroke: &str) -> Vec<DVec2> {
         .collect();
     let curve = stroke.starts_with(['~', '@']);
     if stroke.starts_with('@') {
-        // A closed curve begins and ends at the middle of a side.
+        // A closed curve starts and ends at the middle of a side.
         let middle = 0.5 * (points[0] + points[points.len() - 1]);
         points.insert(0, middle);
         points.push(middle);
@@ -82,7 +82,7 @@ fn cut(points: &[DVec2]) -> Vec<DVec2> {
     finer
 }
 
-/// Returns the strokes of a letter; empty if the alphabet lacks it.
+/// Returns the strokes of a letter; empty if the alphabet does not have it.
 const fn glyph(letter: char) -> &'static str {
     match letter {
         'a' => "@03535909 5359",

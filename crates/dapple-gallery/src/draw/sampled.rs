@@ -1,4 +1,4 @@
-//! Pictures from a function that gives a color at every position.
+//! Images from a function that gives a color at every position.
 
 use dapple_raster::{Raster, RasterError, Texel, Window, glam::DVec2};
 
@@ -23,7 +23,7 @@ pub fn sampled<T: Texel + Send>(
                 sum = Some(sum.map_or(sample, |sum| sum + sample));
             }
         }
-        // There is a first sample, so there is a sum.
+        // There is a first sample, so the sum exists.
         sum.unwrap_or_else(|| value(fine.position(column, row).into())) * share
     };
     let mean = &mean;

@@ -4,11 +4,11 @@ use dapple_raster::{Raster, RasterError, Texel};
 
 /// Makes a raster `side` times smaller along each axis: every pixel is the mean of `side` × `side` samples.
 ///
-/// Samples at the right and the bottom that do not fill a whole pixel are left out.
+/// Samples at the right and the bottom that do not fill a whole pixel are ignored.
 ///
 /// # Errors
 ///
-/// If no pixel is left.
+/// If no pixel remains.
 pub fn shrink<T: Texel>(fine: &Raster<T>, side: u32) -> Result<Raster<T>, RasterError> {
     let side = side.max(1);
     let size = fine.size().map(|samples| samples / side);
@@ -18,7 +18,7 @@ pub fn shrink<T: Texel>(fine: &Raster<T>, side: u32) -> Result<Raster<T>, Raster
         let rows = row * side..(row + 1) * side;
         let samples = rows.flat_map(|row| &fine.row(row)[columns.clone()]);
         let sum = samples.copied().reduce(|sum, sample| sum + sample);
-        // There is a first sample, so there is a sum.
+        // There is a first sample, so the sum exists.
         sum.unwrap_or(fine.pixels()[0]) * share
     })
 }

@@ -1,7 +1,7 @@
 //! The fraction of each pixel that a drawing covers.
 //!
 //! Coverage is computed for an edge one pixel wide, from the distance to the shape. Where shapes overlap the larger
-//! coverage counts, so that lines can cross or join without a blot.
+//! coverage is used, so that lines can cross or join without a blot.
 
 use dapple_raster::{Raster, Texel, glam::DVec2};
 
@@ -24,7 +24,7 @@ impl Stencil {
 
     /// Covers all positions within `reach` of the straight line between two positions, which may be equal.
     ///
-    /// A line thinner than a pixel keeps its weight by becoming paler.
+    /// A line thinner than a pixel is drawn paler to keep its weight.
     pub(super) fn segment(&mut self, [from, to]: [DVec2; 2], reach: f64) {
         let (half, weight) = (reach.max(0.5), (2.0 * reach).min(1.0));
         let low = from.min(to) - DVec2::splat(half + 1.0);
@@ -39,7 +39,7 @@ impl Stencil {
         }
     }
 
-    /// Covers a pixel to the given fraction, unless it is already covered more.
+    /// Covers a pixel to the given fraction, unless its coverage is already larger.
     pub(super) fn cover(&mut self, column: u32, row: u32, coverage: f32) {
         let pixel = &mut self.coverage[row as usize * self.size[0] as usize + column as usize];
         *pixel = pixel.max(coverage);

@@ -61,12 +61,12 @@ pub(super) const PAPER: Paper = Paper {
     ],
 };
 
-/// Renders a texture on the paper's square `[-1, 1]²` in shades of gray. The square is a torus, so the picture repeats.
+/// Renders a texture on the paper's square `[-1, 1]²` in shades of gray. The square is a torus, so the image repeats.
 fn picture(label: impl Into<String>, texture: &dyn Field, size: u32) -> Result<Panel, RasterError> {
     Ok(Panel::gray(label, texture.to_raster(&square(size)?)?).repeating())
 }
 
-/// Renders a texture of labels on the paper's square in shades of gray, with its hard edges smoothed. The picture
+/// Renders a texture of labels on the paper's square in shades of gray, with its hard edges smoothed. The image
 /// repeats.
 fn picture_of_labels(
     label: impl Into<String>,
@@ -77,15 +77,15 @@ fn picture_of_labels(
     Ok(Panel::gray(label, shrink(&fine, SIDE)?).repeating())
 }
 
-/// The number of samples along each side of a pixel that smooth a hard edge.
+/// Number of samples along each side of a pixel, which smooth a hard edge.
 const SIDE: u32 = 4;
 
-/// The window of all samples of the paper's square, for a picture of `size` × `size` pixels.
+/// Returns the window of all samples of the paper's square, for an image of `size` × `size` pixels.
 fn fine_square(size: u32) -> Result<Window, RasterError> {
     square(size.saturating_mul(SIDE))
 }
 
-/// The window of the paper's square, with `size` × `size` pixels.
+/// Returns the window of the paper's square, with `size` × `size` pixels.
 fn square(size: u32) -> Result<Window, RasterError> {
     let square = Domain::paper_torus();
     Window::new(square.origin, square.size, [size; 2])

@@ -9,8 +9,8 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// Renders `selected` and fails if the hash of a figure differs from its line in the lock, or a line is missing or left
-/// over.
+/// Renders `selected` and fails if the hash of a figure differs from its line in the lock, if a line is missing, or if
+/// a line has no figure.
 pub(crate) fn check(selected: &[&'static Figure], path: &Path) -> anyhow::Result<()> {
     let old = read(path)?;
     let changes = old.changes(&updated(&old, selected)?);
@@ -29,7 +29,7 @@ pub(crate) fn check(selected: &[&'static Figure], path: &Path) -> anyhow::Result
     )
 }
 
-/// Writes the hashes of `selected` into the lock, drops lines of figures that are gone, and prints what changed.
+/// Writes the hashes of `selected` into the lock, removes lines of deleted figures, and prints what changed.
 pub(crate) fn bless(selected: &[&'static Figure], path: &Path) -> anyhow::Result<()> {
     let old = read(path)?;
     let new = updated(&old, selected)?;
@@ -43,7 +43,7 @@ pub(crate) fn bless(selected: &[&'static Figure], path: &Path) -> anyhow::Result
     fs::write(path, new.to_string()).with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// Returns the old lock with fresh hashes of `selected`, and without the lines of figures that are gone.
+/// Returns the old lock with new hashes of `selected`, and without the lines of deleted figures.
 fn updated(old: &Lock, selected: &[&'static Figure]) -> anyhow::Result<Lock> {
     let mut lock = old.clone();
     let names: Vec<String> = figures().map(Figure::name).collect();

@@ -83,36 +83,36 @@ const OF_MESH: [&str; 6] = [
     "coherence",
 ];
 
-/// The longer side of a picture in pixels, without `--size` and with `--full`.
+/// Longer side of an image in pixels, without `--size` and with `--full`.
 const SIZE: u32 = 512;
 const FULL_SIZE: u32 = 1024;
 
-/// The default numbers of points and levels for a mesh given with `--mesh`.
+/// Default numbers of points and levels for a mesh given with `--mesh`.
 const POINTS: usize = 262_144;
 const LEVELS: usize = 3;
 
-/// A parsed command line: a task, and the figures that it is for.
+/// A parsed command line: a task, and the figures that it applies to.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Command {
     /// The task to run.
     pub(crate) task: Task,
     /// Parts of figure names that select figures; an empty list selects all.
     pub(crate) filter: Vec<String>,
-    /// Pixels along the longer side of a picture.
+    /// Number of pixels along the longer side of an image.
     pub(crate) size: u32,
-    /// The folder for the pictures, if one was given.
+    /// Output folder for the images, if one was given.
     pub(crate) out: Option<PathBuf>,
 }
 
 /// A task of the gallery.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Task {
-    /// Write the pictures and the page.
+    /// Write the images and the page.
     Export {
         /// Open the page in the browser.
         open: bool,
     },
-    /// Render a mesh that the user brought.
+    /// Render a mesh that the user provides.
     Own(OwnArguments),
     /// Compare the figures with the lock.
     Check,
@@ -122,9 +122,9 @@ pub(crate) enum Task {
     List,
     /// Print the ranges of the combinations of Worley's basis.
     Ranges,
-    /// Rewrite or compare the pictures in the documentation.
+    /// Rewrite or compare the images in the documentation.
     Docs {
-        /// Compare the pictures with the files instead of writing them.
+        /// Compare the images with the files instead of writing them.
         check: bool,
     },
     /// Print the help.
@@ -199,7 +199,7 @@ impl Typed {
         Ok(())
     }
 
-    /// Fails if two options exclude each other, or an option is missing that another one needs.
+    /// Fails if two options exclude each other, or if an option is missing that another one requires.
     fn refuse_conflicts(&self) -> Result<()> {
         for (name, others) in CONFLICTS {
             if let Some(other) = others

@@ -1,4 +1,4 @@
-//! The option `--docs`: writes or checks the pictures in the documentation of the crates and in their READMEs.
+//! The option `--docs`: writes or checks the images in the documentation of the crates and in their READMEs.
 #![expect(
     clippy::disallowed_methods,
     reason = "the pictures are files beside the source"
@@ -10,8 +10,7 @@ use dapple_gallery::docs::{Documented, documented};
 use std::fs;
 use std::path::PathBuf;
 
-/// Writes every picture that has changed into the folder `docs` of its crate, and prints the total size of all
-/// pictures.
+/// Writes every image that has changed into the folder `docs` of its crate, and prints the total size of all images.
 pub(crate) fn write() -> anyhow::Result<()> {
     for documented in documented() {
         let folder = folder(documented);
@@ -36,7 +35,7 @@ pub(crate) fn write() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Fails if a picture on disk differs from a fresh one.
+/// Fails if an image on disk differs from a new one.
 pub(crate) fn check() -> anyhow::Result<()> {
     let mut old = Vec::new();
     for documented in documented() {

@@ -1,4 +1,4 @@
-//! Writes the pictures as PNG files, with the page beside them.
+//! Writes the images as PNG files, and the page next to them.
 #![expect(clippy::disallowed_methods, reason = "files are written here")]
 
 use crate::{draw_each, root};

@@ -74,8 +74,8 @@ fn lock_path() -> PathBuf {
     root().join("crates/dapple-gallery/figures.lock")
 }
 
-/// Draws figures, several at a time where there are several cores, since few keep all of them busy on their own. Prints a
-/// line for each before it is drawn, if standard error is a terminal.
+/// Draws figures, several at a time on several cores, since few figures use all cores on their own. Prints a line
+/// before each one if standard error is a terminal.
 fn draw_each<T: Send>(
     figures: &[&'static Figure],
     draw: impl Fn(&'static Figure) -> anyhow::Result<T> + Sync,

@@ -1,4 +1,4 @@
-//! Renders a mesh and an exemplar that the user brought (`--mesh`).
+//! Renders a mesh and an exemplar that the user provides (`--mesh`).
 #![expect(clippy::disallowed_methods, reason = "files are read and written here")]
 
 use crate::say;
@@ -19,13 +19,13 @@ pub(crate) struct OwnArguments {
     pub(crate) exemplar: PathBuf,
     /// Whether the exemplar tiles.
     pub(crate) tiles: bool,
-    /// A file of directions for the texture's down, as lines `x,y,z,dx,dy,dz`; without it, down is -y everywhere.
+    /// File of directions for the texture's down, as lines `x,y,z,dx,dy,dz`. Without it, down is -y everywhere.
     pub(crate) directions: Option<PathBuf>,
-    /// The number of points that get a color.
+    /// Number of points that get a color.
     pub(crate) points: usize,
-    /// The number of levels of points: 4 for large features.
+    /// Number of levels of points: 4 for large features.
     pub(crate) levels: usize,
-    /// How much worse a match may be if it continues its neighbors; 0 as in the paper.
+    /// How much worse a match may be if it continues its neighbors. The paper uses 0.
     pub(crate) coherence: Coherence,
 }
 

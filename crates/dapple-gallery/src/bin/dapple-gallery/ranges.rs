@@ -5,7 +5,7 @@ use dapple_worley::{
 };
 use std::fmt::Write as _;
 
-/// Returns the table as it stands in `crates/dapple-worley/src/ranges.rs`: scatters, metrics, numbers of axes,
+/// Returns the table in the form of `crates/dapple-worley/src/ranges.rs`: scatters, metrics, numbers of axes,
 /// combinations.
 pub(crate) fn table() -> anyhow::Result<String> {
     let mut text = String::from("[\n");

@@ -13,7 +13,7 @@ use dapple_pups::{
     reference_texture, space_giraffe,
 };
 
-/// Units along a side: the square of the paper, a whole tile.
+/// Number of units along a side: the square of the paper, a whole tile.
 const TILE: f64 = 2.0;
 
 pub(super) const CELLS: Strip = Strip {

@@ -13,7 +13,7 @@ use dapple_pups::{
 use dapple_raster::Raster;
 use glam::{DVec2, DVec3};
 
-/// Units of the domain along a side: room for a few control points.
+/// Number of units of the domain along a side: room for a few control points.
 const UNITS: f64 = 1.4;
 
 /// The distance between control points.

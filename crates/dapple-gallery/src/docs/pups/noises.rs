@@ -1,4 +1,4 @@
-//! Recipes with values that change smoothly, and their sums.
+//! Recipes whose values change smoothly, and their sums.
 
 use super::{labels, values};
 use crate::docs::Strip;
@@ -9,7 +9,7 @@ use dapple_pups::{
     cellular_noise, color_noise, hash::Seed, noise, octaves, turbulence,
 };
 
-/// Units of the domain along a side: half of the square of the paper.
+/// Number of units of the domain along a side: half of the square of the paper.
 const UNITS: f64 = 1.0;
 
 pub(super) const NOISE: Strip = Strip {

@@ -11,7 +11,7 @@ use dapple_tile::{
 };
 use dapple_worley::hash::Seed;
 
-/// Pixels along a side of a picture.
+/// Number of pixels along a side of an image.
 const SMALL: u32 = 72;
 
 pub(super) const BLEND_MAP: Strip = Strip {

@@ -1,4 +1,4 @@
-//! Each method of `Seamless` beside its source.
+//! Each method of `Seamless` next to its source.
 
 use super::pebbles;
 use crate::Panel;
@@ -11,7 +11,7 @@ use dapple_tile::{
 use dapple_wavelet::{WaveletNoise2, hash::Seed};
 use glam::DVec2;
 
-/// Pixels along the side of a tile; a picture shows two by two of them.
+/// Number of pixels along the side of a tile; an image shows two by two of them.
 const TILE: u32 = 48;
 
 /// The margin that some methods cut off, in pixels.
@@ -119,7 +119,7 @@ pub(super) const CROSSFADE: Strip = Strip {
     },
 };
 
-/// Makes pictures of two by two copies: of the crop, then of the result of each method.
+/// Makes images of two by two copies: of the crop, then of the result of each method.
 fn beside(crop: &Raster<f32>, methods: &[(&str, Method)]) -> anyhow::Result<Vec<Panel>> {
     let copies = |label: &str, tile: &Raster<f32>| -> anyhow::Result<Panel> {
         let map = repeat(tile, [2 * TILE; 2])?;

@@ -1,4 +1,4 @@
-//! Maps whose copies of a tile differ inside.
+//! Maps in which the copies of a tile differ inside.
 
 use super::pebbles;
 use crate::docs::Strip;
@@ -7,10 +7,10 @@ use dapple_raster::Raster;
 use dapple_tile::{CornerTiles, Disturbance, Map, MatchBorders, repeat};
 use dapple_worley::hash::Seed;
 
-/// Pixels along the side of a tile.
+/// Number of pixels along the side of a tile.
 const TILE: u32 = 40;
 
-/// Pixels along the sides of a picture, which is three tiles wide.
+/// Number of pixels along the sides of an image, which is three tiles wide.
 const MAP: [u32; 2] = [3 * TILE; 2];
 
 pub(super) const DISTURBANCE: Strip = Strip {

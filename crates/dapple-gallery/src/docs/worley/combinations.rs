@@ -44,7 +44,7 @@ pub(super) const TWO_F3_MINUS_F2_MINUS_F1: Strip =
         only("2 F3 − F2 − F1", Combination::TWO_F3_MINUS_F2_MINUS_F1)
     });
 
-/// A combination that has no name of its own.
+/// A combination without a predefined name.
 pub(super) const NEW: Strip = Strip {
     name: "combination-new",
     caption: "One that has no name, F1 − 2 F2 + F3",

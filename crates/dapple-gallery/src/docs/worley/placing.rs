@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 /// The value of pixels outside the sphere.
 const OUTSIDE: f32 = 1.0;
 
-/// The number of shades of a globe: more than in other pictures with edges, since its shading changes slowly.
+/// Number of shades of a globe: more than in other images with edges, since its shading changes slowly.
 const SHADES: f32 = 22.0;
 
 fn radial(metric: Metric, around: u32, polar: f64, radial: f64) -> anyhow::Result<Radial> {
@@ -25,13 +25,13 @@ fn radial(metric: Metric, around: u32, polar: f64, radial: f64) -> anyhow::Resul
     Ok(Radial::new(texture, cells)?)
 }
 
-/// A smooth picture of a disk.
+/// A smooth image of a disk.
 fn disk(label: &str, value: impl Fn(DVec2) -> f32 + Sync) -> anyhow::Result<Panel> {
     let samples = Raster::from_window(&fine(2.0)?, value)?;
     Ok(shaded(label, &shrink(&samples, SAMPLES)?, SHADES))
 }
 
-/// The unit sphere, seen from somewhat above its equator.
+/// The unit sphere, seen from slightly above its equator.
 fn globe(label: &str, radial: &Radial) -> anyhow::Result<Panel> {
     disk(label, |at| {
         let [right, up] = [at.x - 1.0, 1.0 - at.y];
@@ -39,7 +39,7 @@ fn globe(label: &str, radial: &Radial) -> anyhow::Result<Panel> {
         if depth_sq < 0.0 {
             return OUTSIDE;
         }
-        // The view is turned by 37 degrees, whose sine is 0.6.
+        // The view is rotated by 37 degrees, whose sine is 0.6.
         let toward = depth_sq.sqrt();
         let on_sphere = DVec3::new(right, 0.6 * up - 0.8 * toward, 0.8 * up + 0.6 * toward);
         let light = 0.35 + 0.65 * toward as f32;
@@ -47,7 +47,7 @@ fn globe(label: &str, radial: &Radial) -> anyhow::Result<Panel> {
     })
 }
 
-/// The cut through the unit ball along its equator.
+/// The cross-section of the unit ball along its equator.
 fn cut(label: &str, radial: &Radial) -> anyhow::Result<Panel> {
     disk(label, |at| {
         let at = at - DVec2::ONE;
@@ -89,7 +89,7 @@ pub(super) const RADIAL_CELLS: Strip = Strip {
 /// The golden angle, 137.5 degrees: its cosine and sine.
 const GOLDEN: DVec2 = DVec2::new(-0.737_368_878_078_319_7, 0.675_490_294_261_523_8);
 
-/// Points on a spiral about the middle of the unit square, as the seeds of a sunflower are.
+/// Points on a spiral around the center of the unit square, arranged like the seeds of a sunflower.
 fn sunflower(n: u32) -> Vec<DVec2> {
     let turns = core::iter::successors(Some(DVec2::X), |turn| Some(turn.rotate(GOLDEN)));
     let radii = (0..n).map(|index| 0.4 * ((f64::from(index) + 0.5) / f64::from(n)).sqrt());

@@ -1,11 +1,11 @@
-//! A baked material lit and seen straight from above, so that the picture repeats as the maps do.
+//! A baked material, lit and seen straight from above, so that the image repeats as the maps do.
 
 use dapple_color::{LinearRgb, Normal};
 use dapple_raster::Raster;
 use dapple_recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe};
 use glam::DVec3;
 
-/// The reflectance of a dielectric (anything but metal) at normal incidence.
+/// Reflectance of a dielectric (anything but metal) at normal incidence.
 const DIELECTRIC: f32 = 0.04;
 
 /// Bakes and lights a recipe that needs no images, `size` pixels along its longer side.
@@ -18,7 +18,7 @@ pub(super) fn lit(recipe: &Recipe, size: u32) -> anyhow::Result<Raster<LinearRgb
     Ok(surface.zip_map(&albedo, |&(normal, orm), &color| shaded(normal, orm, color))?)
 }
 
-/// The maps of a whole tile: normals; occlusion, roughness and metallic; colors.
+/// Maps of a whole tile: normals; occlusion, roughness and metallic; colors.
 type Maps = (Raster<Normal>, Raster<[f32; 3]>, Raster<LinearRgb>);
 
 fn maps(plan: &Plan, size: [u32; 2]) -> anyhow::Result<Maps> {
@@ -51,7 +51,7 @@ fn shaded(normal: Normal, [free, roughness, metallic]: [f32; 3], color: LinearRg
     let gloss = 1.0 - roughness.clamp(0.05, 1.0);
     let exponent = libm::exp2f(1.0 + 8.0 * gloss);
     let highlight = 0.1 * exponent * libm::powf(normal.dot(half).max(0.0) as f32, exponent);
-    // The direction of the mirror reflection; the eye is above, at Z.
+    // Direction of the mirror reflection; the eye is above, at Z.
     let mirrored = 2.0 * normal.z * normal - DVec3::Z;
     let sky = (0.6 + 0.4 * (mirrored.y - mirrored.x).clamp(-1.0, 1.0)) as f32;
     let straight = LinearRgb::gray(DIELECTRIC).lerp(color, metallic);

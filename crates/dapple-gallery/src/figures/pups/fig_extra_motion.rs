@@ -22,7 +22,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The rate of change, in units of value per loop, that is drawn as white.
+/// Rate of change, in units of value per loop, that is drawn as white.
 const WHITE: f32 = 8.0;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
@@ -52,7 +52,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     Ok(panels)
 }
 
-/// The texture at a time, from 0 to 1 in a loop.
+/// Returns the texture at a time, from 0 to 1 in a loop.
 fn moving(time: f64) -> anyhow::Result<Texture> {
     let options = NoiseOptions {
         spacing: Spacing::from(0.2),
@@ -66,13 +66,13 @@ fn moving(time: f64) -> anyhow::Result<Texture> {
     Ok(noise(&options, Seed(4))?)
 }
 
-/// A texture of the points and values of another one, whose axes do not fade.
+/// Returns a texture with the points and values of another one, whose axes do not fade.
 fn still(texture: &Texture) -> anyhow::Result<Texture> {
     let pups = Pups::delaunay(texture.pups().points())?;
     Ok(pups.texture(texture.values().to_vec())?)
 }
 
-/// Stacks pictures of one line of pixels: row by row at `n_times` times evenly spaced over the loop.
+/// Stacks images of one line of pixels: row by row at `n_times` times evenly spaced over the loop.
 fn through_time(
     line: &Window,
     n_times: u32,
@@ -86,7 +86,7 @@ fn through_time(
     Ok(Raster::from_vec([line.size[0], n_times], lines)?)
 }
 
-/// The rate of change from each row to the next; the first row is compared with the last.
+/// Returns the rate of change from each row to the next. The first row is compared with the last.
 fn changes(lines: &Raster<f32>) -> anyhow::Result<Raster<f32>> {
     let [width, height] = lines.size();
     let per_difference = height as f32 / WHITE;

@@ -3,7 +3,7 @@
 use dapple_raster::{Raster, RasterError, Window};
 use glam::DVec2;
 
-/// How wide the gray edges are, in units of the plane.
+/// Width of the gray edges, in units of the plane.
 const EDGE: f64 = 0.1;
 
 /// Draws the flower, with intensities from 0 to 1.
@@ -15,7 +15,7 @@ pub(crate) fn flower(window: &Window) -> Result<Raster<f32>, RasterError> {
     })
 }
 
-/// A soft edge: 0 outside to 1 inside, for a position that is `inside` units inside of the edge.
+/// Returns a soft edge: 0 outside to 1 inside, for a position that is `inside` units within the edge.
 fn soft(inside: f64) -> f64 {
     (inside / EDGE + 0.5).clamp(0.0, 1.0)
 }

@@ -6,7 +6,7 @@ use dapple_pups::{Pups, PupsError, PupsOptions, hash::Seed};
 use dapple_raster::{RasterError, Window};
 use glam::DVec2;
 
-/// A point set and one of its points, the one nearest to the middle, with its axes.
+/// A point set and its point nearest to the center, with its axes.
 pub(super) struct Star {
     pub(super) points: PointSet,
     pub(super) graph: Graph,

@@ -9,20 +9,20 @@ use dapple_points::hash::{CellHash, Seed, unit_f64};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// The numbers of bricks along a row and of rows. The rows are even in number, since every other one is shifted by half
-/// a brick.
+/// Numbers of bricks along a row and of rows. The number of rows is even, since every other row is shifted by half a
+/// brick.
 const N_BRICKS: [i64; 2] = [4, 8];
 
-/// The length of a brick with its mortar, in heights of a brick with its mortar.
+/// Length of a brick with its mortar, in heights of a brick with its mortar.
 const LENGTH: f64 = 2.0;
 
 /// Half the width of the mortar, in heights of a brick.
 const MORTAR: f64 = 0.09;
 
-/// The radius of a brick's corners, in heights of a brick.
+/// Radius of a brick's corners, in heights of a brick.
 const CORNER: f64 = 0.12;
 
-/// Samples along the side of a pixel.
+/// Number of samples along the side of a pixel.
 const N_SAMPLES: u32 = 4;
 
 /// Draws bricks, `size` pixels wide and high.
@@ -37,7 +37,7 @@ pub(super) fn bricks(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
         let roll = |index: u32| unit_f64(CellHash::new(Seed(2), brick).at(index));
         let rough = f64::from(noise.at(at)) - 0.5;
         let inside = depth(place) + 0.05 * rough;
-        // The upper edge of a brick is lit, the lower edge is not.
+        // The upper edge of a brick is lit, and the lower edge is dark.
         let edge = 1.0 - smooth_step(0.0, 0.14, inside);
         let light = 1.0 + 0.7 * rough - 0.5 * edge * place.y;
         let color = clay.at(roll(0) as f32) * (light * (0.8 + 0.4 * roll(1))) as f32;
@@ -63,7 +63,7 @@ fn brick(at: DVec2) -> ([i64; 2], DVec2) {
     )
 }
 
-/// Returns how far a place is inside a brick with round corners, in heights of a brick; negative in the mortar.
+/// Returns the depth of a position inside a brick with round corners, in heights of a brick; negative in the mortar.
 fn depth(place: DVec2) -> f64 {
     let half = DVec2::new(0.5 * LENGTH, 0.5) - DVec2::splat(MORTAR + CORNER);
     let past = place.abs() - half;

@@ -8,10 +8,10 @@ use dapple_color::LinearRgb;
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// Squares along a side: an even number, so that the board repeats.
+/// Number of squares along a side: even, so that the board repeats.
 const N_SQUARES: f64 = 6.0;
 
-/// Samples along the side of a pixel.
+/// Number of samples along the side of a pixel.
 const N_SAMPLES: u32 = 8;
 
 /// The waves that bend the vertical lines.

@@ -1,7 +1,7 @@
 //! The exemplars: the images from which textures are synthesized, all drawn by procedures.
 //!
 //! The images of the paper are not available; these have the same character and the same size. Features scale with the
-//! size; at 16 pixels all exemplars but the text can still be told apart.
+//! size. At 16 pixels all exemplars except the text are still distinguishable.
 
 use super::{bricks, checker, hooks, letter, puzzle, scales, stripes, suckers, text};
 use anyhow::Context;
@@ -11,9 +11,9 @@ use dapple_raster::Raster;
 /// An exemplar: an image to synthesize from.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Exemplar {
-    /// A name for what the image shows.
+    /// Name of the image's content.
     pub(crate) name: &'static str,
-    /// The width and height of the image in its figure, in pixels.
+    /// Width and height of the image in its figure, in pixels.
     pub(crate) side: u32,
     /// Whether opposite sides fit together.
     pub(crate) edges: Edges,
@@ -21,7 +21,7 @@ pub(crate) struct Exemplar {
     pub(crate) draw: fn(size: u32) -> anyhow::Result<Raster<LinearRgb>>,
 }
 
-/// How two copies of an exemplar meet when they lie side by side.
+/// Behavior of an exemplar at its edges, when two copies lie next to each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Edges {
     /// The image repeats exactly.
@@ -88,7 +88,7 @@ pub(crate) const EXEMPLARS: [Exemplar; 9] = [
     },
 ];
 
-/// A square of an exemplar, which is drawn a quarter larger, so that the square does not repeat.
+/// Returns a square crop of an exemplar that is drawn a quarter larger, so that the crop does not repeat.
 pub(super) fn cut_out(name: &str, side: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let exemplar = EXEMPLARS.iter().find(|exemplar| exemplar.name == name);
     let whole = (exemplar.context("no such exemplar")?.draw)(side * 5 / 4)?;
