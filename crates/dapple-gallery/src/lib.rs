@@ -21,7 +21,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`docs`] makes the small pictures that the crates show in their own documentation and READMEs.
+//! [`docs`] makes the small images that the crates show in their own documentation and READMEs.
 //!
 //! Figures are deterministic: the same bits on every machine and for any number of threads.
 

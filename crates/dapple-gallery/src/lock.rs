@@ -1,4 +1,4 @@
-//! The file `figures.lock`: a hash of every figure at one small size, so that no figure changes unnoticed.
+//! The file `figures.lock`: a hash of every figure at one small size, which detects every change of a figure.
 //!
 //! A line is `<hash> <name>`, lines are sorted by name, and `#` begins a comment. The hash is FNV-1a in 64 bits (Glenn
 //! Fowler, Landon Curt Noll and Kiem-Phong Vo; <https://www.rfc-editor.org/rfc/rfc9923>). It covers for each panel: its
@@ -9,27 +9,27 @@ use crate::Panel;
 use core::fmt;
 use std::collections::BTreeMap;
 
-/// The size at which figures are hashed, in pixels along the longer side.
+/// Size at which figures are hashed, in pixels along the longer side.
 pub const LOCK_SIZE: u32 = 128;
 
 const COMMENT: &str = "# FNV-1a of every figure's 8-bit pixels at 128 px. Accept changes with `cargo xtask gallery --bless`.";
 
-/// The hash of a figure's pictures.
+/// Hash of a figure's images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hash(pub u64);
 
-/// The hashes of `figures.lock`, keyed by the names of the figures.
+/// Hashes of `figures.lock`, keyed by the names of the figures.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Lock {
     hashes: BTreeMap<String, Hash>,
 }
 
-/// A difference between a lock and the figures as they are now.
+/// A difference between a lock and the current figures.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Change {
     /// The figure is not in the lock.
     New(String),
-    /// The figure has a hash other than in the lock.
+    /// The hash of the figure differs from the lock.
     Changed(String),
     /// The lock has a line for a figure that does not exist.
     Gone(String),
@@ -55,12 +55,12 @@ impl Lock {
         Ok(Self { hashes })
     }
 
-    /// Records the hash of a figure and replaces an older one.
+    /// Records the hash of a figure, replacing an older one.
     pub fn insert(&mut self, name: String, hash: Hash) {
         self.hashes.insert(name, hash);
     }
 
-    /// Removes every figure whose name `keep` refuses.
+    /// Removes every figure for whose name `keep` returns false.
     pub fn retain(&mut self, mut keep: impl FnMut(&str) -> bool) {
         self.hashes.retain(|name, _| keep(name));
     }
@@ -123,7 +123,7 @@ impl fmt::Display for Change {
     }
 }
 
-/// Returns the hash of some pictures, in their order.
+/// Returns the hash of images, in their order.
 #[must_use]
 pub fn hash_panels(panels: &[Panel]) -> Hash {
     let mut hash = Fnv::default();

@@ -1,37 +1,37 @@
-//! The page that shows the figures: one HTML file that needs only the pictures beside it.
+//! The page that shows the figures: one HTML file that needs only the images next to it.
 //!
-//! It shows thumbnails by paper. A thumbnail leads to the full picture; arrow keys go to its neighbors, and pictures
-//! that repeat can be shown tiled. Each figure comes with its source and with the command that renders it. Without
-//! scripts, thumbnails are plain links, and controls that need scripts are hidden.
+//! It shows thumbnails by paper. A thumbnail links to the full image; arrow keys go to adjacent images, and images
+//! that repeat can be shown tiled. Each figure has its source and the command that renders it. Without scripts,
+//! thumbnails are plain links, and controls that need scripts are hidden.
 
 use crate::{Figure, Paper, papers};
 
-/// A rendered figure, as the page shows it.
+/// A rendered figure, as shown on the page.
 #[derive(Clone, Debug)]
 pub struct Entry {
     /// The figure that was rendered.
     pub figure: &'static Figure,
-    /// The pictures of the figure.
+    /// Images of the figure.
     pub images: Vec<Image>,
 }
 
-/// A picture of a figure, as the page shows it.
+/// An image of a figure, as shown on the page.
 #[derive(Clone, Debug)]
 pub struct Image {
-    /// The name of the file beside the page.
+    /// Name of the file next to the page.
     pub file: String,
-    /// The label of the panel.
+    /// Label of the panel.
     pub label: String,
-    /// The measurements on the picture as text; empty if there are none.
+    /// Measurements on the image as text; empty if there are none.
     pub note: String,
-    /// The axes, x and y, along which copies of the picture continue each other.
+    /// Whether copies of the image continue each other along x and y.
     pub repeats: [bool; 2],
-    /// The width and height in pixels.
+    /// Width and height in pixels.
     pub size: [u32; 2],
 }
 
-/// Returns the page of some figures. `root` leads from the page's folder to the root of the workspace, and may be
-/// empty.
+/// Returns the page of some figures. `root` is the path from the page's folder to the root of the workspace, and may
+/// be empty.
 #[must_use]
 pub fn html(entries: &[Entry], root: &str) -> String {
     let (mut contents, mut sections) = (String::new(), String::new());
@@ -151,10 +151,10 @@ fn command(line: &str) -> String {
     format!("<div class=\"code\"><pre class=\"command\">{line}</pre>{COPY}</div>")
 }
 
-/// The name of a parameter whose value is a built-in recipe.
+/// Name of a parameter whose value is a built-in recipe.
 const RECIPE: &str = "recipe";
 
-/// The button that copies the text before it.
+/// Button that copies the text before it.
 const COPY: &str = "<button class=\"scripted\" data-copy>Copy</button>";
 
 /// Escapes a text for an HTML element or an attribute in double quotes.

@@ -1,34 +1,34 @@
-//! One picture of a figure, and its bytes in a file.
+//! One image of a figure, and its bytes in a file.
 
 use dapple_color::{Code, LinearRgb};
 use dapple_raster::Raster;
 
-/// One picture of a figure.
+/// One image of a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// The label that tells the picture from the others of the figure; empty if there is only one.
+    /// Label that distinguishes the image from the others of the figure; empty if there is only one.
     pub label: String,
-    /// The measurements on the picture, as text in columns; empty if there are none. The page shows the note below the
-    /// picture, and the lock ignores it.
+    /// Measurements on the image, as text in columns; empty if there are none. The page shows the note below the
+    /// image, and the lock ignores it.
     pub note: String,
-    /// The axes, x and y, along which copies of the picture continue each other. The page shows such pictures tiled,
-    /// and the lock ignores this field.
+    /// Whether copies of the image continue each other along x and y. The page shows such images tiled, and the lock
+    /// ignores this field.
     pub repeats: [bool; 2],
-    /// The pixels.
+    /// Pixels of the image.
     pub picture: Picture,
 }
 
 /// The pixels of a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Picture {
-    /// Shades from 0, black, to 1, white, stored in the file without a transfer function (`round(255 · value)`).
+    /// Shades from 0 (black) to 1 (white), stored in the file without a transfer function (`round(255 · value)`).
     Gray(Raster<f32>),
     /// Linear color, converted to sRGB in the file.
     Color(Raster<LinearRgb>),
 }
 
 impl Panel {
-    /// Makes a panel from shades of gray, from 0, black, to 1, white.
+    /// Makes a panel from shades of gray, from 0 (black) to 1 (white).
     #[must_use]
     pub fn gray(label: impl Into<String>, raster: Raster<f32>) -> Self {
         Self {
@@ -59,7 +59,7 @@ impl Panel {
         }
     }
 
-    /// Sets the note about measurements.
+    /// Sets the note with measurements.
     #[must_use]
     pub fn with_note(self, note: impl ToString) -> Self {
         Self {
@@ -68,13 +68,13 @@ impl Panel {
         }
     }
 
-    /// Marks the picture as repeating along both axes.
+    /// Marks the image as repeating along both axes.
     #[must_use]
     pub fn repeating(self) -> Self {
         self.repeating_along([true; 2])
     }
 
-    /// Sets the axes, x and y, along which the picture repeats.
+    /// Sets the axes, x and y, along which the image repeats.
     #[must_use]
     pub fn repeating_along(self, repeats: [bool; 2]) -> Self {
         Self { repeats, ..self }

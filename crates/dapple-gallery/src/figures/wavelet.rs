@@ -53,7 +53,7 @@ pub(super) const PAPER: Paper = Paper {
     ],
 };
 
-/// The blend tile of the paper: halved and doubled once, in the phase that leaves the smaller step.
+/// Blend tile of the paper: halved and doubled once, in the phase that leaves the smaller step.
 const BLEND_TILE: SplineProject = SplineProject {
     levels: 1,
     phase: Phase::CookDeRose,
@@ -61,14 +61,14 @@ const BLEND_TILE: SplineProject = SplineProject {
     pixels: Pixels::Coefficients,
 };
 
-/// Returns the side of a tile in a figure of `size` pixels: a quarter of it, as in the paper (128 of 512), and a
-/// multiple of 8.
+/// Returns the side of a tile in a figure of `size` pixels: a quarter of the figure, as in the paper (128 of 512),
+/// rounded to a multiple of 8.
 fn tile_side(size: u32) -> u32 {
     (size / 32 * 8).max(8)
 }
 
-/// Returns a margin in pixels, and the cut with it that makes a tile of `side` pixels: the image must be larger by the
-/// margin.
+/// Returns a margin in pixels, and the cut with this margin that makes a tile of `side` pixels. The image must be
+/// larger than the tile by the margin.
 fn cut(side: u32) -> (u32, Method) {
     let margin = side / 4;
     let cut = SoftCut {
@@ -79,12 +79,12 @@ fn cut(side: u32) -> (u32, Method) {
     (margin, Method::SoftCut(cut))
 }
 
-/// Returns the size of a stone or a pebble in a picture `side` pixels wide: a sixth of it, which suits the larger ones.
+/// Returns the size of a stone or a pebble in an image `side` pixels wide: a sixth of it, which suits the larger ones.
 fn stone_px(side: u32) -> f64 {
     (0.16 * f64::from(side)).max(1.0)
 }
 
-/// Makes the images that the paper's blend tiles begin with, by name: features of two textures, and noise. None of them
+/// Makes the source images of the paper's blend tiles, by name: features of two textures, and noise. None of them
 /// repeats.
 fn originals(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
     let features = |ground: Material| {
@@ -99,7 +99,7 @@ fn originals(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
     ])
 }
 
-/// Makes gray pictures that do not repeat, by name, to compare the methods on.
+/// Makes gray images that do not repeat, by name, for the comparison of the methods.
 fn crops(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
     let gray = |ground: Material| ground.color.map(|color| color.luminance().sqrt());
     Ok([
@@ -110,7 +110,7 @@ fn crops(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
     ])
 }
 
-/// Returns the [`SeamReport`] of a tile beside its original in four short lines, and a verdict.
+/// Returns the [`SeamReport`] of a tile compared with its original in four short lines, and a verdict.
 fn report(original: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<String> {
     let options = SeamOptions {
         lattice: [1 << BLEND_TILE.levels; 2],
@@ -136,7 +136,7 @@ fn report(original: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<String> 
     ))
 }
 
-/// Returns the faults of a tile, a line for each.
+/// Returns the defects of a tile, one per line.
 fn verdict(report: &SeamReport) -> String {
     let faults: Vec<_> = report.faults().iter().map(ToString::to_string).collect();
     match faults.as_slice() {
@@ -202,7 +202,7 @@ mod tests {
         for (name, make) in MATERIALS {
             let ratio = |edges| seam_ratio(&make(256, Seed(1), edges).unwrap().height);
             let [repeating, cropped] = [Edges::Repeating, Edges::Cropped].map(ratio);
-            // A column of 256 pixels with features of some ten pixels varies by about a fifth.
+            // A column of 256 pixels with features of about ten pixels varies by about a fifth.
             assert!((0.5..1.5).contains(&repeating), "{name}: {repeating}");
             assert!(cropped > 1.5, "{name}: {cropped}");
         }

@@ -42,7 +42,7 @@ pub(super) const PAPER: Paper = Paper {
     ],
 };
 
-/// The number of positions at which the range of a texture is measured; the paper has "several thousand".
+/// Number of positions at which the range of a texture is measured. The paper has "several thousand".
 const N_POSITIONS: u32 = 8000;
 
 /// Renders the slice `z = 0.5` of a texture in space, `cells` cells wide, with the texture's range scaled to 0 to 1.
@@ -57,10 +57,10 @@ fn slice(texture: Cellular<3>, cells: f64, size: [u32; 2]) -> anyhow::Result<Ras
     Ok(raster)
 }
 
-/// Renders a height map as a colored surface, lit from the upper left: the height selects the color and bends the
+/// Renders a height map as a colored surface, lit from the upper left. The height selects the color and bends the
 /// normals.
 ///
-/// `depth` is the height difference between 0 and 1, in widths of the picture.
+/// `depth` is the height difference between 0 and 1, in widths of the image.
 fn relief(height: &Raster<f32>, ramp: &ColorRamp, depth: f64) -> anyhow::Result<Raster<LinearRgb>> {
     let [width, rows] = height.size().map(f64::from);
     let options = NormalOptions {

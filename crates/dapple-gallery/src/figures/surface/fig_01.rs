@@ -25,7 +25,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The radius of a drawn point in spacings of its level, small enough that points do not touch.
+/// Radius of a drawn point in spacings of its level, small enough that points do not touch.
 const RADIUS: f64 = 0.45;
 
 const VIEW: View = View {

@@ -23,11 +23,11 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The length and half the width of a vector that the user gave, in units of the mesh.
+/// Length and half width of a vector given by the user, in units of the mesh.
 const DIRECTION: [f64; 2] = [0.3, 0.02];
-/// The length and half the width of a vector of the field, in spacings of the level that is drawn.
+/// Length and half width of a vector of the field, in spacings of the drawn level.
 const FIELD: [f64; 2] = [0.8, 0.1];
-/// The distance along the sweep that one cycle of colors covers, in units of the mesh.
+/// Sweep distance that one cycle of colors covers, in units of the mesh.
 const CYCLE: f64 = 0.35;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
@@ -76,8 +76,8 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     ])
 }
 
-/// Returns whether a place lies in an arrow. `from` is the place relative to the start of the arrow; the arrow is
-/// `length` long and twice `half_width` wide.
+/// Returns whether a position lies in an arrow. `from` is the position relative to the start of the arrow; the arrow
+/// is `length` long and twice `half_width` wide.
 fn is_arrow(from: DVec3, vector: DVec3, [length, half_width]: [f64; 2]) -> bool {
     let vector = vector.normalize_or(DVec3::X);
     let along = from.dot(vector) / length;
@@ -91,7 +91,7 @@ fn is_arrow(from: DVec3, vector: DVec3, [length, half_width]: [f64; 2]) -> bool 
     (0.0..1.0).contains(&along) && aside < width
 }
 
-/// Returns whether a position lies in the arrow of a site of the coarsest level but one.
+/// Returns whether a position lies in the arrow of a site of the second coarsest level.
 fn is_field(synthesizer: &Synthesizer, position: DVec3) -> bool {
     let (hierarchy, level) = (
         synthesizer.hierarchy(),
@@ -127,7 +127,7 @@ fn distance(synthesizer: &Synthesizer, position: DVec3) -> f64 {
     nearest.1
 }
 
-/// Returns a ramp for the colors of a cycle, which ends with the color that it begins with.
+/// Returns a ramp for the colors of a cycle, which ends with its first color.
 fn cycle() -> Result<ColorRamp, ColorError> {
     ColorRamp::from_hex(&[
         "#1b2a6b", "#2f9bd0", "#f4f0c8", "#e8743b", "#7a1b4b", "#1b2a6b",

@@ -15,11 +15,11 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// A vertex: its position and its orientation, which need not have the length 1.
+/// A vertex: its position and its orientation, which need not have length 1.
 const V: [DVec2; 2] = [DVec2::new(0.70, 0.22), DVec2::new(0.95, 0.10)];
 const W: [DVec2; 2] = [DVec2::new(0.26, 0.40), DVec2::new(0.85, 0.45)];
 
-/// More edges of the mesh, without a role in the diagram.
+/// Other edges of the mesh, which have no role in the diagram.
 const MESH: [[DVec2; 2]; 8] = {
     let [v, w] = [V[0], W[0]];
     let [above, below] = [DVec2::new(0.42, 0.08), DVec2::new(0.62, 0.56)];
@@ -36,7 +36,7 @@ const MESH: [[DVec2; 2]; 8] = {
     ]
 };
 
-/// The start of the line that shows the consensus orientation.
+/// Start of the line that shows the consensus orientation.
 const START: DVec2 = DVec2::new(0.10, 0.62);
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
@@ -59,7 +59,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     }
     let end = START + 0.86 * consensus;
     canvas.arrow([START, end], 3.0 * pixel, 0.0);
-    // Delta is drawn below the line.
+    // Δ is drawn below the line.
     let below = 0.07 * consensus.perp();
     let bracket = [foot(w), foot(v)].map(|end| end + below);
     canvas.lines(&[bracket], 2.0 * pixel, 0.0);
@@ -78,7 +78,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     Ok(vec![Panel::gray("", canvas.into_raster())])
 }
 
-/// Writes a letter with the subscript of both vertices.
+/// Draws a letter with the subscript of both vertices.
 fn with_subscript(canvas: &mut Canvas<f32>, start: DVec2, pixel: f64, letter: &str) {
     canvas.text(start, 34.0 * pixel, letter, 0.0);
     let below = start + DVec2::new(0.065, 0.02);

@@ -17,11 +17,11 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Pixels along the side of a neighborhood.
+/// Number of pixels along the side of a neighborhood.
 const SIDE: u32 = 5;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
-    // Half a neighborhood pixel of margin is left on all sides.
+    // A margin of half a neighborhood pixel remains on all sides.
     let reach = 0.5 * f64::from(SIDE + 1);
     let window = Window::new(DVec2::splat(-reach), DVec2::splat(2.0 * reach), [size; 2])?;
     let pixel = f64::from(size) / 512.0;

@@ -39,7 +39,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     SUBJECTS.iter().map(panel).collect()
 }
 
-/// Copies a small picture into the upper right corner of a larger one.
+/// Copies a small image into the upper right corner of a larger one.
 fn inset(picture: &mut Raster<LinearRgb>, small: &Raster<LinearRgb>) {
     let width = picture.width() as usize;
     let first = width - small.width() as usize;

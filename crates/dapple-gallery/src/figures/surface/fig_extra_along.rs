@@ -25,16 +25,16 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The sides of the exemplars and of the textures in pixels.
+/// Width and height of the exemplars and of the textures in pixels.
 const SIDE: u32 = 64;
 const LARGE: u32 = 256;
-/// The most that a pixel of an exemplar grows.
+/// Maximum scale of an exemplar pixel.
 const LARGEST: f64 = 2.5;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let from_middle =
         |x: u32, y: u32| [x, y].map(|at| (f64::from(at) + 0.5) / f64::from(LARGE) - 0.5);
-    // The angle from down toward the right of the direction away from the middle.
+    // Angle of the direction away from the center, measured from down toward the right.
     let outward = Raster::from_fn([LARGE; 2], |x, y| {
         let [x, y] = from_middle(x, y);
         libm::atan2(x, y) as f32
@@ -59,7 +59,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     Ok(panels)
 }
 
-/// A texture of an exemplar, by its name and with its edges, along directions.
+/// Returns a texture from an exemplar along directions, given the exemplar's name and its edges.
 fn grown(
     exemplar: (&str, Edges),
     directions: &Raster<f32>,

@@ -22,7 +22,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The exemplars, each with its name in the labels and its side in pixels.
+/// Exemplars, each with its name in the labels and its side in pixels.
 const SUBJECTS: [(&str, &str, u32); 3] = [
     ("color bricks", "bricks", 128),
     ("woven hooks", "hooks", 64),

@@ -25,12 +25,12 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The points of each model for a figure of 512 pixels, and the least number.
+/// Number of points of each model for a figure of 512 pixels, and the minimum number.
 const SITES: f64 = 40_000.0;
 const SITES_MIN: usize = 2000;
-/// The middle of the stain.
+/// Center of the stain.
 const STAIN: DVec3 = DVec3::new(0.32, -0.3, 0.28);
-/// The triangles of each model.
+/// Number of triangles of each model.
 const TRIANGLES: usize = 6000;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
@@ -78,7 +78,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     Ok(panels)
 }
 
-/// The model with its texture.
+/// Renders the model with its texture.
 fn picture(
     textured: &Textured,
     view: &View,

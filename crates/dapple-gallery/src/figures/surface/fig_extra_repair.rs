@@ -23,7 +23,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The side of the images in pixels.
+/// Width and height of the images in pixels.
 const SIDE: u32 = 192;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
@@ -65,7 +65,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     ])
 }
 
-/// Copies of a tile, one and a half of them along each side, with a seam in the middle.
+/// Returns copies of a tile, one and a half along each side, with a seam in the middle.
 fn copies(tile: &Raster<LinearRgb>, size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let side = i64::from(tile.width().max(tile.height())) * 3 / 2;
     let picture = Raster::from_fn([side as u32; 2], |x, y| {

@@ -25,7 +25,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The pixels of the exemplar's side, and how many times as large the other version is.
+/// Side of the exemplar in pixels, and the scale of its larger version.
 const SIDE: u32 = 128;
 const FACTOR: u32 = 8;
 

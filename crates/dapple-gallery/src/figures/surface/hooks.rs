@@ -7,13 +7,13 @@ use dapple_color::{ColorRamp, LinearRgb};
 use dapple_raster::Raster;
 use glam::{DVec2, DVec3};
 
-/// Hooks along a side of the image; there is one at each point of a square lattice.
+/// Number of hooks along a side of the image. There is one at each point of a square lattice.
 const N_HOOKS: i64 = 3;
 
-/// The radius of the wire. The unit of all lengths is half a diagonal of the lattice, the distance between strands.
+/// Radius of the wire. The unit of all lengths is half a diagonal of the lattice, the distance between strands.
 const WIRE: f64 = 0.19;
 
-/// The center line of the wire: positions along the strand, toward the next strand, and up.
+/// Center line of the wire: positions along the strand, toward the next strand, and up.
 const PATH: [[f64; 3]; 8] = [
     [-1.00, 0.00, -0.10],
     [0.20, 0.00, 0.00],
@@ -25,17 +25,17 @@ const PATH: [[f64; 3]; 8] = [
     [1.24, 0.50, -0.40],
 ];
 
-/// The number of straight lines in a bend of the wire.
+/// Number of straight lines in a bend of the wire.
 const N_LINES: u32 = 6;
 
-/// Samples along the side of a pixel.
+/// Number of samples along the side of a pixel.
 const N_SAMPLES: u32 = 4;
 
 /// One hook.
 struct Wire {
-    /// The center line of the wire as short lines: straight along its path, rounded at the corners.
+    /// Center line of the wire as short lines: straight along its path, rounded at the corners.
     lines: Vec<[DVec3; 2]>,
-    /// The box that the hook covers, along and across its strand.
+    /// Bounds of the hook, along and across its strand.
     bounds: [DVec2; 2],
 }
 
@@ -102,7 +102,7 @@ fn highest(wire: &Wire, at: DVec2) -> Option<DVec3> {
 fn surface([from, to]: [DVec3; 2], at: DVec2) -> Option<(f64, DVec3)> {
     let length = (to - from).length();
     let axis = (to - from).normalize_or_zero();
-    // Where the vertical line through the position leaves the wire, as if the wire were endless.
+    // Point where the vertical line through the position leaves the wire, if the wire were infinitely long.
     let reach = at.extend(0.0) - from;
     let start = reach - reach.dot(axis) * axis;
     let climb = DVec3::Z - axis.z * axis;

@@ -1,4 +1,4 @@
-//! Renders a mesh and an exemplar that the user brought, in the way of figure 5.
+//! Renders a mesh and an exemplar that the user provides, in the style of figure 5.
 
 use super::stage::{View, lit};
 use super::textured::{Job, Textured};
@@ -14,7 +14,7 @@ use glam::DVec3;
 /// A mesh, an exemplar, and the options of the synthesis.
 #[derive(Clone, Debug)]
 pub struct Own {
-    /// The mesh. It is repaired as far as possible.
+    /// Mesh, which is repaired as far as possible.
     pub mesh: Mesh,
     /// The exemplar.
     pub image: Raster<LinearRgb>,
@@ -22,31 +22,31 @@ pub struct Own {
     pub edges: Edges,
     /// Directions of the texture's down; if there are none, down is -y of the mesh.
     pub directions: Vec<Direction>,
-    /// The numbers of points and levels.
+    /// Numbers of points and levels.
     pub sites: HierarchyOptions,
     /// How much worse a match may be if it continues its neighbors.
     pub coherence: Coherence,
-    /// The side of the texture map in texels.
+    /// Width and height of the texture map in texels.
     pub map_side: u32,
 }
 
-/// Pictures of a textured mesh, and the mesh with its texture map.
+/// Images of a textured mesh, and the mesh with its texture map.
 #[derive(Clone, Debug)]
 pub struct OwnTextured {
-    /// Pictures of the mesh from four sides.
+    /// Images of the mesh from four sides.
     pub panels: Vec<Panel>,
-    /// The mesh with its texture map, for a file.
+    /// Mesh with its texture map, for a file.
     pub model: Model,
-    /// The list of repairs as text; empty if there were none.
+    /// List of repairs as text; empty if there were none.
     pub mended: String,
 }
 
 impl Own {
-    /// Makes the texture, then pictures of `size` pixels.
+    /// Synthesizes the texture, then renders images of `size` pixels.
     ///
     /// # Errors
     ///
-    /// If an input is refused, such as a mesh whose faces all have no area, or an exemplar that is too small.
+    /// If an input is rejected, such as a mesh whose faces all have no area, or an exemplar that is too small.
     pub fn render(self, size: u32) -> Result<OwnTextured> {
         let (mesh, repair) = self.mesh.repair();
         let mended = if repair.before == repair.after {
@@ -84,7 +84,7 @@ impl Own {
     }
 }
 
-/// Returns views from four sides, a little from above, far enough away to show all of the mesh.
+/// Returns views from four sides, slightly from above, far enough away to show the whole mesh.
 pub(super) fn views(mesh: &Mesh) -> [(&'static str, View); 4] {
     let positions = mesh.positions().iter().copied();
     let low = positions.clone().fold(DVec3::INFINITY, DVec3::min);

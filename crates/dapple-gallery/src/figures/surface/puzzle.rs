@@ -9,13 +9,13 @@ use dapple_points::hash::{CellHash, Seed, unit_f64};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// Pieces along a side of the image.
+/// Number of pieces along a side of the image.
 const N_PIECES: i64 = 4;
 
-/// The color indices of the pieces, by row: neighbors differ, also across the border of the image.
+/// Color indices of the pieces, by row. Adjacent pieces differ, also across the border of the image.
 const COLORS: [[usize; 4]; 4] = [[0, 1, 2, 3], [2, 3, 4, 0], [4, 0, 1, 2], [1, 2, 3, 4]];
 
-/// The colors of the pieces, in sRGB.
+/// Colors of the pieces, in sRGB.
 const PAINTS: [[u8; 3]; 5] = [
     [214, 60, 48],
     [246, 196, 60],
@@ -24,10 +24,10 @@ const PAINTS: [[u8; 3]; 5] = [
     [236, 232, 220],
 ];
 
-/// The radius of a knob. The unit of all lengths is the side of a piece.
+/// Radius of a knob. The unit of all lengths is the side of a piece.
 const KNOB: f64 = 0.15;
 
-/// The distance from the edge to the center of a knob.
+/// Distance from the edge to the center of a knob.
 const OUT: f64 = 0.17;
 
 /// Half the width of the neck of a knob.
@@ -36,7 +36,7 @@ const NECK: f64 = 0.08;
 /// Half the width of an outline.
 const OUTLINE: f64 = 0.045;
 
-/// The waves that bend the edges, in widths of the image.
+/// Waves that bend the edges, in widths of the image.
 const SWAY: [Wave; 2] = [
     Wave {
         periods: [3, 2],
@@ -50,7 +50,7 @@ const SWAY: [Wave; 2] = [
     },
 ];
 
-/// Samples along the side of a pixel.
+/// Number of samples along the side of a pixel.
 const N_SAMPLES: u32 = 6;
 
 /// Draws puzzle pieces, `size` pixels wide and high.
@@ -78,13 +78,13 @@ fn on_outline(place: DVec2, own: [i64; 2]) -> bool {
         .any(|&way| piece(place + way) != own || piece(place - way) != own)
 }
 
-/// Returns the piece at a place: the piece of its square, or the neighbor whose knob reaches into it.
+/// Returns the piece at a position: the piece of its square, or the adjacent piece whose knob reaches into it.
 fn piece(place: DVec2) -> [i64; 2] {
     let square = place.floor();
     let [column, row] = [square.x as i64, square.y as i64];
     let [x, y] = (place - square).to_array();
     let sides = [
-        // The index of the edge, the piece and its neighbor, and the place along the edge and away from it.
+        // Index of the edge, the piece and its neighbor, and the position along the edge and away from it.
         (0, [column, row], [column - 1, row], true, y, x),
         (0, [column + 1, row], [column + 1, row], false, y, 1.0 - x),
         (1, [column, row], [column, row - 1], true, x, y),
@@ -99,11 +99,11 @@ fn piece(place: DVec2) -> [i64; 2] {
     [column, row]
 }
 
-/// The edge between a square and the one before it along an axis.
+/// The edge between a square and the previous one along an axis.
 struct Edge {
-    /// Whether the knob belongs to the square before the edge.
+    /// Whether the knob belongs to the previous square.
     forward: bool,
-    /// The position of the knob along the edge, from 0 to 1.
+    /// Position of the knob along the edge, from 0 to 1.
     middle: f64,
 }
 
@@ -117,7 +117,7 @@ impl Edge {
         }
     }
 
-    /// Returns whether a place is on the knob.
+    /// Returns whether a position is on the knob.
     fn has_knob_at(&self, along: f64, away: f64) -> bool {
         let aside = (along - self.middle).abs();
         let head = DVec2::new(aside, away - OUT).length_squared() < KNOB * KNOB;

@@ -9,27 +9,27 @@ use dapple_points::hash::{CellHash, Seed, unit_f64};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// The length of a scale, in rows.
+/// Length of a scale, in rows.
 const REACH: f64 = 1.6;
 
-/// The distance from the root of a scale to where its round end begins, in rows.
+/// Distance from the root of a scale to the start of its round end, in rows.
 const SHOULDER: f64 = 0.5;
 
-/// Half the width of a scale, in spacings of a row: neighbors overlap a little.
+/// Half the width of a scale, in spacings of a row: adjacent scales overlap slightly.
 const HALF: f64 = 0.53;
 
-/// Samples along the side of a pixel.
+/// Number of samples along the side of a pixel.
 const N_SAMPLES: u32 = 5;
 
 /// A position on a scale, with its shading.
 struct OnScale {
-    /// The row of the scale and its place in the row.
+    /// Row of the scale and its index in the row.
     scale: [i64; 2],
-    /// The position from the middle line, −1 to 1, and from the root, 0 to 1.
+    /// Position from the center line, −1 to 1, and from the root, 0 to 1.
     at: DVec2,
-    /// The closeness to the rim: 0 in the middle, 1 on the rim.
+    /// Closeness to the rim: 0 in the middle, 1 on the rim.
     rim: f64,
-    /// The strength of the shadow of the scales above, from 0 to 1.
+    /// Strength of the shadow of the scales above, from 0 to 1.
     shadow: f64,
 }
 

@@ -6,10 +6,10 @@ use crate::draw::sampled;
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
 
-/// The number of dark stripes, with light stripes between them.
+/// Number of dark stripes, with light stripes between them.
 const N_STRIPES: f64 = 7.0;
 
-/// Samples along the side of a pixel.
+/// Number of samples along the side of a pixel.
 const N_SAMPLES: u32 = 8;
 
 /// Draws stripes, `size` pixels wide and high.

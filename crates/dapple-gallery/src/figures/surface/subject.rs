@@ -11,28 +11,28 @@ use dapple_synth::mesh::Mesh;
 use dapple_synth::{Coherence, Direction, HierarchyOptions, Sources};
 use glam::DVec3;
 
-/// The figure size, in pixels, from which on a subject has as many sites as in the paper; it is the size on the page.
+/// Figure size in pixels from which a subject has as many sites as in the paper. It is the size on the page.
 const FULL_SIZE: u32 = 512;
-/// The number of triangles of a model at full size (the paper has 10 to 20 thousand), and the least number.
+/// Number of triangles of a model at full size (the paper has 10,000 to 20,000), and the minimum number.
 const TRIANGLES: [f64; 2] = [14_000.0, 2000.0];
-/// The least number of sites.
+/// Minimum number of sites.
 const SITES_MIN: f64 = 1024.0;
-/// Texels along the side of a texture map, per pixel of the figure.
+/// Number of texels along the side of a texture map, per pixel of the figure.
 const TEXELS: u32 = 2;
 
-/// A model and the texture that it gets.
+/// A model and its texture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Subject {
     pub(crate) name: &'static str,
     pub(crate) model: fn(n_triangles: usize) -> Result<Mesh, ModelError>,
-    /// The name of its exemplar.
+    /// Name of its exemplar.
     exemplar: &'static str,
-    /// The number of sites of the finest level at full size, and the number of levels, from table 1.
+    /// Number of sites of the finest level at full size, and number of levels, from table 1.
     pub(crate) n_sites: usize,
     n_levels: usize,
     /// Pairs of a position and the direction of the texture's down there.
     directions: &'static [[DVec3; 2]],
-    /// The bounds of sizes that follow the directions; one size if there are none.
+    /// Bounds of sizes that follow the directions; `None` for one size.
     pub(crate) sizes: Option<[f32; 2]>,
     pub(crate) view: View,
 }
@@ -183,8 +183,8 @@ pub(crate) const ELEPHANT: Subject = Subject {
 };
 
 impl Subject {
-    /// Returns the sites for a figure of a size: as many as in the paper at full size, fewer in proportion to the
-    /// pixels below.
+    /// Returns the sites for a figure of a size: as many as in the paper at full size, and fewer below in proportion
+    /// to the pixels.
     pub(crate) fn sites(&self, size: u32) -> HierarchyOptions {
         HierarchyOptions {
             n_sites: (self.n_sites as f64 * part(size)).max(SITES_MIN) as usize,
@@ -236,7 +236,7 @@ impl Subject {
         job.run()
     }
 
-    /// Returns a picture of the model with its texture, and the number of sites.
+    /// Returns an image of the model with its texture, and the number of sites.
     pub(super) fn picture(&self, size: u32) -> Result<(Raster<LinearRgb>, usize)> {
         let textured = self.textured(size)?;
         let mesh = textured.synthesizer.surface().mesh();
@@ -247,7 +247,7 @@ impl Subject {
     }
 }
 
-/// Returns the fraction of the pixels of a full-size figure.
+/// Returns the number of pixels as a fraction of a full-size figure.
 fn part(size: u32) -> f64 {
     let side = f64::from(size) / f64::from(FULL_SIZE);
     (side * side).min(1.0)

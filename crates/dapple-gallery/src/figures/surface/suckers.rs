@@ -10,13 +10,13 @@ use dapple_raster::Raster;
 use dapple_worley::{Feature, FeatureSet};
 use glam::DVec2;
 
-/// The least distance between suckers, in widths of the image.
+/// Minimum distance between suckers, in widths of the image.
 const SPACING: f64 = 0.21;
 
-/// The largest radius of a sucker, so that suckers do not touch.
+/// Maximum radius of a sucker, so that suckers do not touch.
 const RADIUS: f64 = 0.5 * SPACING;
 
-/// Samples along the side of a pixel.
+/// Number of samples along the side of a pixel.
 const N_SAMPLES: u32 = 5;
 
 /// Draws suckers, `size` pixels wide and high.
@@ -43,7 +43,7 @@ fn radius(id: u64) -> f64 {
     RADIUS * (0.62 + 0.38 * part)
 }
 
-/// Returns the outward slope of a sucker at a fraction of its radius: it rises to the rim and falls behind it.
+/// Returns the outward slope of a sucker at a fraction of its radius: it rises to the rim and falls beyond it.
 fn slope(part: f64) -> f64 {
     if part < 0.62 {
         4.0 * part * (0.62 - part) / 0.62

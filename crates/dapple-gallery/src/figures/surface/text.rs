@@ -7,7 +7,7 @@ use dapple_color::LinearRgb;
 use dapple_raster::{Raster, Window};
 use glam::DVec2;
 
-/// The lines of the text, each longer than the image is wide.
+/// Lines of the text, each longer than the width of the image.
 const LINES: [&str; 14] = [
     "of all the small things that a hand may",
     "copy, a page of words is the one that",
@@ -25,15 +25,15 @@ const LINES: [&str; 14] = [
     "for a page, and so for any other skin of",
 ];
 
-/// The shift of each line to the left, in widths of the image.
+/// Shift of each line to the left, in widths of the image.
 const SHIFTS: [f64; 14] = [
     0.03, -0.01, 0.05, 0.02, -0.02, 0.06, 0.01, 0.04, -0.01, 0.07, 0.03, 0.00, 0.05, 0.02,
 ];
 
-/// The number of lines along the height of the image.
+/// Number of lines along the height of the image.
 const N_LINES: f64 = 13.4;
 
-/// The height of capitals, in line spacings.
+/// Height of capitals, in line spacings.
 const CAPITAL: f64 = 0.56;
 
 /// Draws text, `size` pixels wide and high.

@@ -22,13 +22,13 @@ pub(super) struct Job {
     pub(super) sites: HierarchyOptions,
     pub(super) coherence: Coherence,
     pub(super) sources: Sources,
-    /// The bounds of sizes that follow the directions; one size if there are none.
+    /// Bounds of sizes that follow the directions; `None` for one size.
     pub(super) sizes: Option<[f32; 2]>,
-    /// A larger version of the image that is shown instead.
+    /// Larger version of the image that is shown instead.
     pub(super) detail: Option<Raster<LinearRgb>>,
-    /// The side of the texture map in texels.
+    /// Width and height of the texture map in texels.
     pub(super) map_side: u32,
-    /// Which pixels of the image are used; all if there is none.
+    /// Mask of the used pixels of the image; `None` for all.
     pub(super) mask: Option<Raster<bool>>,
     pub(super) guides: Vec<SiteGuide>,
 }
@@ -37,7 +37,7 @@ pub(super) struct Job {
 #[derive(Clone, Debug)]
 pub(super) struct SiteGuide {
     pub(super) example: Raster<f32>,
-    /// Its value at a position.
+    /// Returns the guide value at a position.
     pub(super) at: fn(DVec3) -> f32,
     pub(super) weight: f32,
 }
@@ -57,7 +57,7 @@ impl Job {
         self.run_symmetric(Symmetry::One)
     }
 
-    /// Runs like [`run`](Self::run), along a field of a symmetry.
+    /// Runs like [`run`](Self::run), along a field with a symmetry.
     pub(super) fn run_symmetric(self, symmetry: Symmetry) -> Result<Textured> {
         let surface = mesh::Surface::new(self.mesh)?;
         let options = Options {
@@ -104,7 +104,7 @@ impl Textured {
         }
     }
 
-    /// The texture with a stain at some places, and without it again, made from the rest.
+    /// Returns the texture with a stain at some positions, and the texture with the stain replaced from the rest.
     pub(super) fn stained(self, is_stain: fn(DVec3) -> bool) -> Result<[Self; 2]> {
         let surface = self.synthesizer.surface();
         let is_clean = Raster::from_fn(self.map.size(), |column, row| {
@@ -152,7 +152,7 @@ impl Textured {
         let synthesizer = Synthesizer::new(mesh::Surface::new(mesh)?, directions, sites)?;
         let options = Options {
             n_levels: sites.n_levels,
-            // The texture is regular, which is not measured on a surface.
+            // The texture is regular, and this is not measured on a surface.
             coherence: Coherence::Factor(0.0),
             ..Options::default()
         };
@@ -162,7 +162,7 @@ impl Textured {
         Ok(Self::new(synthesizer, atlas, &map))
     }
 
-    /// Returns the color of the texture map where a ray met the model.
+    /// Returns the color of the texture map where a ray hits the model.
     pub(super) fn color(&self, surface: &Surface) -> LinearRgb {
         let Some(triangle) = surface.triangle() else {
             return LinearRgb::BLACK;

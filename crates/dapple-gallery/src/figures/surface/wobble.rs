@@ -1,4 +1,4 @@
-//! A smooth wobble of the plane that repeats.
+//! A smooth periodic displacement of the plane.
 
 use core::f64::consts::TAU;
 use glam::DVec2;
@@ -6,15 +6,15 @@ use glam::DVec2;
 /// A wave over the unit square: its numbers of periods along both axes, its height and its phase.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wave {
-    /// The numbers of whole periods along x and y.
+    /// Numbers of whole periods along x and y.
     pub(super) periods: [i32; 2],
-    /// The height from the middle to the crest.
+    /// Height from the mean to the crest.
     pub(super) height: f64,
-    /// The phase from 0 to 1, in periods.
+    /// Phase from 0 to 1, in periods.
     pub(super) phase: f64,
 }
 
-/// Returns the sum of some waves at a position: the same in every copy of the unit square.
+/// Returns the sum of waves at a position, which is the same in every copy of the unit square.
 pub(super) fn wobble(waves: &[Wave], at: DVec2) -> f64 {
     let height = |wave: &Wave| {
         let [x, y] = wave.periods.map(f64::from);

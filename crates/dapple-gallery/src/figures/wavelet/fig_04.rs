@@ -34,7 +34,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The fraction of the ground that grass covers.
+/// Fraction of the ground that grass covers.
 const GRASS: f32 = 0.35;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
@@ -71,8 +71,8 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     ])
 }
 
-/// Makes the blend tile of a texture: its features, `feature` pixels large, halved and doubled once, then replaced by
-/// ranks.
+/// Makes the blend tile of a texture: its features, `feature` pixels large, are halved and doubled once, then replaced
+/// by ranks.
 pub(super) fn blend_tile(ground: &Raster<LinearRgb>, feature: f64) -> anyhow::Result<Raster<f32>> {
     let features = BlendMap::new(feature).apply_color(ground)?;
     let tile = Seamless::new(Method::SplineProject(BLEND_TILE)).apply(&features)?;
@@ -142,7 +142,7 @@ mod tests {
                 here.iter().sum::<f32>() / here.len() as f32
             };
             // If grass ignored the stones, both fractions would be 0.35. Gaps between pebbles are two pixels wide, the
-            // least width that survives halving.
+            // minimum width that survives halving.
             let [in_gaps, on_stones] = [true, false].map(mean_where);
             assert!(
                 in_gaps > 0.6 && on_stones < 0.27,

@@ -26,7 +26,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// A function that makes a picture from a map of noise.
+/// A function that makes an image from a map of noise.
 type Function = fn(&Raster<f32>) -> anyhow::Result<Raster<LinearRgb>>;
 
 /// Each function with its name, the number of cells across its tile, and whether it repeats with the map.

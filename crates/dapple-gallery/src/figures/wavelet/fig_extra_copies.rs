@@ -63,7 +63,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     ])
 }
 
-/// Makes the picture of the only map in `maps`.
+/// Makes the image of the only map in `maps`.
 fn panel(label: &str, maps: Vec<Map>) -> anyhow::Result<Panel> {
     match maps.into_iter().next() {
         Some(Map::Color(color)) => Ok(Panel::color(label, color)),

@@ -32,7 +32,8 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Returns the margin in a figure of `size` pixels: about a quarter of the tile, and a multiple that suits two levels.
+/// Returns the margin in a figure of `size` pixels: about a quarter of the tile, rounded to a multiple that suits two
+/// levels.
 pub(super) fn margin_of(size: u32) -> u32 {
     (tile_side(size) / 16 * 4).max(4)
 }
@@ -61,7 +62,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         .collect()
 }
 
-/// Returns the methods by name; the first entry leaves the crop as it is.
+/// Returns the methods by name. The first entry leaves the crop unchanged.
 pub(super) fn methods(margin: u32) -> [(&'static str, Option<Method>); 12] {
     let project = |levels, phase| SplineProject {
         levels,
@@ -130,8 +131,8 @@ fn line(name: &str, crop: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<St
     Ok(line)
 }
 
-/// Measures one tile: the seam ratios at 1 and at 4 pixels, the power kept in the finest octave, the contrast, and the least
-/// local detail over that of the source.
+/// Measures one tile: the seam ratios at 1 and at 4 pixels, the power kept in the finest octave, the contrast, and the
+/// minimum local detail relative to the source.
 pub(super) fn measured(crop: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<[f64; 5]> {
     let options = SeamOptions {
         lattice: [4; 2],

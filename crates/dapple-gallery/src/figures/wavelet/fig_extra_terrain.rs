@@ -34,10 +34,10 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The size of a crumb of soil, as a fraction of the size of a stone.
+/// Size of a crumb of soil, as a fraction of the size of a stone.
 const CRUMB: f64 = 0.4;
 
-/// Textures over the whole terrain, and the blend tiles of stone and soil, on which others lie.
+/// Textures over the whole terrain, and the blend tiles of stone and soil, which other textures cover.
 struct Ground {
     stone: Raster<LinearRgb>,
     grass: Raster<LinearRgb>,
@@ -46,7 +46,7 @@ struct Ground {
     soil_mask: Raster<f32>,
 }
 
-/// The fraction of stone, and the fraction of grass on the ground that is not stone.
+/// Fraction of stone, and fraction of grass on the remaining ground.
 struct Shares {
     stone: Raster<f32>,
     grass: Raster<f32>,
@@ -89,13 +89,13 @@ impl Ground {
         })
     }
 
-    /// Blends stone, grass and soil linearly by their shares.
+    /// Blends stone, grass and soil linearly by their fractions.
     fn splatted(&self, shares: &Shares) -> anyhow::Result<Raster<LinearRgb>> {
         let lower = over([&self.grass, &self.soil], &shares.grass, None)?;
         over([&self.stone, &lower], &shares.stone, None)
     }
 
-    /// Blends by blend tiles: grass comes first where the soil is low, and both come first where the stone is low.
+    /// Blends by blend tiles: grass appears first where the soil is low, and both appear first where the stone is low.
     fn by_tiles(&self, shares: &Shares) -> anyhow::Result<Raster<LinearRgb>> {
         let lower = over(
             [&self.grass, &self.soil],
@@ -107,7 +107,7 @@ impl Ground {
     }
 }
 
-/// Blends a texture over another by its share: linearly, or first where a mask is low.
+/// Blends a texture over another one by its fraction: linearly, or first where a mask is low.
 fn over(
     textures: [&Raster<LinearRgb>; 2],
     share: &Raster<f32>,
@@ -132,7 +132,8 @@ fn over(
     }
 }
 
-/// Shades the colors by the slopes of the land. The textures are lit as level ground, so level ground keeps its colors.
+/// Shades the colors by the slopes of the land. The textures are lit as level ground, so level ground keeps its
+/// colors.
 fn lit(color: &Raster<LinearRgb>, normals: &Raster<Normal>) -> anyhow::Result<Raster<LinearRgb>> {
     let toward = DVec3::new(-0.5, 0.5, 1.0);
     Ok(color.zip_map(normals, |&color, normal| {
@@ -141,7 +142,7 @@ fn lit(color: &Raster<LinearRgb>, normals: &Raster<Normal>) -> anyhow::Result<Ra
     })?)
 }
 
-/// Returns the shares of stone and of grass, from the height rank of the land and from how level it is.
+/// Returns the fractions of stone and of grass, from the height rank and the levelness of the land.
 fn shares(land: &Raster<f32>, level: &Raster<f32>) -> anyhow::Result<Shares> {
     let rise = |from: f32, to: f32, value: f32| ((value - from) / (to - from)).clamp(0.0, 1.0);
     let lower = rank_equalize(land)?;
@@ -163,7 +164,7 @@ mod tests {
         let size = 256;
         let mut ground = Ground::new(size).unwrap();
         let flat = |color| Raster::filled([size; 2], color).unwrap();
-        // Everything but stone is white, so that a pixel's brightness is the share that is not stone.
+        // Everything except stone is white, so a pixel's brightness is the fraction that is not stone.
         ground.stone = flat(LinearRgb::BLACK);
         (ground.grass, ground.soil) = (flat(LinearRgb::WHITE), flat(LinearRgb::WHITE));
         let shares = Shares {

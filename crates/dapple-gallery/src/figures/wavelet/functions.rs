@@ -55,7 +55,7 @@ pub(super) fn cloud(noise: &Raster<f32>) -> anyhow::Result<Raster<LinearRgb>> {
     paint(noise, |_, value| colors.at(value as f32))
 }
 
-/// Colors every pixel from its place in the unit square and the noise there.
+/// Colors every pixel from its position in the unit square and the noise there.
 fn paint(
     noise: &Raster<f32>,
     color: impl Fn(DVec2, f64) -> LinearRgb + Sync,

@@ -8,11 +8,11 @@ use dapple_points::{hash::Seed, white_noise};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// The area of the picture per blade.
+/// Area of the image per blade.
 const AREA: f64 = 8.0;
-/// The number of straight pieces of a blade.
+/// Number of straight pieces of a blade.
 const N_PIECES: u32 = 4;
-/// The depth of the relief.
+/// Depth of the relief.
 const DEPTH: f64 = 7.0;
 
 /// A blade of grass: a curve from the root over a bend to the tip, relative to the root.
@@ -22,7 +22,7 @@ struct Blade {
     tip: DVec2,
     width: f64,
     color: LinearRgb,
-    /// The height rank among all blades, from 0 to 1: higher blades lie over lower ones.
+    /// Height rank among all blades, from 0 to 1: higher blades lie over lower ones.
     rank: f64,
 }
 
@@ -63,7 +63,7 @@ impl Blade {
         place: DVec2,
         greens: &ColorRamp,
     ) -> Self {
-        // Neighboring blades lean in similar directions.
+        // Adjacent blades lean in similar directions.
         let lean = DVec2::new(
             noise.at(place).into(),
             noise.at(place + DVec2::splat(0.4)).into(),
@@ -92,7 +92,7 @@ impl Blade {
         }
     }
 
-    /// Paints the nearly straight part of a blade between two places on it.
+    /// Paints the nearly straight part of a blade between two positions on it.
     fn paint_piece(
         &self,
         patch: &Patch,

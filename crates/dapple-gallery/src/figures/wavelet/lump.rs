@@ -1,4 +1,4 @@
-//! Rounded lumps that lie over each other, for pebbles and crumbs.
+//! Rounded lumps that lie on top of each other, for pebbles and crumbs.
 
 use super::patch::{Dice, Patch, Spot};
 use crate::draw::smooth_step;
@@ -8,28 +8,28 @@ use dapple_points::{hash::Seed, poisson_disk};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// A layer of lumps of about one size, next to each other.
+/// A layer of adjacent lumps of about the same size.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layer {
-    /// The least distance between the centers of lumps.
+    /// Minimum distance between the centers of lumps.
     pub(super) spacing: f64,
-    /// The least and the largest radius.
+    /// Minimum and maximum radius.
     pub(super) radius: [f64; 2],
-    /// The height of the ground under the layer, from 0 to 1.
+    /// Height of the ground under the layer, from 0 to 1.
     pub(super) ground: f64,
-    /// The height of a lump divided by its radius; heights are in depths of the relief.
+    /// Height of a lump divided by its radius. Heights are in depths of the relief.
     pub(super) steepness: f64,
-    /// The fraction of the places that have a lump, from 0 to 1.
+    /// Fraction of the positions that have a lump, from 0 to 1.
     pub(super) share: f64,
-    /// The roughness of the surface, from 0.
+    /// Roughness of the surface, at least 0.
     pub(super) roughness: f64,
-    /// How often the noise of the roughness repeats across the torus, a whole number.
+    /// Number of repetitions of the roughness noise across the torus, an integer.
     pub(super) noise_scale: f64,
-    /// The largest ratio of length to width.
+    /// Maximum ratio of length to width.
     pub(super) elongation: f64,
-    /// The width of the dark gap around each lump.
+    /// Width of the dark gap around each lump.
     pub(super) gap: f64,
-    /// The darkness of the gap, from 0 to 1.
+    /// Darkness of the gap, from 0 to 1.
     pub(super) darkness: f64,
 }
 
@@ -37,10 +37,10 @@ pub(super) struct Layer {
 struct Lump {
     center: DVec2,
     radius: f64,
-    /// The longer axis.
+    /// Longer axis.
     axis: DVec2,
     elongation: f64,
-    /// The departure of the outline from an ellipse: two lobes and three.
+    /// Deviation of the outline from an ellipse: two lobes and three.
     lobes: [DVec2; 2],
     color: LinearRgb,
     surface: DVec2,
@@ -154,7 +154,7 @@ impl Lump {
         (long * long + short * short).map(f64::sqrt) * self.radius
     }
 
-    /// Returns how far a place, relative to the center, lies outside of the outline (negative inside, approximate), and
+    /// Returns the approximate distance of a position, relative to the center, from the outline (negative inside), and
     /// its distance from the center as a fraction of the outline's.
     fn outline(&self, at: DVec2) -> (f64, f64) {
         let along = DVec2::new(
@@ -163,7 +163,7 @@ impl Lump {
         );
         let length = along.length();
         let way = along / length.max(1e-9);
-        // The direction at twice and three times the angle.
+        // The direction at two and three times the angle.
         let twice = way.rotate(way);
         let thrice = twice.rotate(way);
         let radius = self.radius * (1.0 + self.lobes[0].dot(twice) + self.lobes[1].dot(thrice));

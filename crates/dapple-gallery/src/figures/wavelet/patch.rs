@@ -1,8 +1,8 @@
-//! The square that a material is made on: its pixels, the area past its borders, and the light on it.
+//! The square area of a material: its pixels, the area past its borders, and its lighting.
 //!
-//! Lengths and positions are in parts: the side of the picture is 256 parts, however many pixels it has, so that a
-//! small picture shows the same as a large one. A material is made on a torus. If the picture is to repeat, the torus
-//! has its size; otherwise the picture is cut out of a torus half as large again.
+//! Lengths and positions are in parts: the side of the image is 256 parts for any number of pixels, so that a small
+//! image shows the same content as a large one. A material is made on a torus. If the image is to repeat, the torus
+//! has its size; otherwise the image is cropped from a torus half as large again.
 
 use super::super::fractal::FractalNoise;
 use dapple_color::{HeightPlane, LinearRgb, NormalOptions, NormalY, normal_map};
@@ -11,47 +11,47 @@ use dapple_points::hash::{CellHash, Seed, unit_f64};
 use dapple_raster::{Raster, RasterError, Window, Wrap};
 use glam::{DVec2, DVec3};
 
-/// The side of a picture, in parts.
+/// Side of an image, in parts.
 const SIDE: f64 = 256.0;
 
-/// How two copies of a picture meet when they lie side by side.
+/// Behavior of an image at its edges, when two copies lie next to each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Edges {
     /// Opposite edges do not fit, as in a photograph.
     Cropped,
-    /// Opposite edges fit: the picture repeats exactly.
+    /// Opposite edges fit: the image repeats exactly.
     Repeating,
 }
 
 /// A finished material, seen from above.
 #[derive(Clone, Debug)]
 pub(super) struct Material {
-    /// The height, from about 0 at the lowest to about 1 at the highest.
+    /// Height, from about 0 at the lowest point to about 1 at the highest.
     pub(super) height: Raster<f32>,
-    /// The color under a soft light from the upper left.
+    /// Color under a soft light from the upper left.
     pub(super) color: Raster<LinearRgb>,
-    /// A mask of the gaps: 1 in cracks and gaps, 0 elsewhere.
+    /// Mask of the gaps: 1 in cracks and gaps, 0 elsewhere.
     pub(super) gap: Raster<f32>,
 }
 
 /// The properties of a material at one pixel, before lighting.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spot {
-    /// The height, from 0 to 1.
+    /// Height, from 0 to 1.
     pub(super) height: f32,
-    /// The color under even light.
+    /// Color under uniform light.
     pub(super) color: LinearRgb,
-    /// The gap mask, from 0 to 1.
+    /// Gap mask, from 0 to 1.
     pub(super) gap: f32,
 }
 
-/// The square that a material is made on.
+/// The square area on which a material is made.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Patch {
     size: u32,
-    /// The pixels of the picture and a border of one pixel, so that lighting knows the neighbors of every pixel.
+    /// Pixels of the image and a border of one pixel, so that lighting has the neighbors of every pixel.
     window: Window,
-    /// The torus of the material.
+    /// Torus of the material.
     pub(super) domain: Domain,
 }
 
@@ -63,7 +63,7 @@ pub(super) struct Dice {
 }
 
 impl Patch {
-    /// Returns a patch for a picture of `size` × `size` pixels.
+    /// Returns a patch for an image of `size` × `size` pixels.
     pub(super) fn new(size: u32, edges: Edges) -> Result<Self, RasterError> {
         let period = match edges {
             Edges::Cropped => 1.5 * SIDE,
@@ -77,12 +77,12 @@ impl Patch {
         })
     }
 
-    /// The side of a pixel, in parts.
+    /// Returns the side of a pixel, in parts.
     pub(super) fn pixel(&self) -> f64 {
         self.window.pixel[0]
     }
 
-    /// The side of the torus, in parts.
+    /// Returns the side of the torus, in parts.
     pub(super) fn period(&self) -> f64 {
         self.domain.size.x
     }
@@ -102,8 +102,8 @@ impl Patch {
         Raster::from_window(&self.window, spot)
     }
 
-    /// Changes the spots in the box that reaches `reach` from `center` on the torus. `paint` gets their offset from the
-    /// center.
+    /// Changes the spots in a box on the torus, which extends by `reach` from `center` to each side. `paint` gets
+    /// their offset from the center.
     pub(super) fn paint(
         &self,
         spots: &mut Raster<Spot>,
@@ -128,13 +128,13 @@ impl Patch {
         }
     }
 
-    /// Returns the columns or rows within `reach` of a coordinate or of one of its repeats, each with the offset of that
-    /// repeat from the coordinate.
+    /// Returns the columns or rows within `reach` of a coordinate or of one of its repeats, each with its offset from
+    /// that repeat.
     fn within(&self, coordinate: f64, reach: f64) -> Vec<(u32, f64)> {
         let (pixel, length) = (self.pixel(), f64::from(self.window.size[0]));
         let mut found = Vec::new();
         for turn in [-1.0, 0.0, 1.0].map(|turn| turn * self.period()) {
-            // The window begins one pixel before the picture.
+            // The window starts one pixel before the image.
             let [first, end] =
                 [-reach, reach + pixel].map(|way| (coordinate + turn + way) / pixel + 1.0);
             let [first, end] = [first, end].map(|index| index.clamp(0.0, length) as u32);

@@ -9,7 +9,7 @@ use dapple_raster::{Raster, RasterError, Window};
 use glam::DVec2;
 use noise_functions::{Noise as _, Perlin, Sample as _};
 
-/// The corner of a tile in the plane, in cells. It lies off the lattice, since Perlin noise is 0 on lattice points.
+/// Corner of a tile in the plane, in cells. It lies off the lattice, since Perlin noise is 0 on lattice points.
 const ORIGIN: DVec2 = DVec2::new(11.37, 5.71);
 
 /// Makes a tile of Perlin noise from 0 to 1, `size` pixels wide, with `cells` lattice cells of the first octave across.

@@ -1,4 +1,4 @@
-//! The numbers of a README beside those of a figure.
+//! The numbers of a README compared with those of a figure.
 
 use super::fig_extra_methods::{margin_of, measured, methods};
 use super::{crops, tile_side};
@@ -6,12 +6,13 @@ use dapple_tile::Seamless;
 
 /// The README of the crate of the tiling methods.
 const README: &str = include_str!("../../../../dapple-tile/README.md");
-/// The size of the figure whose crops have the 160 × 160 pixels of the README.
+/// Size of the figure whose crops have the 160 × 160 pixels of the README.
 const SIZE: u32 = 512;
-/// The method of the figure that the README leaves out.
+/// Method of the figure that the README omits.
 const LEFT_OUT: &str = "Feather over the margin, variance kept";
 
-/// The numbers of a row of the table, as text: the seam at 1 and at 4 pixels, the finest octave, and the contrast.
+/// Returns the numbers of a row of the table as text: the seam at 1 and at 4 pixels, the finest octave, and the
+/// contrast.
 fn row(line: &str) -> Vec<String> {
     let cells = line.trim_matches('|').split('|').skip(1);
     let numbers = cells.flat_map(|cell| cell.split('/'));

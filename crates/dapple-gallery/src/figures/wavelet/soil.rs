@@ -5,7 +5,7 @@ use super::patch::{Dice, Edges, Material, Patch, Spot};
 use dapple_color::{ColorRamp, LinearRgb};
 use dapple_points::hash::Seed;
 
-/// The depth of the relief.
+/// Depth of the relief.
 const DEPTH: f64 = 14.0;
 
 /// The layers from the lowest to the highest: fine crumbs everywhere, coarser ones on top of them.

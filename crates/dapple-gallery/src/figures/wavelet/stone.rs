@@ -14,15 +14,15 @@ use dapple_worley::FeatureSet;
 use glam::DVec2;
 use std::sync::Arc;
 
-/// The least and the largest distance between the centers of neighboring stones.
+/// Minimum and maximum distance between the centers of adjacent stones.
 const SPACING: [f64; 2] = [22.0, 42.0];
-/// The distance by which the warp moves the outlines.
+/// Distance by which the warp moves the outlines.
 const WARP: f64 = 22.0;
-/// The least and the largest width of the cracks.
+/// Minimum and maximum width of the cracks.
 const CRACK: [f64; 2] = [3.0, 5.5];
-/// The width of the rounding of an edge, from the edge into the stone.
+/// Width of the rounding of an edge, from the edge into the stone.
 const ROUNDING: f64 = 9.0;
-/// The depth of the relief.
+/// Depth of the relief.
 const DEPTH: f64 = 13.0;
 
 /// Draws stones, `size` pixels wide.
@@ -43,14 +43,14 @@ struct Stones {
     dirt: LinearRgb,
 }
 
-/// The look of one stone.
+/// Appearance of one stone.
 struct Look {
     color: LinearRgb,
-    /// The height of its center.
+    /// Height of its center.
     height: f64,
-    /// The slope of its top: the change of height per part.
+    /// Slope of its top: the change of height per part.
     tilt: DVec2,
-    /// The offset of its surface into the noise.
+    /// Offset of its surface in the noise.
     surface: DVec2,
 }
 
@@ -104,7 +104,7 @@ impl Stones {
     }
 
     /// Returns the stone at a position, the vector from its center to the position, and the distance to the nearest
-    /// border with a neighbor, with corners rounded.
+    /// border with another stone, with corners rounded.
     fn border(&self, at: DVec2) -> (u64, DVec2, f64) {
         let [own] = self.middles.sample::<1>(at);
         let axes = self.neighbors.axes(PointIdx(own.id as u32));
@@ -150,7 +150,7 @@ impl Look {
     }
 }
 
-/// The smaller of two numbers, blended smoothly where they differ by less than `reach`.
+/// Returns the smaller of two numbers, blended smoothly if they differ by less than `reach`.
 fn smooth_min(a: f64, b: f64, reach: f64) -> f64 {
     let near = (1.0 - (a - b).abs() / reach).max(0.0);
     a.min(b) - 0.25 * reach * near * near

@@ -1,11 +1,11 @@
-//! A creature between a lizard and an alligator, made of blended cones; it stands in for Richard Payne's Gator.
+//! A creature between a lizard and an alligator, made of blended cones, in place of Richard Payne's Gator.
 //!
 //! It faces +x, stands on the plane y = 0 and is about 8 units long.
 
 use super::polygonize::Solid;
 use glam::DVec3;
 
-/// The part of the creature that a point belongs to.
+/// Part of the creature that a point belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     Hide,
@@ -70,7 +70,7 @@ const TONGUE: [Cone; 3] = [
     [[3.08, 0.66, 0.06, 0.08], [3.36, 0.72, 0.05, 0.06]],
 ];
 
-/// The first and the last tooth of the upper and of the lower jaw, each with its root and tip.
+/// First and last tooth of the upper and of the lower jaw, each with its root and tip.
 const TEETH: [[Cone; 2]; 2] = [
     [
         [[2.00, 0.96, 0.30, 0.05], [2.01, 0.82, 0.30, 0.012]],
@@ -147,7 +147,8 @@ fn teeth(at: DVec3) -> f64 {
     nearest
 }
 
-/// Returns nearly the distance to a cone: the distance to the nearest point of its axis, minus the radius there.
+/// Returns approximately the distance to a cone: the distance to the nearest point of its axis, minus the radius
+/// there.
 fn cone_distance(cone: &Cone, at: DVec3) -> f64 {
     let [[ax, ay, az, a], [bx, by, bz, b]] = *cone;
     let (from, to) = (DVec3::new(ax, ay, az), DVec3::new(bx, by, bz));
@@ -156,7 +157,7 @@ fn cone_distance(cone: &Cone, at: DVec3) -> f64 {
     (reach - along * part).length() - (a + (b - a) * part)
 }
 
-/// The smaller of two distances, blended smoothly where they differ by less than `width`.
+/// Returns the smaller of two distances, blended smoothly if they differ by less than `width`.
 ///
 /// Reference: Inigo Quilez, "Smooth minimum", 2013, <https://iquilezles.org/articles/smin/>, the quadratic version.
 fn blend(a: f64, b: f64, width: f64) -> f64 {

@@ -30,9 +30,9 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The depth of the joints, in cells.
+/// Depth of the joints, in cells.
 const DEPTH: f64 = 0.035;
-/// The height of the grain of the stones, in cells.
+/// Height of the grain of the stones, in cells.
 const GRAIN: f64 = 0.01;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {

@@ -16,7 +16,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The label of each picture, from the upper left to the lower right, and its coefficients of F1 to F4.
+/// Label of each image, from the upper left to the lower right, and its coefficients of F1 to F4.
 const SHEETS: [(&str, [[f32; 4]; 4]); 5] = [
     (
         "F1, F2, F3, F4",
@@ -65,7 +65,7 @@ const SHEETS: [(&str, [[f32; 4]; 4]); 5] = [
     ),
 ];
 
-/// Samples along each side of a pixel.
+/// Number of samples along each side of a pixel.
 const SIDE: u32 = 2;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {

@@ -30,7 +30,7 @@ pub(super) const FIGURE: Figure = Figure {
 
 /// Cells of the hide per unit of the creature, which is about 8 units long.
 const FREQUENCY: f64 = 3.2;
-/// The height of the bumps, in cells.
+/// Height of the bumps, in cells.
 const BUMP: f64 = 0.3;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
@@ -59,7 +59,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let grains = FractalNoise::new(0.1, Seed(57))?;
     let sand = |surface: &Surface| {
         let at = DVec2::new(surface.position.x, surface.position.z);
-        // Grains finer than a sample of the picture are left out.
+        // Grains finer than a sample of the image are omitted.
         let samples = surface.footprint / surface.incidence / 0.2;
         let grain = (grains.at(at * 0.25) - 0.5) / (1.0 + samples * samples) as f32;
         Material::matte(LinearRgb::new(0.4, 0.32, 0.2) * (1.0 + 0.6 * grain))
@@ -87,7 +87,7 @@ fn spots([spot, hide, far]: [&str; 3]) -> Result<ColorRamp, ColorError> {
     ColorRamp::new([spot?, hide?, far?])
 }
 
-/// The textures and colors of the creature's parts.
+/// Textures and colors of the creature's parts.
 struct Look {
     hide: CellularFractal<3>,
     back: ColorRamp,

@@ -25,9 +25,9 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The number of octaves of the waves.
+/// Number of octaves of the waves.
 const OCTAVES: u32 = 5;
-/// The height of the waves of the first octave, as a fraction of their length.
+/// Height of the waves of the first octave, as a fraction of their length.
 const STEEPNESS: f64 = 0.11;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
@@ -36,7 +36,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         let mut bump = DVec3::ZERO;
         for octave in 0..OCTAVES {
             let frequency = f64::from(1 << octave);
-            // The number of waves of this octave in a sample along the view.
+            // Number of waves of this octave in a sample along the view.
             let waves = frequency * surface.footprint / surface.incidence;
             if waves >= 1.0 {
                 break;

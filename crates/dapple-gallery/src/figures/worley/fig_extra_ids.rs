@@ -22,7 +22,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Samples along each side of a pixel.
+/// Number of samples along each side of a pixel.
 const SIDE: u32 = 3;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {

@@ -26,10 +26,10 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The values of F1 at which there is a step, and the height of a step.
+/// Values of F1 at which there is a step, and the height of a step.
 const LEVELS: [f32; 3] = [0.2, 0.32, 0.44];
 const STEP: f64 = 0.005;
-/// The center of the dish, and its radius.
+/// Center of the dish, and its radius.
 const DISH: DVec3 = DVec3::new(-0.12, -0.84, 0.529);
 const DISH_RADIUS: f64 = 0.3;
 

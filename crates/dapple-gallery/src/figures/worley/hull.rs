@@ -3,8 +3,8 @@
 use dapple_preview::{Mesh, PreviewError};
 use glam::DVec3;
 
-/// The cross-section of the hull as x and y, from one side over the deck to the other. The underside is left out, since
-/// it is never seen.
+/// Cross-section of the hull as x and y, from one side over the deck to the other. The underside is omitted, since it
+/// is never seen.
 const SECTION: [[f64; 2]; 8] = [
     [2.3, -0.2],
     [2.3, 0.25],
@@ -16,10 +16,10 @@ const SECTION: [[f64; 2]; 8] = [
     [-2.3, -0.2],
 ];
 
-/// The extent of the hull along z. The eye is near the origin and looks along the hull.
+/// Extent of the hull along z. The eye is near the origin and looks along the hull.
 const LENGTH: [f64; 2] = [-1.2, -26.0];
 
-/// The blocks of the bridge: the center of the base of each, and half of its size.
+/// Blocks of the bridge: the center of the base of each, and half of its size.
 const BLOCKS: [[[f64; 3]; 2]; 4] = [
     [[0.0, 0.95, -12.0], [0.75, 0.25, 4.0]],
     [[0.0, 1.45, -12.6], [0.5, 0.3, 2.2]],
@@ -27,10 +27,10 @@ const BLOCKS: [[[f64; 3]; 2]; 4] = [
     [[0.0, 2.55, -13.0], [0.8, 0.17, 0.42]],
 ];
 
-/// The rise of a panel per unit of the relief: sunken channels on the hull, raised blocks on the bridge.
+/// Rise of a panel per unit of the relief: sunken channels on the hull, raised blocks on the bridge.
 const RELIEF: [f64; 2] = [-1.0, 0.5];
 
-/// The width of the flat border of a panel, so that adjacent panels meet.
+/// Width of the flat border of a panel, so that adjacent panels meet.
 const BORDER: f64 = 0.04;
 
 /// A rectangular panel: a corner and two edges. Seen from outside, the second edge is to the left of the first.
@@ -38,7 +38,7 @@ const BORDER: f64 = 0.04;
 pub(super) struct Panel {
     corner: DVec3,
     edges: [DVec3; 2],
-    /// The rise per unit of the relief.
+    /// Rise per unit of the relief.
     rise: f64,
 }
 
@@ -90,8 +90,8 @@ fn panels() -> Vec<Panel> {
     panels
 }
 
-/// Builds the hull; `relief` gives the height of a panel at a position on it. The step of the grids is `step` times the
-/// distance from the origin, and no finer than at the distance 1.
+/// Builds the hull. `relief` gives the height of a panel at a position on it. The step of the grids is `step` times
+/// the distance from the origin, and at least `step`.
 pub(super) fn hull(step: f64, relief: impl Fn(&Panel, DVec3) -> f64) -> Result<Mesh, PreviewError> {
     let mut positions = Vec::new();
     let mut triangles = Vec::new();

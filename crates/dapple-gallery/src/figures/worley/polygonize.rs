@@ -1,9 +1,10 @@
-//! Triangulates the surface of a solid that is given by its distance function.
+//! Triangulates the surface of a solid given by its distance function.
 //!
 //! Reference: Sarah F. F. Gibson, "Constrained Elastic Surface Nets: Generating Smooth Surfaces from Binary Segmented
 //! Data", MICCAI 1998, doi 10.1007/BFb0056277. Every cell of a regular grid that the surface passes through gets one
-//! vertex, first at the mean of the crossings on its edges and then moved onto the surface. Every edge that the surface
-//! crosses gets a quadrilateral between the four cells around it. Blocks of cells far from the surface are skipped.
+//! vertex, first at the mean of the crossings on its edges and then moved onto the surface. Every edge that the
+//! surface crosses gets a quadrilateral between the four cells around it. Blocks of cells far from the surface are
+//! skipped.
 
 use dapple_preview::{Mesh, PreviewError};
 use glam::DVec3;
@@ -11,8 +12,8 @@ use std::collections::BTreeMap;
 
 /// A solid given by its distance function.
 pub(super) trait Solid: Sync {
-    /// Returns the distance from the surface, negative inside. It may be approximate, but must not grow faster than the
-    /// true distance by more than a fifth.
+    /// Returns the distance from the surface, negative inside. It may be approximate, but must not grow faster than
+    /// the true distance by more than a fifth.
     fn distance(&self, position: DVec3) -> f64;
 
     /// Returns two corners of a box around the solid, with some margin.
@@ -27,7 +28,7 @@ pub(super) fn polygonize(solid: &dyn Solid, side: f64) -> Result<Mesh, PreviewEr
     Mesh::smooth(&net.positions, &triangles)
 }
 
-/// The number of cells in a block, along each axis.
+/// Number of cells in a block, along each axis.
 const BLOCK: u32 = 8;
 
 type Cell = [u32; 3];
@@ -37,10 +38,10 @@ struct Net<'a> {
     side: f64,
     low: DVec3,
     blocks: Cell,
-    /// The vertex of each cell that the surface passes through.
+    /// Vertex of each cell that the surface passes through.
     vertices: BTreeMap<Cell, u32>,
     positions: Vec<DVec3>,
-    /// The edges that the surface crosses: the lower end, the axis, and whether the lower end is inside.
+    /// Edges that the surface crosses: the lower end, the axis, and whether the lower end is inside.
     crossings: Vec<(Cell, usize, bool)>,
 }
 
@@ -191,7 +192,7 @@ mod tests {
             let [a, b, c] = triangle.map(|vertex| net.positions[vertex as usize]);
             volume += a.dot(b.cross(c)) / 6.0;
         }
-        // The corners lie on the sphere, so the volume is a little less than that of the ball.
+        // The corners lie on the sphere, so the volume is slightly smaller than the volume of the ball.
         let ball = 4.0 / 3.0 * core::f64::consts::PI;
         assert!((0.99..1.0).contains(&(volume / ball)), "{volume}");
         // Euler: V - E + F = 2 with three half edges per triangle.

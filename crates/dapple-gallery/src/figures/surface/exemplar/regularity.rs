@@ -13,7 +13,7 @@ use dapple_raster::Raster;
 use dapple_synth::{Edges, Exemplar};
 use std::path::Path;
 
-/// The coherence whose texture looks better.
+/// Coherence whose texture looks better.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Better {
     /// A coherence of 0, on finer levels. With 2 the texture has tears.
@@ -24,7 +24,7 @@ enum Better {
 }
 use Better::{Coherent, Least, Neither};
 
-/// The exemplars of our figures.
+/// Exemplars of our figures.
 const OURS: [(&str, Better); 9] = [
     ("wiggly checker", Least),
     ("suckers", Least),
@@ -56,8 +56,8 @@ const PHOTOGRAPHS: [(&str, Better); 15] = [
     ("skimage_gravel", Coherent),
 ];
 
-/// Measures an exemplar and compares with the limit of [`Coherence::Auto`](dapple_synth::Coherence), 0.9. Exemplars
-/// with a clear choice are well above or below it.
+/// Measures an exemplar and compares the result with the limit of [`Coherence::Auto`](dapple_synth::Coherence), 0.9.
+/// Exemplars with a clear choice are well above or below it.
 fn check(name: &str, better: Better, image: &Raster<LinearRgb>, edges: Edges) {
     let regularity = Exemplar::new(image, edges).unwrap().regularity();
     println!("{regularity:.3} {better:?} {name}");

@@ -8,13 +8,14 @@ fn draw(exemplar: &Exemplar, size: u32) -> Raster<LinearRgb> {
     (exemplar.draw)(size).unwrap()
 }
 
-/// The mean difference between the pixels of two lines.
+/// Returns the mean difference between the pixels of two lines.
 fn apart(a: &[LinearRgb], b: &[LinearRgb]) -> f64 {
     let gaps = a.iter().zip(b).flat_map(|(&a, &b)| (a - b).to_array());
     gaps.map(|gap| f64::from(gap.abs())).sum::<f64>() / a.len() as f64
 }
 
-/// The difference between the last row and the first, divided by the largest difference between any row and the first.
+/// Returns the difference between the last row and the first, divided by the largest difference between any row and
+/// the first.
 fn seam(image: &Raster<LinearRgb>) -> f64 {
     let from_first = |row: u32| apart(image.row(0), image.row(row));
     let largest = (0..image.height())
@@ -26,7 +27,7 @@ fn seam(image: &Raster<LinearRgb>) -> f64 {
 #[test]
 fn exemplars_repeat_where_they_say_so() {
     for exemplar in &EXEMPLARS {
-        // Features are many pixels large at this size, so neighboring rows are alike.
+        // Features are many pixels large at this size, so adjacent rows are similar.
         let image = draw(exemplar, 256);
         let turned = Raster::from_fn([256; 2], |column, row| image.row(column)[row as usize]);
         let seams = [seam(&turned.unwrap()), seam(&image)];

@@ -1,16 +1,16 @@
-//! Tests that the squares on the ray stay separate: they merge at the start of the sweep if the least distance wins
-//! everywhere, and the exemplar is sharper than what it is compared with.
+//! Tests that the squares on the ray stay separate. They merge at the start of the sweep if the minimum distance
+//! always wins and the exemplar is sharper than the neighborhoods it is compared with.
 
 use super::RAY;
 use dapple_synth::mesh::Surface;
 use dapple_synth::{Coherence, Exemplar, Matching, Options, Sources, Synthesizer};
 use dapple_worley::hash::Seed;
 
-/// A radius around a site, in spacings, within which two colors must occur. It is nearly the width of a square, 10.7;
-/// the middle of a square of the exemplar is at most 8 from its edges.
+/// Radius around a site, in spacings, within which two colors must occur. It is nearly the width of a square, 10.7.
+/// The center of a square of the exemplar is at most 8 from its edges.
 const RADIUS: f64 = 10.0;
 
-/// Returns the fraction of sites that have a single color all around.
+/// Returns the fraction of sites whose surroundings have a single color.
 fn part_of_one_color(synthesizer: &Synthesizer, values: &[f32]) -> f64 {
     let hierarchy = synthesizer.hierarchy();
     let level = &hierarchy.levels()[0];
@@ -37,7 +37,7 @@ fn squares_of_the_ray_do_not_run_together() {
         seed: Seed(1),
         ..Options::default()
     };
-    // The colors of the exemplar as it is, not blurred as much as neighborhoods are, and the least distance.
+    // The exemplar's own colors, not blurred as much as the neighborhoods, and the minimum distance.
     let literal = Options {
         matching: Matching::Colors,
         coherence: Coherence::Factor(0.0),
