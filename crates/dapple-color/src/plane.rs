@@ -21,9 +21,9 @@ const MAX_RADIUS: u32 = 1 << 14;
 pub struct HeightPlane {
     /// Height of the value 1 in units of the plane; negative turns hills into dents. [default: 1]
     pub strength: f64,
-    /// Width and height of the raster in the plane, above 0. The default is 1 × 1, as in [`Window::unit`]. A raster that
-  /// is not square but has square pixels needs its true proportions here.
-  pub extent: DVec2,
+    /// Width and height of the raster in the plane, above 0. The default is 1 × 1, as in [`Window::unit`]. A raster
+    /// that is not square but has square pixels needs its true proportions here.
+    pub extent: DVec2,
     /// Wrapping of the heights past the edges, along x and y. [default: both repeat] Past a side that does not repeat,
     /// heights continue as in [`continue_heights`], for both other values.
     pub wrap: [Wrap; 2],

@@ -1,7 +1,7 @@
 //! The figures of the papers, one file each, and the page that shows them.
 //!
 //! A [`Figure`] is a small file under `src/figures/<paper>/fig_<number>.rs`: its header is the caption, and its body
-//! makes the pictures with the public interfaces of the crates, short enough to learn from. [`papers`] lists all
+//! makes the images with the public interfaces of the crates, short enough to learn from. [`papers`] lists all
 //! figures. The library renders figures in memory ([`Figure::render`]), hashes them ([`Figure::hash`]), compares the
 //! hashes with `figures.lock` ([`Lock`]) and writes the page as a string ([`page`]). The binary `dapple-gallery`, which
 //! `cargo xtask gallery` runs, writes the files for a browser.
@@ -10,7 +10,7 @@
 //!
 //! 1. write `src/figures/<paper>/fig_<number>.rs` with `pub(super) const FIGURE: Figure` (copy a neighbor);
 //! 2. add its `mod` and its `FIGURE` to `src/figures/<paper>.rs`;
-//! 3. run `cargo xtask gallery --bless`, look at the picture, and commit both files and `figures.lock`.
+//! 3. run `cargo xtask gallery --bless`, look at the image, and commit both files and `figures.lock`.
 //!
 //! ```
 //! use dapple_gallery::{LOCK_SIZE, figures};

@@ -1,8 +1,8 @@
 //! Multiscale Perlin noise textures (four octaves).
 //!
-//! Equation 5: every octave has control points of its own, at half the distance and with half the amplitude of the
-//! one before. The paper does not say how the sum, which reaches 1.875, becomes a shade. Hardly any of it is near its
-//! bounds, so here the mean is a middle gray, and black and white are 2.5 standard deviations away from it.
+//! Equation 5: every octave has separate control points, at half the distance and with half the amplitude of the
+//! previous octave. The paper does not say how the sum, which reaches 1.875, becomes a shade. Hardly any of it is near
+//! its bounds, so here the mean is a middle gray, and black and white are 2.5 standard deviations away from it.
 
 use super::picture;
 use crate::figure::source;

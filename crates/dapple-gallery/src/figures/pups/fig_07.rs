@@ -1,6 +1,7 @@
-//! Multiple scales of Perlin-noise type textures, before and after folding: a corner of the square, an eighth of its area.
+//! Multiple scales of Perlin-noise type textures, before and after folding: a corner of the square, an eighth of its
+//! area.
 //!
-//! In all of the square, the control points of the last octave would be three pixels apart.
+//! In the whole square, the control points of the last octave would be three pixels apart.
 
 use crate::figure::source;
 use crate::{Figure, Panel};

@@ -1,8 +1,9 @@
 //! Two “cow texture” examples: Poisson disc distribution of control points with random assignment of binary labels.
 //!
-//! In the first two a place has the label whose control points weigh more together, which is where the texture of the
-//! labels as values, 0 and 1, is above ½: its patches have round corners. The third is the first one after the letter of
-//! the paper, where the strongest point decides alone: its patches are polygons, nearly, and meet in points.
+//! In the first two, a position gets the label whose control points have the larger sum of weights. This is where the
+//! texture with the labels 0 and 1 as values is above ½, and its patches have round corners. The third uses the labels
+//! of the first by the literal rule of the paper, where the strongest point alone decides: its patches are nearly
+//! polygons and meet in points.
 
 use super::{SIDE, fine_square, picture_of_labels};
 use crate::draw::shrink;

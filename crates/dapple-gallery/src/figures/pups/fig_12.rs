@@ -1,8 +1,8 @@
 //! Space giraffe patterns.
 //!
-//! Around the center of each spot stand 10 to 20 pairs of points, the inner one in the spot and the outer one in the
-//! background. In the first two their radii vary smoothly along the angle, and spots are whole and never merge. In the
-//! third each radius is random on its own, after the letter of the paper.
+//! Around the center of each spot are 10 to 20 pairs of points, the inner one in the spot and the outer one in the
+//! background. In the first two, their radii vary smoothly with the angle, and spots are whole and never merge. In the
+//! third, each radius is independently random, by the literal rule of the paper.
 
 use super::picture_of_labels;
 use crate::figure::source;

@@ -1,6 +1,6 @@
 //! A reference image (a) used to assign points to groups in images with different point densities (b, c, d).
 //!
-//! The image is gray only near the edges of the flower, and only there the assignment is random.
+//! The image is gray only near the edges of the flower, so the assignment is random only there.
 
 use super::flower::flower;
 use super::{picture_of_labels, square};

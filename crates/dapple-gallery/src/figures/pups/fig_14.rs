@@ -1,5 +1,5 @@
-//! Iterative process to assign points to groups: each iteration has twice as many points, and takes the interpolated
-//! picture of the last one as its reference image. The boundary becomes fractal.
+//! Iterative process to assign points to groups: each iteration has twice as many points, and uses the interpolated
+//! image of the previous one as its reference image. The boundary becomes fractal.
 
 use super::flower::flower;
 use super::{picture, square};

@@ -1,4 +1,4 @@
-//! Progressive textures: cows whose control points stand closer to the right.
+//! Progressive textures: cows whose control points are closer together toward the right.
 //!
 //! The points lie on a cylinder: the texture repeats from top to bottom, but not from left to right.
 

@@ -1,4 +1,4 @@
-//! A progressive space giraffe: the centers of its spots stand closer to the right.
+//! A progressive space giraffe: the centers of its spots are closer together toward the right.
 
 use super::picture_of_labels;
 use crate::figure::source;

@@ -1,9 +1,10 @@
-//! Points on orbits: three pictures of a loop in time, and a line of the texture through the whole loop (time goes down).
-//! Where the triangulation changes, the line jumps, unless the axes of an edge fade before it disappears; last, how fast the
-//! line changes with time.
+//! Points on orbits: three images of a loop in time, and a line of the texture through the whole loop (time goes
+//! down). Where the triangulation changes, the line jumps, unless the axes of an edge fade before it disappears. The
+//! last images show the rate of change of the line.
 //!
-//! "The main difficulty here lies in smoothing out sudden changes in the texture arising from sudden changes in the control
-//! net topology" (section 5). Beside the fading axes stand the same moving points with axes that do not fade.
+//! "The main difficulty here lies in smoothing out sudden changes in the texture arising from sudden changes in the
+//! control net topology" (section 5). The fading axes are compared with the same moving points with axes that do not
+//! fade.
 
 use super::{picture, square};
 use crate::figure::source;

@@ -1,5 +1,5 @@
-//! Axial weights in the place of the cubic: the quintic, whose curvature is continuous as well, and one that oscillates,
-//! for finer features between the same control points.
+//! Axial weights instead of the cubic: the quintic, whose curvature is also continuous, and one that oscillates, for
+//! finer features between the same control points.
 
 use super::picture;
 use crate::figure::source;

@@ -1,5 +1,5 @@
-//! The colors of the points on three levels, from the coarsest to the finest: points are drawn as flattened spheres. The
-//! orientation field flows from left to right over the sphere, and the texture is that of the ray in figure 5.
+//! The colors of the points on three levels, from the coarsest to the finest: points are drawn as flattened spheres.
+//! The orientation field flows from left to right over the sphere, and the texture is the one on the ray in figure 5.
 
 use super::stage::{View, lit};
 use super::subject::RAY;

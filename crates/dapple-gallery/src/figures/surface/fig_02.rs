@@ -1,6 +1,6 @@
-//! From a few directions to an order: the user's directions, the field that they are interpolated to, and the distance along
-//! the field, whose colors repeat as it grows. The last two also from behind, where the distance jumps along tears: it cannot
-//! grow all the way around a tube.
+//! From a few directions to an order: the user's directions, the field interpolated from them, and the distance along
+//! the field, whose colors repeat as it grows. The last two are also shown from behind, where the distance jumps along
+//! tears: it cannot grow all the way around a tube.
 
 use super::stage::lit;
 use super::subject::TORI;

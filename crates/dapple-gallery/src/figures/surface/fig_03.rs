@@ -1,6 +1,6 @@
 //! Relative distance along the vector field of vertices v and w.
 //!
-//! Both are projected onto their consensus orientation; Δ is what v is further downstream than w.
+//! Both are projected onto their consensus orientation; Δ is how much further downstream v is than w.
 
 use crate::draw::Canvas;
 use crate::figure::source;

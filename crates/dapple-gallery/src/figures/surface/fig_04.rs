@@ -1,6 +1,6 @@
 //! Three different pixel neighborhoods: (a) full square, (b) Wei-Levoy causal, (c) half square.
 //!
-//! The circle marks the pixel whose color is to be determined, and which is not compared. The squares are those that
+//! The circle marks the pixel whose color is determined; this pixel is not compared. The squares mark the pixels that
 //! `dapple-synth` compares.
 
 use crate::draw::Canvas;

@@ -1,9 +1,9 @@
-//! Six models with their textures, each shown with the exemplar that it was synthesized from: a ray, an octopus, a rounded
-//! animal, three blended tori, a zebra and an elephant.
+//! Six models with their textures, each shown with the exemplar that it was synthesized from: a ray, an octopus, a
+//! rounded animal, three blended tori, a zebra and an elephant.
 //!
-//! Points, levels and exemplar sizes are those of table 1 in a figure of 512 pixels; smaller figures have fewer points and
-//! triangles. Models and exemplars are procedural stand-ins for the paper's. The texture is baked to a map of right
-//! triangles on the model, which has 14,000 of them.
+//! The numbers of points and levels and the exemplar sizes are from table 1 in a figure of 512 pixels; smaller figures
+//! have fewer points and triangles. Models and exemplars are procedural substitutes for the paper's. The texture is
+//! baked to a map of right triangles on the model, which has 14,000 of them.
 
 use super::subject::SUBJECTS;
 use crate::draw::enlarged;

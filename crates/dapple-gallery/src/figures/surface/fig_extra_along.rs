@@ -1,8 +1,8 @@
-//! Textures in the plane along directions, with features of different sizes: scales around a middle, woven hooks that grow to
-//! the right, and scales that do both.
+//! Textures in the plane along directions, with features of different sizes: scales around a center, woven hooks that
+//! grow to the right, and scales that do both.
 //!
-//! Directions and sizes are planes of the texture's size. The texture is grown on sites, whose neighborhoods turn and grow
-//! with them, and its pixels read the exemplar between its own.
+//! Directions and sizes are images of the texture's size. The texture is synthesized on sites, whose neighborhoods
+//! rotate and scale with them, and its pixels sample the exemplar between its pixels.
 
 use super::exemplar::EXEMPLARS;
 use crate::draw::enlarged;

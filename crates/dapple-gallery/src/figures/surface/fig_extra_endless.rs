@@ -1,6 +1,6 @@
-//! Endless textures, by corrections of all pixels of a level at once, below textures of the sweep of the paper: courses of
-//! bricks go on, strands have no loose ends, and lines of text are lines. Each is a window of a texture without ends, of
-//! which any other window can be made on its own.
+//! Endless textures, by corrections of all pixels of a level at once, below textures by the sweep of the paper:
+//! courses of bricks continue, strands have no loose ends, and lines of text are lines. Each image is a window of an
+//! infinite texture, and any other window can be computed independently.
 //!
 //! References: Sylvain Lefebvre and Hugues Hoppe, "Parallel Controllable Texture Synthesis", SIGGRAPH 2005, and
 //! "Appearance-Space Texture Synthesis", SIGGRAPH 2006.

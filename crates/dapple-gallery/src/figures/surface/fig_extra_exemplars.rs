@@ -1,6 +1,6 @@
 //! The exemplars: the images that the other figures' textures are synthesized from, with their pixels enlarged.
 //!
-//! They are drawn by procedures and stand in for the images of the paper.
+//! They are procedural substitutes for the images of the paper.
 
 use super::exemplar::{EXEMPLARS, Edges};
 use crate::draw::enlarged;

@@ -1,8 +1,8 @@
-//! Textures with guides: two examples and a picture that says where which of them goes; an engraving whose lines grow, and a
-//! shaded ball drawn with them, light where it is light; and a ball with one example above and the other below.
+//! Textures with guides: two exemplars and a map of their positions; an engraving whose lines grow, and a shaded ball
+//! drawn with these lines, light where the ball is light; and a ball with one exemplar above and the other below.
 //!
-//! The lightness of the engraving and of the ball are blurred by two pixels, so that lines count by how dark they are
-//! together.
+//! The lightness of the engraving and of the ball is blurred by two pixels, so that lines are compared by their mean
+//! darkness.
 
 use super::exemplar::cut_out;
 use super::stage::{View, lit};

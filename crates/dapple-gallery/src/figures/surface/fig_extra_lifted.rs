@@ -1,8 +1,9 @@
-//! What section 8 leaves to the future: the texture of one model, lifted and placed onto another one, which has never seen the
-//! image that it was grown from. Neighborhoods are compared with those of the first model.
+//! A topic that section 8 leaves to future work: the texture of one model, lifted and placed onto another model
+//! without the exemplar that it was synthesized from. Neighborhoods are compared with the neighborhoods of the first
+//! model.
 //!
-//! Rows of scales run down the rounded animal, and along the tubes of three blended tori. A stain on the animal is covered
-//! with scales from the rest of it.
+//! Rows of scales run down the rounded animal, and along the tubes of three blended tori. A stain on the animal is
+//! covered with scales from the rest of it.
 
 use super::exemplar::cut_out;
 use super::stage::{View, lit};

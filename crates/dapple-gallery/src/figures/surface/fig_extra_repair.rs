@@ -1,7 +1,8 @@
-//! Parts of an image that are synthesized again, with all around them as it was: a stain on scales; and the seam of bricks
-//! whose courses do not meet, beside plain copies of the image, which are moved so that the seam is in the middle.
+//! Parts of an image that are synthesized again, while their surroundings stay unchanged: a stain on scales; and the
+//! seam of bricks whose courses do not meet, next to plain copies of the image, which are shifted so that the seam is
+//! in the middle.
 //!
-//! The tile is as large as the piece of the image that repeats best, and only a strip along its seam is made.
+//! The tile has the size of the part of the image that repeats best, and only a strip along its seam is synthesized.
 
 use super::exemplar::cut_out;
 use crate::draw::enlarged;

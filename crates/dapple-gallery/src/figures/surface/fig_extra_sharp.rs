@@ -1,8 +1,8 @@
-//! A texture seen from so near that the exemplar's pixels are large: with the colors of sites mixed, as in the paper; read
-//! from the exemplar at the sub-pixel sources of the sites, as sharp as it is; and read from a version of the exemplar that
-//! is eight times as large.
+//! A texture at such a close distance that the exemplar's pixels are large: with mixed colors of sites, as in the
+//! paper; sampled from the exemplar at the sub-pixel sources of the sites, at the sharpness of the exemplar; and
+//! sampled from a version of the exemplar that is eight times larger.
 //!
-//! The exemplar is that of scales; the ball has 12,000 points.
+//! The exemplar shows scales; the ball has 12,000 points.
 
 use super::exemplar::EXEMPLARS;
 use super::stage::{View, lit};

@@ -1,5 +1,6 @@
-//! Features that are as large as directions ask for: they grow where these spread and shrink where they meet, and so rows of
-//! scales, lines of text and pieces of a puzzle go on where in figure 5, with features of one size, they begin and end.
+//! Features whose sizes follow the directions: they grow where directions spread and shrink where they meet. Rows of
+//! scales, lines of text and pieces of a puzzle therefore continue at positions where they begin and end in figure 5,
+//! whose features have one size.
 
 use super::subject::{BUNNY, ELEPHANT, Subject, ZEBRA};
 use crate::figure::source;

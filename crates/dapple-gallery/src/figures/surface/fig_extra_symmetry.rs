@@ -1,7 +1,7 @@
-//! Fields of one, two and four directions: bricks, which look alike upside down, and a checker, which looks alike on its
-//! side, with fewer tears where the field may turn by half or a quarter around a point.
+//! Fields of one, two and four directions: bricks, which look the same upside down, and a checker, which looks the
+//! same on its side, with fewer tears where the field may rotate by half or a quarter turn around a point.
 //!
-//! No directions are given: a field of one direction runs down the model, and the others are the smoothest.
+//! No directions are given: a field of one direction runs down the model, and the others are the smoothest fields.
 
 use super::exemplar::EXEMPLARS;
 use super::own::views;

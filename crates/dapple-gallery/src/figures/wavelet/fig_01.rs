@@ -1,6 +1,6 @@
 //! The steps of the method: (a) a blend map R of a texture, (b) the half-size image Rd, (c) the full-size image Rn.
 //!
-//! The texture is the stone of figure 4. Pixels are drawn four times as large.
+//! The texture is the stone of figure 4. Pixels are enlarged four times.
 
 use super::{BLEND_TILE, enlarged, originals, tile_side};
 use crate::figure::source;

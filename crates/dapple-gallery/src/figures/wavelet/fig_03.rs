@@ -1,9 +1,9 @@
-//! Maps tiled by blend tiles: (a) the original tiles, (b) the paper's, halved and doubled once, (c) ours, cut along the line of
-//! least difference. Below each map stands what was measured at its seams, and what is wrong with it.
+//! Maps tiled by blend tiles: (a) the original tiles, (b) the paper's tiles, halved and doubled once, (c) our tiles,
+//! cut along the line of minimum difference. Below each map are the measurements at its seams, and its defects.
 //!
-//! The paper says that b1 to b4 have "nearly no discontinuities". One level leaves a third of a step (0.34 in this phase), and
-//! takes the finest detail away. A cut needs a margin, here a quarter of the tile, from which the original goes on, and keeps
-//! both.
+//! The paper says that b1 to b4 have "nearly no discontinuities". One level leaves a third of a step (0.34 in this
+//! phase), and removes the finest detail. A cut removes the step and keeps the detail, but needs a margin, here a
+//! quarter of the tile, in which the original continues.
 
 use super::{BLEND_TILE, beside, cut, originals, report, tile_side};
 use crate::figure::source;

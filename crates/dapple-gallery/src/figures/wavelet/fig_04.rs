@@ -1,10 +1,10 @@
 //! Two textures blended by the repeatable blend tile of one of them: (c1) stone with grass, (c2) pebble with grass.
 //!
-//! The blend tile is made of the features of the stones, and grass comes first where it is low. So it grows from the cracks
-//! and around the pebbles, and nothing but the tile says so. It covers exactly 35 % of the ground.
+//! The blend tile is made of the features of the stones, and grass appears first where it is low. So grass grows from
+//! the cracks and around the pebbles, and only the tile controls this. It covers exactly 35 % of the ground.
 //!
-//! The textures are crops that do not repeat, as photographs are. They are cut to tiles first; the features of a tile repeat then,
-//! and halving and doubling smooths them.
+//! The textures are crops that do not repeat, like photographs. They are cut to tiles first. The features of a tile
+//! then repeat, and halving and doubling smooths them.
 
 use super::grass::grass;
 use super::patch::Edges;

@@ -1,5 +1,5 @@
-//! Marble, wood grain and clouds: functions of tiled Perlin noise. First the small tiles; then what the functions make of
-//! the map that the raw tile makes, with sharp seams; then the same with our tile.
+//! Marble, wood grain and clouds: functions of tiled Perlin noise. First the small tiles; then the functions of the
+//! map of the raw tile, with sharp seams; then the functions of the map of our tile.
 //!
 //! Ours is the periodic part of the raw tile, halved and doubled once.
 

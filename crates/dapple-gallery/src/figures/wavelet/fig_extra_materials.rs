@@ -1,5 +1,5 @@
-//! The procedural materials that the figures are made of, in the place of the paper's photographs: each in light, the
-//! height and the cracks of one, and one that repeats. Then a tile of Perlin noise, and Perlin's functions of such noise.
+//! The procedural materials of the figures, which replace the paper's photographs: each one lit, the height and the
+//! cracks of one, and one that repeats. Then a tile of Perlin noise, and Perlin's functions of such noise.
 
 use super::functions::{cloud, marble, wood};
 use super::grass::grass;

@@ -1,8 +1,9 @@
-//! All methods on the same four crops: fractal noise, stone, pebble and grass, none of which repeats.
+//! All methods on the same four crops, which do not repeat: fractal noise, stone, pebble and grass.
 //!
-//! No method is the best everywhere. The periodic part keeps all detail and is the choice for smooth noise; the soft cut
-//! keeps grains whole and needs a margin; the blend tile alone hides no seam, at one level or at two; the crossfades cost
-//! contrast; the mirror has no seam and everybody sees it. A seam ratio is 1 where the wrap is like the inside.
+//! No method is the best for every texture. The periodic part keeps all detail and is the choice for smooth noise. The
+//! soft cut keeps grains whole and needs a margin. The blend tile alone hides no seam, at one level or at two. The
+//! crossfades reduce contrast. The mirror has no seam, but its symmetry is obvious. A seam ratio is 1 where the wrap
+//! is similar to the inside.
 
 use super::{crops, tile_side};
 use crate::draw::sheet;

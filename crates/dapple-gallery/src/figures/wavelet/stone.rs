@@ -1,4 +1,4 @@
-//! Rubble paving: irregular stones with tones of their own and rounded edges, and dark cracks between them.
+//! Rubble paving: irregular stones with individual tones and rounded edges, and dark cracks between them.
 //!
 //! The stones are the Voronoi cells of a Poisson-disk set whose radius varies, seen through a warp.
 

@@ -1,7 +1,7 @@
-//! The basis functions as gray gradients: F1 at the upper left, F2 and F3 at the upper right and lower left, and F2 − F1 at
-//! the lower right.
+//! The basis functions as gray gradients: F1 at the upper left, F2 and F3 at the upper right and lower left, and F2 −
+//! F1 at the lower right.
 //!
-//! All four are slices through one and the same scatter of feature points in space.
+//! All four are slices through the same scatter of feature points in space.
 
 use super::slice;
 use crate::draw::sheet;

@@ -1,9 +1,9 @@
-//! Flagstones: each cell has a color of its own from the identity of its feature point, F1 and F2 carve the joints between
-//! them as a bump, and fractal noise discolors each stone in its own way.
+//! Flagstones: each cell has an individual color from the identity of its feature point, F1 and F2 carve the joints
+//! between cells as a bump, and fractal noise discolors each stone differently.
 //!
-//! F2 − F1 alone makes joints that widen into dents between feature points that are close together. (F2² − F1²) / 2d, with
-//! d the distance of the two feature points, is how far the border between them is, and makes joints of one width. F3 and
-//! F4 are asked as well, for the corners where three stones meet.
+//! F2 − F1 alone makes joints that widen into dents between feature points that are close together. (F2² − F1²) / 2d,
+//! where d is the distance between the two feature points, is the distance to the border between them, and makes
+//! joints of constant width. F3 and F4 are also needed, for the corners where three stones meet.
 
 use super::{FractalNoise, photo};
 use crate::figure::source;

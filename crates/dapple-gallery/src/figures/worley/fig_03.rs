@@ -1,9 +1,9 @@
-//! The hull of a space ship: F1 with the Manhattan metric, not fractal. Its regions are rigidly rectangular and still random,
-//! and make right-angled channels. The hull sinks in steps, which are in its mesh, so that they cast shadows in the light of a
-//! low sun; on the bridge they rise.
+//! The hull of a space ship: F1 with the Manhattan metric, not fractal. Its regions are rigidly rectangular but
+//! random, and make right-angled channels. The hull sinks in steps, which are in its mesh, so that they cast shadows
+//! in the light of a low sun; on the bridge they rise.
 //!
-//! The corners of the regions point along the axes, so the texture is turned by an eighth of a turn. Each panel of the hull
-//! has a slice that is parallel to it.
+//! The corners of the regions point along the axes, so the texture is rotated by an eighth of a turn. Each panel of
+//! the hull has a slice that is parallel to it.
 
 use super::hull::{Panel, hull};
 use super::photo;

@@ -1,5 +1,5 @@
-//! Twenty surfaces, all of them combinations C1·F1 + C2·F2 + C3·F3 + C4·F4 of the four lowest basis functions. The values
-//! of each go through one generic color spline, after their measured range has become 0 to 1.
+//! Twenty surfaces, all of them combinations C1·F1 + C2·F2 + C3·F3 + C4·F4 of the four lowest basis functions. The
+//! values of each are mapped by one generic color spline, after their measured range is scaled to 0 to 1.
 
 use super::{relief, slice};
 use crate::draw::{sheet, shrink};

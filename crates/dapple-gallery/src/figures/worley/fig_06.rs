@@ -1,7 +1,8 @@
-//! Fractal versions of other primitives, in a row of cut tori. They are solid textures: what is seen at a cut is the same
-//! texture as on the skin.
+//! Fractal versions of other primitives, in a row of cut tori. They are solid textures: a cut shows the same texture
+//! as the skin.
 //!
-//! From left to right: F2 − F1, F1, F3 − F2 and 2 F3 − F2 − F1, each as Σ 2^−i F(2^i x) with its measured range as 0 to 1.
+//! From left to right: F2 − F1, F1, F3 − F2 and 2 F3 − F2 − F1, each as Σ 2^−i F(2^i x) with its measured range scaled
+//! to 0 to 1.
 
 use super::{N_POSITIONS, photo};
 use crate::figure::source;

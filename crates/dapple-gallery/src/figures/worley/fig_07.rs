@@ -1,8 +1,8 @@
-//! Sea water: nothing but a reflecting plane with "crumple", a fractal version of F1, as its bump map, under a sky with a
-//! low sun.
+//! Sea water: only a reflecting plane with "crumple", a fractal version of F1, as its bump map, under a sky with a low
+//! sun.
 //!
-//! An octave that is finer than a sample of the picture is faded out, so that the water is calm and not noisy toward the
-//! horizon.
+//! An octave that is finer than a sample of the image is faded out, so that the water toward the horizon is calm and
+//! not noisy.
 
 use super::photo;
 use crate::figure::source;

@@ -1,7 +1,7 @@
-//! What the basis tells of the nearest feature point: its identity, as one color for each Voronoi cell, and the borders
-//! between cells, where F2 − F1 is zero.
+//! Data of the nearest feature point: its identity, as one color for each Voronoi cell, and the borders between cells,
+//! where F2 − F1 is zero.
 //!
-//! A border as wide everywhere needs the distance to it, which is (F2² − F1²) / 2d for feature points that are d apart.
+//! A border of constant width needs the distance to it, which is (F2² − F1²) / 2d for feature points that are d apart.
 
 use crate::draw::shrink;
 use crate::figure::source;

@@ -1,4 +1,4 @@
-//! F1 and F2 − F1 with four meanings of distance. Manhattan is what figure 3 is made of.
+//! F1 and F2 − F1 with four distance metrics. Figure 3 uses the Manhattan metric.
 
 use super::N_POSITIONS;
 use crate::figure::source;

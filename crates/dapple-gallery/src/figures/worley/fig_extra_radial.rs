@@ -1,9 +1,9 @@
-//! The radial variant of figure 3, "similar to the Death Star": cells in azimuth and polar angle cover a sphere with plates
-//! along its meridians and parallels.
+//! The radial variant of figure 3, "similar to the Death Star": cells in azimuth and polar angle cover a sphere with
+//! plates along its meridians and parallels.
 //!
-//! Figure 3 turns the Manhattan metric by an eighth of a turn, so that its corners do not point along the axes. Cells that
-//! have to close around a sphere cannot be turned; the Chebyshev metric is in a plane the same. The trench along the
-//! equator and the dish are bumps of a few lines each.
+//! Figure 3 rotates the Manhattan metric by an eighth of a turn, so that its corners do not point along the axes.
+//! Cells that have to close around a sphere cannot be rotated; the Chebyshev metric is equivalent in a plane. The
+//! trench along the equator and the dish are bumps of a few lines each.
 
 use super::photo;
 use crate::figure::source;
