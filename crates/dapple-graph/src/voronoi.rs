@@ -17,7 +17,7 @@ use core::cmp::Ordering;
 use dapple_points::{PointIdx, PointSet};
 use glam::DVec2;
 
-/// The index of no vertex.
+/// Index for a missing vertex.
 const NONE: u32 = u32::MAX;
 
 /// The Voronoi diagram of a point set: for each point (site), the cell of all positions nearest to it.

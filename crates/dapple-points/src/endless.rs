@@ -43,7 +43,7 @@ const MAX_RATIO: f64 = 16.0;
 /// A point of an endless set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EndlessPoint {
-    /// The position, in the units of the radius.
+    /// Position, in the units of the radius.
     pub position: DVec2,
     /// The radius at the position, between the bounds of the set.
     pub radius: f64,
@@ -229,7 +229,7 @@ struct Plane {
 /// Cells along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Axis {
-    /// Width of a cell in steps; the largest one on an axis with a period.
+    /// Width of a cell in steps. On an axis with a period, the maximum width.
     width: i64,
     period: Option<Period>,
 }

@@ -8,7 +8,7 @@ use dapple_raster::{Field, Gradient, RasterError, RasterViewMut, Window};
 use glam::{DVec2, DVec3};
 
 impl WaveletNoise<2> {
-    /// The value at a position in cells.
+    /// Returns the value at a position in cells.
     #[must_use]
     #[inline]
     pub fn sample(&self, position: impl Into<[f64; 2]>) -> f32 {

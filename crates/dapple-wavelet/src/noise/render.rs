@@ -42,7 +42,7 @@ struct Picture<'a, const N: usize> {
 struct Sheet<'a, const N: usize> {
     band: &'a Band<N>,
     tile: &'a Tile<2>,
-    /// The places of the columns; arbitrary for blind columns.
+    /// Positions of the columns; arbitrary for blind columns.
     columns: Vec<Place>,
 }
 
