@@ -1,4 +1,4 @@
-//! One picture of Worley's cells: how far each pixel is from the nearest of many scattered points.
+//! An image of Worley's cells: the distance from each pixel to the nearest of many scattered points.
 //!
 //! ```sh
 //! cargo run -p dapple --example 01_cells
@@ -12,12 +12,12 @@ use dapple::raster::{Field, Window, glam::DVec2};
 use dapple::worley::{Combination, Worley2};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // The texture is one line. `F1` is the nearest distance, and `normalized` stretches it to 0 to 1.
+    // The texture is one line. `F1` is the distance to the nearest point, and `normalized` scales it to 0 to 1.
     let cells = Worley2::new(Seed(7))
         .combine(Combination::F1)
         .normalized()?;
 
-    // 8 × 8 cells of it, as 512 × 512 pixels.
+    // A window of 8 × 8 cells, as 512 × 512 pixels.
     let window = Window::new(DVec2::ZERO, DVec2::splat(8.0), [512, 512])?;
     let picture = cells.to_raster(&window)?;
 

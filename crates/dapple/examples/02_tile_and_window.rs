@@ -1,7 +1,7 @@
-//! A texture with a period: a picture that repeats exactly, and windows of it that equal its crops exactly.
+//! A texture with a period: an image that repeats exactly, and windows of it that equal its crops exactly.
 //!
-//! The picture is not blended or mirrored to make it repeat, so it looks the same everywhere. Windows let a large
-//! picture be made in parts, one after the other or on several machines.
+//! The image repeats without blending or mirroring, so it looks the same everywhere. With windows, a large image can be
+//! made in parts, sequentially or on several machines.
 //!
 //! ```sh
 //! cargo run -p dapple --example 02_tile_and_window
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let window = Window::new(DVec2::ZERO, period, [384, 256])?;
     let tile = cracks.to_raster(&window)?;
 
-    // All assertions hold to the last bit.
+    // All assertions hold bit for bit.
     let position = DVec2::new(1.375, 2.25);
     let [here, further] = [position, position + period].map(|at| cracks.sample(at));
     assert_eq!(here, further, "a period further is the same value");

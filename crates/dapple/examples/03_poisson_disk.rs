@@ -1,4 +1,5 @@
-//! Points that keep a distance from each other, around the edges of a tile too: where to put trees, stars or rivets.
+//! Points with a minimum distance from each other, also across the edges of a tile: positions for trees, stars or
+//! rivets.
 //!
 //! ```sh
 //! cargo run -p dapple --example 03_poisson_disk
@@ -11,17 +12,17 @@ use dapple::image::{Depth, write_gray_png};
 use dapple::points::{Domain, poisson_disk};
 use dapple::raster::{Raster, Window, glam::DVec2};
 
-/// Pixels along a side of the picture.
+/// Number of pixels along a side of the image.
 const SIDE: u32 = 512;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // A unit square whose opposite sides are joined, and points at least 0.04 apart: so many that none more fits.
+    // Points at least 0.04 apart on a unit square whose opposite sides are joined. No further point fits.
     let domain = Domain::torus(DVec2::ZERO, DVec2::ONE);
     let points = poisson_disk(domain, 0.04, Seed(7))?;
     let closest = points.minimum_distance().unwrap_or(f64::INFINITY);
     assert!(closest >= 0.04, "two points are {closest} apart");
 
-    // A dot for each. `delta` is the shortest way, so a dot on an edge goes on at the opposite one.
+    // Draw a dot for each point. `delta` is the shortest offset, so a dot on an edge continues at the opposite edge.
     let window = Window::unit([SIDE, SIDE])?;
     let mut picture = Raster::filled(window.size, 1.0)?;
     for &point in points.positions() {

@@ -1,4 +1,5 @@
-//! Noise from scattered control points (partition-of-unity parametrics): five octaves as a land, with its normal map.
+//! Noise from scattered control points (partition-of-unity parametrics): five octaves as a terrain, with its normal
+//! map.
 //!
 //! ```sh
 //! cargo run -p dapple --example 04_pups_noise
@@ -14,7 +15,8 @@ use dapple::pups::{OctavesOptions, octaves};
 use dapple::raster::{Field, Window, Wrap, glam::DVec2};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // Control points at least 0.2 apart in the first octave; each further one is twice as fine and half as strong.
+    // Control points are at least 0.2 apart in the first octave. Each further octave has half the distance and half the
+    // amplitude.
     let options = OctavesOptions {
         domain: Domain::torus(DVec2::ZERO, DVec2::ONE),
         spacing: 0.2.into(),
@@ -25,13 +27,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let noise = octaves(&options, Seed(7))?.normalized();
     let height = noise.to_raster(&window)?;
 
-    // Most values are in the middle of the range, so the colors are spread over it.
+    // Most values are in the middle of the range, so the colors are spread over this part.
     let land = height.map(|&height| 0.5 + 2.0 * (height - 0.5));
     let path = out::path("04_pups_noise.png")?;
     write_color_png(&path, &Palette::Terrain.ramp().apply(&land), Depth::Eight)?;
     out::wrote(&path);
 
-    // Heights of 1 are a tenth of the tile high. The map repeats because the height does.
+    // A height of 1 is a tenth of the tile. The map repeats because the height repeats.
     let plane = HeightPlane {
         strength: 0.1,
         ..HeightPlane::for_window(&window, [Wrap::Repeat; 2])

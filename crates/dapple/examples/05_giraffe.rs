@@ -1,4 +1,4 @@
-//! The coat of a space giraffe: every point of the plane belongs to the control point that is strongest there.
+//! The coat of a space giraffe: every point of the plane belongs to the control point with the largest weight there.
 //!
 //! ```sh
 //! cargo run -p dapple --example 05_giraffe
@@ -13,14 +13,14 @@ use dapple::pups::{SpaceGiraffeOptions, space_giraffe};
 use dapple::raster::Window;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // Spots whose centers are at least a quarter apart, in a square of two units that repeats.
+    // Spots whose centers are at least 0.25 apart, in a square of two units that repeats.
     let options = SpaceGiraffeOptions {
         spacing: 0.25.into(),
         ..SpaceGiraffeOptions::default()
     };
     let coat = space_giraffe(&options, Seed(7))?;
 
-    // A label for each pixel, 0 between the spots and 1 on them, becomes a color.
+    // Each pixel has a label, 0 between the spots and 1 on them, which is mapped to a color.
     let domain = options.domain;
     let window = Window::new(domain.origin, domain.size, [512, 512])?;
     let labels = coat.label_raster(&window)?;

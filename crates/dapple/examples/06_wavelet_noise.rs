@@ -1,4 +1,4 @@
-//! Wavelet noise: bands that hold one octave each, so that nothing flickers where a band is left out far away.
+//! Wavelet noise: bands of one octave each, so that nothing flickers if distant views omit a band.
 //!
 //! ```sh
 //! cargo run -p dapple --example 06_wavelet_noise
@@ -12,13 +12,13 @@ use dapple::raster::{Field, Window, glam::DVec2};
 use dapple::wavelet::WaveletNoise2;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // A tile of 16 × 16 cells, in four bands; each is twice as fine as the one before.
+    // A tile of 16 × 16 cells, in four bands. Each band has twice the frequency of the previous one.
     let weights = [1.0, 0.6, 0.36, 0.2];
     let noise = WaveletNoise2::new(16, Seed(7))?.with_weights(&weights)?;
     let window = Window::new(DVec2::ZERO, DVec2::splat(16.0), [512, 512])?;
     let values = noise.to_raster(&window)?;
 
-    // Values are nearly normal around 0, and the squares of the weights add up to their variance: three standard
+    // Values are nearly normal around 0, and their variance is the sum of the squared weights: three standard
     // deviations to both sides fill the range of the file.
     let variance: f32 = weights.iter().map(|weight| weight * weight).sum();
     let gray = values.map(|value| 0.5 + value / (6.0 * variance.sqrt()));

@@ -1,7 +1,7 @@
-//! A picture that does not repeat is made into a tile, with a report of the changes.
+//! An image that does not repeat is made into a tile, with a report of the changes.
 //!
-//! In place of a photograph, the example uses a part of a paving, in a light that fades to the right. For one of your
-//! own, use `dapple::image::read_image("photo.png", &Default::default())?.color()?`.
+//! The example uses a part of a paving instead of a photograph, in a light that fades to the right. To read your own
+//! photograph, use `dapple::image::read_image("photo.png", &Default::default())?.color()?`.
 //!
 //! ```sh
 //! cargo run -p dapple --example 07_make_a_photo_tile
@@ -19,8 +19,8 @@ use dapple::tile::{Method, SeamOptions, SeamReport, Seamless, SoftCut};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let photo = photo()?;
 
-    // The periodic part first, which evens out the light; then a margin of 48 pixels is laid over the other side and
-    // cut where it is least visible.
+    // First take the periodic part, which evens out the light. Then a margin of 48 pixels is laid over the opposite
+    // side and cut where the cut is least visible.
     let even = Seamless::new(Method::Periodic).apply_color(&photo)?;
     let cut = SoftCut {
         margin: 48,
@@ -28,13 +28,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let tile = Seamless::new(Method::SoftCut(cut)).apply_color(&even)?;
 
-    // Steps across the seam beside those inside, at four distances, and the detail that was kept.
+    // Steps across the seam relative to steps inside, at four distances, and the detail that was kept.
     let [before, after] = [&photo, &tile].map(|picture| picture.map(|color| color.luminance()));
     let options = SeamOptions::default();
     println!("before:\n{}\n", SeamReport::of(&before, &options)?);
     println!("after:\n{}", SeamReport::beside(&before, &after, &options)?);
 
-    // Twice in each direction, which makes seams visible.
+    // Two copies in each direction make seams visible.
     for (name, picture) in [("before", &photo), ("after", &tile)] {
         let path = out::path(&format!("07_make_a_photo_tile_{name}.png"))?;
         write_color_png(&path, &picture.tile([2, 2])?, Depth::Eight)?;

@@ -1,4 +1,5 @@
-//! Two materials blended along the features of one: moss grows from the joints of stones, more of it to the right.
+//! Two materials blended along the features of one of them: moss grows from the joints of stones, and more toward the
+//! right.
 //!
 //! ```sh
 //! cargo run -p dapple --example 08_blend_materials
@@ -15,18 +16,18 @@ use dapple::tile::{Blend, BlendMap, Layer, Map, Mixing, Weighting, blend_by_tile
 use dapple::wavelet::wavelet_tile;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // A material is a list of maps: here a color and a height. That of the stones is a recipe …
+    // A material is a list of maps: here a color and a height. The stones come from a recipe.
     let plan = Plan::new(&Recipe::builtin("flagstone")?, &Images::new(), 0.0)?;
     let window = plan.window([512, 512])?;
     let stones = plan.height()?.to_raster(&window)?;
     let stone_color = plan.colors("albedo")?.to_raster(&window)?;
 
-    // … and that of the moss is noise.
+    // The moss is noise.
     let grain = wavelet_tile(window.size, &[0.5, 1.0, 0.5], Seed(8))?;
     let moss = grain.map(|value| 0.5 + 0.12 * value);
     let moss_color = ColorRamp::from_hex(&["#16240d", "#4d6b22", "#a2b552"])?.apply(&moss);
 
-    // The mask is low in the joints, and as often below any threshold as the threshold says.
+    // The mask is low in the joints, and the fraction of its pixels below any threshold equals the threshold.
     let mask = rank_equalize(&BlendMap::new(56.0).apply(&stones)?)?;
     let of_moss = Raster::from_window(&window, |at| (at.x / plan.extent().x) as f32)?;
     let of_stone = of_moss.map(|moss| 1.0 - moss);

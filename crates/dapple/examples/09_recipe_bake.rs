@@ -1,5 +1,4 @@
-//! A material as a text, baked to maps: cobbles in sand, 512 × 512, with height, normals, occlusion,
-//! color and roughness.
+//! A material as text, baked to maps: cobbles in sand, 512 × 512, with height, normals, occlusion, color and roughness.
 //!
 //! `Recipe::builtin("flagstone")` is a ready-made recipe, and `Recipe::builtin_names()` lists all of them.
 //!
@@ -12,7 +11,7 @@ mod out;
 use dapple::image::{Depth, write_color_png, write_gray_png, write_normal_png};
 use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe};
 
-/// The nodes by name, and the material that they make. The format is in the README of `dapple-recipe`.
+/// The nodes by name, and the material that they make. The README of `dapple-recipe` describes the format.
 const COBBLES: &str = include_str!("09_recipe_bake.toml");
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -33,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ..BakeOptions::default()
     };
 
-    // A bake comes in bands, which large pictures are written in; these maps are joined.
+    // A bake returns bands, so that large images can be written in parts. These maps are joined.
     for (kind, rows) in Bake::new(&plan, &options)?.whole_maps()? {
         let path = out::path(&format!("09_recipe_bake_{}.png", kind.name()))?;
         match rows {

@@ -1,8 +1,8 @@
-//! A raster in the form of a graphics API: the bytes of all mip levels, rows padded to 256 bytes, and the texture
+//! A raster in the layout of a graphics API: the bytes of all mip levels, rows padded to 256 bytes, and the texture
 //! format.
 //!
-//! No engine is needed for this. `upload/mod.rs` makes the bytes; `tests/gpu/main.rs` of this repository uploads them
-//! to a real GPU with `wgpu` and reads them back.
+//! This needs no engine. `upload/mod.rs` makes the bytes; `tests/gpu/main.rs` of this repository uploads them to a real
+//! GPU with `wgpu` and reads them back.
 //!
 //! ```sh
 //! cargo run -p dapple --example 10_gpu_texture
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         tell(upload);
     }
 
-    // The levels side by side, from their bytes.
+    // The levels next to each other, read from their bytes.
     let widths: Vec<u32> = upload.levels.iter().map(|level| level.size[0]).collect();
     let mut picture = Raster::filled([widths.iter().sum(), 256], [0, 0, 0, 0])?;
     let mut left = 0;

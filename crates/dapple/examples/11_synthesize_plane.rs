@@ -1,6 +1,6 @@
-//! A tile of 192 × 192 pixels, synthesized from an example of 56 × 56.
+//! A tile of 192 × 192 pixels, synthesized from an exemplar of 56 × 56.
 //!
-//! The example is drawn here; any small picture will do.
+//! The exemplar is drawn here; any small image works.
 //!
 //! ```sh
 //! cargo run -p dapple --example 11_synthesize_plane
@@ -20,7 +20,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let exemplar = Exemplar::new(&example, Edges::Cut)?;
     let texture = synthesize_plane(&exemplar, [192, 192], [Edges::Wrap; 2], &Options::default())?;
 
-    // A texture maps each pixel to one of the example, so other maps of the example can be transferred in the same way.
+    // A texture maps each pixel to one of the exemplar, so other maps of the exemplar can be transferred in the same
+    // way.
     let tile = texture.transfer(&example)?;
 
     for (name, picture) in [("example", &example), ("tile", &tile)] {
@@ -31,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Cells with a color each; the picture does not repeat.
+/// Cells with one color each. The image does not repeat.
 fn example() -> Result<Raster<LinearRgb>, Box<dyn std::error::Error>> {
     let window = Window::new(DVec2::ZERO, DVec2::splat(0.9), [56, 56])?;
     let cells = cells(&CellsOptions::default(), Seed(7))?;

@@ -1,7 +1,7 @@
-//! A texture grown over a mesh from a small example, baked to a texture map and written as a model: a GLB file that
-//! viewers and engines open.
+//! A texture synthesized on a mesh from a small exemplar, baked to a texture map and written as a model: a GLB file
+//! that viewers and engines open.
 //!
-//! The mesh is a ring made by the example; `dapple::mesh_io::read_model` reads your own.
+//! The mesh is a torus made here; `dapple::mesh_io::read_model` reads your own.
 //!
 //! ```sh
 //! cargo run -p dapple --example 12_baked_model
@@ -23,7 +23,7 @@ use dapple::synth::{
 };
 use std::f64::consts::TAU;
 
-/// A torus around the y axis with the radii 0.7 and 0.28, of 48 by 24 squares.
+/// Returns a torus around the y axis with the radii 0.7 and 0.28, made of 48 by 24 squares.
 fn ring() -> Result<mesh::Mesh, MeshError> {
     let [columns, rows] = [48, 24];
     let turn = |part: u32, of: u32| TAU * f64::from(part) / f64::from(of);
@@ -43,7 +43,7 @@ fn ring() -> Result<mesh::Mesh, MeshError> {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // Stripes, slightly bent, that run down the example, and on the ring around its tube.
+    // Slightly bent stripes, which run down the exemplar and, on the torus, around its tube.
     let stripes = Raster::from_window(&Window::unit([48, 48])?, |at| {
         let across = 5.0 * at.x + 0.6 * (at.y - at.y * at.y);
         LinearRgb::gray(if across - across.floor() < 0.5 {
@@ -63,7 +63,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let (ring, texture) = synthesize(ring()?, &exemplar, &down, &sites, &Options::default())?;
 
-    // The texture map: a few pieces of the mesh, flattened and packed into a square with room for mip levels.
+    // Texture map: a few pieces of the mesh, flattened and packed into a square, with gaps for mip levels.
     let atlas = Atlas::charts(ring.surface(), 1024)?;
     let map = bake_colors(&ring, &texture, &stripes, &atlas)?;
     let png = encode_png(
@@ -76,7 +76,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     write_model(&path, &model)?;
     out::wrote(&path);
 
-    // A rendered picture: a ray meets a triangle, whose corners have texture coordinates.
+    // Render an image: a ray hits a triangle, whose corners have texture coordinates.
     let uvs = atlas.uvs();
     let look = |surface: &Surface| {
         let color = surface.triangle().map_or(LinearRgb::BLACK, |hit| {

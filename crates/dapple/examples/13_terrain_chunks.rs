@@ -1,4 +1,4 @@
-//! A world without an end, made chunk by chunk: heights, biomes and trees that agree wherever two chunks meet.
+//! An infinite world, made chunk by chunk: heights, biomes and trees match wherever two chunks meet.
 //!
 //! ```sh
 //! cargo run -p dapple --example 13_terrain_chunks
@@ -14,23 +14,23 @@ use dapple::points::{EndlessPoint, EndlessPoissonDisk};
 use dapple::raster::{Field, FieldExt, FractalShape, Raster, Window, glam::DVec2};
 use dapple::worley::Worley2;
 
-/// Meters, and pixels, along a side of a chunk.
+/// Side of a chunk in meters and in pixels.
 const CHUNK: u32 = 64;
 
-/// Chunks along a side of the picture.
+/// Number of chunks along a side of the image.
 const CHUNKS: u32 = 4;
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-/// Everything that a chunk is made from. It holds no chunks, and may be shared by threads.
+/// Everything that a chunk is made from. It stores no chunks and can be shared between threads.
 struct World<H, B> {
-    /// The height in units of 40 meters, with the sea at 0.
+    /// Height in units of 40 meters, with the sea at 0.
     heights: H,
-    /// A random number from 0 to 1 for each cell of about 100 meters.
+    /// Random number from 0 to 1 for each cell of about 100 meters.
     biomes: B,
-    /// Places at least 3 meters apart.
+    /// Positions at least 3 meters apart.
     trees: EndlessPoissonDisk,
-    /// The pixels of the chunk at the origin; all others are crops of the same grid.
+    /// Pixels of the chunk at the origin. All other chunks are crops of the same grid.
     grid: Window,
 }
 
@@ -55,7 +55,7 @@ fn world(seed: Seed) -> Result<World<impl Field, impl Field>> {
 }
 
 impl<H: Field, B: Field> World<H, B> {
-    /// The chunk in a column and a row, of `size` chunks along each side.
+    /// Returns the chunk in a column and a row, of `size` chunks along each side.
     fn chunk(&self, [column, row]: [i64; 2], size: u32) -> Result<Chunk> {
         let side = i64::from(CHUNK);
         let window = self
@@ -64,7 +64,7 @@ impl<H: Field, B: Field> World<H, B> {
         let [x, y] = [column, row].map(|chunk| (chunk * side) as f64);
         let length = f64::from(size * CHUNK);
         let mut trees = self.trees.points([x, y], [x + length, y + length])?;
-        // Each tree looks at the world where it stands, so the neighboring chunks need not be there.
+        // Each tree evaluates the world at its position, so the adjacent chunks need not exist.
         trees.retain(|tree| {
             let is_forest = self.biomes.sample(tree.position) > 0.5;
             let height = self.heights.sample(tree.position);
@@ -78,7 +78,7 @@ impl<H: Field, B: Field> World<H, B> {
     }
 }
 
-/// The picture of some chunks, each made for itself.
+/// Renders an image of several chunks, each made separately.
 fn draw(seed: Seed) -> Result<Raster<LinearRgb>> {
     let world = world(seed)?;
     let side = CHUNK * CHUNKS;
@@ -92,13 +92,13 @@ fn draw(seed: Seed) -> Result<Raster<LinearRgb>> {
         {
             let [x, y] = [column * CHUNK + at % CHUNK, row * CHUNK + at / CHUNK];
             picture.pixels_mut()[(y * side + x) as usize] =
-                // Biomes differ a little in brightness.
+                // Biomes differ slightly in brightness.
                 ground.at(0.5 + 0.8 * height) * (0.8 + 0.3 * biome);
         }
         trees.extend(chunk.trees);
     }
     for tree in trees {
-        // How dark a tree is follows from its id.
+        // The id of a tree determines its brightness.
         let shade = 0.02 + 0.06 * (tree.id >> 40) as f32 / (1 << 24) as f32;
         let [x, y] = tree.position.to_array().map(|at| at as u32);
         picture.pixels_mut()[(y * side + x) as usize] =
@@ -123,7 +123,7 @@ mod tests {
     #[test]
     fn chunks_are_crops_of_a_larger_piece_of_the_world() {
         let world = world(Seed(7)).unwrap();
-        // Around the origin, and a hundred thousand kilometers from it.
+        // Around the origin, and at a distance of a hundred thousand kilometers from it.
         for corner in [-1, 1_562_500] {
             let whole = world.chunk([corner, -1], 2).unwrap();
             let mut n_trees = 0;

@@ -1,8 +1,8 @@
-//! A material that a game makes from its recipe while it loads: on a thread of its own, with a bar, and until it is no
-//! longer wanted.
+//! A material that a game makes from its recipe while it loads: on a separate thread, with a progress bar, until it is
+//! cancelled.
 //!
-//! One callback hears of all work, from the first node to the last row, and stops it. Here the first try is given up after a
-//! tenth of its work, as when a player leaves the level, and the second is completed.
+//! One callback reports all work, from the first node to the last row, and can stop it. Here the first attempt is
+//! cancelled after a tenth of its work, as when a player leaves the level, and the second one completes.
 //!
 //! ```sh
 //! cargo run -p dapple --example 14_recipe_at_load
@@ -20,14 +20,14 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, mpsc};
 use std::thread;
 
-/// The maps of a material.
+/// Maps of a material.
 type Maps = Vec<(MapKind, MapRows)>;
 
-/// A material that is being made.
+/// A material in progress.
 struct Loading {
-    /// The part of the work that is done, from 0 to 1, whenever it grows.
+    /// Completed fraction of the work, from 0 to 1, sent whenever it grows.
     parts: mpsc::Receiver<f64>,
-    /// Whether the material is no longer wanted.
+    /// Whether the work is cancelled.
     is_over: Arc<AtomicBool>,
     maps: thread::JoinHandle<Result<Maps, RecipeError>>,
 }
@@ -38,7 +38,7 @@ impl Loading {
         let is_over = Arc::new(AtomicBool::new(false));
         let asked = is_over.clone();
         let listen = move |progress: Progress| {
-            // Nobody may listen any more.
+            // The receiver may already be gone.
             let _ = sender.send(progress.part());
             match asked.load(Relaxed) {
                 true => ControlFlow::Break(()),
@@ -62,10 +62,10 @@ impl Loading {
         }
     }
 
-    /// Shows the progress, up to a part of the work, and returns the maps, or that they were given up.
+    /// Shows the progress up to a fraction of the work. Returns the maps, or the error that the work was cancelled.
     fn until(self, end: f64) -> Result<Maps, RecipeError> {
         let mut shown = 0;
-        // A game looks once for each frame, with `try_iter`.
+        // A game polls once per frame, with `try_iter`.
         for part in &self.parts {
             let percent = (100.0 * part) as u32;
             if percent >= shown + 10 {

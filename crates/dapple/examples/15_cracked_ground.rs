@@ -1,4 +1,4 @@
-//! A cracked ground as the textures of a game: color and normals with mip levels, in bytes for a GPU. It tiles exactly.
+//! Cracked ground as the textures of a game: color and normals with mip levels, in bytes for a GPU. It tiles exactly.
 //!
 //! ```sh
 //! cargo run -p dapple --example 15_cracked_ground
@@ -17,10 +17,10 @@ use dapple::worley::{Combination, Worley2};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-/// Heights of a ground that repeats after one unit.
+/// Returns the heights of ground that repeats after one unit.
 fn ground(seed: Seed) -> Result<impl Field> {
     let plates = Worley2::new(seed.child("plates", 0)).with_period([Some(6); 2])?;
-    // 0 in the cracks between plates and 1 inside of them
+    // 0 in the cracks between plates and 1 inside the plates.
     let plates = plates.combine(Combination::F2_MINUS_F1).frequency(6.0);
     let flat = plates.mul(8.0).min(1.0);
     let rough = GradientNoise2::new(seed.child("rough", 0)).with_period([Some(8); 2])?;
@@ -30,12 +30,12 @@ fn ground(seed: Seed) -> Result<impl Field> {
     Ok(flat.add(rough.mul(0.15)))
 }
 
-/// The color and the normals of a ground.
+/// Returns the color and the normals of the ground.
 fn maps(seed: Seed, size: u32) -> Result<(Raster<LinearRgb>, Raster<Normal>)> {
     let window = Window::unit([size; 2])?;
     let heights = ground(seed)?.to_raster(&window)?;
     let colors = ColorRamp::from_hex(&["#1c130d", "#6f5233", "#a9875a"])?.apply(&heights);
-    // Both sides wrap, since the heights repeat.
+    // Both axes wrap, since the heights repeat.
     let plane = HeightPlane {
         strength: 0.02,
         ..HeightPlane::for_window(&window, [Wrap::Repeat; 2])
@@ -46,7 +46,7 @@ fn maps(seed: Seed, size: u32) -> Result<(Raster<LinearRgb>, Raster<Normal>)> {
 
 fn main() -> Result<()> {
     let (colors, normals) = maps(Seed(7), 512)?;
-    // What a texture of the GPU is filled with: `Rgba8UnormSrgb` and `Rgba8Unorm`.
+    // Data of the GPU textures: `Rgba8UnormSrgb` and `Rgba8Unorm`.
     let colors_of_levels: Vec<Vec<u8>> = (colors.mip_levels()?.iter())
         .map(Raster::to_rgba8_srgb)
         .collect();

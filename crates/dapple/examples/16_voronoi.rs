@@ -1,4 +1,4 @@
-//! A map of regions that tiles: Voronoi cells of points on a torus, each in the color of its size.
+//! A map of regions that tiles: Voronoi cells of points on a torus, each colored by its area.
 //!
 //! ```sh
 //! cargo run -p dapple --example 16_voronoi
@@ -21,7 +21,7 @@ fn regions(seed: Seed) -> Result<Voronoi> {
     Ok(Voronoi::new(&poisson_disk(domain, 0.08, seed)?)?)
 }
 
-/// Draws each region with a brightness by its area; borders are dark.
+/// Draws each region with a brightness by its area. Borders are dark.
 fn draw(regions: &Voronoi, size: u32) -> Result<Raster<LinearRgb>> {
     let n_cells = regions.n_cells() as f64;
     let window = Window::unit([size; 2])?;
@@ -29,7 +29,7 @@ fn draw(regions: &Voronoi, size: u32) -> Result<Raster<LinearRgb>> {
     let mut site = PointIdx(0);
     for (row, pixels) in (0..).zip(image.view_mut().rows_mut()) {
         for (column, pixel) in (0..).zip(pixels) {
-            // The walk starts at the site of the pixel before.
+            // The walk starts at the site of the previous pixel.
             let nearest = regions.locate(window.position(column, row), site)?;
             site = nearest.site;
             let cell = regions.cell(site);
@@ -67,9 +67,10 @@ mod tests {
         let regions = regions(Seed(7)).unwrap();
         let cells = (0..regions.n_cells() as u32).map(|site| regions.cell(PointIdx(site)));
         let area: f64 = cells.clone().filter_map(|cell| cell.area()).sum();
-        // The sum of some hundred areas, each rounded.
+        // The sum of about a hundred areas, each rounded.
         assert!((area - 1.0).abs() < 1e-9, "{area}");
-        // Euler: a torus has as many vertices and cells together as sides, and three sides meet at a vertex.
+        // Euler: on a torus the number of vertices and cells together equals the number of sides, and three sides meet
+        // at a vertex.
         let sides: usize = cells.map(|cell| cell.sides().len()).sum();
         assert_eq!(sides, 6 * regions.n_cells());
         draw(&regions, 32).unwrap();

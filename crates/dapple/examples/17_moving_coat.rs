@@ -1,4 +1,4 @@
-//! An animal coat that moves in a loop: 24 frames, of which the last leads to the first.
+//! An animal coat that moves in a loop: 24 frames, and the last one leads to the first.
 //!
 //! ```sh
 //! cargo run -p dapple --example 17_moving_coat
@@ -14,14 +14,14 @@ use dapple::raster::{Raster, prelude::*};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-/// The frames of a loop.
+/// Frames of the loop.
 const N_FRAMES: u32 = 24;
 
-/// The values of the coat at a time, from 0 to 1.
+/// Returns the values of the coat at a time, from 0 to 1.
 fn frame(index: u32, size: u32) -> Result<Raster<f32>> {
     let mut options = CellsOptions::of_three_or_four();
     options.spacing = 0.2.into();
-    // Each control point goes around its place once in the loop.
+    // Each control point makes one orbit around its position per loop.
     options.net.motion = Some(Orbits { radius: 0.25 });
     options.net.time = f64::from(index) / f64::from(N_FRAMES);
     let domain = options.domain;
@@ -52,7 +52,7 @@ mod tests {
         for pair in frames.windows(2) {
             let pixels = pair[0].pixels().iter().zip(pair[1].pixels());
             let n_changed = pixels.filter(|(before, after)| before != after).count();
-            // Nothing stands still, and nothing jumps: most pixels keep their cell.
+            // Every frame differs from the previous one, but only slightly: most pixels keep their cell.
             assert!((1..64 * 64 / 2).contains(&n_changed), "{n_changed}");
         }
     }

@@ -1,4 +1,4 @@
-//! A larger texture from a small one, and a scratch that is painted over with texture.
+//! A larger texture from a small one, and a scratch that is replaced with texture.
 //!
 //! ```sh
 //! cargo run -p dapple --example 18_grow_and_repair
@@ -16,7 +16,7 @@ use dapple::synth::{Edges, Exemplar, Options, PlaneTexture, synthesize_plane};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-/// A photograph with a scratch, drawn here, and where it is clean.
+/// A drawn photograph with a scratch, and a mask of its clean pixels.
 fn photo() -> Result<(Raster<LinearRgb>, Raster<bool>)> {
     let window = Window::new([0.0; 2], [8.0; 2], [64, 64])?;
     let rock = GradientNoise2::new(Seed(7)).fractal(3, 0.5, 2.0, FractalShape::Ridged)?;
@@ -31,7 +31,7 @@ fn photo() -> Result<(Raster<LinearRgb>, Raster<bool>)> {
     Ok((photo, clean))
 }
 
-/// The photograph without its scratch. All clean pixels stay as they are.
+/// Returns the photograph without its scratch. All clean pixels stay unchanged.
 fn repair(photo: &Raster<LinearRgb>, clean: &Raster<bool>) -> Result<Raster<LinearRgb>> {
     let exemplar = Exemplar::new(photo, Edges::Cut)?.with_mask(clean)?;
     let hole = clean.map(|is_clean| !is_clean);
@@ -44,7 +44,7 @@ fn repair(photo: &Raster<LinearRgb>, clean: &Raster<bool>) -> Result<Raster<Line
     Ok(texture.transfer(photo)?)
 }
 
-/// A tile that looks like the photograph.
+/// Returns a tile that resembles the photograph.
 fn grow(photo: &Raster<LinearRgb>, size: u32) -> Result<Raster<LinearRgb>> {
     let exemplar = Exemplar::new(photo, Edges::Cut)?;
     let texture = synthesize_plane(&exemplar, [size; 2], [Edges::Wrap; 2], &Options::default())?;

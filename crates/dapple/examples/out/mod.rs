@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The path of a file in the folder, which is created if it does not exist.
+/// Returns the path of a file in the folder, which is created if it does not exist.
 #[expect(clippy::disallowed_methods, reason = "an example writes files")]
 pub(crate) fn path(name: &str) -> io::Result<PathBuf> {
     let folder = std::env::args_os()

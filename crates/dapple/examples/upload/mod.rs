@@ -1,25 +1,25 @@
 //! The bytes of a texture with its mip levels, for any graphics API.
 //!
-//! * Color has 8 bits per channel under the sRGB curve; the GPU makes it linear when it samples. Data, such as normals, is
-//!   linear in the file and on the GPU, so its format must not say sRGB.
-//! * Rows begin at multiples of 256 bytes, as copies from a buffer to a texture want them.
-//! * A level has half of the columns and rows of the one before; its pixels are means in linear light.
+//! * Color has 8 bits per channel, encoded with the sRGB curve; the GPU decodes it to linear light when it samples.
+//!   Data, such as normals, is linear in the file and on the GPU, so its format must not be sRGB.
+//! * Rows start at multiples of 256 bytes, as copies from a buffer to a texture require.
+//! * A level has half of the columns and rows of the previous one; its pixels are means in linear light.
 //! * Row 0 is the top: v = 0 in wgpu, Vulkan, Direct3D, Metal and glTF.
 
 use dapple::color::{LinearRgb, Normal, TexturePixel, TextureRaster as _};
 use dapple::raster::{Raster, RasterError};
 
-/// The alignment of rows, in bytes.
+/// Alignment of rows, in bytes.
 const ROW_ALIGNMENT: usize = 256;
 
-/// A texture in the form of a graphics API.
+/// A texture in the layout of a graphics API.
 pub(crate) struct Upload {
     pub(crate) format: Format,
-    /// The mip levels, the largest first.
+    /// Mip levels, the largest first.
     pub(crate) levels: Vec<Level>,
 }
 
-/// The format of a pixel in four bytes, with the name of WebGPU.
+/// Format of a pixel of four bytes, with the name in WebGPU.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Format {
     Rgba8UnormSrgb,
@@ -28,20 +28,20 @@ pub(crate) enum Format {
 
 /// A mip level.
 pub(crate) struct Level {
-    /// The numbers of columns and rows.
+    /// Width and height in pixels.
     pub(crate) size: [u32; 2],
-    /// The number of bytes from the start of a row to that of the next; a multiple of 256.
+    /// Number of bytes from the start of one row to the start of the next; a multiple of 256.
     pub(crate) bytes_per_row: usize,
     pub(crate) bytes: Vec<u8>,
 }
 
 impl Upload {
-    /// The texture of colors, without alpha.
+    /// Creates a texture of colors without alpha.
     pub(crate) fn color(colors: &Raster<LinearRgb>) -> Result<Self, RasterError> {
         Self::new(Format::Rgba8UnormSrgb, colors, Raster::to_rgba8_srgb)
     }
 
-    /// The texture of normals. Shaders normalize them again after sampling.
+    /// Creates a texture of normals. Shaders normalize them again after sampling.
     pub(crate) fn normal(normals: &Raster<Normal>) -> Result<Self, RasterError> {
         Self::new(Format::Rgba8Unorm, normals, Raster::to_rgba8)
     }
@@ -79,7 +79,7 @@ impl Level {
         }
     }
 
-    /// The rows without their padding.
+    /// Returns the rows without their padding.
     pub(crate) fn rows(&self) -> impl Iterator<Item = &[u8]> {
         let width = 4 * self.size[0] as usize;
         self.bytes
