@@ -80,9 +80,9 @@ pub(crate) struct Args {
     #[arg(value_name = "IMAGE|MESH")]
     exemplar: PathBuf,
 
-    /// Another map of the example that follows it, such as normal=FILE or roughness=FILE; repeatable.
+    /// Additional map of the example, synthesized along with it, such as normal=FILE or roughness=FILE; repeatable.
     ///
-    /// It is written next to the output as `NAME_MAP`. The material of a mesh takes `normal`, and in GLB also `roughness`,
+    /// It is written next to the output as `NAME_MAP`. The material of a mesh uses `normal`, and in GLB also `roughness`,
     /// `metallic` and `ao`.
     #[arg(long, value_name = "NAME=IMAGE")]
     map: Vec<MapArg>,

@@ -46,7 +46,7 @@ pub(super) struct MixingArgs {
 
     /// mask: sharpness of transitions, above 0 up to 1e9: 1 is soft, 1e9 is hard [default: 8].
     ///
-    /// It is one over the width of transitions, in values of the tile.
+    /// It is the reciprocal of the transition width, which is measured in tile values.
     #[arg(long, value_name = "N")]
     gain: Option<f64>,
 
