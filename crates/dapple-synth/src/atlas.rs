@@ -81,7 +81,7 @@ impl Atlas {
     ///
     /// # Errors
     ///
-    /// The errors of [`charts`](Self::charts), and [`SynthErrorKind::Range`] for a padding out of range.
+    /// Same as [`charts`](Self::charts), and [`SynthErrorKind::Range`] for a padding out of range.
     pub fn charts_padded(surface: &Surface, side: u32, padding: u32) -> Result<Self, SynthError> {
         Self::charts_with(surface, side, Some(padding), |_| ControlFlow::Continue(()))
     }
@@ -94,7 +94,7 @@ impl Atlas {
     ///
     /// # Errors
     ///
-    /// The errors of [`charts_padded`](Self::charts_padded), and [`SynthErrorKind::Cancelled`] if the callback cancels.
+    /// Same as [`charts_padded`](Self::charts_padded), and [`SynthErrorKind::Cancelled`] if the callback cancels.
     pub fn charts_with(
         surface: &Surface,
         side: u32,
@@ -127,7 +127,7 @@ impl Atlas {
     ///
     /// # Errors
     ///
-    /// The errors of [`uniform`](Self::uniform), and [`SynthErrorKind::Range`] for a padding out of range.
+    /// Same as [`uniform`](Self::uniform), and [`SynthErrorKind::Range`] for a padding out of range.
     pub fn uniform_padded(surface: &Surface, side: u32, padding: u32) -> Result<Self, SynthError> {
         tiles::uniform(surface, side, padding)
     }
@@ -137,7 +137,7 @@ impl Atlas {
     ///
     /// # Errors
     ///
-    /// The errors of [`uniform`](Self::uniform).
+    /// Same as [`uniform`](Self::uniform).
     pub fn by_area(surface: &Surface, side: u32) -> Result<Self, SynthError> {
         tiles::by_area(surface, side, tiles::padding(surface, side))
     }
@@ -146,7 +146,7 @@ impl Atlas {
     ///
     /// # Errors
     ///
-    /// The errors of [`uniform_padded`](Self::uniform_padded).
+    /// Same as [`uniform_padded`](Self::uniform_padded).
     pub fn by_area_padded(surface: &Surface, side: u32, padding: u32) -> Result<Self, SynthError> {
         tiles::by_area(surface, side, padding)
     }
@@ -172,13 +172,14 @@ impl Atlas {
         own_uvs::from_uvs(surface, uvs, size, padding)
     }
 
-    /// The size in texels: columns and rows.
+    /// Returns the size in texels: columns and rows.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.faces.size()
     }
 
-    /// The texture coordinates of the corners of every face, from 0 to 1, with v down; NaN for a face without a place.
+    /// Returns the texture coordinates of the corners of every face, from 0 to 1, with v down; NaN for a face without a
+    /// place.
     #[must_use]
     pub fn uvs(&self) -> Vec<[DVec2; 3]> {
         let size = self.faces.size().map(f64::from);
@@ -186,9 +187,9 @@ impl Atlas {
         self.corners.iter().map(|face| face.map(uv)).collect()
     }
 
-    /// Whether every level of a mipmap can be shown. It cannot in a layout of tiles: past the level that the padding
-    /// allows, texels mix faces that are far apart on the surface, and no padding is wide enough for the coarsest
-    /// levels.
+    /// Returns whether every level of a mipmap can be shown. It cannot in a layout of tiles: past the level that the
+    /// padding allows, texels mix faces that are far apart on the surface, and no padding is wide enough for the
+    /// coarsest levels.
     pub(crate) fn mipmaps(&self) -> bool {
         self.mipmaps
     }
@@ -206,14 +207,15 @@ impl Atlas {
         AtlasReport::new(self, surface)
     }
 
-    /// The L2 stretch of every face of the layout's surface, whose root mean square is [`AtlasReport::stretch`]. It is
-    /// above 1 where texels are larger on the surface than on average, and NaN for a face without a place.
+    /// Returns the L2 stretch of every face of the layout's surface, whose root mean square is
+    /// [`AtlasReport::stretch`]. It is above 1 where texels are larger on the surface than on average, and NaN for a
+    /// face without a place.
     #[must_use]
     pub fn stretches(&self, surface: &Surface) -> Vec<f64> {
         report::stretches(self, surface)
     }
 
-    /// The face of a texel; `None` for a texel that shows no face.
+    /// Returns the face of a texel; `None` for a texel that shows no face.
     ///
     /// # Panics
     ///
@@ -224,8 +226,8 @@ impl Atlas {
         (face != NONE).then_some(FaceIdx(face))
     }
 
-    /// The point of the surface at the center of a texel: on the texel's face or, in the padding, on the face that
-    /// continues it. Past a border of the mesh it is the point where the path met the border.
+    /// Returns the point of the surface at the center of a texel: on the texel's face or, in the padding, on the face
+    /// that continues it. Past a border of the mesh it is the point where the path met the border.
     ///
     /// # Panics
     ///
@@ -249,7 +251,7 @@ impl Atlas {
     }
 }
 
-/// The barycentric weights of a position in a triangle.
+/// Returns the barycentric weights of a position in a triangle.
 fn weights([a, b, c]: [DVec2; 3], at: DVec2) -> [f64; 3] {
     let area = (b - a).perp_dot(c - a);
     let of_b = (at - a).perp_dot(c - a) / area;

@@ -118,7 +118,7 @@ struct Baker<'a, 'p> {
 }
 
 impl Baker<'_, '_> {
-    /// The channels of some rows of the map, texel by texel.
+    /// Returns the channels of some rows of the map, texel by texel.
     fn bake_rows(&self, rows: core::ops::Range<u32>) -> Vec<f32> {
         let width = self.atlas.size()[0];
         let n_channels = self.background.len();

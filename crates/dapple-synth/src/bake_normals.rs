@@ -36,8 +36,8 @@ use glam::DVec3;
 ///
 /// # Errors
 ///
-/// The errors of [`bake_colors`](crate::bake_colors), and [`SynthErrorKind::Count`](crate::SynthErrorKind::Count)
-/// unless there is a normal for each corner.
+/// Same as [`bake_colors`](crate::bake_colors), and [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) unless
+/// there is a normal for each corner.
 ///
 /// # Examples
 ///
@@ -195,8 +195,8 @@ impl<'a> Relief<'a> {
         })
     }
 
-    /// The components of a normal to the right, up and outward, relative to the texture's axes at the end of a walk.
-    /// The given components are those in the tangent frame there.
+    /// Returns the components of a normal to the right, up and outward, relative to the texture's axes at the end of a
+    /// walk. The given components are those in the tangent frame there.
     fn turned(&self, [x, y, z]: [f32; 3], walk: &Walk) -> [f32; 3] {
         let surface = self.origin.synthesizer.surface();
         let face = walk.point.face;
@@ -222,7 +222,8 @@ pub(crate) fn turned(vector: DVec3, from: DVec3, to: DVec3) -> DVec3 {
     vector - sum * (sum.dot(vector) / (1.0 + cos)) + to * (2.0 * from.dot(vector))
 }
 
-/// The unit normal of a tangential part, expressed in a frame of a tangent and a bitangent, and an outward component.
+/// Returns the unit normal of a tangential part, expressed in a frame of a tangent and a bitangent, and an outward
+/// component.
 fn in_frame(along: DVec3, out: f64, [tangent, bitangent]: [DVec3; 2]) -> Normal {
     let normal = DVec3::new(along.dot(tangent), along.dot(bitangent), out);
     // The interpolated normals may cancel where they are opposite.
@@ -230,7 +231,7 @@ fn in_frame(along: DVec3, out: f64, [tangent, bitangent]: [DVec3; 2]) -> Normal 
     Normal { x, y, z }
 }
 
-/// The normal with green inverted.
+/// Returns the normal with green inverted.
 fn turned_over(normal: Normal) -> Normal {
     // Subtract instead of negating: 0 does not become -0.
     let y = 0.0 - normal.y;

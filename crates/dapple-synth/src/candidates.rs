@@ -227,13 +227,13 @@ impl Candidates {
         Ok(candidates)
     }
 
-    /// Number of values of a neighborhood.
+    /// Returns the number of values of a neighborhood.
     #[must_use]
     pub fn dims(&self) -> usize {
         self.dims
     }
 
-    /// Number of neighborhoods.
+    /// Returns the number of neighborhoods.
     #[must_use]
     pub fn len(&self) -> usize {
         self.pixels.len()

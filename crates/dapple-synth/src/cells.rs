@@ -48,7 +48,7 @@ impl Cells {
         }
     }
 
-    /// Number of cells.
+    /// Returns the number of cells.
     pub(crate) fn n_cells(&self) -> usize {
         self.offsets.len() - 1
     }

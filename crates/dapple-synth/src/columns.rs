@@ -36,7 +36,7 @@ pub(crate) fn sum(n_rows: usize, row: impl Fn(usize) -> f64 + Sync) -> f64 {
     sums.into_iter().sum()
 }
 
-/// Whether a predicate holds for every row.
+/// Returns whether a predicate holds for every row.
 pub(crate) fn all(n_rows: usize, row: impl Fn(usize) -> bool + Sync) -> bool {
     let holds = parallel::map(n_rows.div_ceil(BLOCK), |block| {
         (block * BLOCK..((block + 1) * BLOCK).min(n_rows)).all(&row)

@@ -74,8 +74,8 @@ impl<const N: usize> Detail<N> {
         })
     }
 
-    /// The filtered value at a place of the exemplar. `footprint` is the side of the square filter region, in exemplar
-    /// pixels.
+    /// Returns the filtered value at a place of the exemplar. `footprint` is the side of the square filter region, in
+    /// exemplar pixels.
     #[inline]
     pub(crate) fn sample(&self, place: Vec2, footprint: f32) -> [f32; N] {
         let width = footprint * self.factor;
@@ -92,7 +92,7 @@ impl<const N: usize> Detail<N> {
         core::array::from_fn(|channel| a[channel] + part * (b[channel] - a[channel]))
     }
 
-    /// The cubic interpolation of the 4 × 4 pixels around a place, clamped to their range.
+    /// Returns the cubic interpolation of the 4 × 4 pixels around a place, clamped to their range.
     #[inline]
     fn cubic(&self, level: usize, place: Vec2, sharpening: f32) -> [f32; N] {
         let map = &self.levels[level];
@@ -138,8 +138,8 @@ impl<const N: usize> Detail<N> {
     }
 }
 
-/// The weights of four pixels for a place `t` past the second one, `t` from 0 to 1. The weights sum to 1 and their
-/// centroid is the place, so that linear ramps are reproduced.
+/// Returns the weights of four pixels for a place `t` past the second one, `t` from 0 to 1. The weights sum to 1 and
+/// their centroid is the place, so that linear ramps are reproduced.
 #[inline]
 fn weights(t: f32, sharpening: f32) -> [f32; 4] {
     let s = 1.0 - t;
@@ -156,7 +156,7 @@ fn weights(t: f32, sharpening: f32) -> [f32; 4] {
     ]
 }
 
-/// The next coarser level: means of 2 × 2 pixels. On odd sides the last pixels are repeated.
+/// Returns the next coarser level: means of 2 × 2 pixels. On odd sides the last pixels are repeated.
 fn halved<const N: usize>(map: &Raster<[f32; N]>) -> Result<Raster<[f32; N]>, SynthError> {
     let [width, height] = map.size();
     let half = map.size().map(|side| side.div_ceil(2));

@@ -38,7 +38,7 @@ pub fn displaced_sites(
 ///
 /// # Errors
 ///
-/// The errors of [`displaced_sites`].
+/// Same as [`displaced_sites`].
 pub fn displaced_mesh(
     synthesizer: &Synthesizer,
     heights: &[f32],
@@ -67,7 +67,7 @@ fn check(synthesizer: &Synthesizer, heights: &[f32], scale: f64) -> Result<(), S
     Ok(())
 }
 
-/// The mesh with every vertex moved along its normal.
+/// Returns the mesh with every vertex moved along its normal.
 fn moved(mesh: &Mesh, normals: &[DVec3], heights: &[f32], scale: f64) -> Result<Mesh, SynthError> {
     let vertices = mesh.positions().iter().zip(normals).zip(heights);
     let moved = vertices.map(|((&at, &normal), &height)| at + normal * (f64::from(height) * scale));

@@ -48,7 +48,7 @@ pub fn site_model(synthesizer: &Synthesizer, colors: Vec<LinearRgba>) -> Result<
 ///
 /// # Errors
 ///
-/// The errors of [`site_model`].
+/// Same as [`site_model`].
 pub fn point_model(
     synthesizer: &Synthesizer,
     colors: Vec<LinearRgba>,

@@ -138,7 +138,7 @@ impl Endless {
     ///
     /// # Errors
     ///
-    /// The errors of [`new`](Self::new), and [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled).
+    /// Same as [`new`](Self::new), and [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled).
     pub fn new_cancellable(
         exemplar: &Exemplar,
         options: &EndlessOptions,
@@ -194,7 +194,7 @@ impl Endless {
         Ok(texture)
     }
 
-    /// Number of levels.
+    /// Returns the number of levels.
     #[must_use]
     pub fn n_levels(&self) -> usize {
         self.stages.len()

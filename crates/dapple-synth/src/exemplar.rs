@@ -40,7 +40,7 @@ dapple_raster::named! {
 }
 
 impl Edges {
-    /// The wrapping rule for places past an edge.
+    /// Returns the wrapping rule for places past an edge.
     pub(crate) fn wrap(self) -> Wrap {
         match self {
             Self::Cut => Wrap::Mirror,
@@ -79,7 +79,7 @@ impl Area {
         (0..2).all(|axis| (self.first[axis]..self.end[axis]).contains(&place[axis]))
     }
 
-    /// The pixels of the next coarser level whose positions lie in this rectangle.
+    /// Returns the pixels of the next coarser level whose positions lie in this rectangle.
     fn halved(self) -> Self {
         Self {
             first: self.first.map(|at| at.div_ceil(2)),
@@ -87,7 +87,7 @@ impl Area {
         }
     }
 
-    /// The five places along an axis that are averaged for place `at` of the coarser level.
+    /// Returns the five places along an axis that are averaged for place `at` of the coarser level.
     fn taps(self, axis: usize, at: u32, wrap: Wrap) -> [usize; 5] {
         let [first, end] = [self.first, self.end].map(|corner| corner[axis]);
         let center = 2 * i64::from(at) - i64::from(first);
@@ -273,7 +273,7 @@ impl Exemplar {
         Ok(Self { areas, ..exemplar })
     }
 
-    /// The rectangles of the images; the whole exemplar for a single image.
+    /// Returns the rectangles of the images; the whole exemplar for a single image.
     pub(crate) fn areas(&self) -> Vec<Area> {
         if self.areas.is_empty() {
             let [first, end] = [[0; 2], self.size];
@@ -361,31 +361,31 @@ impl Exemplar {
         })
     }
 
-    /// The size in pixels: columns and rows.
+    /// Returns the size in pixels: columns and rows.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// The number of values per pixel.
+    /// Returns the number of values per pixel.
     #[must_use]
     pub fn n_channels(&self) -> usize {
         self.n_channels
     }
 
-    /// The boundary of the exemplar.
+    /// Returns the boundary of the exemplar.
     #[must_use]
     pub fn edges(&self) -> Edges {
         self.edges
     }
 
-    /// The values that are matched: [`n_channels`](Self::n_channels) per pixel, row by row from the top.
+    /// Returns the values that are matched: [`n_channels`](Self::n_channels) per pixel, row by row from the top.
     #[must_use]
     pub fn pixels(&self) -> &[f32] {
         &self.pixels
     }
 
-    /// The pixel grid with its wrapping rule; cut edges are mirrored.
+    /// Returns the pixel grid with its wrapping rule; cut edges are mirrored.
     pub(crate) fn grid(&self) -> Grid<Plain<'_>> {
         Grid {
             colors: self.plain(),
@@ -394,13 +394,13 @@ impl Exemplar {
         }
     }
 
-    /// Whether textures may use a pixel.
+    /// Returns whether textures may use a pixel.
     pub(crate) fn is_usable(&self, pixel: usize) -> bool {
         let usable = self.usable.as_ref();
         usable.is_none_or(|usable| usable[pixel])
     }
 
-    /// The index of the pixel at a place, wrapped if the exemplar wraps; `None` past a cut edge.
+    /// Returns the index of the pixel at a place, wrapped if the exemplar wraps; `None` past a cut edge.
     pub(crate) fn pixel_at(&self, place: [i64; 2]) -> Option<usize> {
         let [width, height] = self.size.map(i64::from);
         let [column, row] = match self.edges {
@@ -411,7 +411,7 @@ impl Exemplar {
         is_within.then_some((row * width + column) as usize)
     }
 
-    /// The values of all pixels.
+    /// Returns the values of all pixels.
     pub(crate) fn plain(&self) -> Plain<'_> {
         Plain {
             values: &self.pixels,
@@ -419,7 +419,7 @@ impl Exemplar {
         }
     }
 
-    /// The image blurred along both axes; `blur` is the weight of each of the two neighbors along an axis.
+    /// Returns the image blurred along both axes; `blur` is the weight of each of the two neighbors along an axis.
     fn blurred(&self, blur: f32) -> Self {
         let n = self.n_channels;
         let [width, height] = self.size.map(|side| side as usize);
@@ -453,7 +453,7 @@ impl Exemplar {
         }
     }
 
-    /// The next coarser level of the pyramid.
+    /// Returns the next coarser level of the pyramid.
     fn halved(&self) -> Self {
         let half = self.size.map(|side| side.div_ceil(2));
         let odd = self.size.iter().any(|side| side % 2 == 1);
@@ -499,7 +499,7 @@ impl Pyramid {
         }
     }
 
-    /// The levels, finest first.
+    /// Returns the levels, finest first.
     #[must_use]
     pub fn levels(&self) -> &[Exemplar] {
         &self.levels
@@ -527,7 +527,7 @@ fn check_weighted(scaled: f32) -> Result<(), SynthError> {
     SynthError::check(holds, "weighted value of a pixel", scaled.into(), range)
 }
 
-/// The square roots of weights; an error for a weight that is not positive and finite.
+/// Returns the square roots of weights; an error for a weight that is not positive and finite.
 pub(crate) fn roots(weights: &[f32]) -> Result<Vec<f32>, SynthError> {
     for &weight in weights {
         let holds = weight > 0.0 && weight.is_finite();
@@ -556,7 +556,7 @@ pub(crate) fn interleaved(planes: &[&Raster<f32>], roots: &[f32]) -> Result<Vec<
     Ok(pixels)
 }
 
-/// The values of the next coarser level of an image; zero outside of the given rectangles.
+/// Returns the values of the next coarser level of an image; zero outside of the given rectangles.
 pub(crate) fn halved(image: &Grid<Plain<'_>>, areas: &[Area]) -> Vec<f32> {
     let Grid { colors, size, wrap } = *image;
     let n = colors.n_channels;
@@ -589,7 +589,7 @@ pub(crate) fn halved(image: &Grid<Plain<'_>>, areas: &[Area]) -> Vec<f32> {
     values
 }
 
-/// The five places along an axis that are averaged for place `at` of the coarser level.
+/// Returns the five places along an axis that are averaged for place `at` of the coarser level.
 pub(crate) fn taps(at: u32, side: u32, wrap: Wrap) -> [usize; 5] {
     let center = 2 * i64::from(at);
     [-2, -1, 0, 1, 2].map(|step| wrap.index(center + step, side) as usize)

@@ -23,7 +23,7 @@ pub(crate) struct Start {
 
 /// Colors of sites, or of the pixels of a grid.
 pub(crate) trait Colors: Copy + Sync {
-    /// Number of channels.
+    /// Returns the number of channels.
     fn n_channels(&self) -> usize;
 
     /// Channels of one site or pixel.
@@ -93,7 +93,7 @@ pub(crate) trait Ground: Sync {
     /// Scratch memory of [`read`](Self::read).
     type Memory: Default + Send;
 
-    /// Number of sites of a level.
+    /// Returns the number of sites of a level.
     fn n_sites(&self, level: usize) -> usize;
 
     /// Blur of the samples from [`read`](Self::read): the weight of each of the two adjacent pixels along an axis,
@@ -190,7 +190,7 @@ impl Painted<'_> {
 }
 
 impl Square {
-    /// Number of samples along a side.
+    /// Returns the number of samples along a side.
     pub(crate) fn side(&self) -> usize {
         2 * self.half as usize + 1
     }

@@ -42,7 +42,7 @@ impl Exemplar {
     ///
     /// # Errors
     ///
-    /// The errors of [`from_planes`](Self::from_planes), and [`SynthErrorKind::Raster`] for guides of a different size.
+    /// Same as [`from_planes`](Self::from_planes), and [`SynthErrorKind::Raster`] for guides of a different size.
     pub fn with_guides(self, guides: &[(&Raster<f32>, f32)]) -> Result<Self, SynthError> {
         for (guide, _) in guides {
             guide.check_same_size(self.size)?;
@@ -56,7 +56,7 @@ impl Exemplar {
         })
     }
 
-    /// The number of [guides](Self::with_guides).
+    /// Returns the number of [guides](Self::with_guides).
     #[must_use]
     pub fn n_guides(&self) -> usize {
         self.guides.roots.len()
@@ -64,7 +64,7 @@ impl Exemplar {
 }
 
 impl Guides {
-    /// The guides of the next coarser level of an image with the given size, in which the images have the given
+    /// Returns the guides of the next coarser level of an image with the given size, in which the images have the given
     /// rectangles.
     pub(crate) fn halved(&self, size: [u32; 2], wrap: [Wrap; 2], areas: &[Area]) -> Self {
         Self {
@@ -73,7 +73,7 @@ impl Guides {
         }
     }
 
-    /// The values of all guides at a pixel.
+    /// Returns the values of all guides at a pixel.
     pub(crate) fn of(&self, pixel: usize) -> &[f32] {
         let n = self.roots.len();
         &self.values[pixel * n..][..n]
@@ -152,12 +152,12 @@ impl Targets {
         Ok(Self { levels, n })
     }
 
-    /// The number of guides.
+    /// Returns the number of guides.
     pub(crate) fn len(&self) -> usize {
         self.n
     }
 
-    /// The values of all guides at a site of a level.
+    /// Returns the values of all guides at a site of a level.
     pub(crate) fn of(&self, level: usize, site: u32) -> &[f32] {
         &self.levels[level][site as usize * self.n..][..self.n]
     }

@@ -117,24 +117,24 @@ impl MeshExemplar {
         })
     }
 
-    /// The number of values per site.
+    /// Returns the number of values per site.
     #[must_use]
     pub fn n_channels(&self) -> usize {
         self.pyramid.levels[0].n_channels
     }
 
-    /// The source surface with its sites and directions.
+    /// Returns the source surface with its sites and directions.
     #[must_use]
     pub fn source(&self) -> &Synthesizer {
         &self.origin.synthesizer
     }
 
-    /// The candidate neighborhoods of a pass.
+    /// Returns the candidate neighborhoods of a pass.
     fn candidates(&self, pass: &Pass, options: &Options) -> Result<Candidates, SynthError> {
         rows::candidates(&self.origin.synthesizer, &self.pyramid, pass, options)
     }
 
-    /// The finest `n_levels` levels of sites; an error if the source has fewer.
+    /// Returns the finest `n_levels` levels of sites; an error if the source has fewer.
     fn levels(&self, n_levels: usize) -> Result<&[Exemplar], SynthError> {
         self.pyramid.levels.get(..n_levels).ok_or_else(|| {
             SynthError::new(SynthErrorKind::Count {
@@ -179,8 +179,8 @@ impl Synthesizer {
     ///
     /// # Errors
     ///
-    /// The errors of [`synthesize_guided`](Self::synthesize_guided), and [`SynthErrorKind::Count`] for more levels than
-    /// the exemplar's sites have.
+    /// Same as [`synthesize_guided`](Self::synthesize_guided), and [`SynthErrorKind::Count`] for more levels than the
+    /// exemplar's sites have.
     pub fn lift(
         &self,
         exemplar: &MeshExemplar,

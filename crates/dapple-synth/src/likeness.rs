@@ -91,7 +91,7 @@ impl Planes {
         }
     }
 
-    /// The projection of each patch onto a direction, in ascending order.
+    /// Returns the projection of each patch onto a direction, in ascending order.
     fn project(&self, side: usize, direction: &[f32]) -> Vec<f32> {
         let [width, height] = self.size;
         let [columns, rows] = [width - side + 1, height - side + 1];
@@ -114,7 +114,7 @@ impl Planes {
     }
 }
 
-/// The sliced Wasserstein distance between the two sets of patches of the given side.
+/// Returns the sliced Wasserstein distance between the two sets of patches of the given side.
 fn distance(images: &[Planes; 2], side: usize) -> f64 {
     let dims = images[0].channels.len() * side * side;
     let mut sum = 0.0;
@@ -139,7 +139,7 @@ fn direction(number: u64, dims: usize) -> Vec<f32> {
     parts.iter().map(|part| (part / length) as f32).collect()
 }
 
-/// The area between the quantile functions of two sets of numbers in ascending order: W1.
+/// Returns the area between the quantile functions of two sets of numbers in ascending order: W1.
 fn area_between(a: &[f32], b: &[f32]) -> f64 {
     // Each number has an equal share of 1. In units of 1 / (a.len() · b.len()) all shares are integers.
     let [share_a, share_b] = [b.len() as u64, a.len() as u64];

@@ -70,7 +70,7 @@ impl<'a> Links<'a> {
         found
     }
 
-    /// Number of sites.
+    /// Returns the number of sites.
     #[inline]
     pub(crate) fn len(&self) -> usize {
         self.offsets.len() - 1

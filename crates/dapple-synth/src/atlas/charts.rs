@@ -165,8 +165,8 @@ impl Watch<'_> {
     }
 }
 
-/// Number of connected components of the faces with an area: a lower bound of the number of charts. Vertices at the
-/// same position count as one.
+/// Returns the number of connected components of the faces with an area: a lower bound of the number of charts.
+/// Vertices at the same position count as one.
 fn n_components(positions: &[[f32; 3]], indices: &[u32]) -> usize {
     // Join vertices with the same position: each points to the first of them. Adding zero turns -0 into 0.
     let bits = |vertex: u32| positions[vertex as usize].map(|part| (part + 0.0).to_bits());
@@ -200,7 +200,7 @@ fn n_components(positions: &[[f32; 3]], indices: &[u32]) -> usize {
     counted.into_iter().filter(|&counted| counted).count()
 }
 
-/// The root of a vertex in a union-find forest, with path halving.
+/// Returns the root of a vertex in a union-find forest, with path halving.
 fn root(roots: &mut [u32], mut vertex: u32) -> u32 {
     while roots[vertex as usize] != vertex {
         let above = roots[roots[vertex as usize] as usize];
@@ -210,7 +210,7 @@ fn root(roots: &mut [u32], mut vertex: u32) -> u32 {
     vertex
 }
 
-/// The corners of a face; NaN if it has no area or is mirrored.
+/// Returns the corners of a face; NaN if it has no area or is mirrored.
 fn with_area([a, b, c]: [DVec2; 3]) -> [DVec2; 3] {
     // A comparison with NaN is false.
     if (b - a).perp_dot(c - a) < 0.0 {

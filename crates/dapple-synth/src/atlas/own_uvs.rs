@@ -51,8 +51,8 @@ pub(super) fn covered(
     })
 }
 
-/// The corners in texels, translated by whole units so that the centroid is in the unit square; NaN for a face without
-/// an area or too far away.
+/// Returns the corners in texels, translated by whole units so that the centroid is in the unit square; NaN for a face
+/// without an area or too far away.
 fn place(uvs: [DVec2; 3], scale: DVec2) -> [DVec2; 3] {
     let turns = ((uvs[0] + uvs[1] + uvs[2]) / 3.0).floor();
     let corners = uvs.map(|uv| (uv - turns) * scale);
@@ -125,7 +125,7 @@ fn spread(faces: &mut Raster<u32>, padding: u32) {
     }
 }
 
-/// The texel itself and its neighbors, diagonal ones included.
+/// Returns the texel itself and its neighbors, diagonal ones included.
 fn neighbors(texel: usize, size: [u32; 2]) -> impl Iterator<Item = usize> {
     let [width, height] = size.map(|length| length as usize);
     let (row, column) = (texel / width, texel % width);

@@ -34,7 +34,7 @@ impl AtlasReport {
     }
 }
 
-/// The index of each face's piece, from 0; [`NONE`] for a face without a place.
+/// Returns the index of each face's piece, from 0; [`NONE`] for a face without a place.
 pub(super) fn pieces(atlas: &Atlas, surface: &Surface) -> Vec<u32> {
     let corners = &atlas.corners;
     let mut pieces = vec![NONE; corners.len()];
@@ -64,7 +64,7 @@ pub(super) fn pieces(atlas: &Atlas, surface: &Surface) -> Vec<u32> {
     pieces
 }
 
-/// The positions of the two ends of an edge in the map, in texels.
+/// Returns the positions of the two ends of an edge in the map, in texels.
 fn ends(corners: &[[DVec2; 3]], at: FaceEdge) -> [DVec2; 2] {
     let start = usize::from(at.edge);
     [start, (start + 1) % 3].map(|corner| corners[at.face.index()][corner])
@@ -84,7 +84,7 @@ fn used(atlas: &Atlas) -> f64 {
     count as f64 / (f64::from(width) * f64::from(height))
 }
 
-/// The L2 stretch of all faces with a place, weighted by their areas.
+/// Returns the L2 stretch of all faces with a place, weighted by their areas.
 fn stretch(atlas: &Atlas, surface: &Surface) -> f64 {
     let (mut sum, mut area) = (0.0, 0.0);
     for (face, stretch) in (0..).map(FaceIdx).zip(stretches(atlas, surface)) {
@@ -96,7 +96,7 @@ fn stretch(atlas: &Atlas, surface: &Surface) -> f64 {
     if area > 0.0 { (sum / area).sqrt() } else { 1.0 }
 }
 
-/// The L2 stretch of every face; NaN for a face without a place.
+/// Returns the L2 stretch of every face; NaN for a face without a place.
 pub(super) fn stretches(atlas: &Atlas, surface: &Surface) -> Vec<f64> {
     let (mut on_surface, mut in_map) = (0.0, 0.0);
     let faces = (0..).map(FaceIdx).zip(&atlas.corners);
@@ -120,7 +120,7 @@ pub(super) fn stretches(atlas: &Atlas, surface: &Surface) -> Vec<f64> {
     reaches.into_iter().map(|reach| reach * density).collect()
 }
 
-/// The root mean square length, over all directions, of a texel on the surface; NaN for a face without a place.
+/// Returns the root mean square length, over all directions, of a texel on the surface; NaN for a face without a place.
 fn reach(surface: &Surface, face: FaceIdx, [a, b, c]: [DVec2; 3]) -> f64 {
     let [pa, pb, pc] = surface.mesh().corners(face);
     let (b, c, pb, pc) = (b - a, c - a, pb - pa, pc - pa);

@@ -60,8 +60,8 @@ impl Tangents {
         tangents
     }
 
-    /// The tangent and the bitangent at a texel, perpendicular to the unit normal there. The bitangent points to the
-    /// top of the map.
+    /// Returns the tangent and the bitangent at a texel, perpendicular to the unit normal there. The bitangent points
+    /// to the top of the map.
     pub(crate) fn frame(&self, atlas: &Atlas, texel: [u32; 2], normal: DVec3) -> [DVec3; 2] {
         let Some(face) = atlas.face(texel) else {
             let tangent = normal.any_orthonormal_vector();
@@ -70,7 +70,7 @@ impl Tangents {
         self.frame_of(face, weights_within(atlas, face, texel), normal)
     }
 
-    /// The tangent and the bitangent at the point of a face with the given barycentric weights.
+    /// Returns the tangent and the bitangent at the point of a face with the given barycentric weights.
     pub(crate) fn frame_of(&self, face: FaceIdx, weights: [f64; 3], normal: DVec3) -> [DVec3; 2] {
         let mixed = sum(self.corners[face.index()], weights);
         let tangent = flat_part(mixed, normal).normalize_or(normal.any_orthonormal_vector());
@@ -80,30 +80,31 @@ impl Tangents {
     }
 }
 
-/// The interpolated vector of a face's corners at a texel. In the padding it is extrapolated as the border's value.
+/// Returns the interpolated vector of a face's corners at a texel. In the padding it is extrapolated as the border's
+/// value.
 pub(crate) fn mixed(atlas: &Atlas, face: FaceIdx, texel: [u32; 2], corners: [DVec3; 3]) -> DVec3 {
     sum(corners, weights_within(atlas, face, texel))
 }
 
-/// The barycentric weights of a texel in a face, each clamped to 0 to 1.
+/// Returns the barycentric weights of a texel in a face, each clamped to 0 to 1.
 fn weights_within(atlas: &Atlas, face: FaceIdx, texel: [u32; 2]) -> [f64; 3] {
     let weights = weights(atlas.corners[face.index()], center(texel));
     weights.map(|weight| weight.clamp(0.0, 1.0))
 }
 
-/// The weighted sum of the vectors at the corners of a face.
+/// Returns the weighted sum of the vectors at the corners of a face.
 pub(crate) fn sum(corners: [DVec3; 3], weights: [f64; 3]) -> DVec3 {
     let parts = corners.iter().zip(weights);
     parts.map(|(&corner, weight)| corner * weight).sum()
 }
 
-/// The center of a texel, in texels.
+/// Returns the center of a texel, in texels.
 pub(super) fn center([column, row]: [u32; 2]) -> DVec2 {
     DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5)
 }
 
-/// The direction of +u on a face, and whether the face is mirrored in the map; any direction for a face without a
-/// place.
+/// Returns the direction of +u on a face, and whether the face is mirrored in the map; any direction for a face without
+/// a place.
 fn face_tangent([a, b, c]: [DVec3; 3], [ua, ub, uc]: [DVec2; 3]) -> (DVec3, bool) {
     let (b, c, ub, uc) = (b - a, c - a, ub - ua, uc - ua);
     // Rows go down: a face that is counterclockwise from outside and not mirrored has a negative product.
@@ -113,12 +114,12 @@ fn face_tangent([a, b, c]: [DVec3; 3], [ua, ub, uc]: [DVec2; 3]) -> (DVec3, bool
     (tangent.normalize_or_zero(), is_mirrored)
 }
 
-/// The component of a vector perpendicular to a unit vector.
+/// Returns the component of a vector perpendicular to a unit vector.
 fn flat_part(vector: DVec3, normal: DVec3) -> DVec3 {
     vector - normal * vector.dot(normal)
 }
 
-/// The angle of a triangle at a corner, in radians.
+/// Returns the angle of a triangle at a corner, in radians.
 fn angle(corners: [DVec3; 3], corner: usize) -> f64 {
     let at = corners[corner];
     let [to, from] = [1, 2].map(|step| (corners[(corner + step) % 3] - at).normalize_or_zero());

@@ -164,7 +164,7 @@ fn bad_layouts_are_refused() {
     assert_eq!(atlas.coverage(), 0.0, "uv that are not finite show nothing");
 }
 
-/// The set of faces that each texel of the next mipmap level mixes: the union over 2 × 2 texels.
+/// Returns the set of faces that each texel of the next mipmap level mixes: the union over 2 × 2 texels.
 fn halved(level: &[Vec<Vec<u32>>]) -> Vec<Vec<Vec<u32>>> {
     let side = level.len() / 2;
     let faces = |row: usize, column: usize| {

@@ -44,7 +44,7 @@ pub(super) fn padding(surface: &Surface, side: u32) -> u32 {
     part.checked_ilog2().map_or(1, |log| 1 << log.min(10))
 }
 
-/// Number of tiles per row if all have the same size.
+/// Returns the number of tiles per row if all have the same size.
 fn tiles_across(surface: &Surface) -> u32 {
     let n_tiles = (surface.mesh().faces().len() as u32).div_ceil(2);
     let root = n_tiles.isqrt();
@@ -175,7 +175,7 @@ fn fill(
     })
 }
 
-/// The corner opposite the longest edge, where a right angle distorts least; of equal edges the first.
+/// Returns the corner opposite the longest edge, where a right angle distorts least; of equal edges the first.
 fn opposite_longest(surface: &Surface, face: FaceIdx) -> usize {
     let [a, b, c] = surface.mesh().corners(face);
     let lengths = [

@@ -82,7 +82,7 @@ impl Origin {
         self.synthesizer.hierarchy()
     }
 
-    /// The point of a place, and the source's down direction there, in the plane of its face.
+    /// Returns the point of a place, and the source's down direction there, in the plane of its face.
     pub(crate) fn walk(&self, place: Place) -> Walk {
         let surface = self.synthesizer.surface();
         let point = self.hierarchy().sites().points()[place.site as usize];
@@ -110,7 +110,7 @@ impl Origin {
         }
     }
 
-    /// The texture coordinates at a point.
+    /// Returns the texture coordinates at a point.
     pub(crate) fn uv(&self, point: SurfacePoint) -> DVec2 {
         let weights = self.synthesizer.surface().weights(point);
         let corners = self.uvs[point.face.index()].iter().zip(weights);
@@ -182,7 +182,7 @@ impl LiftedPlaces {
         lifted
     }
 
-    /// The nearest texel of a map at every place.
+    /// Returns the nearest texel of a map at every place.
     pub(crate) fn transfer<T: Copy>(&self, map: &Raster<T>) -> Vec<T> {
         let size = map.size().map(f64::from);
         let wrap = self.origin.edges.wrap();
@@ -257,7 +257,7 @@ impl<'a, const N: usize> LiftedDetail<'a, N> {
         })
     }
 
-    /// The filtered value at a point. `footprint` is the side of the square filter region, in pixels.
+    /// Returns the filtered value at a point. `footprint` is the side of the square filter region, in pixels.
     pub(crate) fn sample(&self, point: SurfacePoint, footprint: f32) -> [f32; N] {
         let at = self.origin.uv(point) * self.size - 0.5;
         self.detail

@@ -35,8 +35,7 @@ impl MeshExemplar {
     ///
     /// # Errors
     ///
-    /// The errors of [`Synthesizer::lift`](crate::Synthesizer::lift), except those of guides, which a repair does not
-    /// use.
+    /// Same as [`Synthesizer::lift`](crate::Synthesizer::lift), except those of guides, which a repair does not use.
     pub fn repair(
         &self,
         options: &Options,
@@ -56,7 +55,7 @@ impl MeshExemplar {
         self.grow(self.source(), &ground, &options, &mut callback)
     }
 
-    /// The initial sources of the sites of each level.
+    /// Returns the initial sources of the sites of each level.
     fn starts(&self, levels: &[Exemplar]) -> Vec<Start> {
         let start = |level: &Exemplar| {
             let n_sites = level.size[0];
@@ -93,7 +92,7 @@ impl MeshExemplar {
     }
 }
 
-/// The sites of a level to synthesize, from the rims of holes inward; the sites of a ring keep the given order.
+/// Returns the sites of a level to synthesize, from the rims of holes inward; the sites of a ring keep the given order.
 pub(crate) fn order(start: &Start, graph: &SiteGraph, mut order: Vec<u32>) -> Vec<u32> {
     let rings = rings(graph, &start.is_kept);
     order.retain(|&site| !start.is_kept[site as usize]);
@@ -211,8 +210,8 @@ struct Filler<'a> {
 }
 
 impl Filler<'_> {
-    /// The middle site of the piece whose ring is most similar to the ring of the hole, the first of several; `None` if
-    /// no piece is as large as the hole.
+    /// Returns the middle site of the piece whose ring is most similar to the ring of the hole, the first of several;
+    /// `None` if no piece is as large as the hole.
     fn best(&self, hole: &Hole) -> Option<u32> {
         const CHUNK: usize = 64;
         let n_sites = self.is_kept.len();
@@ -237,8 +236,8 @@ impl Filler<'_> {
         best.1
     }
 
-    /// The sum of squared differences between the ring of a hole and that of the piece around a middle site. `None` if
-    /// it is not below a limit, or if a site of the piece is not kept.
+    /// Returns the sum of squared differences between the ring of a hole and that of the piece around a middle site.
+    /// `None` if it is not below a limit, or if a site of the piece is not kept.
     fn distance(&self, hole: &Hole, first: u32, limit: f64) -> Option<f64> {
         let mut distance = 0.0;
         let colors = self.exemplar.plain();
@@ -257,8 +256,8 @@ impl Filler<'_> {
         is_whole.then_some(distance)
     }
 
-    /// The site nearest to the end of a walk of `off` from a site; `None` if the walk meets a border, or if no site is
-    /// in reach or the nearest is not kept.
+    /// Returns the site nearest to the end of a walk of `off` from a site; `None` if the walk meets a border, or if no
+    /// site is in reach or the nearest is not kept.
     fn site_at(&self, site: u32, off: Vec2) -> Option<u32> {
         let walk = self.origin.walk(Place { site, off });
         if walk.left != 0.0 {

@@ -13,8 +13,8 @@ const CHUNK: usize = 512;
 /// Minimum distance between adjacent samples, in spacings. A smaller distance means a border or a sharp fold.
 const LEAST: f64 = 0.5;
 
-/// The neighborhoods of all sites of the pass's level that meet no border, fold or unusable site. If too few remain,
-/// the neighborhoods of all usable sites.
+/// Returns the neighborhoods of all sites of the pass's level that meet no border, fold or unusable site. If too few
+/// remain, the neighborhoods of all usable sites.
 pub(super) fn candidates(
     source: &Synthesizer,
     pyramid: &Pyramid,
@@ -90,7 +90,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Number of values of a neighborhood, guides included.
+    /// Returns the number of values of a neighborhood, guides included.
     fn dims(&self) -> usize {
         let level = &self.pyramid.levels()[self.level];
         self.terms.len() * level.n_channels + level.n_guides()
@@ -146,7 +146,7 @@ impl Reader<'_> {
         memory.is_spread(LEAST * self.ground.hierarchy.levels()[reads].spacing())
     }
 
-    /// Whether all sites of a neighborhood are usable.
+    /// Returns whether all sites of a neighborhood are usable.
     fn is_usable(&self, site: u32, samples: [&Samples; 2]) -> bool {
         let usable = |step: usize, site: u32| {
             self.pyramid.levels()[self.level + step].is_usable(site as usize)
@@ -158,8 +158,8 @@ impl Reader<'_> {
             })
     }
 
-    /// The 3 × 3 sites around a site, row by row: the nearest site to each of the eight steps, with the site itself in
-    /// the center.
+    /// Returns the 3 × 3 sites around a site, row by row: the nearest site to each of the eight steps, with the site
+    /// itself in the center.
     fn read_beside(&self, site: u32, memory: &mut MeshMemory) -> [u32; 9] {
         let square = Square {
             site,

@@ -64,7 +64,7 @@ fn options(n_levels: usize) -> Options {
     }
 }
 
-/// The neighborhood of a site, part by part, on a surface whose sites have the given sources.
+/// Returns the neighborhood of a site, part by part, on a surface whose sites have the given sources.
 fn neighborhood(
     ground: &MeshGround<'_>,
     pass: &Pass,
@@ -159,7 +159,7 @@ fn lifting_is_the_pseudo_code_with_neighborhoods_of_the_source() {
     assert!(found == expected[0], "other sites than the pseudo-code's");
 }
 
-/// The quantiles of values and of gradient lengths.
+/// Returns the quantiles of values and of gradient lengths.
 fn looks(map: &Raster<f32>) -> [[f32; 5]; 2] {
     let quantiles = |mut values: Vec<f32>| {
         values.sort_unstable_by(f32::total_cmp);
@@ -209,7 +209,7 @@ fn square_with_a_picture_gives_about_what_the_picture_gives() {
     }
 }
 
-/// The texture of a source on itself: every site is its own source.
+/// Returns the texture of a source on itself: every site is its own source.
 fn identity(exemplar: &MeshExemplar, between: crate::Sources) -> SurfaceTexture {
     let source = exemplar.source();
     let n_sites = source.hierarchy().sites().len() as u32;

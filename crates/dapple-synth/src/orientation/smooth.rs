@@ -197,7 +197,7 @@ impl<'a> Smooth<'a> {
         conjugate_gradients(self, powers, STEPS_MAX_FIXED);
     }
 
-    /// The n-th power of a known direction in the frame of its site.
+    /// Returns the n-th power of a known direction in the frame of its site.
     fn power(&self, known: &Known) -> DVec2 {
         let [x, y] = self.frames[known.site].map(|axis| axis.dot(known.vector));
         self.field

@@ -29,8 +29,8 @@ impl Symmetry {
         }
     }
 
-    /// Number of quarter turns, allowed by the symmetry, that rotate a direction about a normal nearest to another
-    /// direction.
+    /// Returns the number of quarter turns, allowed by the symmetry, that rotate a direction about a normal nearest to
+    /// another direction.
     #[inline]
     pub(crate) fn quarters_toward(self, direction: DVec3, normal: DVec3, other: DVec3) -> u8 {
         if self == Self::One {
@@ -40,8 +40,8 @@ impl Symmetry {
         self.quarters_to(DVec2::new(direction.dot(other), right.dot(other)))
     }
 
-    /// Number of quarter turns, allowed by the symmetry, that rotate (1, 0) nearest to a vector. One quarter turn gives
-    /// (0, 1). Ties go to 0, then to 2.
+    /// Returns the number of quarter turns, allowed by the symmetry, that rotate (1, 0) nearest to a vector. One
+    /// quarter turn gives (0, 1). Ties go to 0, then to 2.
     #[inline]
     pub(crate) fn quarters_to(self, DVec2 { x, y }: DVec2) -> u8 {
         match self {
@@ -62,8 +62,8 @@ impl Symmetry {
         )
     }
 
-    /// The n-th power of a unit complex number, where n is the number of equivalent directions. They all have the same
-    /// power.
+    /// Returns the n-th power of a unit complex number, where n is the number of equivalent directions. They all have
+    /// the same power.
     pub(crate) fn power(self, number: DVec2) -> DVec2 {
         match self {
             Self::One => number,
@@ -131,7 +131,7 @@ mod tests {
     use super::*;
     use dapple_raster::Named as _;
 
-    /// The unit complex number of an angle in degrees.
+    /// Returns the unit complex number of an angle in degrees.
     fn unit(degrees: f64) -> DVec2 {
         let (sin, cos) = libm::sincos(degrees.to_radians());
         DVec2::new(cos, sin)

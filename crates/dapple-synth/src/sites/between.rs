@@ -32,7 +32,7 @@ pub(crate) struct Edge {
 }
 
 impl Edge {
-    /// The two points that divide the edge into thirds.
+    /// Returns the two points that divide the edge into thirds.
     pub(crate) fn thirds(&self, surface: &Surface) -> [SurfacePoint; 2] {
         [1.0, 2.0].map(|third| {
             surface
@@ -127,7 +127,7 @@ impl Star {
         }
     }
 
-    /// Whether some circle through the site and the neighbor of an arm has no other neighbor inside.
+    /// Returns whether some circle through the site and the neighbor of an arm has no other neighbor inside.
     ///
     /// The center of such a circle is `flat / 2 + t perp(flat)`. Every other neighbor bounds t from one side, and the
     /// circle exists if the interval of t is not empty.

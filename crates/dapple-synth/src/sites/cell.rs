@@ -144,7 +144,8 @@ impl Cell {
         None
     }
 
-    /// Whether the bisector of a point cuts off a corner (greater), passes through it (equal), or misses it (less).
+    /// Returns whether the bisector of a point cuts off a corner (greater), passes through it (equal), or misses it
+    /// (less).
     fn cuts(&self, index: usize, new: &Side) -> Ordering {
         let a = &self.sides[index];
         let b = &self.sides[self.after(index)];
@@ -223,8 +224,8 @@ impl Cell {
         at
     }
 
-    /// Whether the bisector of a point removes the whole side of a neighbor. The bisector is known to cut off or pass
-    /// through one end of the side; `corner` is the other end.
+    /// Returns whether the bisector of a point removes the whole side of a neighbor. The bisector is known to cut off
+    /// or pass through one end of the side; `corner` is the other end.
     #[inline]
     fn hides(&self, neighbor: usize, corner: usize, new: &Side) -> bool {
         let other = &self.sides[corner].corner;
@@ -238,7 +239,8 @@ impl Cell {
             && (!after.corner.is_open || turns(after.at, new.at).is_gt())
     }
 
-    /// Whether a neighbor lies on an empty circle through the origin with a squared diameter of at most `limit_sq`.
+    /// Returns whether a neighbor lies on an empty circle through the origin with a squared diameter of at most
+    /// `limit_sq`.
     ///
     /// The centers of its empty circles form its side of the cell. The smallest circle is centered halfway between the
     /// neighbor and the origin if that point is on the side, and at the nearer corner otherwise.
@@ -295,7 +297,7 @@ impl Corner {
         self.lean.perp_dot(new.at) - new.length_sq * self.turn
     }
 
-    /// The corner between a neighbor `a` and the next one `b`, counterclockwise.
+    /// Returns the corner between a neighbor `a` and the next one `b`, counterclockwise.
     #[inline]
     fn new(a: &Side, b: &Side) -> Self {
         if turns(a.at, b.at).is_le() {

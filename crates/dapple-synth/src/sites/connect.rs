@@ -122,12 +122,12 @@ impl Stars {
         stars
     }
 
-    /// Number of sites.
+    /// Returns the number of sites.
     pub(crate) fn len(&self) -> usize {
         self.spans.len()
     }
 
-    /// The star of a site, counterclockwise.
+    /// Returns the star of a site, counterclockwise.
     #[inline]
     pub(crate) fn star(&self, site: SiteIdx) -> &[Spoke] {
         let [from, to] = self.spans[site.index()].map(|at| at as usize);

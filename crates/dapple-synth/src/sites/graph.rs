@@ -74,13 +74,13 @@ impl SiteGraph {
         Self { offsets, neighbors }
     }
 
-    /// Number of sites.
+    /// Returns the number of sites.
     #[must_use]
     pub fn len(&self) -> usize {
         self.offsets.len().saturating_sub(1)
     }
 
-    /// Whether there are no sites.
+    /// Returns whether there are no sites.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -103,7 +103,7 @@ impl SiteGraph {
         self.offsets[site.index()] as usize..self.offsets[site.index() + 1] as usize
     }
 
-    /// Number of edges, each counted once.
+    /// Returns the number of edges, each counted once.
     #[must_use]
     pub fn n_edges(&self) -> usize {
         self.neighbors.len() / 2

@@ -115,7 +115,7 @@ impl SiteGrid {
         &self.members
     }
 
-    /// The cells that any ball of this radius can meet if its center is in the cell of `position`.
+    /// Returns the cells that any ball of this radius can meet if its center is in the cell of `position`.
     #[inline]
     pub(crate) fn block(&self, position: DVec3, radius: f64) -> Block {
         // One cell more than needed if the radius is a whole number of cells, since rounding could matter there.

@@ -158,8 +158,8 @@ impl Hierarchy {
     }
 }
 
-/// Number of sites for which an image of `size` pixels repeats about `repeats` times along the longest side of the
-/// surface's bounding box. Neighboring sites are then as far apart as the pixels of the image.
+/// Returns the number of sites for which an image of `size` pixels repeats about `repeats` times along the longest side
+/// of the surface's bounding box. Neighboring sites are then as far apart as the pixels of the image.
 ///
 /// The result is at least 1. See [`repeats_of_sites`] for the inverse.
 ///
@@ -195,8 +195,8 @@ pub fn sites_for_repeats(
     Ok((ratio * ratio).round().clamp(1.0, (1_u64 << 53) as f64) as usize)
 }
 
-/// Number of times that an image of `size` pixels repeats along the longest side of the surface's bounding box, for a
-/// number of sites. Inverse of [`sites_for_repeats`].
+/// Returns the number of times that an image of `size` pixels repeats along the longest side of the surface's bounding
+/// box, for a number of sites. Inverse of [`sites_for_repeats`].
 #[must_use]
 pub fn repeats_of_sites(surface: &Surface, size: [u32; 2], n_sites: usize) -> f64 {
     let positions = surface.mesh().positions().iter().copied();
@@ -240,14 +240,14 @@ fn check_crossings(surface: &Surface, n_sites: usize, seed: Seed) -> Result<(), 
 }
 
 impl Level {
-    /// Number of sites. The sites of this level are those with a lower index.
+    /// Returns the number of sites. The sites of this level are those with a lower index.
     #[must_use]
     pub fn n_sites(&self) -> usize {
         self.n_sites
     }
 
-    /// The paper's r, in units of the mesh: spacing of a hexagonal lattice with as many sites,
-    /// `sqrt(2 A / (sqrt(3) n))`.
+    /// Returns the paper's r, in units of the mesh: spacing of a hexagonal lattice with as many sites, `sqrt(2 A /
+    /// (sqrt(3) n))`.
     #[must_use]
     pub fn spacing(&self) -> f64 {
         self.spacing
@@ -259,7 +259,7 @@ impl Level {
         &self.connected.graph
     }
 
-    /// Number of edges that are in the star of only one of their two sites: the paper's disagreements.
+    /// Returns the number of edges that are in the star of only one of their two sites: the paper's disagreements.
     #[must_use]
     pub fn one_sided_edges(&self) -> usize {
         self.connected.one_sided

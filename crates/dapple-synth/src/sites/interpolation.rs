@@ -97,7 +97,7 @@ impl Oriented<'_> {
         nearest.site
     }
 
-    /// Whether the normal of a site is at most 90 degrees from another normal.
+    /// Returns whether the normal of a site is at most 90 degrees from another normal.
     #[inline]
     fn is_on_side(&self, site: SiteIdx, normal: DVec3) -> bool {
         self.normals[site.index()].dot(normal) >= 0.0

@@ -42,13 +42,13 @@ impl Sites {
         }
     }
 
-    /// Number of sites.
+    /// Returns the number of sites.
     #[must_use]
     pub fn len(&self) -> usize {
         self.points.len()
     }
 
-    /// Whether there are no sites.
+    /// Returns whether there are no sites.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()

@@ -160,7 +160,7 @@ impl Edges {
         crossed
     }
 
-    /// Whether these neighbors are consecutive in the row of a site.
+    /// Returns whether these neighbors are consecutive in the row of a site.
     fn are_in_a_row(&self, site: u32, neighbors: [u32; 3]) -> bool {
         let row = self.row(site);
         let begins =
@@ -256,7 +256,7 @@ impl Filler<'_> {
         corners.min_by(|&a, &b| length(a).total_cmp(&length(b)))
     }
 
-    /// Whether a triangle faces the same way as the normal of its second site.
+    /// Returns whether a triangle faces the same way as the normal of its second site.
     fn is_outward(&self, [a, middle, b]: [u32; 3]) -> bool {
         let up = (self.at(middle) - self.at(a)).cross(self.at(b) - self.at(middle));
         up.dot(self.sites.normals[middle as usize]) > 0.0

@@ -239,8 +239,8 @@ impl<'a> LevelSweep<'a> {
         sum
     }
 
-    /// The paper's Δ: lead of `site` over `other` along the field, in units of the mesh; 0 where their orientations
-    /// cancel.
+    /// Returns the paper's Δ: lead of `site` over `other` along the field, in units of the mesh; 0 where their
+    /// orientations cancel.
     #[inline]
     fn step(&self, site: usize, other: usize) -> f64 {
         let vectors = self.orientation.vectors();

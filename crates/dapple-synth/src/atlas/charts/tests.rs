@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use std::collections::BTreeSet;
 use std::sync::Mutex;
 
-/// The unit cube.
+/// Returns the unit cube.
 fn cube() -> Mesh {
     let bits = (0..8).map(|corner| [0, 1, 2].map(|axis| f64::from(corner >> axis & 1)));
     let sides = [
@@ -115,7 +115,7 @@ fn charts_are_as_far_apart_as_twice_their_padding() {
     }
 }
 
-/// The texels that are not at the border of the map.
+/// Returns the texels that are not at the border of the map.
 fn texels(atlas: &Atlas) -> impl Iterator<Item = [u32; 2]> {
     let [width, height] = atlas.size();
     (5..height - 5).flat_map(move |row| (5..width - 5).map(move |column| [column, row]))

@@ -65,8 +65,8 @@ fn indices(mesh: &Mesh, normals: &[DVec3], orientation: &Orientation) -> (Vec<f6
     )
 }
 
-/// Number of singularities of a field on the finest level, the sum of their indices in n-ths of a turn, and the Euler
-/// characteristic.
+/// Returns the number of singularities of a field on the finest level, the sum of their indices in n-ths of a turn, and
+/// the Euler characteristic.
 fn singularities(hierarchy: &Hierarchy, orientation: &Orientation) -> (usize, f64, i64) {
     let mesh = hierarchy.triangles(0).unwrap().mesh;
     let (indices, euler) = indices(&mesh, hierarchy.sites().normals(), orientation);

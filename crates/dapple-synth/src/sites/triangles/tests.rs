@@ -17,7 +17,7 @@ fn triangles(positions: &[DVec3], normals: &[DVec3], spacing: f64) -> SiteTriang
     .unwrap()
 }
 
-/// Number of edges with a single triangle. Asserts that no edge has two triangles on one side.
+/// Returns the number of edges with a single triangle. Asserts that no edge has two triangles on one side.
 fn open_edges(mesh: &Mesh) -> usize {
     let mut edges = BTreeSet::new();
     for face in mesh.faces() {
