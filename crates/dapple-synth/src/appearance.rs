@@ -501,8 +501,8 @@ fn filled(around: [Option<[f32; N_FEATURES]>; 4]) -> Option<[[f32; N_FEATURES]; 
     Some(around.map(|features| features.unwrap_or(mean)))
 }
 
-/// Squared distance between the features on the diagonals of a site and those on the diagonals of a pixel. Missing
-/// diagonals are skipped.
+/// Returns the squared distance between the features on the diagonals of a site and those on the diagonals of a pixel.
+/// Missing diagonals are skipped.
 #[inline(always)]
 fn distance_sq(stage: &Stage, around: &[Option<[f32; N_FEATURES]>; 4], place: [i64; 2]) -> f32 {
     let known = around.iter().zip(DIAGONALS);

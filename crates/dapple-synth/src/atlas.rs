@@ -194,7 +194,7 @@ impl Atlas {
         self.mipmaps
     }
 
-    /// Fraction of the texels that show a face, including padding: 0 to 1.
+    /// Returns the fraction of the texels that show a face, including padding: 0 to 1.
     #[must_use]
     pub fn coverage(&self) -> f64 {
         let covered = self.faces.pixels().iter().filter(|face| **face != NONE);

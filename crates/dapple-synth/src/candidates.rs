@@ -245,7 +245,7 @@ impl Candidates {
         self.pixels.is_empty()
     }
 
-    /// Values of one neighborhood.
+    /// Returns the values of one neighborhood.
     ///
     /// # Panics
     ///
@@ -255,7 +255,7 @@ impl Candidates {
         &self.rows[row * self.dims..(row + 1) * self.dims]
     }
 
-    /// Column and row of the pixel at the center of a neighborhood, in the exemplar's level.
+    /// Returns the column and row of the pixel at the center of a neighborhood, in the exemplar's level.
     ///
     /// # Panics
     ///
@@ -337,13 +337,13 @@ pub(crate) fn few(pass: &Pass, options: &Options) -> usize {
     }
 }
 
-/// Factor of guides: the root of the total weight of all pixels of a neighborhood.
+/// Returns the factor of guides: the root of the total weight of all pixels of a neighborhood.
 pub(crate) fn guide_scale(pass: &Pass) -> f32 {
     let weight = |part: &Part| part.offsets().len() as f32 * part.weight;
     pass.parts.iter().map(weight).sum::<f32>().sqrt()
 }
 
-/// Center of a pixel's neighborhood on the level that is read, in half pixels.
+/// Returns the center of a pixel's neighborhood on the level that is read, in half pixels.
 pub(crate) fn halves(pixel: [u32; 2], reads: Reads, center: CoarserCenter) -> [i64; 2] {
     pixel.map(|at| match (reads, center) {
         (Reads::Same, _) => 2 * i64::from(at),

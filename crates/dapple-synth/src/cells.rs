@@ -53,13 +53,13 @@ impl Cells {
         self.offsets.len() - 1
     }
 
-    /// Cell of a site.
+    /// Returns the cell of a site.
     #[inline]
     pub(crate) fn of_site(&self, site: u32) -> usize {
         self.of_site[site as usize] as usize
     }
 
-    /// Cells near a cell, including itself, as ranges of cell indices.
+    /// Returns the cells near a cell, including itself, as ranges of cell indices.
     #[inline]
     pub(crate) fn near(&self, cell: usize) -> &[Range<u32>] {
         &self.near[self.offsets[cell] as usize..self.offsets[cell + 1] as usize]

@@ -36,7 +36,7 @@ pub(crate) struct Detail<const N: usize> {
     factor: f32,
 }
 
-/// Size of a map relative to an exemplar: the integer factor along both axes.
+/// Returns the size of a map relative to an exemplar: the integer factor along both axes.
 ///
 /// # Errors
 ///

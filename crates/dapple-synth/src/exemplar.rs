@@ -488,7 +488,7 @@ impl Exemplar {
 }
 
 impl Pyramid {
-    /// All levels blurred along both axes; `blur` is the weight of each of the two neighbors along an axis.
+    /// Returns all levels blurred along both axes; `blur` is the weight of each of the two neighbors along an axis.
     pub(crate) fn blurred(&self, blur: f32) -> Self {
         Self {
             levels: self

@@ -70,15 +70,15 @@ impl<C: Colors> Grid<C> {
     }
 }
 
-/// Column and row of one of the four finer pixels that a pixel covers. `[i, j]` (0 or 1 each) selects it, and `width`
-/// is the width of the pixel's level.
+/// Returns the column and row of one of the four finer pixels that a pixel covers. `[i, j]` (0 or 1 each) selects it,
+/// and `width` is the width of the pixel's level.
 #[inline]
 pub(crate) fn over(pixel: u32, width: u32, [i, j]: [i64; 2]) -> [i64; 2] {
     let [column, row] = [pixel % width, pixel / width].map(i64::from);
     [2 * column + i, 2 * row + j]
 }
 
-/// Columns and rows of the pixels of a square, plus one more of each for positions between two pixels.
+/// Returns the columns and rows of the pixels of a square, plus one more of each for positions between two pixels.
 ///
 /// A position between two or four pixels belongs to the left and upper one.
 pub(crate) fn square(
@@ -110,7 +110,7 @@ mod tests {
     use crate::ground::{Colors as _, Plain};
     use dapple_raster::Wrap;
 
-    /// A pixel with its wrap, in a grid of two channels.
+    /// Returns a pixel with its wrap, in a grid of two channels.
     fn pixel(grid: &Grid<Plain<'_>>, column: i64, row: i64, channel: usize) -> f32 {
         let x = grid.wrap[0].index(column, grid.size[0]) as usize;
         let y = grid.wrap[1].index(row, grid.size[1]) as usize;

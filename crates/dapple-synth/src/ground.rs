@@ -96,13 +96,14 @@ pub(crate) trait Ground: Sync {
     /// Returns the number of sites of a level.
     fn n_sites(&self, level: usize) -> usize;
 
-    /// Blur of the samples from [`read`](Self::read): the weight of each of the two adjacent pixels along an axis,
-    /// by default 0.
+    /// Returns the blur of the samples from [`read`](Self::read): the weight of each of the two adjacent pixels along
+    /// an axis, by default 0.
     fn blur(&self) -> f32 {
         0.0
     }
 
-    /// Initial state of a level in a repair. The default `None` means random pixels, and a visit of all sites.
+    /// Returns the initial state of a level in a repair. The default `None` means random pixels, and a visit of all
+    /// sites.
     fn start(&self, _level: usize) -> Option<&Start> {
         None
     }
@@ -118,12 +119,12 @@ pub(crate) trait Ground: Sync {
         None
     }
 
-    /// Symmetry of the orientation field.
+    /// Returns the symmetry of the orientation field.
     fn symmetry(&self) -> Symmetry {
         Symmetry::One
     }
 
-    /// Rotation at `site` nearest to the direction of `other` rotated by `quarters`, in quarter turns.
+    /// Returns the rotation at `site` nearest to the direction of `other` rotated by `quarters`, in quarter turns.
     fn quarters_toward(&self, _site: u32, _other: u32, _quarters: u8) -> u8 {
         0
     }
@@ -174,14 +175,14 @@ impl Colors for Painted<'_> {
 }
 
 impl Painted<'_> {
-    /// Pixel of a site.
+    /// Returns the pixel of a site.
     #[inline(always)]
     pub(crate) fn source(&self, site: usize) -> u32 {
         // Relaxed is enough: the schedule orders this read after writes of other threads.
         self.sources.pixels[site].load(Ordering::Relaxed)
     }
 
-    /// Rotation of the exemplar at a site, in quarter turns.
+    /// Returns the rotation of the exemplar at a site, in quarter turns.
     #[inline]
     pub(crate) fn quarters(&self, site: usize) -> u8 {
         let quarters = self.sources.quarters.get(site);
@@ -195,7 +196,7 @@ impl Square {
         2 * self.half as usize + 1
     }
 
-    /// Range of the rows that are needed, relative to the center.
+    /// Returns the range of the rows that are needed, relative to the center.
     pub(crate) fn range(&self) -> RangeInclusive<i32> {
         let last = match self.rows {
             Rows::Above => -1,

@@ -126,7 +126,7 @@ fn distance(images: &[Planes; 2], side: usize) -> f64 {
     sum / N_DIRECTIONS as f64
 }
 
-/// Pseudorandom direction `number`: a vector of length 1.
+/// Returns the pseudorandom direction `number`: a vector of length 1.
 fn direction(number: u64, dims: usize) -> Vec<f32> {
     let seed = Seed(0).child("directions of the likeness", number);
     // The sum of twelve uniform numbers is close enough to a normal distribution to make all directions equally likely.
@@ -169,7 +169,7 @@ mod tests {
     use dapple_hash::{Seed, hash2, unit_f32};
     use dapple_raster::Raster;
 
-    /// An image of `channels` channels.
+    /// Returns an image of `channels` channels.
     fn image(size: [u32; 2], channels: u64, value: impl Fn(u32, u32, u64) -> f32) -> Exemplar {
         let plane = |channel| Raster::from_fn(size, |x, y| value(x, y, channel)).unwrap();
         let planes: Vec<Raster<f32>> = (0..channels).map(plane).collect();

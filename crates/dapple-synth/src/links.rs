@@ -21,7 +21,7 @@ pub(crate) struct Links<'a> {
 }
 
 impl<'a> Links<'a> {
-    /// Links of a level, weighted by inverse length.
+    /// Returns the links of a level, weighted by inverse length.
     pub(crate) fn new(hierarchy: &'a Hierarchy, level: usize) -> Self {
         let level = &hierarchy.levels()[level];
         let graph = level.graph();
@@ -76,25 +76,25 @@ impl<'a> Links<'a> {
         self.offsets.len() - 1
     }
 
-    /// Neighbors of a site.
+    /// Returns the neighbors of a site.
     #[inline]
     pub(crate) fn neighbors(&self, site: usize) -> &[SiteIdx] {
         self.graph.neighbors(SiteIdx(site as u32))
     }
 
-    /// Weights of the edges to the neighbors of a site, in the order of [`neighbors`](Self::neighbors).
+    /// Returns the weights of the edges to the neighbors of a site, in the order of [`neighbors`](Self::neighbors).
     #[inline]
     pub(crate) fn weights(&self, site: usize) -> &[f64] {
         &self.weights[self.row(site)]
     }
 
-    /// Range of a site's links in the concatenated links of all sites.
+    /// Returns the range of a site's links in the concatenated links of all sites.
     #[inline]
     pub(crate) fn row(&self, site: usize) -> core::ops::Range<usize> {
         self.offsets[site] as usize..self.offsets[site + 1] as usize
     }
 
-    /// Sum of the weights of each site; 0 for a site without neighbors.
+    /// Returns the sum of the weights of each site; 0 for a site without neighbors.
     #[inline]
     pub(crate) fn sums(&self) -> &[f64] {
         &self.sums
@@ -141,7 +141,7 @@ impl<'a> Links<'a> {
 }
 
 impl Links<'_> {
-    /// Neighbors of a site whose link has a positive weight.
+    /// Returns the neighbors of a site whose link has a positive weight.
     fn linked(&self, site: usize) -> impl Iterator<Item = usize> {
         let linked = self.neighbors(site).iter().zip(self.weights(site));
         let linked = linked.filter(|&(_, &weight)| weight > 0.0);
@@ -149,7 +149,7 @@ impl Links<'_> {
     }
 }
 
-/// Connected component of each site of a graph. Components are numbered in the order of their lowest sites.
+/// Returns the connected component of each site of a graph. Components are numbered in the order of their lowest sites.
 pub(crate) fn components(graph: &SiteGraph) -> Vec<u32> {
     const NONE: u32 = u32::MAX;
     let mut components = vec![NONE; graph.len()];

@@ -53,7 +53,7 @@ struct Watch<'a> {
     stopped: Option<Stop>,
 }
 
-/// Default padding of charts, in texels, in a map of the given side.
+/// Returns the default padding of charts, in texels, in a map of the given side.
 pub(super) fn padding(side: u32) -> u32 {
     match side {
         0..512 => 1,
@@ -220,7 +220,7 @@ fn with_area([a, b, c]: [DVec2; 3]) -> [DVec2; 3] {
     }
 }
 
-/// Positions translated and scaled into the cube from -1 to 1.
+/// Returns the positions translated and scaled into the cube from -1 to 1.
 fn in_unit_cube(positions: &[DVec3]) -> Vec<[f32; 3]> {
     let low = positions.iter().copied().reduce(DVec3::min);
     let high = positions.iter().copied().reduce(DVec3::max);

@@ -70,7 +70,7 @@ fn ends(corners: &[[DVec2; 3]], at: FaceEdge) -> [DVec2; 2] {
     [start, (start + 1) % 3].map(|corner| corners[at.face.index()][corner])
 }
 
-/// Fraction of the texels whose centers are on their faces.
+/// Returns the fraction of the texels whose centers are on their faces.
 fn used(atlas: &Atlas) -> f64 {
     let [width, height] = atlas.size();
     let is_on = |texel: [u32; 2]| {

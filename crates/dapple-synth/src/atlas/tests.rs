@@ -6,7 +6,7 @@ use crate::shapes::{cap, moved, square};
 use dapple_mesh::{FaceIdx, Mesh, Surface};
 use glam::{DVec2, DVec3};
 
-/// A box with three different side lengths and twelve faces.
+/// Returns a box with three different side lengths and twelve faces.
 fn cuboid() -> Surface {
     let positions: Vec<DVec3> = (0..8)
         .map(|corner| {
@@ -302,7 +302,7 @@ fn texels_beside_a_sliver_are_on_the_surface() {
     }
 }
 
-/// Texture coordinates of a mesh above the unit square, projected along z.
+/// Returns the texture coordinates of a mesh above the unit square, projected along z.
 fn from_above(surface: &Surface) -> Vec<[DVec2; 3]> {
     let faces = 0..surface.mesh().faces().len() as u32;
     let place = |at: DVec3| DVec2::new(at.x, 1.0 - at.y);

@@ -18,24 +18,24 @@ impl Frame {
         Ok(Self { padding })
     }
 
-    /// Side of a tile minus the legs of its triangles, in texels: padding at both ends of the legs, twice the padding
-    /// between the hypotenuses, measured along an axis, and half a texel at both ends.
+    /// Returns the side of a tile minus the legs of its triangles, in texels: padding at both ends of the legs, twice
+    /// the padding between the hypotenuses, measured along an axis, and half a texel at both ends.
     fn width(self) -> u32 {
         4 * self.padding + 1
     }
 
-    /// Minimum side of a tile, in texels: its triangles have legs of one texel.
+    /// Returns the minimum side of a tile, in texels: its triangles have legs of one texel.
     fn tile_min(self) -> u32 {
         self.width() + 1
     }
 
-    /// Grid spacing of tile positions: the largest power of two up to the padding.
+    /// Returns the grid spacing of tile positions: the largest power of two up to the padding.
     fn step(self) -> u32 {
         1 << self.padding.ilog2()
     }
 }
 
-/// Default padding, in texels, in a map of the given side, for tiles of one size and of several.
+/// Returns the default padding, in texels, in a map of the given side, for tiles of one size and of several.
 ///
 /// Padding shortens the legs of the triangles by about four times its width: this leaves three quarters of a tile's
 /// side.

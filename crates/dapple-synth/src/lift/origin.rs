@@ -117,7 +117,8 @@ impl Origin {
         corners.map(|(&uv, weight)| uv * weight).sum()
     }
 
-    /// Side of a pixel in texels of a map of the given size, for every face; 0 for a face without an area in the map.
+    /// Returns the side of a pixel in texels of a map of the given size, for every face; 0 for a face without an area
+    /// in the map.
     pub(crate) fn texels(&self, size: [u32; 2]) -> Vec<f32> {
         let sides = footprints(&self.synthesizer, &self.uvs, size).into_iter();
         sides
@@ -125,7 +126,7 @@ impl Origin {
             .collect()
     }
 
-    /// Offset from one finest site to another near it, in pixels.
+    /// Returns the offset from one finest site to another near it, in pixels.
     pub(super) fn step(&self, to: u32, from: u32) -> Vec2 {
         let [to_place, from_place] = [to, from].map(|site| Place {
             site,
@@ -141,7 +142,7 @@ impl Origin {
         0.5 * (from + to)
     }
 
-    /// Offset in space from one place to another.
+    /// Returns the offset in space from one place to another.
     fn way(&self, to: Place, from: Place) -> Vec3 {
         let positions = self.hierarchy().sites().positions();
         let [to_at, from_at] = [to, from].map(|place| positions[place.site as usize]);

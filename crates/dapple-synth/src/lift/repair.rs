@@ -100,7 +100,7 @@ pub(crate) fn order(start: &Start, graph: &SiteGraph, mut order: Vec<u32>) -> Ve
     order
 }
 
-/// Graph distance from each site to the nearest kept site, in edges; `u32::MAX` if unreachable.
+/// Returns the graph distance from each site to the nearest kept site, in edges; `u32::MAX` if unreachable.
 fn rings(graph: &SiteGraph, is_kept: &[bool]) -> Vec<u32> {
     let mut rings: Vec<u32> = is_kept
         .iter()

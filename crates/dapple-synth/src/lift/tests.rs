@@ -14,7 +14,7 @@ use dapple_mesh::{CREASE, Surface};
 use dapple_raster::Raster;
 use glam::DVec3;
 
-/// A surface with sites on two levels.
+/// Returns a surface with sites on two levels.
 fn sites(surface: Surface, n_sites: usize) -> Synthesizer {
     let options = HierarchyOptions {
         n_sites,
@@ -25,7 +25,7 @@ fn sites(surface: Surface, n_sites: usize) -> Synthesizer {
     Synthesizer::new(surface, &[], &options).unwrap()
 }
 
-/// Blurred noise, identical in every run.
+/// Returns the blurred noise, identical in every run.
 fn noise(side: u32, blur: f32) -> Raster<f32> {
     let at = |x: u32, y: u32| unit_f32((hash2(Seed(5), [x.into(), y.into()], 0) >> 32) as u32);
     let image = Raster::from_fn([side; 2], at).unwrap();
@@ -34,7 +34,7 @@ fn noise(side: u32, blur: f32) -> Raster<f32> {
     Raster::from_vec([side; 2], blurred.levels()[0].pixels().to_vec()).unwrap()
 }
 
-/// Texture coordinates that map the unit square to a whole map, with y up and v down.
+/// Returns the texture coordinates that map the unit square to a whole map, with y up and v down.
 fn flat_uvs(surface: &Surface) -> Vec<[DVec2; 3]> {
     let mesh = surface.mesh();
     let uv = |at: DVec3| DVec2::new(at.x, 1.0 - at.y);
@@ -44,7 +44,7 @@ fn flat_uvs(surface: &Surface) -> Vec<[DVec2; 3]> {
         .collect()
 }
 
-/// An exemplar that is a torus with noise.
+/// Returns an exemplar that is a torus with noise.
 fn noisy_torus(n_sites: usize) -> MeshExemplar {
     let source = sites(torus(24, 12), n_sites);
     let uvs = Atlas::uniform(source.surface(), 256).unwrap().uvs();
@@ -103,7 +103,7 @@ fn neighborhood(
     values
 }
 
-/// Sources in which every site is its own source.
+/// Returns the sources in which every site is its own source.
 fn own_pixels(exemplar: &MeshExemplar) -> Vec<Sources> {
     let levels = exemplar.pyramid.levels().iter();
     let numbers = levels.map(|level| Sources {

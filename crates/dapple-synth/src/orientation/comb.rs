@@ -54,8 +54,8 @@ pub(super) fn comb(field: &Field<'_>, vectors: &mut [DVec3]) {
     }
 }
 
-/// Bend of the field around a site: weighted mean squared distance between its direction and the nearest equivalent
-/// directions of its neighbors.
+/// Returns the bend of the field around a site: weighted mean squared distance between its direction and the nearest
+/// equivalent directions of its neighbors.
 fn bend(field: &Field<'_>, site: usize, vectors: &[DVec3]) -> f64 {
     let links = field.links;
     let mut sum = 0.0;

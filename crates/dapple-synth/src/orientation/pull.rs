@@ -72,7 +72,7 @@ fn means(mut given: Vec<(usize, DVec3)>, normals: &[DVec3], symmetry: Symmetry) 
     given.chunk_by(|a, b| a.0 == b.0).filter_map(mean).collect()
 }
 
-/// Known directions of every level, finest first, by repeated downsampling.
+/// Returns the known directions of every level, finest first, by repeated downsampling.
 pub(super) fn pull(hierarchy: &Hierarchy, finest: Vec<Known>) -> Vec<Vec<Known>> {
     let mut levels = vec![finest];
     for pair in hierarchy.levels().windows(2) {
@@ -82,8 +82,8 @@ pub(super) fn pull(hierarchy: &Hierarchy, finest: Vec<Known>) -> Vec<Vec<Known>>
     levels
 }
 
-/// Known directions of a field with a symmetry on every level, finest first. On a coarser level each direction moves to
-/// the nearest site and keeps its full weight, since directions up to rotation cannot be blurred.
+/// Returns the known directions of a field with a symmetry on every level, finest first. On a coarser level each
+/// direction moves to the nearest site and keeps its full weight, since directions up to rotation cannot be blurred.
 pub(super) fn pull_nearest(
     hierarchy: &Hierarchy,
     finest: Vec<Known>,
@@ -104,7 +104,8 @@ pub(super) fn pull_nearest(
     levels
 }
 
-/// Known direction of a site from a sum of vectors and the sum of their weights. `None` if the vectors cancel.
+/// Returns the known direction of a site from a sum of vectors and the sum of their weights. `None` if the vectors
+/// cancel.
 fn summed(site: usize, sum: DVec3, weight: f64) -> Option<Known> {
     let length = sum.length();
     (length > LEAST_PART * weight).then(|| Known {
@@ -184,7 +185,7 @@ impl Near {
         }
     }
 
-    /// Sums of vectors and of weights after all steps of equation 3.
+    /// Returns the sums of vectors and of weights after all steps of equation 3.
     fn blur(&self, known: &[Known]) -> Vec<(DVec3, f64)> {
         let mut values: Vec<(DVec3, f64)> = known
             .iter()
@@ -215,7 +216,7 @@ fn step(values: &[(DVec3, f64)], at: usize, edges: &[(usize, f64)]) -> (DVec3, f
     )
 }
 
-/// Site of a level nearest to a position; ties go to the lowest index. `None` only if there are no sites.
+/// Returns the site of a level nearest to a position; ties go to the lowest index. `None` only if there are no sites.
 fn nearest_site(hierarchy: &Hierarchy, level: usize, at: DVec3) -> Option<usize> {
     let level = hierarchy.levels().get(level)?;
     let positions = &hierarchy.sites().positions()[..level.n_sites()];

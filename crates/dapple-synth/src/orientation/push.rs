@@ -63,7 +63,8 @@ pub(super) struct Field<'a> {
 }
 
 impl Field<'_> {
-    /// Unit vectors on the coarsest level for the sites that are connected to a known one; zero for the others.
+    /// Returns the unit vectors on the coarsest level for the sites that are connected to a known one; zero for the
+    /// others.
     fn diffuse(&self, known: &[Known]) -> Vec<DVec3> {
         let n_sites = self.links.len();
         let mut vectors = vec![DVec3::ZERO; n_sites];
@@ -93,7 +94,7 @@ impl Field<'_> {
         vectors
     }
 
-    /// Smoothest field of the symmetry on the coarsest level with the known directions, combed.
+    /// Returns the smoothest field of the symmetry on the coarsest level with the known directions, combed.
     fn smoothest(&self, components: &[u32], known: &[Known]) -> Vec<DVec3> {
         let mut vectors = smoothest(self, components, known);
         comb(self, &mut vectors);
@@ -137,7 +138,8 @@ impl Field<'_> {
         vectors
     }
 
-    /// Weighted mean direction of the coarser sites around a site, as a unit vector; zero if they have none.
+    /// Returns the weighted mean direction of the coarser sites around a site, as a unit vector; zero if they have
+    /// none.
     fn inherit(
         &self,
         hierarchy: &Hierarchy,
@@ -170,7 +172,8 @@ impl Field<'_> {
         self.unit(site, vectors[site] * (1.0 - SWEEP_STRENGTH) + average)
     }
 
-    /// Weighted sum of the neighbors' vectors, each rotated to the equivalent direction nearest to the site's vector.
+    /// Returns the weighted sum of the neighbors' vectors, each rotated to the equivalent direction nearest to the
+    /// site's vector.
     #[inline]
     fn average(&self, site: usize, vectors: &[DVec3]) -> DVec3 {
         let mut sum = DVec3::ZERO;
@@ -184,7 +187,8 @@ impl Field<'_> {
         sum
     }
 
-    /// Weighted sum of vectors, each rotated to the equivalent direction nearest to the vector of the largest weight.
+    /// Returns the weighted sum of vectors, each rotated to the equivalent direction nearest to the vector of the
+    /// largest weight.
     fn sum(&self, near: impl Iterator<Item = (usize, f64)> + Clone, vectors: &[DVec3]) -> DVec3 {
         let (mut leader, mut most) = (DVec3::ZERO, 0.0);
         for (other, weight) in near.clone() {
@@ -202,7 +206,7 @@ impl Field<'_> {
         sum
     }
 
-    /// Neighbors of a site with their weights.
+    /// Returns the neighbors of a site with their weights.
     #[inline]
     fn near(&self, site: usize) -> impl Iterator<Item = (usize, f64)> + Clone {
         let neighbors = self.links.neighbors(site).iter();
@@ -210,7 +214,7 @@ impl Field<'_> {
         neighbors.map(|other| other.index()).zip(weights)
     }
 
-    /// Unit tangent vector along a sum of vectors; the tangent along the axis if the sum cancels.
+    /// Returns the unit tangent vector along a sum of vectors; the tangent along the axis if the sum cancels.
     #[inline]
     pub(super) fn unit(&self, site: usize, vector: DVec3) -> DVec3 {
         let normal = self.normals[site];

@@ -55,7 +55,8 @@ impl Orientation {
         Ok(logs.into_iter().map(size).collect())
     }
 
-    /// Logarithm of the conformal factor at the sites of a level, up to a constant in each connected component.
+    /// Returns the logarithm of the conformal factor at the sites of a level, up to a constant in each connected
+    /// component.
     fn growth(&self, hierarchy: &Hierarchy, level: usize) -> Vec<f64> {
         let system = Growth::new(hierarchy, self, level);
         let mut logs = vec![0.0; system.links.len()];
@@ -64,7 +65,7 @@ impl Orientation {
     }
 }
 
-/// Offset to add to the values of each component, so that as many values as possible lie within the bounds.
+/// Returns the offset to add to the values of each component, so that as many values as possible lie within the bounds.
 fn shifts(components: &[u32], values: &[f64], [least, most]: [f64; 2]) -> Vec<f64> {
     let n_components = components.iter().max().map_or(0, |&last| last as usize + 1);
     let mut of_components = vec![Vec::new(); n_components];

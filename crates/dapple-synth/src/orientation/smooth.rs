@@ -43,8 +43,8 @@ const TOWARD_EIGENVALUE: f64 = 0.9;
 /// could be orthogonal to the smoothest one.
 const NOISE: f64 = 0.5;
 
-/// Smoothest field of a level: unit tangent vectors at all sites. Each is an arbitrary one of the equivalent
-/// directions.
+/// Returns the smoothest field of a level: unit tangent vectors at all sites. Each is an arbitrary one of the
+/// equivalent directions.
 pub(super) fn smoothest(field: &Field<'_>, components: &[u32], known: &[Known]) -> Vec<DVec3> {
     let mut smooth = Smooth::new(field, components);
     // Solve for the powers of the smoothest field, and rotate it to the known directions or the axis.
@@ -112,7 +112,7 @@ impl<'a> Smooth<'a> {
         }
     }
 
-    /// Lowest eigenvector of every component, scaled to a mean square of 1, and the eigenvalues.
+    /// Returns the lowest eigenvector of every component, scaled to a mean square of 1, and the eigenvalues.
     pub(super) fn lowest(&mut self) -> (Vec<DVec2>, Vec<f64>) {
         let n_sites = self.frames.len();
         let mut powers: Vec<DVec2> = (0..n_sites as i64).map(first).collect();
@@ -256,7 +256,7 @@ impl System<DVec2> for Smooth<'_> {
     }
 }
 
-/// Initial power of a site: the power of the axis plus noise.
+/// Returns the initial power of a site: the power of the axis plus noise.
 fn first(site: i64) -> DVec2 {
     let part = |index| {
         f64::from(unit_f32(

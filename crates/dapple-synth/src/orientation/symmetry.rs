@@ -72,7 +72,7 @@ impl Symmetry {
         }
     }
 
-    /// A unit complex number whose [`power`](Self::power) has the direction of `power`. `None` for zero.
+    /// Returns a unit complex number whose [`power`](Self::power) has the direction of `power`. `None` for zero.
     pub(crate) fn root(self, power: DVec2) -> Option<DVec2> {
         let unit = power.try_normalize()?;
         Some(match self {
@@ -83,7 +83,7 @@ impl Symmetry {
     }
 }
 
-/// Square root of a unit complex number, with a nonnegative real part.
+/// Returns the square root of a unit complex number, with a nonnegative real part.
 fn square_root(unit: DVec2) -> DVec2 {
     // Half-angle formulas: compute the larger of cosine and sine, which has no cancellation, and derive the other.
     let [cos, sin] = [1.0 + unit.x, 1.0 - unit.x].map(|double| (0.5 * double.max(0.0)).sqrt());
@@ -105,8 +105,8 @@ pub(crate) fn turned(direction: DVec3, normal: DVec3, quarters: u8) -> DVec3 {
     }
 }
 
-/// Offset, to the right and down, that a sample of a rotated square has in the square before the rotation by
-/// `quarters`.
+/// Returns the offset, to the right and down, that a sample of a rotated square has in the square before the rotation
+/// by `quarters`.
 #[inline]
 pub(crate) fn offset_before<T: Copy + Neg<Output = T>>([i, j]: [T; 2], quarters: u8) -> [T; 2] {
     match quarters {
@@ -118,8 +118,8 @@ pub(crate) fn offset_before<T: Copy + Neg<Output = T>>([i, j]: [T; 2], quarters:
     }
 }
 
-/// Offset, to the right and down, that a sample of a square has after the rotation by `quarters`. Inverse of
-/// [`offset_before`].
+/// Returns the offset, to the right and down, that a sample of a square has after the rotation by `quarters`. Inverse
+/// of [`offset_before`].
 #[inline]
 pub(crate) fn offset_after<T: Copy + Neg<Output = T>>(offset: [T; 2], quarters: u8) -> [T; 2] {
     // Rotate by the same angle in the opposite direction.

@@ -32,7 +32,7 @@ fn assert_tangent(hierarchy: &Hierarchy, orientation: &Orientation) {
     }
 }
 
-/// Site nearest to a position, by a search through all sites.
+/// Returns the site nearest to a position, by a search through all sites.
 fn nearest(hierarchy: &Hierarchy, at: DVec3) -> usize {
     let positions = hierarchy.sites().positions();
     let key = |&site: &usize| (positions[site].distance(at), site);

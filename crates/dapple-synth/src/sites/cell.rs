@@ -77,8 +77,8 @@ impl Cell {
         self.diameter_sq = f64::INFINITY;
     }
 
-    /// Upper bound of the squared diameter of the largest circle through the origin and two consecutive neighbors;
-    /// infinite while the cell is open. A point farther away than this diameter does not change the cell.
+    /// Returns the upper bound of the squared diameter of the largest circle through the origin and two consecutive
+    /// neighbors; infinite while the cell is open. A point farther away than this diameter does not change the cell.
     #[inline]
     pub(crate) fn diameter_sq(&self) -> f64 {
         self.diameter_sq
@@ -129,7 +129,7 @@ impl Cell {
             })
     }
 
-    /// Index of the first corner that the bisector of a point cuts off, if any.
+    /// Returns the index of the first corner that the bisector of a point cuts off, if any.
     #[inline]
     fn first_cut(&self, new: &Side) -> Option<usize> {
         for (index, side) in self.sides.iter().enumerate() {
@@ -259,7 +259,7 @@ impl Cell {
         least <= limit_sq
     }
 
-    /// Index of the next side counterclockwise.
+    /// Returns the index of the next side counterclockwise.
     #[inline]
     fn after(&self, index: usize) -> usize {
         if index + 1 == self.sides.len() {
@@ -269,7 +269,7 @@ impl Cell {
         }
     }
 
-    /// Index of the next side clockwise.
+    /// Returns the index of the next side clockwise.
     #[inline]
     fn before(&self, index: usize) -> usize {
         if index == 0 {
@@ -321,8 +321,8 @@ impl Corner {
     }
 }
 
-/// Exact sign of the cross product of a and b: greater if b is less than half a turn counterclockwise from a, less if
-/// it is more than half a turn.
+/// Returns the exact sign of the cross product of a and b: greater if b is less than half a turn counterclockwise from
+/// a, less if it is more than half a turn.
 #[inline]
 fn turns(a: DVec2, b: DVec2) -> Ordering {
     let (left, right) = (a.x * b.y, a.y * b.x);
@@ -333,7 +333,7 @@ fn turns(a: DVec2, b: DVec2) -> Ordering {
     order(orient2d(coord(DVec2::ZERO), coord(a), coord(b)))
 }
 
-/// Sign of a value as an ordering; NaN counts as less.
+/// Returns the sign of a value as an ordering; NaN counts as less.
 #[inline]
 fn order(value: f64) -> Ordering {
     value.partial_cmp(&0.0).unwrap_or(Ordering::Less)

@@ -16,7 +16,7 @@ pub struct Evenness {
     pub min: f64,
 }
 
-/// Spacing of a hexagonal lattice of `n` points on an area: the paper's r, `sqrt(2 A / (sqrt(3) n))`.
+/// Returns the spacing of a hexagonal lattice of `n` points on an area: the paper's r, `sqrt(2 A / (sqrt(3) n))`.
 ///
 /// Returns 0 if `n` is 0.
 #[must_use]
@@ -66,7 +66,7 @@ pub fn evenness(surface: &Surface, sites: &Sites, n: usize) -> Evenness {
     }
 }
 
-/// Distance to the nearest neighbor on the same sheet, clamped to four spacings.
+/// Returns the distance to the nearest neighbor on the same sheet, clamped to four spacings.
 fn nearest(sites: &Sites, grid: &SiteGrid, site: SiteIdx, spacing: f64) -> f64 {
     let (position, normal) = (
         sites.positions()[site.index()],

@@ -86,7 +86,7 @@ impl SiteGraph {
         self.len() == 0
     }
 
-    /// Neighbors of a site, in ascending order.
+    /// Returns the neighbors of a site, in ascending order.
     ///
     /// # Panics
     ///
@@ -97,7 +97,7 @@ impl SiteGraph {
         &self.neighbors[self.row(site)]
     }
 
-    /// Range of a site's neighbors in the concatenated rows of all sites.
+    /// Returns the range of a site's neighbors in the concatenated rows of all sites.
     #[inline]
     pub(crate) fn row(&self, site: SiteIdx) -> core::ops::Range<usize> {
         self.offsets[site.index()] as usize..self.offsets[site.index() + 1] as usize

@@ -110,7 +110,7 @@ impl SiteGrid {
         );
     }
 
-    /// All sites, sorted by cell.
+    /// Returns all sites, sorted by cell.
     pub(crate) fn members(&self) -> &[SiteIdx] {
         &self.members
     }
@@ -162,7 +162,7 @@ impl SiteGrid {
         }
     }
 
-    /// A grid without sites or bricks over a bounding box.
+    /// Returns a grid without sites or bricks over a bounding box.
     fn empty(low: DVec3, high: DVec3, side: f64) -> Self {
         let mut grid = Self {
             low,
@@ -265,7 +265,7 @@ impl SiteGrid {
         self.starts = starts;
     }
 
-    /// Cell of a position; the nearest cell if the position is outside of the grid.
+    /// Returns the cell of a position; the nearest cell if the position is outside of the grid.
     #[inline]
     fn cell(&self, position: DVec3) -> [u32; 3] {
         let cell = (position - self.low) * self.scale;
@@ -277,7 +277,7 @@ impl SiteGrid {
         ]
     }
 
-    /// Index of the brick with a key, if the grid has it.
+    /// Returns the index of the brick with a key, if the grid has it.
     #[inline]
     fn find(&self, key: u64) -> Option<u32> {
         let mut at = self.slot(key);
@@ -293,7 +293,7 @@ impl SiteGrid {
         }
     }
 
-    /// Slot at which the search for a key begins.
+    /// Returns the slot at which the search for a key begins.
     #[inline]
     fn slot(&self, key: u64) -> usize {
         // Fibonacci hashing: the upper bits of the product with 2^64 over the golden ratio.
@@ -335,7 +335,7 @@ impl SiteGrid {
     }
 }
 
-/// Coordinate of the brick of a cell along one axis.
+/// Returns the coordinate of the brick of a cell along one axis.
 #[inline]
 fn brick_of(cell: u32) -> u32 {
     cell >> BRICK_BITS
@@ -347,7 +347,7 @@ fn key([x, y, z]: [u32; 3]) -> u64 {
     u64::from(x) | u64::from(y) << BITS | u64::from(z) << (2 * BITS)
 }
 
-/// Index of a cell among the cells of all bricks.
+/// Returns the index of a cell among the cells of all bricks.
 #[inline]
 fn place(brick: u32, cell: [u32; 3]) -> u32 {
     let [x, y, z] = cell.map(|part| part & ((1 << BRICK_BITS) - 1));

@@ -145,13 +145,13 @@ impl Hierarchy {
         Ok(Self { sites, levels })
     }
 
-    /// Sites of the finest level. The sites of each coarser level are the first of them.
+    /// Returns the sites of the finest level. The sites of each coarser level are the first of them.
     #[must_use]
     pub fn sites(&self) -> &Sites {
         &self.sites
     }
 
-    /// Levels, finest first: `levels()[0]` is the paper's `M_1`.
+    /// Returns the levels, finest first: `levels()[0]` is the paper's `M_1`.
     #[must_use]
     pub fn levels(&self) -> &[Level] {
         &self.levels
@@ -253,7 +253,7 @@ impl Level {
         self.spacing
     }
 
-    /// Neighbor graph of the sites.
+    /// Returns the neighbor graph of the sites.
     #[must_use]
     pub fn graph(&self) -> &SiteGraph {
         &self.connected.graph
@@ -265,7 +265,7 @@ impl Level {
         self.connected.one_sided
     }
 
-    /// Spatial index that finds the sites near a position.
+    /// Returns the spatial index that finds the sites near a position.
     #[must_use]
     pub fn grid(&self) -> &SiteGrid {
         &self.grid

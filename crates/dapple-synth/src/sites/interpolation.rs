@@ -23,13 +23,14 @@ const WEIGHTS_LEAST: f64 = 1e-9;
 /// Search radii for the nearest site if no site is in reach, in radii of interpolation.
 const NEAREST_REACHES: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 
-/// Weight of a site in equation 1, `w(x) = 2x³ - 3x² + 1`, at a distance of `x` radii, from 0 to 1.
+/// Returns the weight of a site in equation 1, `w(x) = 2x³ - 3x² + 1`, at a distance of `x` radii, from 0 to 1.
 #[inline]
 pub(crate) fn weight(x: f64) -> f64 {
     (2.0 * x - 3.0) * x * x + 1.0
 }
 
-/// Weights of a site in equation 1 for eight positions, from squared distances in radii; 0 at one radius or more.
+/// Returns the weights of a site in equation 1 for eight positions, from squared distances in radii; 0 at one radius or
+/// more.
 #[inline(always)]
 pub(crate) fn weights<S: Simd>(simd: S, x_sq: f32x8<S>) -> f32x8<S> {
     let weights = (x_sq.sqrt() * 2.0 - 3.0) * x_sq + 1.0;
@@ -37,7 +38,7 @@ pub(crate) fn weights<S: Simd>(simd: S, x_sq: f32x8<S>) -> f32x8<S> {
 }
 
 impl Oriented<'_> {
-    /// Value at a position: the weighted mean, or the value of the nearest site up to 8 radii away.
+    /// Returns the value at a position: the weighted mean, or the value of the nearest site up to 8 radii away.
     ///
     /// `column` has a value for each site.
     #[inline]
@@ -68,8 +69,8 @@ impl Oriented<'_> {
         }
     }
 
-    /// Nearest site on the side of the surface that `normal` points to; ties go to the lowest index. `None` if all are
-    /// more than 8 radii of interpolation away.
+    /// Returns the nearest site on the side of the surface that `normal` points to; ties go to the lowest index. `None`
+    /// if all are more than 8 radii of interpolation away.
     #[cold]
     fn nearest(&self, position: DVec3, normal: DVec3) -> Option<SiteIdx> {
         for reach in NEAREST_REACHES {
@@ -87,7 +88,7 @@ impl Oriented<'_> {
         None
     }
 
-    /// Nearest of all sites, on either side of the surface. `None` if there are no sites.
+    /// Returns the nearest of all sites, on either side of the surface. `None` if there are no sites.
     #[cold]
     pub(crate) fn nearest_of_all(&self, position: DVec3) -> Option<SiteIdx> {
         let mut nearest = Nearest::within(f64::INFINITY);
@@ -111,7 +112,7 @@ struct Nearest {
 }
 
 impl Nearest {
-    /// An empty search that accepts sites nearer than `distance`.
+    /// Returns an empty search that accepts sites nearer than `distance`.
     fn within(distance: f64) -> Self {
         Self {
             site: None,

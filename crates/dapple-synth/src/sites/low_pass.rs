@@ -65,7 +65,7 @@ impl<'a> LowPass<'a> {
         Ok(Self { graph, weights })
     }
 
-    /// Weights of the neighbors of a site, in the order of the neighbors. They sum to 1 up to rounding.
+    /// Returns the weights of the neighbors of a site, in the order of the neighbors. They sum to 1 up to rounding.
     ///
     /// # Panics
     ///

@@ -96,7 +96,7 @@ impl Near {
 }
 
 impl Rows {
-    /// List of a site, by its index in the chunk.
+    /// Returns the list of a site, by its index in the chunk.
     #[inline]
     pub(crate) fn row(&self, site: usize) -> &[SiteIdx] {
         &self.others[self.starts[site] as usize..self.starts[site + 1] as usize]

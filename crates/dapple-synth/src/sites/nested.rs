@@ -162,7 +162,7 @@ impl Nest<'_> {
     }
 }
 
-/// Indices of edges, longest first: the midpoints of long edges are farthest from other points.
+/// Returns the indices of edges, longest first: the midpoints of long edges are farthest from other points.
 fn longest_first(edges: &[Edge]) -> Vec<u32> {
     // The bits of positive floats sort like their values; the complement reverses the order.
     sorted(edges.iter().map(|edge| !edge.length.to_bits()))
@@ -202,7 +202,7 @@ fn sort(surface: &Surface, points: &mut [SurfacePoint]) {
     points.copy_from_slice(&sorted);
 }
 
-/// Indices of the keys, sorted by key; equal keys keep their order.
+/// Returns the indices of the keys, sorted by key; equal keys keep their order.
 fn sorted(keys: impl Iterator<Item = u64>) -> Vec<u32> {
     let mut numbered: Vec<u128> = (0..)
         .zip(keys)

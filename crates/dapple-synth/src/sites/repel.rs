@@ -143,8 +143,8 @@ impl<'a> Crowd<'a> {
         n_limited
     }
 
-    /// Sum of the pushes of other points on a point in a face, in units of length. The component along the normal of
-    /// the face is meaningless and must be projected out.
+    /// Returns the sum of the pushes of other points on a point in a face, in units of length. The component along the
+    /// normal of the face is meaningless and must be projected out.
     #[inline]
     fn push(&self, face: FaceIdx, site: usize, others: &[SiteIdx]) -> DVec3 {
         let normal = self.surface.face_normal(face);

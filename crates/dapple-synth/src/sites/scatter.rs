@@ -53,12 +53,12 @@ impl Scatter {
         Self { faces, ends }
     }
 
-    /// Total area of the faces.
+    /// Returns the total area of the faces.
     pub(crate) fn area(&self) -> f64 {
         self.ends.last().copied().unwrap_or(0.0)
     }
 
-    /// Random point on the faces, by seed and number. `None` if there are no faces.
+    /// Returns the random point on the faces, by seed and number. `None` if there are no faces.
     pub(crate) fn point(&self, surface: &Surface, seed: Seed, number: u64) -> Option<SurfacePoint> {
         let hash = CellHash::new(seed, [number.cast_signed()]);
         let [place, s, t] = [0, 1, 2].map(|counter| unit_f64(hash.at(counter)));

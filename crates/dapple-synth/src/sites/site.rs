@@ -54,19 +54,19 @@ impl Sites {
         self.points.is_empty()
     }
 
-    /// Surface points of the sites: face and position in the face.
+    /// Returns the surface points of the sites: face and position in the face.
     #[must_use]
     pub fn points(&self) -> &[SurfacePoint] {
         &self.points
     }
 
-    /// Positions of the sites in space, in units of the mesh.
+    /// Returns the positions of the sites in space, in units of the mesh.
     #[must_use]
     pub fn positions(&self) -> &[DVec3] {
         &self.positions
     }
 
-    /// Unit normals of the smooth surface at the sites.
+    /// Returns the unit normals of the smooth surface at the sites.
     #[must_use]
     pub fn normals(&self) -> &[DVec3] {
         &self.normals

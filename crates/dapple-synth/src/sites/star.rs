@@ -166,7 +166,7 @@ impl Window {
         z.extend(positions().map(|position| position.z));
     }
 
-    /// Squared distances of all sites of the window from the center, in spacings.
+    /// Returns the squared distances of all sites of the window from the center, in spacings.
     #[inline]
     fn distances_sq(&mut self, from: &Tangent) -> &[f64] {
         let n = self.sites.len();
@@ -199,7 +199,8 @@ impl Tangent {
         }
     }
 
-    /// Position in the plane of a site at the vector `away` from the center. `None` if it is straight above or below.
+    /// Returns the position in the plane of a site at the vector `away` from the center. `None` if it is straight above
+    /// or below.
     #[inline]
     fn map(&self, away: DVec3, distance_sq: f64) -> Option<DVec2> {
         let projected = DVec2::new(away.dot(self.axes[0]), away.dot(self.axes[1]));

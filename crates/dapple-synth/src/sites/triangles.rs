@@ -126,7 +126,7 @@ impl Edges {
         edges
     }
 
-    /// Edges of a site, counterclockwise.
+    /// Returns the edges of a site, counterclockwise.
     fn row(&self, site: u32) -> &[Edge] {
         &self.rows[self.offsets[site as usize]..self.offsets[site as usize + 1]]
     }
@@ -239,8 +239,8 @@ impl Filler<'_> {
         Some(triangles)
     }
 
-    /// Index of the corner with the shortest diagonal, among corners that face outward and whose diagonal is not an
-    /// edge yet.
+    /// Returns the index of the corner with the shortest diagonal, among corners that face outward and whose diagonal
+    /// is not an edge yet.
     fn best_corner(&self, ring: &[u32]) -> Option<usize> {
         let length = |at: usize| {
             let [a, _, b] = corner(ring, at);
@@ -271,7 +271,7 @@ fn lower_first(a: u32, b: u32) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// A site of a ring, with the sites before and after it.
+/// Returns a site of a ring, with the sites before and after it.
 fn corner(ring: &[u32], at: usize) -> [u32; 3] {
     let n = ring.len();
     [ring[(at + n - 1) % n], ring[at], ring[(at + 1) % n]]

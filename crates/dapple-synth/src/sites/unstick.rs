@@ -86,7 +86,7 @@ impl Crowd {
         chunks.concat()
     }
 
-    /// Distance to the nearest point on the same sheet for which `counts` holds, clamped to `reach`.
+    /// Returns the distance to the nearest point on the same sheet for which `counts` holds, clamped to `reach`.
     #[inline]
     fn nearest(
         &self,

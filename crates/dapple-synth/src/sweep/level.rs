@@ -117,7 +117,7 @@ impl<'a> LevelSweep<'a> {
         distances
     }
 
-    /// Distance of a site as predicted by the coarser sites around it. `None` if no coarser site counts.
+    /// Returns the distance of a site as predicted by the coarser sites around it. `None` if no coarser site counts.
     fn inherit(
         &self,
         site: usize,
@@ -158,8 +158,8 @@ impl<'a> LevelSweep<'a> {
         }
     }
 
-    /// Distance of a site as predicted by others: their weighted mean. Predictions that disagree with the prediction of
-    /// the largest weight count less.
+    /// Returns the distance of a site as predicted by others: their weighted mean. Predictions that disagree with the
+    /// prediction of the largest weight count less.
     #[inline]
     fn consensus(
         &self,
@@ -224,7 +224,7 @@ impl<'a> LevelSweep<'a> {
         distances[site] * (1.0 - SWEEP_STRENGTH) + average * SWEEP_STRENGTH
     }
 
-    /// Weighted sum of the neighbors' distances.
+    /// Returns the weighted sum of the neighbors' distances.
     #[inline]
     fn neighbors_sum(&self, site: usize, distances: &[f64]) -> f64 {
         let mut sum = 0.0;
@@ -256,7 +256,7 @@ impl<'a> LevelSweep<'a> {
     }
 }
 
-/// Links of a level, with weight 0 where they cross a cut of the field.
+/// Returns the links of a level, with weight 0 where they cross a cut of the field.
 fn links<'a>(hierarchy: &'a Hierarchy, orientation: &Orientation, level: usize) -> Links<'a> {
     let mut links = Links::new(hierarchy, level);
     let normals = hierarchy.sites().normals();
@@ -275,15 +275,15 @@ fn links<'a>(hierarchy: &'a Hierarchy, orientation: &Orientation, level: usize) 
     links
 }
 
-/// Cauchy weight of a prediction that is off by `difference`; 1/2 at one spacing.
+/// Returns the Cauchy weight of a prediction that is off by `difference`; 1/2 at one spacing.
 #[inline]
 fn trust(difference: f64, spacing: f64) -> f64 {
     let x = difference / spacing;
     1.0 / (1.0 + x * x)
 }
 
-/// Component of `way` along the projection of `sum` to the plane perpendicular to `normal`; 0 if the projection
-/// vanishes.
+/// Returns the component of `way` along the projection of `sum` to the plane perpendicular to `normal`; 0 if the
+/// projection vanishes.
 #[inline]
 pub(super) fn step(way: DVec3, sum: DVec3, normal: DVec3) -> f64 {
     let up = normal.length_squared();
@@ -301,7 +301,7 @@ pub(super) fn step(way: DVec3, sum: DVec3, normal: DVec3) -> f64 {
     }
 }
 
-/// Lowest site of every component with the component, in the order of the components.
+/// Returns the lowest site of every component with the component, in the order of the components.
 fn lowest_sites(components: &[u32]) -> impl Iterator<Item = (usize, u32)> {
     let mut next = 0;
     components

@@ -13,8 +13,8 @@ fn along(hierarchy: &Hierarchy, vector: DVec3) -> Orientation {
     Orientation::from_fn(hierarchy, |_, _| vector)
 }
 
-/// Fraction of the edges of the finest level along which the distance increases in the direction of the field. Edges
-/// across the field are not counted.
+/// Returns the fraction of the edges of the finest level along which the distance increases in the direction of the
+/// field. Edges across the field are not counted.
 fn rising_share(hierarchy: &Hierarchy, orientation: &Orientation, sweep: &Sweep) -> f64 {
     let (positions, normals) = (hierarchy.sites().positions(), hierarchy.sites().normals());
     let (mut rising, mut count) = (0, 0);
@@ -36,7 +36,7 @@ fn rising_share(hierarchy: &Hierarchy, orientation: &Orientation, sweep: &Sweep)
     f64::from(rising as u32) / f64::from(count)
 }
 
-/// Standard deviation of the difference of two columns.
+/// Returns the standard deviation of the difference of two columns.
 fn spread(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len() as f64;
     let mean = a.iter().zip(b).map(|(a, b)| a - b).sum::<f64>() / n;

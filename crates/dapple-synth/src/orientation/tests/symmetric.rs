@@ -16,7 +16,7 @@ fn field(hierarchy: &Hierarchy, directions: &[Direction], symmetry: Symmetry) ->
     Orientation::symmetric(hierarchy, directions, Orientation::AXIS, symmetry).unwrap()
 }
 
-/// Quotient of two unit complex numbers.
+/// Returns the quotient of two unit complex numbers.
 fn over(number: DVec2, other: DVec2) -> DVec2 {
     DVec2::new(other.x, -other.y).rotate(number)
 }
@@ -25,8 +25,9 @@ fn angle(number: DVec2) -> f64 {
     libm::atan2(number.y, number.x)
 }
 
-/// Index of the field in each triangle of sites times the number of directions, and the Euler characteristic of the
-/// mesh. The index is the number of turns of the field's power around the triangle, minus the holonomy of the frame.
+/// Returns the index of the field in each triangle of sites times the number of directions, and the Euler
+/// characteristic of the mesh. The index is the number of turns of the field's power around the triangle, minus the
+/// holonomy of the frame.
 fn indices(mesh: &Mesh, normals: &[DVec3], orientation: &Orientation) -> (Vec<f64>, i64) {
     let symmetry = orientation.symmetry();
     let n = symmetry.quarters().len() as f64;
@@ -183,7 +184,7 @@ fn field_on_a_plane_is_constant() {
     }
 }
 
-/// Lowest eigenvalue of the system of a level, from its dense matrix.
+/// Returns the lowest eigenvalue of the system of a level, from its dense matrix.
 fn naive_eigenvalue(system: &smooth::Smooth<'_>, n_sites: usize) -> f64 {
     let size = 2 * n_sites;
     let mut matrix = vec![0.0; size * size];

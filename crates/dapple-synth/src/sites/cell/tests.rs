@@ -11,7 +11,7 @@ fn random(seed: u64, n: i64, counter: u32) -> Vec<DVec2> {
         .collect()
 }
 
-/// Tags of the neighbors of the origin, sorted, and whether all of them are joined.
+/// Returns the tags of the neighbors of the origin, sorted, and whether all of them are joined.
 fn star(points: &[DVec2]) -> (Vec<u32>, bool) {
     let mut sorted: Vec<(u32, DVec2)> = (0..).zip(points.iter().copied()).collect();
     sorted.sort_by(|a, b| a.1.length_squared().total_cmp(&b.1.length_squared()));
@@ -26,7 +26,7 @@ fn star(points: &[DVec2]) -> (Vec<u32>, bool) {
     (tags, all.iter().all(|neighbor| neighbor.joined))
 }
 
-/// Neighbors of the origin in spade's triangulation of the origin and the points.
+/// Returns the neighbors of the origin in spade's triangulation of the origin and the points.
 fn spade_star(points: &[DVec2]) -> Vec<u32> {
     let mut triangulation = DelaunayTriangulation::<Point2<f64>>::new();
     let center = triangulation.insert(Point2::new(0.0, 0.0)).unwrap();
@@ -42,8 +42,8 @@ fn spade_star(points: &[DVec2]) -> Vec<u32> {
     star
 }
 
-/// Neighbors of the origin by brute force: the points that lie on an empty circle through the origin. The side of a
-/// neighbor is a segment of positive length, a ray, or a line.
+/// Returns the neighbors of the origin by brute force: the points that lie on an empty circle through the origin. The
+/// side of a neighbor is a segment of positive length, a ray, or a line.
 fn naive_star(points: &[DVec2]) -> Vec<u32> {
     let in_circle = |a: DVec2, b: DVec2, c: DVec2| {
         order(incircle(coord(DVec2::ZERO), coord(a), coord(b), coord(c)))

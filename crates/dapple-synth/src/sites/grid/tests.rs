@@ -19,7 +19,7 @@ fn visited(grid: &SiteGrid, center: DVec3, radius: f64) -> Vec<u32> {
     sites
 }
 
-/// Visited sites that are in the ball, in ascending order.
+/// Returns the visited sites that are in the ball, in ascending order.
 fn in_ball(grid: &SiteGrid, positions: &[DVec3], center: DVec3, radius: f64) -> Vec<u32> {
     let mut sites = visited(grid, center, radius);
     sites.retain(|&site| positions[site as usize].distance(center) < radius);

@@ -5,7 +5,7 @@ use crate::Connected;
 use crate::shapes::{even_sites, geodesic_sphere, spacing};
 use dapple_hash::{Seed, hash1, unit_f64};
 
-/// Evenly spaced sites of a sphere, and their graph.
+/// Returns the evenly spaced sites of a sphere, and their graph.
 fn even(n_sites: usize) -> (Vec<DVec3>, SiteGraph) {
     let surface = geodesic_sphere(3);
     let sites = even_sites(&surface, n_sites, 21);
@@ -14,7 +14,7 @@ fn even(n_sites: usize) -> (Vec<DVec3>, SiteGraph) {
     (sites.positions().to_vec(), connected.graph)
 }
 
-/// A hexagonal lattice of spacing 1, its graph, and its central site.
+/// Returns a hexagonal lattice of spacing 1, its graph, and its central site.
 fn hexagonal(half: i32) -> (Vec<DVec3>, SiteGraph, usize) {
     let side = 2 * half + 1;
     let height = 0.75_f64.sqrt();

@@ -5,7 +5,7 @@ use crate::shapes::{geodesic_sphere, sheets};
 use crate::{HierarchyOptions, SiteIdx, SynthErrorKind};
 use dapple_mesh::Surface;
 
-/// A hierarchy of three levels.
+/// Returns a hierarchy of three levels.
 fn hierarchy(surface: &Surface, n_sites: usize) -> Hierarchy {
     let options = HierarchyOptions {
         n_sites,

@@ -36,7 +36,7 @@ fn open_edges(mesh: &Mesh) -> usize {
         .count()
 }
 
-/// Euler characteristic: vertices minus edges plus triangles.
+/// Returns the Euler characteristic: vertices minus edges plus triangles.
 fn euler(mesh: &Mesh) -> i64 {
     let n_edges = (3 * mesh.faces().len() + open_edges(mesh)) / 2;
     mesh.positions().len() as i64 - n_edges as i64 + mesh.faces().len() as i64
