@@ -1,5 +1,5 @@
-//! Synthesis on surfaces by correction in appearance space: all sites of a level move, a few times, to the exemplar
-//! position whose surroundings are most similar to theirs.
+//! Synthesis on surfaces by correction in appearance space: each site of a level is moved, in a few passes, to the
+//! exemplar position whose surroundings are most similar to its own.
 //!
 //! References: Sylvain Lefebvre and Hugues Hoppe, "Appearance-Space Texture Synthesis", SIGGRAPH 2006, DOI
 //! 10.1145/1141911.1141921, and "Parallel Controllable Texture Synthesis", SIGGRAPH 2005, DOI 10.1145/1186822.1073261.
@@ -7,16 +7,16 @@
 //! Input: the sites of a [`Synthesizer`], an exemplar, guides, and the pixels that the first pass of [`engine`]
 //! assigned to the coarsest sites. Output: for each site of each level, a pixel of the exemplar.
 //!
-//! The source of a site is a position in the exemplar, with subpixel precision. On every level it is a position in the
-//! exemplar at full size. A feature vector describes the window around a pixel: the principal components of its colors
-//! ([`stage`]). Neighborhoods are compared by the features on their four diagonals, as far apart as the sites of the
-//! level. They are 32 numbers, where two squares of colors have 171. Features are looked up at the positions that the
-//! neighbors predict; nothing is interpolated, so nothing is blurred.
+//! The source of a site is a position in the exemplar, with subpixel precision. On every level, positions refer to the
+//! full-size exemplar. A feature vector describes the window around a pixel: the principal components of its colors
+//! ([`stage`]). Neighborhoods are compared by the features at the four diagonal neighbors, one site spacing of the
+//! level away. This takes 32 numbers per neighborhood, compared with 171 for two squares of colors. Features are looked
+//! up at the positions that the neighbors predict; nothing is interpolated, so nothing is blurred.
 //!
 //! Steps on each level, from the coarsest:
 //!
-//! - Sites of the coarser level keep their positions. A new site takes the position that its nearest coarser neighbor
-//!   predicts.
+//! - Sites of the coarser level keep their exemplar positions. A new site takes the position that its nearest coarser
+//!   neighbor predicts.
 //! - Each site compares several candidates and takes the best ([`choose`]): the positions that its neighbors predict,
 //!   positions half a pixel from the best of these, and the positions most similar to the predicted ones. This is
 //!   repeated a few times for all sites.
@@ -32,12 +32,12 @@
 //! - Parts of the exemplar that the texture uses too often cost more from pass to pass, as in endless textures.
 //!
 //! If the orientation field has a symmetry, the first pass determines the rotation of the exemplar at the coarsest
-//! sites, and finer sites take it from the nearest of them. A site continues only neighbors with the same rotation; at
-//! the others it reads the features of the rotated exemplar.
+//! sites. Finer sites take the rotation of the nearest coarser site. A site continues only neighbors with the same
+//! rotation; for neighbors with a different rotation, it reads the features of the rotated exemplar.
 //!
-//! Guides are compared along with the features. The position predicted by the coarser level may have guides far from
-//! the wanted ones, with no better position near it. So a site searches the whole exemplar before correction if its
-//! guides differ by a large fraction of the difference of its features ([`MISFIT`]).
+//! Guides are compared along with the features. The guides at the position predicted by the coarser level may differ a
+//! lot from the wanted guides, with no better position nearby. So a site searches the whole exemplar before correction
+//! if the distance of its guides is large relative to the distance of its features ([`MISFIT`]).
 
 mod links;
 
@@ -57,17 +57,18 @@ use dapple_raster::simd::{self, dispatch};
 use glam::Vec2;
 use links::Links;
 
-/// Number of subpixel bits of a position, which is in units of 1/8 pixel along each axis. With whole pixels, a
+/// Number of subpixel bits of a position: positions are in units of 1/8 pixel along each axis. With whole pixels, a
 /// prediction would be off by up to half a pixel at every step, which cuts up pieces of the exemplar.
 ///
 /// Coordinates of 32 bits allow 2^29 pixels along a side. An image with at least five rows cannot have more.
 const PART_BITS: u32 = 3;
 
-/// Distance at which a site also tries positions around the best one: half a pixel, in units of 1/8 pixel.
+/// Step from the best position to the additional positions that a site tries around it: half a pixel, in units of 1/8
+/// pixel.
 ///
-/// Measured on the six models of figure 5: 13 to 18 % of neighbors are of other pieces, compared with 14 to 27 % with
-/// whole pixels, and colors where pieces meet differ by 7 to 34 % less (mean squares of all neighbors). Without this
-/// step pieces are larger still, and differ more where they meet; the same holds for a step of a whole pixel.
+/// Measured on the six models of figure 5: 13 to 18 % of neighbors belong to other pieces, compared with 14 to 27 %
+/// with whole pixels. Colors where pieces meet differ by 7 to 34 % less (mean squares over all neighbors). Without this
+/// step pieces are larger still, and differ more where they meet; the same is true of a step of a whole pixel.
 const ASIDE: i64 = 1 << (PART_BITS - 1);
 
 /// Number of correction passes per level; the coarsest level has twice as many.
@@ -79,7 +80,8 @@ const TASK: usize = 64;
 /// Maximum number of predicted positions that a site compares. The positions similar to them are not counted.
 const MAX_COHERENT: usize = 16;
 
-/// Decrease of the cost of a part that the texture does not use, per pass, in units of the mean squared distance.
+/// Amount by which the cost of an unused exemplar region decreases per pass, as a multiple of the mean squared
+/// distance.
 const STEP: f32 = 0.8;
 
 /// A site searches the whole exemplar if the squared distance of its guides, divided by the squared distance of its
@@ -93,7 +95,7 @@ const MISFIT: f32 = 0.25;
 /// Number of tasks that search between two progress callbacks.
 const TASKS: usize = 256;
 
-/// Correction of the sites of a surface: the sites with their frames and guides, and the exemplar on all levels.
+/// Corrects the sites of a surface: holds the sites with their frames and guides, and the exemplar on all levels.
 pub(crate) struct Appearance<'a> {
     hierarchy: &'a Hierarchy,
     targets: &'a Targets,
@@ -103,12 +105,12 @@ pub(crate) struct Appearance<'a> {
     /// Levels of the exemplar, the finest first.
     stages: Vec<Stage>,
     seed: Seed,
-    /// Factor of the changes of costs; 0 if parts have no costs.
+    /// Factor on the cost changes between passes; 0 if exemplar regions have no costs.
     evenness: f32,
 }
 
-/// A candidate position in units of 1/8 pixel, and its squared distance in features and guides from the site, plus its
-/// cost.
+/// A candidate position in units of 1/8 pixel. Its score is the squared distance of its features and guides from the
+/// site's, plus its cost.
 #[derive(Clone, Copy, Debug)]
 struct Choice {
     place: [u32; 2],
@@ -116,12 +118,12 @@ struct Choice {
 }
 
 impl<'a> Appearance<'a> {
-    /// Prepares the levels of an exemplar. `coarsest` is its rotation at the coarsest sites, in quarter turns.
-    /// `targets` has as many guides as the exemplar.
+    /// Prepares all levels of `exemplar`. `coarsest` holds its rotation at each of the coarsest sites, in quarter
+    /// turns. `targets` has as many guides as the exemplar.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Masked`] for a mask that allows no pixel.
+    /// [`SynthErrorKind::Masked`] if the mask allows no pixel.
     pub(crate) fn new(
         synthesizer: &'a Synthesizer,
         exemplar: &Exemplar,
@@ -148,7 +150,7 @@ impl<'a> Appearance<'a> {
         )?;
         for stage in &mut stages {
             stage.coherence = match options.coherence {
-                // Measured: 2 lets regular exemplars continue better than smaller factors, too.
+                // A factor of 2 measured better than smaller ones for regular exemplars, too.
                 Coherence::Auto => 2.0,
                 Coherence::Factor(factor) => factor,
             };
@@ -249,7 +251,7 @@ impl<'a> Appearance<'a> {
         })
     }
 
-    /// Returns a random usable position for a site.
+    /// Returns a random usable position for `site`.
     fn any(&self, level: usize, site: usize) -> [u32; 2] {
         let stage = &self.stages[level];
         let usable = stage.usable_pixels();
@@ -262,7 +264,7 @@ impl<'a> Appearance<'a> {
         middle([pixel % stage.size[0], pixel / stage.size[0]].map(i64::from))
     }
 
-    /// Moves sites whose guides differ much to the position of the exemplar with the most similar features and guides.
+    /// Moves each site whose guides differ too much to the exemplar position with the most similar features and guides.
     fn obey(
         &self,
         level: usize,
@@ -375,8 +377,8 @@ fn quarters(synthesizer: &Synthesizer, coarsest: &[u8], n_levels: usize) -> Vec<
     quarters
 }
 
-/// Returns the position with the least distance to a site: in features around it, in guides from `wanted`, and in
-/// costs. Of equally good positions the first wins.
+/// Returns the position with the lowest score for `site`: the distance of the features around it, the distance of its
+/// guides from `wanted`, and its cost. Among equally good positions the first wins.
 #[inline(always)]
 fn choose(
     stage: &Stage,
@@ -432,7 +434,8 @@ fn choose(
 }
 
 impl Choice {
-    /// Takes a position if it is better than the best so far. `factor` multiplies its squared distance, costs excluded.
+    /// Takes `place` if it is better than the best position so far. `factor` multiplies its squared distance, costs
+    /// excluded.
     #[inline(always)]
     fn compare(
         &mut self,
@@ -501,7 +504,7 @@ fn filled(around: [Option<[f32; N_FEATURES]>; 4]) -> Option<[[f32; N_FEATURES]; 
     Some(around.map(|features| features.unwrap_or(mean)))
 }
 
-/// Returns the squared distance between the features on the diagonals of a site and those on the diagonals of a pixel.
+/// Returns the squared distance between the features `around` a site and the features on the diagonals of `place`.
 /// Missing diagonals are skipped.
 #[inline(always)]
 fn distance_sq(stage: &Stage, around: &[Option<[f32; N_FEATURES]>; 4], place: [i64; 2]) -> f32 {
@@ -510,7 +513,7 @@ fn distance_sq(stage: &Stage, around: &[Option<[f32; N_FEATURES]>; 4], place: [i
     stage.distance_sq_of(known, place)
 }
 
-/// Returns a position plus an offset in pixels. The result may be outside of the exemplar.
+/// Returns `place` plus the offset `way` in pixels. The result may be outside of the exemplar.
 #[inline(always)]
 fn moved(place: [u32; 2], way: Vec2) -> [i64; 2] {
     let way = (way * (1 << PART_BITS) as f32).round();
@@ -520,7 +523,7 @@ fn moved(place: [u32; 2], way: Vec2) -> [i64; 2] {
     ]
 }
 
-/// Returns a position within the exemplar, wrapped if the exemplar wraps, or `None` if its pixel is not usable.
+/// Returns `place` within the exemplar, wrapped if the exemplar wraps, or `None` if its pixel is not usable.
 #[inline(always)]
 fn settled(stage: &Stage, place: [i64; 2]) -> Option<[u32; 2]> {
     let pixel = stage.usable(place.map(|at| at >> PART_BITS))?;
@@ -534,12 +537,12 @@ fn within(pixel: [i64; 2], place: [i64; 2]) -> [u32; 2] {
     [0, 1].map(|axis| (pixel[axis] << PART_BITS | place[axis] & part) as u32)
 }
 
-/// Returns the position of the center of a pixel.
+/// Returns the position of the center of `pixel`.
 fn middle(pixel: [i64; 2]) -> [u32; 2] {
     within(pixel, [1 << (PART_BITS - 1); 2])
 }
 
-/// Returns the pixel that contains a position.
+/// Returns the pixel that contains `place`.
 #[inline(always)]
 fn pixel(place: [u32; 2]) -> [i64; 2] {
     place.map(|at| i64::from(at >> PART_BITS))

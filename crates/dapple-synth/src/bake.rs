@@ -1,7 +1,7 @@
 //! Baking: rendering a texture map from the sites (section 6).
 //!
-//! Texels are processed in small blocks. The texels of one face in a block read the same sites. A texel shows either a
-//! weighted mean of the values of the sites around it, as in the paper, or a piece of the exemplar
+//! Texels are processed in small blocks. Within a block, all texels of the same face read the same sites. A texel shows
+//! either a weighted mean of the values of the sites around it, as in the paper, or a piece of the exemplar
 //! ([`magnify`](crate::magnify)).
 
 use crate::atlas::Atlas;
@@ -14,33 +14,34 @@ use glam::DVec3;
 
 /// Side of a block, in texels.
 const BLOCK: u32 = 8;
-/// Search margin around a group of texels, in spacings: every piece of the surface has a finest site within it.
+/// Search margin around a group of texels, in multiples of the site spacing. Every point of the surface has a finest
+/// site within this distance.
 const REACH: f64 = 2.0;
 
-/// Texels of one face in one block.
+/// Texels of a block that show the same face.
 pub(crate) struct Group<'a> {
     pub(crate) surface: &'a Surface,
     pub(crate) face: FaceIdx,
     pub(crate) points: &'a [SurfacePoint],
-    /// The position in space that the positions of `sites` are relative to.
+    /// Origin of the positions in `sites`, in space.
     pub(crate) center: DVec3,
-    /// A superset of the finest sites within reach of a texel of the group.
+    /// Superset of the finest sites within reach of any texel of the group.
     pub(crate) sites: Around<'a>,
 }
 
-/// Computes the values of texels from the sites around them, with scratch memory that is reused from group to group.
+/// Computes the values of texels from nearby sites, with scratch memory that is reused from group to group.
 pub(crate) trait Paint {
-    /// Writes the channels of every point of the group, point by point.
+    /// Writes the channels of every point of `group` to `values`, point by point.
     fn paint(&mut self, group: &Group<'_>, values: &mut [f32]);
 }
 
-/// Scratch memory of a thread that bakes blocks of texels.
+/// Per-thread scratch memory for baking blocks of texels.
 struct Memory<'a> {
-    /// The texels of a block, sorted by face.
+    /// Texels of the block, sorted by face.
     texels: Vec<(FaceIdx, [u32; 2])>,
     points: Vec<SurfacePoint>,
     nearby: Nearby,
-    /// The channels of the texels of a group, texel by texel.
+    /// Channels of the group's texels, texel by texel.
     values: Vec<f32>,
     paint: Box<dyn Paint + 'a>,
 }
@@ -51,7 +52,7 @@ struct Memory<'a> {
 ///
 /// # Errors
 ///
-/// [`SynthErrorKind::Count`] if `column` has a different number of values.
+/// [`SynthErrorKind::Count`] if `column` does not have `N` values per site.
 pub fn bake<const N: usize>(
     surface: &Surface,
     hierarchy: &Hierarchy,
@@ -108,7 +109,7 @@ pub(crate) fn bake_with<'a, const N: usize>(
     Ok(Raster::from_vec(size, bands.concat())?)
 }
 
-/// The input shared by all blocks.
+/// Input shared by all blocks.
 struct Baker<'a, 'p> {
     surface: &'a Surface,
     hierarchy: &'a Hierarchy,
@@ -118,7 +119,7 @@ struct Baker<'a, 'p> {
 }
 
 impl Baker<'_, '_> {
-    /// Returns the channels of some rows of the map, texel by texel.
+    /// Returns the channels of the given rows of the map, texel by texel.
     fn bake_rows(&self, rows: core::ops::Range<u32>) -> Vec<f32> {
         let width = self.atlas.size()[0];
         let n_channels = self.background.len();
@@ -157,7 +158,7 @@ impl Baker<'_, '_> {
         values
     }
 
-    /// Computes the values of some texels of one face into `memory.values`.
+    /// Computes the values of the texels in `group`, all of the same face, into `memory.values`.
     fn bake_group(&self, group: &[(FaceIdx, [u32; 2])], memory: &mut Memory<'_>) {
         let surface = self.surface;
         memory.points.clear();
@@ -190,7 +191,7 @@ impl Baker<'_, '_> {
     }
 }
 
-/// Paints weighted means of the sites around (equation 1), with the SIMD code that also reads neighborhoods.
+/// Paints weighted means of the sites around each texel (equation 1), with the SIMD code that also reads neighborhoods.
 struct Mixed<'a> {
     colors: Plain<'a>,
     radius: f32,

@@ -1,14 +1,14 @@
 //! Baking of normal maps: rotation of the exemplar's normals into the tangent frames of a texture map.
 //!
-//! A normal of the exemplar has components to the right, up or down as [`NormalY`] says, and outward. On the surface
+//! A normal of the exemplar has three components: right, up or down (see [`NormalY`]), and outward. On the surface
 //! these directions are P, O (which points down) and n of the site that copies the normal. Between sites, the
 //! tangential vectors are interpolated in space, not by component: near a singularity of the field, where frames rotate
 //! fast, components of adjacent sites would not match.
 //!
-//! The frame of a texel is that of glTF 2.0. N is the interpolated shading normal of the face's corners. T is the
-//! tangent along +u, perpendicular to N. B = ± N × T points to the top of the map; the sign depends on whether the face
-//! is mirrored there. T is the tangent that programs compute when a file has none. Sites have the normals of the smooth
-//! surface. Where the shading normal differs, as next to a crease, tangential vectors rotate with it.
+//! The frame of a texel follows glTF 2.0. N is the interpolated shading normal of the face's corners. T is the tangent
+//! along +u, perpendicular to N. B = ± N × T points to the top of the map; the sign depends on whether the face is
+//! mirrored there. T equals the tangent that other programs compute if a file has no tangents. Sites have the normals
+//! of the smooth surface. Where the shading normal differs, as next to a crease, tangential vectors rotate with it.
 //!
 //! Reference: Morten S. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", master's thesis, University of
 //! Copenhagen, 2008.
@@ -26,10 +26,10 @@ use dapple_mesh::{CREASE, Walk};
 use dapple_raster::Raster;
 use glam::DVec3;
 
-/// Bakes a normal map of the exemplar, or of a version whose size is an integer multiple of the exemplar's.
+/// Bakes the exemplar's normal map. `map` is the same size as the exemplar, or an integer multiple of it.
 ///
-/// `y` is the direction of green, in the exemplar and in the result. `shading` has the normal of every corner of every
-/// face, as [`textured_model`](crate::textured_model) takes them. Texels without a face are flat.
+/// `y` is the direction of the green channel, in `map` and in the result. `shading` has the normal of every corner of
+/// every face, as in [`textured_model`](crate::textured_model). Texels without a face get the flat normal.
 ///
 /// Codes adjacent to the middle code of an image count as 0 (see [`Normal::centered`]): rotated into the frames of
 /// charts, their slope would show at seams of flat regions.
@@ -37,7 +37,7 @@ use glam::DVec3;
 /// # Errors
 ///
 /// Same as [`bake_colors`](crate::bake_colors), and [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) unless
-/// there is a normal for each corner.
+/// `shading` has a normal for each corner.
 ///
 /// # Examples
 ///
@@ -108,7 +108,7 @@ pub fn bake_normals(
     })
 }
 
-/// For each texel, the tangential part of its normal, in space, and the outward component.
+/// Returns, for each texel, the tangential part of its normal as a vector in space, and the outward component.
 fn in_space(
     synthesizer: &Synthesizer,
     texture: &SurfaceTexture,
@@ -120,7 +120,7 @@ fn in_space(
         let along = right * f64::from(x) - down * f64::from(y);
         [along.x as f32, along.y as f32, along.z as f32, z]
     };
-    // Source on a surface: take the normals from its map.
+    // Source is a surface: take the normals from its map.
     if let Some(places) = texture.lifted_between() {
         let relief = Relief::new(&places.origin, map.size())?;
         let detail = LiftedDetail::new(map, &places.origin)?;
@@ -137,7 +137,7 @@ fn in_space(
             },
         );
     }
-    // Source between the pixels of an image.
+    // Source is an image, with subpixel positions.
     if let Some(places) = &texture.places {
         let detail = Detail::new(map, places.size, places.edges)?;
         return magnify(
@@ -152,7 +152,7 @@ fn in_space(
             },
         );
     }
-    // Values at sites, interpolated between them.
+    // Otherwise interpolate values between sites.
     let (surface, hierarchy) = (synthesizer.surface(), synthesizer.hierarchy());
     let (outs, downs) = (
         hierarchy.sites().normals(),
@@ -176,7 +176,7 @@ fn in_space(
     bake::<4>(surface, hierarchy, &column, atlas, flat)
 }
 
-/// The tangent frames of a source surface with its texture coordinates. Its shading normals are smooth between creases.
+/// Tangent frames of a source surface, from its texture coordinates. Its shading normals are smooth between creases.
 struct Relief<'a> {
     origin: &'a Origin,
     shading: Vec<[DVec3; 3]>,
@@ -195,8 +195,8 @@ impl<'a> Relief<'a> {
         })
     }
 
-    /// Returns the components of a normal to the right, up and outward, relative to the texture's axes at the end of a
-    /// walk. The given components are those in the tangent frame there.
+    /// Converts a normal from the tangent frame at the end of `walk` to the texture's axes there. Components are right,
+    /// up and outward.
     fn turned(&self, [x, y, z]: [f32; 3], walk: &Walk) -> [f32; 3] {
         let surface = self.origin.synthesizer.surface();
         let face = walk.point.face;
@@ -212,18 +212,18 @@ impl<'a> Relief<'a> {
     }
 }
 
-/// Rotates a vector by the shortest rotation that takes one unit vector to another.
+/// Rotates `vector` by the shortest rotation that takes the unit vector `from` to the unit vector `to`.
 pub(crate) fn turned(vector: DVec3, from: DVec3, to: DVec3) -> DVec3 {
     let (sum, cos) = (from + to, from.dot(to));
     if cos <= -1.0 + 1e-9 {
-        // Opposite vectors: no rotation is shortest.
+        // Opposite vectors have no shortest rotation.
         return vector;
     }
     vector - sum * (sum.dot(vector) / (1.0 + cos)) + to * (2.0 * from.dot(vector))
 }
 
-/// Returns the unit normal of a tangential part, expressed in a frame of a tangent and a bitangent, and an outward
-/// component.
+/// Returns the unit normal with the tangential part `along` and the outward component `out`. The tangential part is
+/// expressed in the frame of `tangent` and `bitangent`.
 fn in_frame(along: DVec3, out: f64, [tangent, bitangent]: [DVec3; 2]) -> Normal {
     let normal = DVec3::new(along.dot(tangent), along.dot(bitangent), out);
     // The interpolated normals may cancel where they are opposite.
@@ -231,7 +231,7 @@ fn in_frame(along: DVec3, out: f64, [tangent, bitangent]: [DVec3; 2]) -> Normal 
     Normal { x, y, z }
 }
 
-/// Returns the normal with green inverted.
+/// Returns `normal` with the green channel inverted.
 fn turned_over(normal: Normal) -> Normal {
     // Subtract instead of negating: 0 does not become -0.
     let y = 0.0 - normal.y;

@@ -1,4 +1,4 @@
-//! Candidates of neighborhood matching: the neighborhoods of the exemplar's pixels, as rows of numbers.
+//! Candidates for neighborhood matching: the neighborhoods of the exemplar's pixels, as rows of numbers.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI 10.1145/383259.383297, section 5.
 //!
@@ -7,22 +7,22 @@
 //!
 //! A row holds the pixels of a neighborhood in a fixed order: part after part, the offsets of a part row by row from
 //! the top, and all channels of a pixel. Each value is multiplied by the square root of the part's weight, so the
-//! squared distance of two rows is the weighted one. The guides of the center pixel follow at the end, if there are
-//! any.
+//! squared distance of two rows is the weighted distance. If the exemplar has guides, those of the center pixel are
+//! appended.
 //!
-//! Pixels whose neighborhoods reach past an edge are not candidates, as in the paper. The paper does not say what to do
-//! on small levels, where few or none remain: of 8 × 8 pixels, ten have H(7, 0). Here, if fewer than [`FEW`] usable
-//! pixels remain, all usable pixels are candidates, and the exemplar is mirrored at its edges. An exemplar made of
-//! several images side by side is counted and mirrored image by image.
+//! Pixels whose neighborhoods reach past an edge are not candidates, as in the paper. The paper does not cover small
+//! levels, where few or none remain: of 8 × 8 pixels, only ten have a complete neighborhood H(7, 0). Here, if fewer
+//! than [`FEW`] usable pixels remain, all usable pixels are candidates, and the exemplar is mirrored at its edges. If
+//! the exemplar is a layout of several images, each image is counted and mirrored separately.
 //!
-//! If pixels are to be used evenly ([`Options::evenness`]), all pixels are candidates on all levels. Otherwise the
-//! first of three levels would compare only two thirds of the pixels of an exemplar of 128 × 128. Measured on four such
-//! exemplars, the distance of colors ([`Likeness`](crate::Likeness)) falls by a third. Passes that read both levels are
-//! an exception: for them the minimum of [`FEW`] remains, since narrow pieces mirrored at an edge gave specks.
+//! If [`Options::evenness`] is on, all pixels are candidates on all levels. Otherwise the first of three levels would
+//! compare only two thirds of the pixels of an exemplar of 128 × 128. Measured on four such exemplars, the distance of
+//! colors ([`Likeness`](crate::Likeness)) falls by a third. Passes that read both levels are an exception. They still
+//! require [`FEW`] usable pixels, since narrow pieces mirrored at an edge caused specks.
 //!
 //! The paper centers a neighborhood on the coarser level at half of the coordinates, rounded down. Then four pixels
-//! have the same F(n, 1), and the first of them always wins. By default it is centered at exactly half, with bilinear
-//! interpolation. [`CoarserCenter`] selects one of the two.
+//! share the same F(n, 1), and the first of them always wins. By default the neighborhood is centered at exactly half,
+//! with bilinear interpolation. [`CoarserCenter`] selects between the two.
 
 use crate::error::{SynthError, SynthErrorKind};
 use crate::exemplar::Area;
@@ -31,8 +31,8 @@ use crate::neighborhood::{Part, Pass, Reads};
 use crate::{Edges, Exemplar, Options, Pyramid};
 use core::ops::Range;
 
-/// Minimum number of neighborhoods within the exemplar; with fewer, neighborhoods that reach past an edge are
-/// candidates, too.
+/// Minimum number of neighborhoods that lie within the exemplar. If there are fewer, neighborhoods that reach past an
+/// edge are candidates, too.
 ///
 /// Measured on leaves of 64 × 64 pixels with three levels: the distance of patches ([`Likeness`](crate::Likeness)) is
 /// 0.061 with no limit, 0.039 with 200, 0.024 with 400 and 0.023 with 1000.
@@ -49,23 +49,24 @@ pub enum CoarserCenter {
     Floor,
 }
 
-/// All neighborhoods that a pass compares with, one row each.
+/// All candidate neighborhoods of a pass, one row each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidates {
-    /// Number of values of a row: offsets times channels of all parts, and the guides.
+    /// Number of values per row: offsets times channels of all parts, plus the guides.
     pub(crate) dims: usize,
-    /// Values of all rows, stored contiguously, each times the root of its part's weight.
+    /// Values of all rows, stored contiguously, each multiplied by the square root of its part's weight.
     pub(crate) rows: Vec<f32>,
     /// Center pixel of each row, as `row * width + column` of the pass's level of the pyramid; ascending.
     pub(crate) pixels: Vec<u32>,
     /// Edge mode and size of the pass's level.
     edges: Edges,
     size: [u32; 2],
-    /// Rectangle of the pixels that have rows: its columns and its lines.
+    /// Rectangle of the pixels that have rows: column range and line range.
     inner: [Inner; 2],
-    /// For each pixel of the rectangle the index of its row, or [`NO_ROW`]; `None` if all pixels have one.
+    /// For each pixel of the rectangle, the index of its row, or [`NO_ROW`]. `None` if all pixels of the rectangle have
+    /// a row.
     row_of: Option<Vec<u32>>,
-    /// Neighbors of each pixel, if the pixels are sites of a surface.
+    /// Neighbors of each pixel if the pixels are sites of a surface; `None` for an image.
     beside: Option<Beside>,
 }
 
@@ -74,13 +75,13 @@ pub struct Candidates {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Beside(pub(crate) Vec<[u32; 9]>);
 
-/// In place of a row: the pixel is not a candidate.
+/// Row index of a pixel that is not a candidate.
 const NO_ROW: u32 = u32::MAX;
 
-/// In place of the index of an image: the pixel is not a candidate.
+/// Image index of a pixel that is not a candidate.
 const NO_AREA: u32 = u32::MAX;
 
-/// Range of columns or lines that have candidates: from `first` to before `end`.
+/// Half-open range of columns or lines that have candidates, from `first` up to `end`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Inner {
     first: u32,
@@ -88,19 +89,19 @@ struct Inner {
 }
 
 impl Candidates {
-    /// Gathers the neighborhoods of all pixels of the pass's level that do not reach past an edge. If the exemplar
-    /// wraps, or if fewer than 400 would remain, it gathers those of all pixels.
+    /// Gathers all neighborhoods of the pass's level that do not reach past an edge. If the exemplar wraps, or if fewer
+    /// than 400 would remain, gathers the neighborhoods of all pixels.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Exemplar`] if a side of a level is less than half of a neighborhood's side, and the errors of
-    /// [`Schedule::check`](crate::Schedule::check) for levels that the pyramid does not have and parts out of their
-    /// ranges.
+    /// [`SynthErrorKind::Exemplar`] if a side of a level is less than half of a neighborhood's side. If the pass reads
+    /// a level that the pyramid does not have, or a part is out of range, the error is the same as from
+    /// [`Schedule::check`](crate::Schedule::check).
     pub fn new(pyramid: &Pyramid, pass: &Pass, center: CoarserCenter) -> Result<Self, SynthError> {
         Self::within(pyramid, pass, center, FEW)
     }
 
-    /// Gathers the neighborhoods of a pass under these options.
+    /// Gathers the neighborhoods of a pass, with the center and the evenness of `options`.
     pub(crate) fn for_options(
         pyramid: &Pyramid,
         pass: &Pass,
@@ -109,12 +110,12 @@ impl Candidates {
         Self::within(pyramid, pass, options.center, few(pass, options))
     }
 
-    /// Gathers the neighborhoods of a pass of a [repair](crate::PlaneTexture::repair). On all levels except the finest,
-    /// neighborhoods that reach past an edge are included.
+    /// Gathers the neighborhoods for a pass of a [repair](crate::PlaneTexture::repair). On all levels except the
+    /// finest, neighborhoods that reach past an edge are included.
     ///
-    /// A repaired site near a side of the image has that side in its neighborhood, and so have only the candidates near
-    /// a side. They let a border along the side continue. On the finest level the coarser one has decided this already,
-    /// and mirrored pieces would give specks.
+    /// The neighborhood of a repaired site near a side of the image contains that side. Only candidates near a side
+    /// contain it, too, and they let a border along the side continue. On the finest level this has already been
+    /// decided by the coarser level, and mirrored pieces would cause specks.
     pub(crate) fn of_repair(
         pyramid: &Pyramid,
         pass: &Pass,
@@ -124,7 +125,7 @@ impl Candidates {
         Self::within(pyramid, pass, center, few)
     }
 
-    /// Takes the neighborhoods of some sites of a level of a surface; their indices ascend.
+    /// Creates candidates from sites of a surface. `pixels` has the site of each row, in ascending order.
     pub(crate) fn of_sites(
         level: &Exemplar,
         number: usize,
@@ -227,7 +228,7 @@ impl Candidates {
         Ok(candidates)
     }
 
-    /// Returns the number of values of a neighborhood.
+    /// Returns the number of values per neighborhood.
     #[must_use]
     pub fn dims(&self) -> usize {
         self.dims
@@ -245,7 +246,7 @@ impl Candidates {
         self.pixels.is_empty()
     }
 
-    /// Returns the values of one neighborhood.
+    /// Returns the values of the neighborhood with index `row`.
     ///
     /// # Panics
     ///
@@ -255,7 +256,7 @@ impl Candidates {
         &self.rows[row * self.dims..(row + 1) * self.dims]
     }
 
-    /// Returns the column and row of the pixel at the center of a neighborhood, in the exemplar's level.
+    /// Returns the column and row of the pixel at the center of neighborhood `row`, in the exemplar's level.
     ///
     /// # Panics
     ///
@@ -267,7 +268,7 @@ impl Candidates {
     }
 
     /// Returns the index of a pixel's neighborhood, or `None` if the pixel is not a candidate. If the exemplar wraps,
-    /// the coordinates may lie past its edges.
+    /// the coordinates may be past its edges.
     #[must_use]
     #[inline]
     pub fn row_of_pixel(&self, [mut column, mut line]: [i64; 2]) -> Option<u32> {
@@ -284,7 +285,7 @@ impl Candidates {
             row + (column as u32 - columns.first)
         };
         let row = within.then(row)?;
-        // With a mask, look up its row.
+        // If not all pixels have a row, look it up.
         match &self.row_of {
             None => Some(row),
             Some(row_of) => Some(row_of[row as usize]).filter(|&row| row != NO_ROW),
@@ -325,8 +326,8 @@ impl Inner {
     }
 }
 
-/// Returns the minimum number of neighborhoods within the exemplar; with fewer, the others are candidates, too.
-/// Unlimited if pixels shall be used evenly, except in passes that read both levels.
+/// Returns the minimum number of neighborhoods that lie within the exemplar. If there are fewer, neighborhoods past an
+/// edge are candidates, too. Unlimited if evenness is on, except in passes that read both levels.
 pub(crate) fn few(pass: &Pass, options: &Options) -> usize {
     let reads = |reads| pass.parts.iter().any(|part| part.reads == reads);
     let refines = reads(Reads::Same) && reads(Reads::Coarser);
@@ -337,13 +338,13 @@ pub(crate) fn few(pass: &Pass, options: &Options) -> usize {
     }
 }
 
-/// Returns the factor of guides: the root of the total weight of all pixels of a neighborhood.
+/// Returns the factor on guide values: the square root of the total weight of all pixels in a neighborhood.
 pub(crate) fn guide_scale(pass: &Pass) -> f32 {
     let weight = |part: &Part| part.offsets().len() as f32 * part.weight;
     pass.parts.iter().map(weight).sum::<f32>().sqrt()
 }
 
-/// Returns the center of a pixel's neighborhood on the level that is read, in half pixels.
+/// Returns the center of a pixel's neighborhood on the level that is read, in units of half a pixel.
 pub(crate) fn halves(pixel: [u32; 2], reads: Reads, center: CoarserCenter) -> [i64; 2] {
     pixel.map(|at| match (reads, center) {
         (Reads::Same, _) => 2 * i64::from(at),
@@ -352,7 +353,7 @@ pub(crate) fn halves(pixel: [u32; 2], reads: Reads, center: CoarserCenter) -> [i
     })
 }
 
-/// Samples one part of a neighborhood in one image of the exemplar.
+/// Reads one part of a neighborhood from one image of the exemplar.
 struct PartReader<'a> {
     level: &'a Exemplar,
     /// Rectangle of the image. Past its edges the edge mode of the level applies.
@@ -388,7 +389,7 @@ impl<'a> PartReader<'a> {
         }
     }
 
-    /// Returns whether the mask allows all pixels of the square around a position.
+    /// Returns whether the mask allows all pixels of the square around the position `halves`, in units of half a pixel.
     fn is_usable(&self, halves: [i64; 2]) -> bool {
         let Some(usable) = &self.level.usable else {
             return true;
@@ -410,7 +411,7 @@ impl<'a> PartReader<'a> {
         (0..2).any(|axis| self.area.first[axis] >= self.area.end[axis])
     }
 
-    /// Returns the columns and the rows of the square around a position.
+    /// Returns the columns and rows of the square around the position `halves`, in units of half a pixel.
     fn square(&self, halves: [i64; 2]) -> [[usize; MAX_SIDE]; 2] {
         let Area { first, end } = self.area;
         let size = [0, 1].map(|axis| end[axis] - first[axis]);
@@ -424,7 +425,7 @@ impl<'a> PartReader<'a> {
         places
     }
 
-    /// Appends the weighted values of the part around a position to `target`. `samples` is scratch memory.
+    /// Appends the weighted values of the part around the position `halves` to `target`. `samples` is scratch memory.
     fn read(&self, halves: [i64; 2], samples: &mut Vec<f32>, target: &mut Vec<f32>) {
         let (half, n) = (self.half, self.level.n_channels);
         let side = 2 * half as usize + 1;
@@ -440,7 +441,7 @@ impl<'a> PartReader<'a> {
     }
 }
 
-/// Fails if a side of a level is less than half of a neighborhood's side.
+/// Returns an error if a side of `level` is less than half of `side`, the side of a neighborhood.
 fn check_level(pyramid: &Pyramid, level: usize, side: u32) -> Result<(), SynthError> {
     let size = pyramid.levels[level].size;
     if size[0].min(size[1]) > side / 2 {
@@ -453,8 +454,8 @@ fn check_level(pyramid: &Pyramid, level: usize, side: u32) -> Result<(), SynthEr
     }))
 }
 
-/// Returns the candidates of an image, and the rectangle that they lie in. The mask must allow the whole neighborhood.
-/// Neighborhoods that reach past an edge are left out unless fewer than `few` would remain.
+/// Returns the candidates in image `number`, and their bounding rectangle. Only neighborhoods that the mask allows as a
+/// whole are candidates. Neighborhoods that reach past an edge are left out unless fewer than `few` would remain.
 fn pixels_of_area(
     pyramid: &Pyramid,
     pass: &Pass,
@@ -478,7 +479,7 @@ fn pixels_of_area(
         let pixel = |[x, line]: [u32; 2]| line * level.size[0] + x;
         places.filter(is_usable).map(pixel).collect::<Vec<_>>()
     };
-    // Try the pixels within the edges first.
+    // First try the pixels whose neighborhoods do not reach past an edge.
     let all = [0, 1].map(|axis| Inner {
         first: area.first[axis],
         end: area.end[axis],
@@ -491,7 +492,7 @@ fn pixels_of_area(
     (within, pixels)
 }
 
-/// Returns the range of an image's pixels along an axis whose neighborhoods do not reach past its edges.
+/// Returns the range along `axis` of an image's pixels whose neighborhoods do not reach past its edges.
 fn inner_of(
     pyramid: &Pyramid,
     pass: &Pass,

@@ -1,4 +1,4 @@
-//! Cells of a cubic grid with precomputed lists of nearby cells, for reading many balls of one radius.
+//! Cubic grid with a precomputed list of nearby cells for each cell, for reading many balls of the same radius.
 
 use core::ops::Range;
 use glam::DVec3;
@@ -15,8 +15,8 @@ pub(crate) struct Cells {
 }
 
 impl Cells {
-    /// Sorts positions into cells of the given side. Two cells are near if positions in them can be nearer than
-    /// `reach`.
+    /// Sorts positions into cells with sides of length `side`. Two cells are near each other if some positions in them
+    /// can be closer than `reach`.
     pub(crate) fn new(positions: &[DVec3], side: f64, reach: f64) -> Self {
         let low = positions.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let cell_of = |position: &DVec3| {
@@ -53,20 +53,21 @@ impl Cells {
         self.offsets.len() - 1
     }
 
-    /// Returns the cell of a site.
+    /// Returns the index of the cell that contains `site`.
     #[inline]
     pub(crate) fn of_site(&self, site: u32) -> usize {
         self.of_site[site as usize] as usize
     }
 
-    /// Returns the cells near a cell, including itself, as ranges of cell indices.
+    /// Returns the cells near `cell`, including itself, as ranges of cell indices.
     #[inline]
     pub(crate) fn near(&self, cell: usize) -> &[Range<u32>] {
         &self.near[self.offsets[cell] as usize..self.offsets[cell + 1] as usize]
     }
 }
 
-/// Appends the ranges of the cells that are nearer than `reach` to a cell, in units of the side of a cell.
+/// Appends to `near` the ranges of cells closer than `reach` to the cell `[x, y, z]`. Distances are in multiples of the
+/// cell side.
 fn add_near(cells: &[[i32; 3]], [x, y, z]: [i32; 3], reach: f64, near: &mut Vec<Range<u32>>) {
     let number = |cell: [i32; 3]| cells.partition_point(|other| *other < cell) as u32;
     let gap_sq = |step: i32| {

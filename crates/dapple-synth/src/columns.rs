@@ -1,4 +1,4 @@
-//! Columns computed row by row, on all cores with the feature `rayon`. The bits do not depend on the number of cores.
+//! Computes columns row by row, on all cores with the feature `rayon`. The bits do not depend on the number of cores.
 
 use dapple_raster::parallel;
 
@@ -23,7 +23,8 @@ pub(crate) fn map<T: Send, U: Send>(
     parallel::map_mut_at_least(BLOCK, column, change)
 }
 
-/// Sums a number over all rows: within blocks of fixed length, then over the blocks, on any number of cores.
+/// Sums `row(i)` over all rows, first within blocks of fixed length and then over the blocks. The bits do not depend on
+/// the number of cores.
 pub(crate) fn sum(n_rows: usize, row: impl Fn(usize) -> f64 + Sync) -> f64 {
     let block = |block: usize| {
         let mut sum = 0.0;

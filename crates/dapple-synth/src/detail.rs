@@ -1,4 +1,4 @@
-//! Sampling of an image between its pixels and with any footprint: a map of the exemplar, or a larger version of it.
+//! Samples a map of the exemplar, or a larger version of it, between pixels and with any footprint.
 //!
 //! Between pixels, values are interpolated by the Catmull-Rom cubic and sharpened; the gain grows with the distance
 //! from the pixels. Results are clamped to the range of the pixels read, so that edges stay sharp without halos. For
@@ -27,7 +27,7 @@ const SHARPENING: f32 = 0.65;
 /// slanted edges.
 const SHARP: f32 = 0.5;
 
-/// A map with `N` channels, with its coarser levels.
+/// Map with `N` channels and its coarser levels.
 #[derive(Clone, Debug)]
 pub(crate) struct Detail<const N: usize> {
     levels: Vec<Raster<[f32; N]>>,
@@ -36,11 +36,11 @@ pub(crate) struct Detail<const N: usize> {
     factor: f32,
 }
 
-/// Returns the size of a map relative to an exemplar: the integer factor along both axes.
+/// Returns the integer factor by which a map is larger than an exemplar, along both axes.
 ///
 /// # Errors
 ///
-/// [`SynthErrorKind::Detail`] unless both axes have the same integer factor.
+/// [`SynthErrorKind::Detail`] unless the factor is an integer and the same along both axes.
 pub(crate) fn factor(map: [u32; 2], exemplar: [u32; 2]) -> Result<u32, SynthError> {
     let factor = map[0] / exemplar[0].max(1);
     if factor > 0 && exemplar.map(|side| side.checked_mul(factor)) == map.map(Some) {
@@ -74,8 +74,8 @@ impl<const N: usize> Detail<N> {
         })
     }
 
-    /// Returns the filtered value at a place of the exemplar. `footprint` is the side of the square filter region, in
-    /// exemplar pixels.
+    /// Returns the filtered value at `place`, a position in exemplar pixels. `footprint` is the side of the square
+    /// filter region, in exemplar pixels.
     #[inline]
     pub(crate) fn sample(&self, place: Vec2, footprint: f32) -> [f32; N] {
         let width = footprint * self.factor;
@@ -92,7 +92,7 @@ impl<const N: usize> Detail<N> {
         core::array::from_fn(|channel| a[channel] + part * (b[channel] - a[channel]))
     }
 
-    /// Returns the cubic interpolation of the 4 × 4 pixels around a place, clamped to their range.
+    /// Returns the cubic interpolation of the 4 × 4 pixels around `place`, clamped to their range.
     #[inline]
     fn cubic(&self, level: usize, place: Vec2, sharpening: f32) -> [f32; N] {
         let map = &self.levels[level];
@@ -138,14 +138,14 @@ impl<const N: usize> Detail<N> {
     }
 }
 
-/// Returns the weights of four pixels for a place `t` past the second one, `t` from 0 to 1. The weights sum to 1 and
-/// their centroid is the place, so that linear ramps are reproduced.
+/// Returns the weights of four consecutive pixels for the position `t` pixels past the second one; `t` is from 0 to 1.
+/// The weights sum to 1 and their centroid is the position, so linear ramps are reproduced.
 #[inline]
 fn weights(t: f32, sharpening: f32) -> [f32; 4] {
     let s = 1.0 - t;
     let outer = |t: f32, s: f32| -0.5 * t * s * s;
     let inner = |t: f32| (1.5 * t - 2.5) * t * t + 1.0;
-    // Subtract the second differences around the two inner pixels, mixed. The square keeps the slope at pixels.
+    // Subtract the interpolated second differences around the two inner pixels. The square keeps the slope at pixels.
     let sharper = sharpening * 4.0 * (t * s) * (t * s);
     let [left, right] = [sharper * s, sharper * t];
     [

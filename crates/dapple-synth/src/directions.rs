@@ -1,4 +1,4 @@
-//! Directions as text: CSV, and JSON with the feature `json`. This module does not access files.
+//! Parses directions from text: CSV, and JSON with the feature `json`. This module does not access files.
 
 #[cfg(feature = "json")]
 use crate::SynthErrorKind;

@@ -1,18 +1,19 @@
-//! Displacement: moving the vertices of a mesh along their normals by heights, instead of shading alone.
+//! Displacement: moves the vertices of a mesh along their normals by heights, which changes the shape and not only the
+//! shading.
 //!
 //! Reference: our own.
 //!
 //! Units: a height times the scale is a length in units of the mesh; positive heights move outward. A mesh can only
-//! show heights whose features are larger than its edges: the triangles of the sites show all features, the triangles
-//! of the input mesh often do not.
+//! show heights whose features are larger than its edges: the triangles of the sites are fine enough for all features,
+//! the triangles of the input mesh often are not.
 
 use crate::maps::{check_column, check_finite};
 use crate::{SynthError, Synthesizer};
 use dapple_mesh::Mesh;
 use glam::DVec3;
 
-/// Displaces the triangles of the finest sites ([`Hierarchy::triangles`](crate::Hierarchy::triangles)): every site
-/// moves along its normal by its height times `scale`.
+/// Builds the triangles of the finest sites ([`Hierarchy::triangles`](crate::Hierarchy::triangles)), with every site
+/// moved along its normal by its height times `scale`.
 ///
 /// # Errors
 ///
@@ -31,10 +32,10 @@ pub fn displaced_sites(
     moved(&mesh, normals, heights, scale)
 }
 
-/// Displaces the input mesh: every vertex moves along its normal by the interpolated height times `scale`.
+/// Displaces the input mesh, moving every vertex along its normal by the interpolated height times `scale`.
 ///
-/// Vertices without a face and vertices without a site in reach do not move. Separate vertices at the same position
-/// have different normals and come apart: join them first with [`Mesh::repair`].
+/// Vertices without a face and vertices without a nearby site do not move. Separate vertices at the same position have
+/// different normals and come apart: join them first with [`Mesh::repair`].
 ///
 /// # Errors
 ///
@@ -67,7 +68,7 @@ fn check(synthesizer: &Synthesizer, heights: &[f32], scale: f64) -> Result<(), S
     Ok(())
 }
 
-/// Returns the mesh with every vertex moved along its normal.
+/// Returns `mesh` with every vertex moved along its normal by its height times `scale`.
 fn moved(mesh: &Mesh, normals: &[DVec3], heights: &[f32], scale: f64) -> Result<Mesh, SynthError> {
     let vertices = mesh.positions().iter().zip(normals).zip(heights);
     let moved = vertices.map(|((&at, &normal), &height)| at + normal * (f64::from(height) * scale));

@@ -3,8 +3,8 @@
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, section 6,
 //! <https://doi.org/10.1145/383259.383297>. `M_1` is a graph, not a mesh;
-//! [`Hierarchy::triangles`](crate::Hierarchy::triangles) explains how it is triangulated. The fields of a [`Model`] may
-//! be changed, for example to replace its mesh with a [displaced](crate::displaced_mesh) one.
+//! [`Hierarchy::triangles`](crate::Hierarchy::triangles) explains how it is triangulated. The caller can change the
+//! fields of a [`Model`], for example to replace its mesh with a [displaced](crate::displaced_mesh) one.
 
 use crate::maps::check_column;
 use crate::{Atlas, SynthError, SynthErrorKind, Synthesizer};
@@ -16,7 +16,7 @@ use glam::{DVec2, DVec3};
 ///
 /// # Errors
 ///
-/// [`SynthErrorKind::Count`] unless there is one color per site.
+/// [`SynthErrorKind::Count`] unless `colors` has one color per site.
 ///
 /// # Examples
 ///
@@ -43,8 +43,8 @@ pub fn site_model(synthesizer: &Synthesizer, colors: Vec<LinearRgba>) -> Result<
 
 /// Exports the finest sites as a point cloud with normals and a color per point.
 ///
-/// [`Orientation::vectors`](crate::Orientation::vectors) has the directions of the texture in the same order. Discs
-/// that touch have a radius of about half of [`Level::spacing`](crate::Level::spacing).
+/// [`Orientation::vectors`](crate::Orientation::vectors) has the directions of the texture in the same order. To draw
+/// the points as touching discs, use a radius of about half of [`Level::spacing`](crate::Level::spacing).
 ///
 /// # Errors
 ///
@@ -61,10 +61,10 @@ pub fn point_model(
 /// Exports the second display: the input mesh with a texture map in the layout of an atlas. `base_color` is the map's
 /// encoded image.
 ///
-/// Every corner of every face has its own texture coordinates and its own normal from `shading`, which are the normals
-/// of the mesh's file or of [`Mesh::corner_normals`]. Further maps go into the model's [`material`](Model::material).
-/// Faces without a place in the map show its first corner. Mipmaps are disabled for layouts of tiles, whose coarse
-/// levels mix faces that are far apart, and enabled for charts and layouts of the caller.
+/// Every corner of every face has its own texture coordinates and its own normal. `shading` holds the normals, from the
+/// mesh's file or from [`Mesh::corner_normals`]. Further maps go into the model's [`material`](Model::material). Faces
+/// that are not in the map show its first corner. Mipmaps are disabled for layouts of tiles, whose coarse levels mix
+/// faces that are far apart, and enabled for charts and for the caller's layouts.
 ///
 /// # Errors
 ///
@@ -120,7 +120,7 @@ pub fn textured_model(
     Ok(model)
 }
 
-/// Returns an error unless there are normals for each face.
+/// Returns an error unless `shading` has normals for each face.
 pub(crate) fn check_shading(surface: &Surface, shading: &[[DVec3; 3]]) -> Result<(), SynthError> {
     if shading.len() == surface.mesh().faces().len() {
         return Ok(());
