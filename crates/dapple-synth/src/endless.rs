@@ -4,35 +4,35 @@
 //! 10.1145/1186822.1073261, and, by the same authors, "Appearance-Space Texture Synthesis", SIGGRAPH 2006, DOI
 //! 10.1145/1141911.1141921.
 //!
-//! Input: an exemplar, and [`EndlessOptions`] with seed, number of levels and period. Output: for each pixel of a
-//! window, its source pixel in the exemplar.
+//! Input: an exemplar, and [`EndlessOptions`] with the seed, the number of levels and the period. Output: for each
+//! pixel of a window, its source pixel in the exemplar.
 //!
 //! Steps, from the coarsest level to the finest:
 //!
-//! - Upsampling: each pixel becomes four, which continue it in the exemplar.
-//! - Correction, a few times: each pixel compares the source pixels that its neighbors predict, and the pixel most
-//!   similar to each of these. It takes the one whose surroundings in the exemplar are most similar to its own in the
-//!   texture. Features are compared, not colors: the principal components of windows ([`stage`]). A quarter of the
-//!   pixels is corrected at a time, for example all pixels with even column and row, because they do not read each
-//!   other.
+//! - Upsampling: each pixel becomes four, whose sources are adjacent pixels of the exemplar.
+//! - Correction, in a few passes: each pixel compares the source pixels that its neighbors predict, and the exemplar
+//!   pixel most similar to each of these. It takes the one whose surroundings in the exemplar are most similar to its
+//!   own in the texture. Features are compared instead of colors; they are the principal components of windows
+//!   ([`stage`]). A quarter of the pixels is corrected at a time, for example all pixels with even column and row,
+//!   because they do not read each other.
 //!
-//! So a pixel depends on pixels near it on each level, and in the end on random pixels of the coarsest level, which are
-//! hashes of their columns and rows. A window is computed with a margin on every level.
+//! So a pixel depends on nearby pixels on each level, down to random pixels of the coarsest level, which are hashes of
+//! their columns and rows. A window is computed with a margin on every level.
 //!
 //! Departures from the papers:
 //!
 //! - The coarsest level begins with random pixels of the exemplar instead of copies of it. An exception is an exemplar
-//!   that wraps and repeats within itself, such as bricks: there random pixels would settle into courses that do not
-//!   line up. The coarsest level begins with copies, and each pixel is replaced several times in succession by the most
-//!   similar one.
-//! - There is no jitter on finer levels.
+//!   that wraps and repeats within itself, such as bricks, because random pixels would settle into courses that do not
+//!   line up. For such an exemplar the coarsest level begins with copies, and each pixel is replaced several times in
+//!   succession by the most similar one.
+//! - Finer levels are not jittered.
 //! - For exemplars that are not regular, similar pixels are at a disadvantage against predicted ones ([`COHERENCE`]).
 //! - Levels are corrected three times, and the coarsest six times, instead of twice.
-//! - The most similar pixel is searched on a grid of the level. A pixel between pixels of the grid takes the result of
-//!   its grid pixel, displaced by the same offset.
+//! - Searches for the most similar pixel use a coarser grid of the level's pixels. A pixel between pixels of the grid
+//!   takes the result of its grid pixel, displaced by the same offset.
 //! - Pixels near a cut edge are not used if enough others remain ([`stage`]).
-//! - Averages of features of the texture are not projected a second time.
-//! - Parts of the exemplar that textures would use too often cost more ([`evenness`]).
+//! - Averages of the texture's features are not projected a second time.
+//! - Exemplar regions that textures would use too often cost more ([`evenness`]).
 
 pub(crate) mod evenness;
 pub(crate) mod stage;
@@ -47,26 +47,26 @@ use dapple_hash::Seed;
 use evenness::REPETITION;
 use stage::Stage;
 
-/// Additional weight of the distance of similar pixels against predicted ones, for exemplars that are not regular:
-/// distances are multiplied by `1 + COHERENCE`. Continuing a piece of the exemplar preserves its detail.
+/// Penalty on the distance of similar pixels relative to predicted pixels, for exemplars that are not regular. The
+/// distances of similar pixels are multiplied by `1 + COHERENCE`. Continuing a piece of the exemplar preserves its
+/// detail.
 ///
-/// Measured on photographs, four textures of each: the distances of colors and patches from the exemplar
+/// Measured on photographs, with four textures from each: the distances of colors and patches from the exemplar
 /// ([`Likeness`](crate::Likeness)) fall by half for grass, rock, sand and gravel, and by a tenth for leaves; they rise
-/// by a seventh for a meadow and for wood. With 2, leaves lose this gain. Weave, which is regular, is torn already with
-/// 1.
+/// by a seventh for a meadow and for wood. At 2, leaves lose this gain. Weave, which is regular, is torn even at 1.
 const COHERENCE: f32 = 1.0;
 
 /// Maximum number of levels.
 const MAX_LEVELS: u32 = 16;
 
-/// Minimum number of pixels along the shorter side of the exemplar on the coarsest level, for the default number of
+/// Minimum number of pixels along the shorter side of the exemplar's coarsest level. Determines the default number of
 /// levels.
 const COARSEST: u32 = 4;
 
 /// Maximum absolute value of the first column and row of a window.
 const MAX_PLACE: i64 = 1 << 52;
 
-/// Options of an [`Endless`] texture.
+/// Options for an [`Endless`] texture.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -76,15 +76,15 @@ const MAX_PLACE: i64 = 1 << 52;
 pub struct EndlessOptions {
     /// Seed of the coarsest level; by default `Seed(0)`.
     pub seed: Seed,
-    /// Number of levels, from 1 to 16. More levels preserve larger features of the exemplar. By default as many as fit
-    /// the exemplar: the coarsest level has from 4 to 7 pixels along its shorter side.
+    /// Number of levels, from 1 to 16. More levels preserve larger features of the exemplar. The default depends on the
+    /// size of the exemplar: its coarsest level then has 4 to 7 pixels along the shorter side.
     pub n_levels: Option<u32>,
-    /// Period of the texture in columns and in rows, multiples of 2 to the number of levels; by default `None`: no
-    /// period.
+    /// Period of the texture in columns and in rows, each a multiple of 2 to the power of the number of levels. `None`,
+    /// the default, means that the texture does not repeat.
     pub period: [Option<u32>; 2],
 }
 
-/// An unbounded texture that looks like an exemplar, and of which any window can be computed.
+/// An unbounded texture that looks like an exemplar. Any window of it can be computed independently.
 ///
 /// Two windows have the same pixels where they overlap.
 ///
@@ -120,25 +120,27 @@ pub struct Endless {
 }
 
 impl Endless {
-    /// Prepares a texture. This takes most of the time of small windows: about a microsecond per pixel of the exemplar
-    /// and level. Trials that measure how often textures use each part of the exemplar add half a second of one core.
+    /// Prepares a texture. For small windows, this setup takes most of the time: about a microsecond per exemplar pixel
+    /// and level. Trials that measure how often textures use each region of the exemplar add half a second on one core.
     ///
     /// A [mask](Exemplar::with_mask) of the exemplar applies; its [guides](Exemplar::with_guides) are ignored.
     ///
     /// # Errors
     ///
-    /// Fails if the number of levels is not from 1 to 16, or leaves less than one pixel of the coarsest level along a
-    /// side of the exemplar; if a period is not a multiple of 2 to that number; and if a mask allows no pixel.
+    /// If the number of levels is not from 1 to 16, or so large that the coarsest level would have less than one pixel
+    /// along a side. If a period is not a multiple of 2 to the power of the number of levels. If a mask allows no
+    /// pixel.
     pub fn new(exemplar: &Exemplar, options: &EndlessOptions) -> Result<Self, SynthError> {
         Self::new_cancellable(exemplar, options, &|| false)
     }
 
-    /// Prepares a texture like [`new`](Self::new), unless `is_cancelled` returns true. It is called on any thread, once
-    /// per few milliseconds of work.
+    /// Prepares a texture like [`new`](Self::new), and stops if `is_cancelled` returns true. The callback is called
+    /// from any thread, every few milliseconds of work.
     ///
     /// # Errors
     ///
-    /// Same as [`new`](Self::new), and [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled).
+    /// Same as [`new`](Self::new), and [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled) if
+    /// `is_cancelled` returns true.
     pub fn new_cancellable(
         exemplar: &Exemplar,
         options: &EndlessOptions,
@@ -171,7 +173,7 @@ impl Endless {
             n_levels as usize,
             &wanted,
         )?;
-        // Regular exemplars have no disadvantage for similar pixels.
+        // For regular exemplars, similar pixels have no penalty.
         let is_tile = exemplar.edges == Edges::Wrap && exemplar.usable.is_none();
         let is_regular = exemplar.regularity() > REGULAR;
         for stage in &mut stages {
@@ -186,7 +188,7 @@ impl Endless {
             coarsest: stages.last().map_or(Vec::new(), Stage::usable_pixels),
             stages,
         };
-        // Copies of a repeating tile use all parts evenly, and costs would break the repetition.
+        // Copies of a repeating tile use all regions evenly, and costs would break the repetition.
         if !texture.is_lattice {
             let repetition = if is_regular { 0.0 } else { REPETITION };
             texture.even_out(repetition, &wanted)?;
@@ -200,14 +202,14 @@ impl Endless {
         self.stages.len()
     }
 
-    /// Computes the window of `size` pixels, at most 2^26 in total, whose first pixel is at column `first[0]` and row
-    /// `first[1]`.
+    /// Computes the window of `size` pixels whose first pixel is at column `first[0]` and row `first[1]`. A window has
+    /// at most 2^26 pixels.
     ///
-    /// The result wraps along an axis if its size is the period.
+    /// The result wraps along an axis if its size equals the period.
     ///
     /// # Errors
     ///
-    /// Fails if the window has no pixels or too many, if its first column or row is beyond ±2^52, and with
+    /// If the window has no pixels or too many, or if its first column or row is beyond ±2^52.
     /// [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled) if the callback breaks.
     pub fn window(
         &self,

@@ -28,12 +28,12 @@ pub struct Progress {
     pub n_passes: usize,
     /// Number of sites finished in this pass.
     pub done: usize,
-    /// Number of sites of this pass.
+    /// Number of sites in this pass.
     pub n_sites: usize,
 }
 
 impl Progress {
-    /// Returns the fraction of the work that is done, from 0 to 1, assuming that all passes take the same time.
+    /// Returns the completed fraction of the work, from 0 to 1, assuming that all passes take the same time.
     #[must_use]
     pub fn part(&self) -> f64 {
         let done = self.done as f64 / self.n_sites.max(1) as f64;
@@ -52,7 +52,7 @@ pub(crate) fn report(callback: Callback<'_>, progress: Progress) -> Result<(), S
     }
 }
 
-/// Cancellation token for the preparation of a synthesis, polled on all threads.
+/// Cancellation token for the setup of a synthesis, polled on all threads.
 pub(crate) struct Wanted<'a> {
     is_cancelled: &'a (dyn Fn() -> bool + Sync),
     is_over: AtomicBool,
@@ -83,8 +83,8 @@ impl<'a> Wanted<'a> {
     }
 }
 
-/// Runs the passes of the options. Returns, for each level from the finest, the exemplar pixel of each site, as
-/// `row * width + column` of that level of the pyramid. Empty for a level that no pass visited.
+/// Runs the passes of `options`. Returns, for each level from the finest, the exemplar pixel of each site, as `row *
+/// width + column` in that level of the pyramid. The list is empty for a level that no pass visited.
 pub(crate) fn run<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,
@@ -95,7 +95,8 @@ pub(crate) fn run<G: Ground>(
     Ok(Sources::pixels_and_quarters(levels).0)
 }
 
-/// Runs the passes of the options. Returns the pixel and the rotation (in quarter turns) of the exemplar at each site.
+/// Runs the passes of `options`. Returns, for each level from the finest, the exemplar pixel and the exemplar's
+/// rotation (in quarter turns) at each site.
 pub(crate) fn run_turned<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,
@@ -106,7 +107,7 @@ pub(crate) fn run_turned<G: Ground>(
     run_passes(ground, pyramid, &passes, options, callback)
 }
 
-/// Runs the given passes, whatever the schedule of the options. Returns the same as [`run_turned`].
+/// Runs `passes` instead of the schedule in `options`. Returns the same as [`run_turned`].
 pub(crate) fn run_passes<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,
@@ -114,7 +115,7 @@ pub(crate) fn run_passes<G: Ground>(
     options: &Options,
     callback: Callback<'_>,
 ) -> Result<Vec<Sources>, SynthError> {
-    // Match with a pyramid that is blurred as much as the samples of the ground are.
+    // Match against a pyramid that is blurred as much as the samples of the ground.
     let seen = match ground.blur() {
         0.0 => None,
         blur => Some(pyramid.blurred(blur)),
@@ -128,7 +129,7 @@ pub(crate) fn run_passes<G: Ground>(
     run_with(ground, pyramid, passes, &candidates, options, callback)
 }
 
-/// Runs the given passes like [`run_passes`], with candidates from the callback `candidates`.
+/// Runs `passes` like [`run_passes`], with candidates from the callback `candidates`.
 pub(crate) fn run_with<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,
@@ -147,7 +148,7 @@ pub(crate) fn run_with<G: Ground>(
     for (index, pass) in passes.iter().enumerate() {
         // Consecutive equal passes share their candidates.
         if index == 0 || passes[index - 1] != *pass {
-            // Free the previous candidates and matcher first: it lowers peak memory.
+            // Free the previous candidates and matcher first, to lower peak memory.
             drop(visit.take());
             // Initialize the level before its first pass.
             let candidates = candidates(pass)?;
@@ -215,8 +216,8 @@ fn first_sources<G: Ground>(
     sources
 }
 
-/// Initializes the sites of a repair that do not keep their pixel: each takes the pixel that continues its parent on
-/// the coarser level. Sites without a parent, or whose pixel is not usable, keep their initial value.
+/// Initializes the sites to repair: each takes the child, in the exemplar, of its parent's pixel on the coarser level.
+/// Sites without a parent, or for which that pixel is not usable, keep their initial value.
 fn go_on_with<G: Ground>(
     coarser: &Sources,
     sources: &Sources,
@@ -255,7 +256,8 @@ impl Sources {
     }
 }
 
-/// Returns a random pixel for every site of a level. If the exemplar has a mask, only pixels of candidates are drawn.
+/// Returns a random pixel for every site of a level. If the exemplar has a mask, only the center pixels of candidates
+/// are drawn.
 fn random_pixels(
     n_sites: usize,
     pyramid: &Pyramid,
@@ -277,8 +279,9 @@ fn random_pixels(
         .collect()
 }
 
-/// Returns the side of the coarser square to keep for the next pass, in samples, or 0. It is kept if the next pass is
-/// on the same level and its coarser square is not larger. The coarser level does not change between the two passes.
+/// Returns the side, in samples, of the coarser-level squares to cache for the next pass; 0 for none. They are cached
+/// if the next pass is on the same level and its coarser square is not larger. The coarser level does not change
+/// between the two passes.
 fn side_to_keep(pass: &Pass, next: Option<&Pass>) -> u32 {
     let coarser_side = |pass: &Pass| {
         let coarser = |part: &&Part| part.reads == Reads::Coarser;

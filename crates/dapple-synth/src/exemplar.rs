@@ -4,13 +4,13 @@
 //! on Communications, 1983, DOI 10.1109/TCOM.1983.1095851, for the pyramid; Greg Turk, "Texture Synthesis on Surfaces",
 //! SIGGRAPH 2001, DOI 10.1145/383259.383297, section 5.2, for its use.
 //!
-//! Pixel `(a, b)` of a level lies at pixel `(2a, 2b)` of the next finer level. It is the mean of the pixels around that
-//! one, with the weights 1-4-6-4-1 along both axes. A side of `n` pixels becomes one of `n / 2`, rounded up. Values are
-//! not quantized between levels.
+//! Pixel `(a, b)` of a level is at pixel `(2a, 2b)` of the next finer level. It is the weighted mean of the pixels
+//! around that position, with the weights 1-4-6-4-1 along both axes. A side of `n` pixels is reduced to `n / 2` pixels,
+//! rounded up. Values are not quantized between levels.
 //!
-//! A wrapping level with an odd side has no coarser version that wraps: adjacent pixels would be two apart, except the
-//! last and the first, which would be one apart. From there on all levels have cut edges. [`Exemplar::edges`] returns
-//! the boundary of a level.
+//! A wrapping level with an odd side has no coarser version that wraps: adjacent pixels would be two apart, but the
+//! last and the first only one apart. All coarser levels then have cut edges. [`Exemplar::edges`] returns the edge mode
+//! of a level.
 
 use crate::error::{SynthError, SynthErrorKind};
 use crate::grid::Grid;
@@ -23,7 +23,8 @@ use dapple_raster::{Raster, Wrap};
 /// Maximum number of levels of a pyramid.
 pub(crate) const MAX_LEVELS: usize = 16;
 
-/// Maximum absolute value of a pixel times the square root of its weight. Within it, no sum of squares can overflow.
+/// Maximum absolute value of a pixel times the square root of its weight. Up to this limit, no sum of squares can
+/// overflow.
 const MAX_VALUE: f32 = 1e12;
 
 dapple_raster::named! {
@@ -40,7 +41,7 @@ dapple_raster::named! {
 }
 
 impl Edges {
-    /// Returns the wrapping rule for places past an edge.
+    /// Returns the wrapping rule for positions past an edge.
     pub(crate) fn wrap(self) -> Wrap {
         match self {
             Self::Cut => Wrap::Mirror,
@@ -57,9 +58,9 @@ pub struct Exemplar {
     pub(crate) edges: Edges,
     /// `n_channels` values per pixel, row by row.
     pub(crate) pixels: Vec<f32>,
-    /// Mask of the pixels that textures may use; `None` if all are usable.
+    /// Mask that is true for pixels that textures may use; `None` if all are usable.
     pub(crate) usable: Option<Vec<bool>>,
-    /// The rectangles of the images within this one, each with its own edges; empty for a single image.
+    /// Rectangles of the images in a layout, each with its own edges; empty for a single image.
     pub(crate) areas: Vec<Area>,
     /// Guides, which control where in a texture each part of the exemplar is used.
     pub(crate) guides: Guides,
@@ -68,9 +69,9 @@ pub struct Exemplar {
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Area {
-    /// The first column and row.
+    /// First column and row.
     pub(crate) first: [u32; 2],
-    /// The column and the row after the last.
+    /// Column and row after the last.
     pub(crate) end: [u32; 2],
 }
 
@@ -79,7 +80,7 @@ impl Area {
         (0..2).all(|axis| (self.first[axis]..self.end[axis]).contains(&place[axis]))
     }
 
-    /// Returns the pixels of the next coarser level whose positions lie in this rectangle.
+    /// Returns the rectangle of the pixels of the next coarser level whose positions lie in this one.
     fn halved(self) -> Self {
         Self {
             first: self.first.map(|at| at.div_ceil(2)),
@@ -87,7 +88,7 @@ impl Area {
         }
     }
 
-    /// Returns the five places along an axis that are averaged for place `at` of the coarser level.
+    /// Returns the five positions along an axis that are averaged for position `at` of the coarser level.
     fn taps(self, axis: usize, at: u32, wrap: Wrap) -> [usize; 5] {
         let [first, end] = [self.first, self.end].map(|corner| corner[axis]);
         let center = 2 * i64::from(at) - i64::from(first);
@@ -102,13 +103,14 @@ pub struct Pyramid {
 }
 
 impl Exemplar {
-    /// Creates an exemplar from a color image. It is matched in sRGB codes from 0 to 1, as in the paper.
+    /// Creates an exemplar from a color image. Colors are compared as sRGB codes from 0 to 1, as in the paper.
     ///
-    /// The codes have 16 bits, so the values of 8-bit files are exact. Colors outside 0 to 1 are clamped for matching.
+    /// The codes have 16 bits, so the values of 8-bit files are exact. Channels outside 0 to 1 are clamped for
+    /// matching.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::NotFinite`] for a color that is not finite.
+    /// [`SynthErrorKind::NotFinite`] if a color is not finite.
     pub fn new(image: &Raster<LinearRgb>, edges: Edges) -> Result<Self, SynthError> {
         for (pixel, color) in image.pixels().iter().enumerate() {
             for value in color.to_array() {
@@ -128,15 +130,15 @@ impl Exemplar {
         })
     }
 
-    /// Creates an exemplar from any planes, each with a weight on its squared differences.
+    /// Creates an exemplar from arbitrary planes, each with a weight on its squared differences.
     ///
-    /// The planes are used as they are: heights from 0 to 1 with the weight 1 count as much as one color channel.
-    /// Values are stored multiplied by the square root of their weight; [`pixels`](Self::pixels) returns these.
+    /// The planes are not normalized. Heights from 0 to 1 with a weight of 1 count as much as one color channel. Values
+    /// are stored multiplied by the square root of their weight; [`pixels`](Self::pixels) returns these products.
     ///
     /// # Errors
     ///
-    /// Typed errors for zero planes, for different sizes, for weights that are not positive and finite, and for values
-    /// that are not finite or, times the square root of the weight, beyond 10^12.
+    /// If there are no planes, if their sizes differ, if a weight is not positive and finite, or if a value is not
+    /// finite or, times the square root of its weight, beyond 10^12.
     pub fn from_planes(planes: &[(&Raster<f32>, f32)], edges: Edges) -> Result<Self, SynthError> {
         let Some((first, _)) = planes.first() else {
             return Err(SynthError::new(SynthErrorKind::Count {
@@ -158,13 +160,13 @@ impl Exemplar {
     }
 
     /// Appends the channels of another exemplar of the same size. `weight` scales their squared differences. For
-    /// example, the colors of a material can be matched together with its heights. Edges, mask and guides stay those of
-    /// this exemplar.
+    /// example, the colors of a material can be matched together with its heights. This exemplar's edges, mask and
+    /// guides are retained.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] if the sizes differ, and [`SynthErrorKind::Range`] for a weight that is not positive
-    /// and finite, or for values that are, times its square root, beyond 10^12.
+    /// [`SynthErrorKind::Count`] if the sizes differ. [`SynthErrorKind::Range`] if `weight` is not positive and finite,
+    /// or if a value times the square root of `weight` is beyond 10^12.
     ///
     /// # Examples
     ///
@@ -217,27 +219,27 @@ impl Exemplar {
         })
     }
 
-    /// Excludes the pixels at which a mask is false. Textures use neither these pixels nor those with an excluded pixel
-    /// in their neighborhood.
+    /// Excludes the pixels at which `mask` is false. Textures use neither these pixels nor any pixel whose neighborhood
+    /// contains one of them.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Raster`] for a mask of another size.
+    /// [`SynthErrorKind::Raster`] if `mask` is not the same size as the exemplar.
     pub fn with_mask(self, mask: &Raster<bool>) -> Result<Self, SynthError> {
         mask.check_same_size(self.size)?;
         let usable = Some(mask.pixels().to_vec());
         Ok(Self { usable, ..self })
     }
 
-    /// Divides the exemplar into several images, as in a layout. Each image has its own edges and is mirrored past
-    /// them. Pixels between the images are excluded.
+    /// Divides the exemplar into the images of `layout`. Each image has its own edges and is mirrored past them. Pixels
+    /// between the images are excluded.
     ///
-    /// Each image is matched as if it were alone. Otherwise no neighborhood would remain on small levels, where nearly
-    /// all reach past an edge. Endless textures use the layout as a [mask](Self::with_mask) only.
+    /// Each image is matched separately. Otherwise no neighborhood would remain on small levels, where nearly all reach
+    /// past an edge. Endless textures only use the layout as a [mask](Self::with_mask).
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Raster`] for a layout of another size.
+    /// [`SynthErrorKind::Raster`] if `layout` is not the same size as the exemplar.
     ///
     /// # Examples
     ///
@@ -282,15 +284,16 @@ impl Exemplar {
         self.areas.clone()
     }
 
-    /// Reduces the exemplar: each pixel becomes the mean of a square of `factor` × `factor` pixels, `factor` at least
-    /// 1. An incomplete square at the end is dropped. A square with a masked pixel is masked.
+    /// Reduces the exemplar by an integer factor of at least 1: each square of `factor` × `factor` pixels becomes one
+    /// pixel, their mean. Incomplete squares at the right and bottom are dropped. A square that contains an excluded
+    /// pixel is excluded.
     ///
     /// Synthesis from the reduced exemplar takes a fraction of the time and memory. The texture shows the full detail
     /// with [`PlaneTexture::transfer`](crate::PlaneTexture::transfer).
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Range`] for a factor of 0 or above the shorter side.
+    /// [`SynthErrorKind::Range`] if `factor` is 0 or larger than the shorter side.
     pub fn reduced(&self, factor: u32) -> Result<Self, SynthError> {
         let side = self.size[0].min(self.size[1]);
         let holds = (1..=side).contains(&factor);
@@ -347,7 +350,7 @@ impl Exemplar {
         })
     }
 
-    /// Builds the pyramid with `n_levels` levels, from 1 to 16. This image is the finest level.
+    /// Builds a pyramid with `n_levels` levels, from 1 to 16. This exemplar is the finest level.
     ///
     /// # Errors
     ///
@@ -373,7 +376,7 @@ impl Exemplar {
         self.n_channels
     }
 
-    /// Returns the boundary of the exemplar.
+    /// Returns the edge mode of the exemplar.
     #[must_use]
     pub fn edges(&self) -> Edges {
         self.edges
@@ -385,7 +388,7 @@ impl Exemplar {
         &self.pixels
     }
 
-    /// Returns the pixel grid with its wrapping rule; cut edges are mirrored.
+    /// Returns the pixels as a grid with the wrapping rule of the edges; past cut edges the image is mirrored.
     pub(crate) fn grid(&self) -> Grid<Plain<'_>> {
         Grid {
             colors: self.plain(),
@@ -400,7 +403,7 @@ impl Exemplar {
         usable.is_none_or(|usable| usable[pixel])
     }
 
-    /// Returns the index of the pixel at a place, wrapped if the exemplar wraps; `None` past a cut edge.
+    /// Returns the index of the pixel at `place`, wrapped if the exemplar wraps; `None` past a cut edge.
     pub(crate) fn pixel_at(&self, place: [i64; 2]) -> Option<usize> {
         let [width, height] = self.size.map(i64::from);
         let [column, row] = match self.edges {
@@ -506,7 +509,7 @@ impl Pyramid {
     }
 }
 
-/// Returns an error for a value that is not finite. `pixel` is its index in an image of the given width.
+/// Returns an error if `value` is not finite. `pixel` is its index in an image of the given width.
 fn check_finite(value: f32, pixel: usize, width: u32) -> Result<(), SynthError> {
     if value.is_finite() {
         return Ok(());
@@ -520,14 +523,15 @@ fn check_finite(value: f32, pixel: usize, width: u32) -> Result<(), SynthError> 
     }))
 }
 
-/// Returns an error for a value, times the square root of its weight, whose sum of squares could overflow.
+/// Returns an error if sums of squares of `scaled` could overflow. `scaled` is a value times the square root of its
+/// weight.
 fn check_weighted(scaled: f32) -> Result<(), SynthError> {
     let holds = scaled.abs() <= MAX_VALUE;
     let range = "from -1e12 to 1e12";
     SynthError::check(holds, "weighted value of a pixel", scaled.into(), range)
 }
 
-/// Returns the square roots of weights; an error for a weight that is not positive and finite.
+/// Returns the square roots of `weights`, or an error if a weight is not positive and finite.
 pub(crate) fn roots(weights: &[f32]) -> Result<Vec<f32>, SynthError> {
     for &weight in weights {
         let holds = weight > 0.0 && weight.is_finite();
@@ -537,7 +541,7 @@ pub(crate) fn roots(weights: &[f32]) -> Result<Vec<f32>, SynthError> {
     Ok(weights.iter().map(|weight| weight.sqrt()).collect())
 }
 
-/// Interleaves planes of one size pixel by pixel, each multiplied by its root.
+/// Interleaves planes of the same size pixel by pixel. Each plane is multiplied by its value in `roots`.
 pub(crate) fn interleaved(planes: &[&Raster<f32>], roots: &[f32]) -> Result<Vec<f32>, SynthError> {
     let Some(first) = planes.first() else {
         return Ok(Vec::new());
@@ -556,7 +560,7 @@ pub(crate) fn interleaved(planes: &[&Raster<f32>], roots: &[f32]) -> Result<Vec<
     Ok(pixels)
 }
 
-/// Returns the values of the next coarser level of an image; zero outside of the given rectangles.
+/// Returns the values of the next coarser level of `image`; zero outside the rectangles `areas`.
 pub(crate) fn halved(image: &Grid<Plain<'_>>, areas: &[Area]) -> Vec<f32> {
     let Grid { colors, size, wrap } = *image;
     let n = colors.n_channels;
@@ -589,7 +593,7 @@ pub(crate) fn halved(image: &Grid<Plain<'_>>, areas: &[Area]) -> Vec<f32> {
     values
 }
 
-/// Returns the five places along an axis that are averaged for place `at` of the coarser level.
+/// Returns the five positions along an axis that are averaged for position `at` of the coarser level.
 pub(crate) fn taps(at: u32, side: u32, wrap: Wrap) -> [usize; 5] {
     let center = 2 * i64::from(at);
     [-2, -1, 0, 1, 2].map(|step| wrap.index(center + step, side) as usize)

@@ -1,16 +1,16 @@
-//! Reads squares of pixels from a planar image: an exemplar, or a texture during synthesis.
+//! Reads squares of pixels from an exemplar, or from a planar texture during synthesis.
 //!
-//! Positions are in half pixels, so that the position of a pixel on the next coarser level, half of its coordinates, is
-//! an integer. Values between pixels are interpolated; between two or four pixels this is their mean.
+//! Positions are in units of half a pixel. A pixel's position on the next coarser level, half of its coordinates, is
+//! then an integer. Values halfway between two or four pixels are the mean of those pixels.
 
 use crate::ground::Colors;
 use core::ops::RangeInclusive;
 use dapple_raster::Wrap;
 
-/// Side of the largest square that is read, in pixels, plus one for positions between two pixels.
+/// Side of the largest square that can be read, in pixels, plus one for positions between two pixels.
 pub(crate) const MAX_SIDE: usize = 16;
 
-/// Pixels row by row, with the wrap mode past their edges for each axis.
+/// Pixels stored row by row, with a wrapping rule past the edges for each axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Grid<C> {
     pub(crate) colors: C,
@@ -20,9 +20,9 @@ pub(crate) struct Grid<C> {
 
 impl<C: Colors> Grid<C> {
     /// Reads the square from `-half` to `half` pixels around a position into `target`, row by row. `half` is at most 7,
-    /// and `halves` is the position in half pixels.
+    /// and `halves` is the position in units of half a pixel.
     ///
-    /// Only the given `rows` are written. Their offset in `target` is the same as if all rows were.
+    /// Only the given `rows` are written, at the same offsets in `target` as if all rows were written.
     #[inline]
     pub(crate) fn read(
         &self,
@@ -59,7 +59,8 @@ impl<C: Colors> Grid<C> {
                     target.copy_from_slice(self.colors.of(above + left));
                     continue;
                 }
-                // Between pixels: take the mean of four values. Between two pixels each of them counts twice.
+                // Between pixels: take the mean of four values. Halfway between two pixels, each of the two counts
+                // twice.
                 let [a, b] = [left, right].map(|column| self.colors.of(above + column));
                 let [c, d] = [left, right].map(|column| self.colors.of(below + column));
                 for (channel, value) in target.iter_mut().enumerate() {
@@ -70,17 +71,18 @@ impl<C: Colors> Grid<C> {
     }
 }
 
-/// Returns the column and row of one of the four finer pixels that a pixel covers. `[i, j]` (0 or 1 each) selects it,
-/// and `width` is the width of the pixel's level.
+/// Returns the column and row of one of the four finer pixels that `pixel` covers. `[i, j]` selects it (each is 0 or
+/// 1), and `width` is the width of the coarser level.
 #[inline]
 pub(crate) fn over(pixel: u32, width: u32, [i, j]: [i64; 2]) -> [i64; 2] {
     let [column, row] = [pixel % width, pixel / width].map(i64::from);
     [2 * column + i, 2 * row + j]
 }
 
-/// Returns the columns and rows of the pixels of a square, plus one more of each for positions between two pixels.
+/// Returns the wrapped columns and rows of the pixels in a square around `halves`, plus one more of each for positions
+/// between two pixels.
 ///
-/// A position between two or four pixels belongs to the left and upper one.
+/// A position between two or four pixels is assigned to the left or upper one.
 pub(crate) fn square(
     halves: [i64; 2],
     half: i32,
@@ -110,7 +112,7 @@ mod tests {
     use crate::ground::{Colors as _, Plain};
     use dapple_raster::Wrap;
 
-    /// Returns a pixel with its wrap, in a grid of two channels.
+    /// Returns the value of a channel at a pixel, wrapped, in a grid with two channels.
     fn pixel(grid: &Grid<Plain<'_>>, column: i64, row: i64, channel: usize) -> f32 {
         let x = grid.wrap[0].index(column, grid.size[0]) as usize;
         let y = grid.wrap[1].index(row, grid.size[1]) as usize;

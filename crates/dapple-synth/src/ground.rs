@@ -1,5 +1,5 @@
-//! The domain of a synthesis as [`engine`](crate::engine) sees it: sites on several levels, their order, and the
-//! sampling of their neighborhoods.
+//! The domain of a synthesis, as an interface for [`engine`](crate::engine): sites on several levels, their order, and
+//! how their neighborhoods are sampled.
 //!
 //! [`Ground`] is implemented for surfaces (`mesh_ground.rs`) and for planes (`plane.rs`).
 
@@ -9,7 +9,7 @@ use crate::turns::Turns;
 use core::ops::RangeInclusive;
 use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
 
-/// Marks a missing site, or an unknown pixel in place of which a random one is drawn.
+/// Marks a missing site, or an unknown pixel. Unknown pixels are initialized at random.
 pub(crate) const UNKNOWN: u32 = u32::MAX;
 
 /// Initial state of a level in a repair.
@@ -54,7 +54,7 @@ pub(crate) struct Sources {
     pub(crate) quarters: Vec<AtomicU8>,
 }
 
-/// Position and extent of a square of samples.
+/// Position and extent of a square of samples around a site.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Square {
     /// Site at the center.
@@ -63,13 +63,13 @@ pub(crate) struct Square {
     pub(crate) level: usize,
     /// Level whose sites are read: `level` or the next coarser one. Samples have the spacing of this level.
     pub(crate) reads: usize,
-    /// Half side: samples go from `-half` to `half` along both axes.
+    /// Half-side length, in samples: samples go from `-half` to `half` along both axes.
     pub(crate) half: i32,
-    /// Rows that are needed.
+    /// Rows of the square that are needed.
     pub(crate) rows: Rows,
 }
 
-/// Rows of a square that are needed.
+/// Which rows of a square are needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Rows {
     Above,
@@ -77,16 +77,16 @@ pub(crate) enum Rows {
     All,
 }
 
-/// Samples of a square, row by row from the top. Rows that are not needed have arbitrary content.
+/// Samples of a square, row by row from the top. The content of rows that are not needed is arbitrary.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Samples {
     /// Channels, `n_channels` values for each sample.
     pub(crate) values: Vec<f32>,
-    /// Site with the largest weight at each sample; [`UNKNOWN`] past an edge of a texture that is repaired.
+    /// Site with the largest weight at each sample; [`UNKNOWN`] past an edge of a texture under repair.
     pub(crate) nearest: Vec<u32>,
 }
 
-/// Sites on several levels, 0 the finest.
+/// Domain of a synthesis: sites on several levels. Level 0 is the finest.
 pub(crate) trait Ground: Sync {
     /// Tables that a pass needs to sample squares.
     type Prepared: Sync;
@@ -96,25 +96,25 @@ pub(crate) trait Ground: Sync {
     /// Returns the number of sites of a level.
     fn n_sites(&self, level: usize) -> usize;
 
-    /// Returns the blur of the samples from [`read`](Self::read): the weight of each of the two adjacent pixels along
-    /// an axis, by default 0.
+    /// Returns the blur of the samples from [`read`](Self::read), as the weight of each of the two adjacent pixels
+    /// along an axis. 0 by default.
     fn blur(&self) -> f32 {
         0.0
     }
 
-    /// Returns the initial state of a level in a repair. The default `None` means random pixels, and a visit of all
-    /// sites.
+    /// Returns the initial state of a level in a repair. The default, `None`, means that pixels start at random and all
+    /// sites are visited.
     fn start(&self, _level: usize) -> Option<&Start> {
         None
     }
 
-    /// Guides of the texture, if any.
+    /// Returns the guides of the texture, if any.
     fn targets(&self) -> Option<&Targets> {
         None
     }
 
-    /// Returns the parent of a site on the coarser level, and the quadrant of the site in it: whether its column and
-    /// its row are odd. `None` if sites are not arranged in a grid.
+    /// Returns the parent of a site on the coarser level, and the site's quadrant in it (1 for an odd column or row,
+    /// otherwise 0). `None` if sites are not arranged in a grid.
     fn parent(&self, _level: usize, _site: u32) -> Option<(u32, [i64; 2])> {
         None
     }
@@ -124,22 +124,23 @@ pub(crate) trait Ground: Sync {
         Symmetry::One
     }
 
-    /// Returns the rotation at `site` nearest to the direction of `other` rotated by `quarters`, in quarter turns.
+    /// Returns the rotation, in quarter turns, for which the direction at `site` is nearest to the direction at `other`
+    /// rotated by `quarters`.
     fn quarters_toward(&self, _site: u32, _other: u32, _quarters: u8) -> u8 {
         0
     }
 
-    /// Returns the sites of a level that are visited, in the order of the sweep.
+    /// Returns the sites of a level to visit, in sweep order.
     fn order(&self, level: usize) -> Vec<u32>;
 
-    /// Prepares a pass over a level. `same` and `coarser` are the half sides of the squares on the level itself and on
-    /// the next coarser one; `None` if the pass does not read them.
+    /// Prepares a pass over a level. `same` and `coarser` are the half-side lengths of the squares on the level itself
+    /// and on the next coarser level; `None` if the pass does not read that level.
     fn prepare(&self, level: usize, same: Option<i32>, coarser: Option<i32>) -> Self::Prepared;
 
     /// Returns the wavefront schedule of the sites of a level, for a pass that reads squares on the level itself.
     fn turns(&self, level: usize, prepared: &Self::Prepared) -> Turns;
 
-    /// Samples a square on the level `square.reads`, whose sites have these colors.
+    /// Samples a square on the level `square.reads`, whose sites have the given `colors`.
     fn read(
         &self,
         square: Square,
@@ -175,14 +176,14 @@ impl Colors for Painted<'_> {
 }
 
 impl Painted<'_> {
-    /// Returns the pixel of a site.
+    /// Returns the exemplar pixel of `site`.
     #[inline(always)]
     pub(crate) fn source(&self, site: usize) -> u32 {
         // Relaxed is enough: the schedule orders this read after writes of other threads.
         self.sources.pixels[site].load(Ordering::Relaxed)
     }
 
-    /// Returns the rotation of the exemplar at a site, in quarter turns.
+    /// Returns the rotation of the exemplar at `site`, in quarter turns.
     #[inline]
     pub(crate) fn quarters(&self, site: usize) -> u8 {
         let quarters = self.sources.quarters.get(site);
@@ -191,7 +192,7 @@ impl Painted<'_> {
 }
 
 impl Square {
-    /// Returns the number of samples along a side.
+    /// Returns the number of samples along a side of the square.
     pub(crate) fn side(&self) -> usize {
         2 * self.half as usize + 1
     }
@@ -208,7 +209,7 @@ impl Square {
 }
 
 impl Samples {
-    /// Resizes the buffers to the samples of a square.
+    /// Resizes the buffers for a square of `side` × `side` samples.
     pub(crate) fn make_room(&mut self, side: usize, n_channels: usize) {
         self.values.resize(side * side * n_channels, 0.0);
         self.nearest.resize(side * side, 0);

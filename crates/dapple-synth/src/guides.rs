@@ -3,9 +3,10 @@
 //! Reference: Hertzmann, Jacobs, Oliver, Curless and Salesin, "Image Analogies", SIGGRAPH 2001, DOI
 //! 10.1145/383259.383295.
 //!
-//! The exemplar has guides at its pixels, and the texture at its sites. The distance of two neighborhoods includes the
-//! difference of the guides at their centers, on the level that is matched, times the number of pixels compared. A
-//! guide with the weight 1 therefore counts as much as a color channel with the same difference at every pixel.
+//! The exemplar has a guide value at each pixel, and the texture at each site. The distance between two neighborhoods
+//! includes the difference of the guides at their centers, on the level that is matched, times the number of pixels
+//! compared. A guide with a weight of 1 therefore counts as much as a color channel with the same difference at every
+//! pixel.
 
 use crate::exemplar::{Area, halved, interleaved, roots};
 use crate::grid::Grid;
@@ -13,36 +14,38 @@ use crate::ground::Plain;
 use crate::{Exemplar, Hierarchy, SynthError, SynthErrorKind};
 use dapple_raster::{Raster, Wrap};
 
-/// The guides of one level of an exemplar.
+/// Guides of an exemplar on one level.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Guides {
-    /// The square root of each guide's weight.
+    /// Square root of each guide's weight.
     pub(crate) roots: Vec<f32>,
-    /// For every pixel, one value per guide, times the square root of its weight.
+    /// Guide values of every pixel, one per guide, each multiplied by the square root of the guide's weight.
     pub(crate) values: Vec<f32>,
 }
 
-/// The guides of a texture, on all levels.
+/// Guides of a texture on all levels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Targets {
-    /// For each level, one value per guide for every site, times the square root of its weight.
+    /// For each level, the guide values of every site, one per guide, each multiplied by the square root of the guide's
+    /// weight.
     levels: Vec<Vec<f32>>,
-    /// The number of guides.
+    /// Number of guides.
     n: usize,
 }
 
 impl Exemplar {
-    /// Adds guides, each with a weight on its squared differences. Guides are planes of the exemplar's size: pixels are
-    /// used where the texture's guides have similar values.
+    /// Adds guides, each with a weight on its squared differences. Guides are planes of the same size as the exemplar.
+    /// Each pixel is preferably used where the texture's guides have values similar to the pixel's.
     ///
-    /// A texture needs the same number of guides, see [`synthesize_plane_guided`](crate::synthesize_plane_guided) and
-    /// [`Synthesizer::synthesize_guided`](crate::Synthesizer::synthesize_guided). With the weight 1 a guide counts as
+    /// The texture needs the same number of guides; see [`synthesize_plane_guided`](crate::synthesize_plane_guided) and
+    /// [`Synthesizer::synthesize_guided`](crate::Synthesizer::synthesize_guided). With a weight of 1, a guide counts as
     /// much as one color channel. With colors from 0 to 1 and a weight equal to the number of channels, the texture
     /// follows a guide of zeros and ones nearly everywhere.
     ///
     /// # Errors
     ///
-    /// Same as [`from_planes`](Self::from_planes), and [`SynthErrorKind::Raster`] for guides of a different size.
+    /// Same as [`from_planes`](Self::from_planes), and [`SynthErrorKind::Raster`] if a guide is not the same size as
+    /// the exemplar.
     pub fn with_guides(self, guides: &[(&Raster<f32>, f32)]) -> Result<Self, SynthError> {
         for (guide, _) in guides {
             guide.check_same_size(self.size)?;
@@ -64,8 +67,8 @@ impl Exemplar {
 }
 
 impl Guides {
-    /// Returns the guides of the next coarser level of an image with the given size, in which the images have the given
-    /// rectangles.
+    /// Returns the guides of the next coarser level. `size` is the size of this level, and `areas` are the rectangles
+    /// of the images in it.
     pub(crate) fn halved(&self, size: [u32; 2], wrap: [Wrap; 2], areas: &[Area]) -> Self {
         Self {
             roots: self.roots.clone(),
@@ -73,7 +76,7 @@ impl Guides {
         }
     }
 
-    /// Returns the values of all guides at a pixel.
+    /// Returns the values of all guides at `pixel`.
     pub(crate) fn of(&self, pixel: usize) -> &[f32] {
         let n = self.roots.len();
         &self.values[pixel * n..][..n]
@@ -157,13 +160,13 @@ impl Targets {
         self.n
     }
 
-    /// Returns the values of all guides at a site of a level.
+    /// Returns the values of all guides at `site` on `level`.
     pub(crate) fn of(&self, level: usize, site: u32) -> &[f32] {
         &self.levels[level][site as usize * self.n..][..self.n]
     }
 }
 
-/// Returns an error unless the texture has as many guides as the exemplar.
+/// Returns an error unless the texture has `expected` guides, the number of the exemplar's guides.
 pub(crate) fn check_count(count: usize, expected: usize) -> Result<(), SynthError> {
     if count == expected {
         return Ok(());

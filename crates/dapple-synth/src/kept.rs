@@ -1,5 +1,5 @@
-//! Cache of coarser-level samples between two passes: the central part of each site's square, which the next pass reads
-//! again.
+//! Cache of coarser-level samples between two passes. Holds the central part of each site's square, which the next pass
+//! reads again.
 
 use crate::ground::{Samples, Square};
 
@@ -47,7 +47,8 @@ impl Kept {
         })
     }
 
-    /// Copies the cached square of a site into `samples` if it has the size of `square`. Returns whether it did.
+    /// Copies the cached square of `site` into `samples` if it is the same size as `square`. Returns whether it was
+    /// copied.
     pub(crate) fn paste(&self, site: u32, square: &Square, samples: &mut Samples) -> bool {
         let n = self.side * self.side;
         if self.side != square.side() {
@@ -65,7 +66,7 @@ impl Kept {
 }
 
 impl KeptSite<'_> {
-    /// Stores the central part of a square of samples that is `from` samples wide.
+    /// Stores the central part of `samples`, a square that is `from` samples wide.
     pub(crate) fn copy(&mut self, samples: &Samples, from: usize) {
         let side = self.side;
         let n_channels = self.values.len() / self.nearest.len();

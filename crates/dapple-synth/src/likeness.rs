@@ -1,41 +1,41 @@
-//! Similarity of two textures: the sliced Wasserstein distances of their colors and of their patches.
+//! Similarity of two textures: the sliced Wasserstein distances between their colors and between their patches.
 //!
 //! Reference: Julien Rabin, Gabriel Peyré, Julie Delon and Marc Bernot, "Wasserstein Barycenter and Its Application to
 //! Texture Mixing", SSVM 2011, DOI 10.1007/978-3-642-24785-9_37.
 //!
-//! Both sets of points are projected onto 64 fixed directions. Along a direction, the distance of two sets is the area
-//! between their quantile functions (W1): the mean distance that points must move to turn one set into the other. The
-//! result is the mean over the directions, in the units of the values. The sets may differ in size.
+//! Both sets of points are projected onto 64 fixed directions. Along a direction, the distance between two sets is the
+//! area between their quantile functions (W1). This is the mean distance that points must move to turn one set into the
+//! other. The result is the mean over the directions, in the units of the values. The sets may differ in size.
 //!
-//! Reproducibility: the same bits on every machine.
+//! Results have the same bits on every machine.
 
 use crate::Exemplar;
 use crate::error::{SynthError, SynthErrorKind};
 use dapple_hash::{Seed, hash1, unit_f64};
 
-/// The number of directions.
+/// Number of projection directions.
 const N_DIRECTIONS: u64 = 64;
 
 /// Side of a patch in pixels.
 const PATCH: usize = 5;
 
-/// Distance between two textures; 0 for a texture and itself.
+/// Distance between two textures; 0 if they are identical.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Likeness {
-    /// Distance between the sets of pixels: whether the images have the same amount of each color.
+    /// Distance between the sets of pixel colors; 0 if the images have the same proportion of each color.
     pub colors: f64,
-    /// Distance between the sets of 5 × 5 patches: whether the colors are arranged in the same way.
+    /// Distance between the sets of 5 × 5 patches; small if the colors are arranged in the same way.
     pub patches: f64,
 }
 
 impl Likeness {
-    /// Compares two images by the values that synthesis matches; for colors these are sRGB codes from 0 to 1.
+    /// Compares two images by the values that synthesis matches, which are sRGB codes from 0 to 1 for colors.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] if the images have different numbers of channels, [`SynthErrorKind::Exemplar`] for an
-    /// image smaller than a patch.
+    /// [`SynthErrorKind::Count`] if the images have different numbers of channels, and [`SynthErrorKind::Exemplar`] if
+    /// an image is smaller than a patch.
     ///
     /// # Examples
     ///
@@ -73,7 +73,7 @@ impl Likeness {
     }
 }
 
-/// The channels of an image in separate planes, so that adjacent patches are projected together.
+/// Channels of an image, stored as separate planes so that adjacent patches can be projected together.
 struct Planes {
     size: [usize; 2],
     channels: Vec<Vec<f32>>,
@@ -91,7 +91,7 @@ impl Planes {
         }
     }
 
-    /// Returns the projection of each patch onto a direction, in ascending order.
+    /// Returns the projections of all patches onto `direction`, in ascending order. Patches are `side` pixels wide.
     fn project(&self, side: usize, direction: &[f32]) -> Vec<f32> {
         let [width, height] = self.size;
         let [columns, rows] = [width - side + 1, height - side + 1];
@@ -126,7 +126,7 @@ fn distance(images: &[Planes; 2], side: usize) -> f64 {
     sum / N_DIRECTIONS as f64
 }
 
-/// Returns the pseudorandom direction `number`: a vector of length 1.
+/// Returns the pseudorandom direction with index `number`, a unit vector with `dims` components.
 fn direction(number: u64, dims: usize) -> Vec<f32> {
     let seed = Seed(0).child("directions of the likeness", number);
     // The sum of twelve uniform numbers is close enough to a normal distribution to make all directions equally likely.
@@ -139,7 +139,8 @@ fn direction(number: u64, dims: usize) -> Vec<f32> {
     parts.iter().map(|part| (part / length) as f32).collect()
 }
 
-/// Returns the area between the quantile functions of two sets of numbers in ascending order: W1.
+/// Returns the area between the quantile functions of `a` and `b`, which are in ascending order. This is the
+/// Wasserstein distance W1.
 fn area_between(a: &[f32], b: &[f32]) -> f64 {
     // Each number has an equal share of 1. In units of 1 / (a.len() · b.len()) all shares are integers.
     let [share_a, share_b] = [b.len() as u64, a.len() as u64];
@@ -259,7 +260,7 @@ mod tests {
             for number in 0..N_DIRECTIONS {
                 let direction = direction(number, dims);
                 let length_sq: f32 = direction.iter().map(|part| part * part).sum();
-                // Each part is rounded to f32.
+                // Each component is rounded to f32.
                 assert!((length_sq - 1.0).abs() < 1e-5, "{dims} {number}");
                 for (sum, part) in sums.iter_mut().zip(direction) {
                     *sum += f64::from(part * part) * dims as f64 / N_DIRECTIONS as f64;

@@ -1,19 +1,20 @@
-//! Weighted edges of a level, over which equations 4 and 5 of the paper average.
+//! Weighted edges of a level, for the averages in equations 4 and 5 of the paper.
 //!
-//! The weight of an edge is its inverse length (section 3.2). It is not divided by the sum of weights of the site, so
-//! the weights are symmetric. The averages are then the fixed points of a symmetric system, which
+//! The weight of an edge is its inverse length (section 3.2). Weights are not normalized per site, so they are
+//! symmetric. The averages are then the fixed points of a symmetric system, which
 //! [`conjugate_gradients`](crate::solve::conjugate_gradients) solves.
 
 use crate::{Hierarchy, SiteGraph, SiteIdx, columns};
 
-/// Minimum edge length for weights, in spacings. Shorter edges are clamped, so that no neighbor outweighs all others.
+/// Minimum edge length for weights, in multiples of the site spacing. Shorter lengths are clamped to it, so that no
+/// neighbor outweighs all others.
 pub(crate) const LEAST_LENGTH: f64 = 1e-3;
 
-/// Graph of a level with a weight for every edge, stored for both ends.
+/// Neighbor graph of a level with a weight for every edge, stored at both ends.
 #[derive(Debug)]
 pub(crate) struct Links<'a> {
     graph: &'a SiteGraph,
-    /// Start of each site's weights, and the end.
+    /// Start of each site's range in the weights, plus the end of the last one.
     offsets: Vec<u32>,
     weights: Vec<f64>,
     /// Sum of the weights of each site.
@@ -21,7 +22,7 @@ pub(crate) struct Links<'a> {
 }
 
 impl<'a> Links<'a> {
-    /// Returns the links of a level, weighted by inverse length.
+    /// Builds the links of `level`, weighted by inverse length.
     pub(crate) fn new(hierarchy: &'a Hierarchy, level: usize) -> Self {
         let level = &hierarchy.levels()[level];
         let graph = level.graph();
@@ -46,7 +47,7 @@ impl<'a> Links<'a> {
         links
     }
 
-    /// Applies `change` to the weights of every site, with its neighbors, and collects the returned values.
+    /// Calls `change` with each site, its neighbors and its mutable weights, and collects the returned values.
     ///
     /// The weights must stay symmetric.
     pub(crate) fn reweigh<T: Send>(
@@ -76,19 +77,19 @@ impl<'a> Links<'a> {
         self.offsets.len() - 1
     }
 
-    /// Returns the neighbors of a site.
+    /// Returns the neighbors of `site`.
     #[inline]
     pub(crate) fn neighbors(&self, site: usize) -> &[SiteIdx] {
         self.graph.neighbors(SiteIdx(site as u32))
     }
 
-    /// Returns the weights of the edges to the neighbors of a site, in the order of [`neighbors`](Self::neighbors).
+    /// Returns the weights of the edges to the neighbors of `site`, in the order of [`neighbors`](Self::neighbors).
     #[inline]
     pub(crate) fn weights(&self, site: usize) -> &[f64] {
         &self.weights[self.row(site)]
     }
 
-    /// Returns the range of a site's links in the concatenated links of all sites.
+    /// Returns the range of the site's links in the concatenated links of all sites.
     #[inline]
     pub(crate) fn row(&self, site: usize) -> core::ops::Range<usize> {
         self.offsets[site] as usize..self.offsets[site + 1] as usize
@@ -141,7 +142,7 @@ impl<'a> Links<'a> {
 }
 
 impl Links<'_> {
-    /// Returns the neighbors of a site whose link has a positive weight.
+    /// Returns the neighbors of `site` whose link has a positive weight.
     fn linked(&self, site: usize) -> impl Iterator<Item = usize> {
         let linked = self.neighbors(site).iter().zip(self.weights(site));
         let linked = linked.filter(|&(_, &weight)| weight > 0.0);
@@ -149,7 +150,7 @@ impl Links<'_> {
     }
 }
 
-/// Returns the connected component of each site of a graph. Components are numbered in the order of their lowest sites.
+/// Returns the index of each site's connected component. Components are numbered in the order of their lowest sites.
 pub(crate) fn components(graph: &SiteGraph) -> Vec<u32> {
     const NONE: u32 = u32::MAX;
     let mut components = vec![NONE; graph.len()];
