@@ -1,11 +1,12 @@
-//! Orientation field: a unit tangent vector at every site, interpolated from a few directions of the user.
+//! Orientation field: a unit tangent vector at every site, interpolated from a few directions that the user gives.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, section 4.1,
 //! <https://doi.org/10.1145/383259.383297>; after the pull-push of Steven Gortler, Radek Grzeszczuk, Richard Szeliski
 //! and Michael Cohen, "The Lumigraph", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237200>.
 //!
 //! Directions are assigned to their nearest sites and pulled up to the coarsest level. There they are diffused, with
-//! the known directions held fixed, and then pushed down to the finest level. Where the paper is silent or slow:
+//! the known directions held fixed, and then pushed down to the finest level. Where the paper is silent or slow, this
+//! implementation differs:
 //!
 //! * every pulled vector has a weight, as in the Lumigraph. A coarse site is known if its weight is at least 0.01. On
 //!   the way down each level mixes in the known vectors by their weights, so that a site with a direction gets exactly
@@ -13,12 +14,12 @@
 //! * the diffusion on the coarsest level is initialized breadth first and then solved by conjugate gradients. Repeating
 //!   the averages until they converge takes as many steps as the square of the number of sites across the surface;
 //! * on every finer level a few sweeps of equation 4 remove the facets of interpolation;
-//! * a connected component of the surface without any direction is oriented along a fixed axis.
+//! * a connected component of the surface without any given direction is oriented along a fixed axis.
 //!
-//! Fields with a [`Symmetry`] of two or four have equivalent directions at each site. On the coarsest level they are
+//! Fields with a [`Symmetry`] of two or four have equivalent directions at each site. On the coarsest level they form
 //! the smoothest field (`smooth.rs`). One direction per site is stored, chosen to agree with most neighbors
-//! (`comb.rs`). On the way down, each vector is rotated to the equivalent direction nearest to the others before a mean
-//! is taken.
+//! (`comb.rs`). On the way down, each vector is rotated to the equivalent direction nearest to the others before
+//! averaging.
 //!
 //! Positions are in units of the mesh; the resulting vectors have unit length.
 
@@ -38,7 +39,7 @@ use crate::{Hierarchy, SynthError, SynthErrorKind, columns};
 use glam::DVec3;
 
 /// Minimum squared length of the tangential part of a unit vector. Vectors within a thousandth of a radian of the
-/// normal have no direction in the tangent plane.
+/// normal count as having no direction in the tangent plane.
 const LEAST_TANGENT_SQ: f64 = 1e-6;
 
 /// A direction of the texture near a position, given by the user.
@@ -75,10 +76,10 @@ pub struct Orientation {
 }
 
 impl Orientation {
-    /// Axis of connected components without a direction: down in files with y up.
+    /// Default axis for connected components without a given direction. It points down if the mesh has y up.
     pub const AXIS: DVec3 = DVec3::NEG_Y;
 
-    /// Interpolates directions over the surface. Connected components without any direction are oriented along
+    /// Interpolates `directions` over the surface. Connected components without any direction are oriented along
     /// [`AXIS`](Self::AXIS).
     ///
     /// Each direction is projected to the tangent plane of its nearest site. Several directions at one site are
@@ -92,14 +93,15 @@ impl Orientation {
         Self::with_axis(hierarchy, directions, Self::AXIS)
     }
 
-    /// Interpolates directions over the surface. Connected components without any direction are oriented along `axis`.
+    /// Interpolates `directions` over the surface. Connected components without any direction are oriented along
+    /// `axis`.
     ///
     /// The axis is projected to the tangent planes. Where it is normal to the surface, a vector perpendicular to it is
     /// used instead.
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`new`](Self::new), and [`SynthErrorKind::Range`] if the axis is zero or not finite.
+    /// Same as [`new`](Self::new), and [`SynthErrorKind::Range`] if `axis` is zero or not finite.
     pub fn with_axis(
         hierarchy: &Hierarchy,
         directions: &[Direction],
@@ -116,17 +118,17 @@ impl Orientation {
         })
     }
 
-    /// Computes the smoothest field of a symmetry that has the given directions or rotations of them. With
-    /// [`Symmetry::One`] this is the field of [`with_axis`](Self::with_axis).
+    /// Computes the smoothest field with the given symmetry. At each given direction, the field has that direction or
+    /// an equivalent one. With [`Symmetry::One`] the result is the same as from [`with_axis`](Self::with_axis).
     ///
-    /// It has few singularities, and they lie where the surface is most curved. Around a singularity, a field of one
-    /// direction rotates by full turns. A field of two or four directions can rotate by half or quarter turns, and so
-    /// bends less sharply. A connected component without directions is rotated as a whole to fit the axis best on
+    /// The field has few singularities, and they are where the surface is most curved. Around a singularity, a field of
+    /// one direction rotates by full turns. A field of two or four directions can rotate by half or quarter turns, and
+    /// so bends less sharply. A connected component without directions is rotated as a whole to fit the axis best on
     /// average.
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`with_axis`](Self::with_axis).
+    /// Same as [`with_axis`](Self::with_axis).
     pub fn symmetric(
         hierarchy: &Hierarchy,
         directions: &[Direction],
@@ -145,9 +147,10 @@ impl Orientation {
         })
     }
 
-    /// Evaluates a function of the position and the unit normal of each site, and projects it to the tangent planes.
+    /// Builds a field from a function. `field` gets the position and the unit normal of each site, and its result is
+    /// projected to the tangent plane.
     ///
-    /// Where the vector is zero, not finite or normal to the surface, [`AXIS`](Self::AXIS) is used instead.
+    /// Where the result is zero, not finite or normal to the surface, [`AXIS`](Self::AXIS) is used instead.
     pub fn from_fn(hierarchy: &Hierarchy, field: impl Fn(DVec3, DVec3) -> DVec3 + Sync) -> Self {
         let sites = hierarchy.sites();
         let vectors = columns::column(sites.len(), |site| {
@@ -166,14 +169,14 @@ impl Orientation {
         self.symmetry
     }
 
-    /// Among the equivalent directions of a site, the one nearest to a vector.
+    /// Returns the equivalent direction of `site` that is nearest to `vector`.
     #[inline]
     pub(crate) fn nearest(&self, normals: &[DVec3], site: usize, vector: DVec3) -> DVec3 {
         self.symmetry
             .nearest(self.vectors[site], normals[site], vector)
     }
 
-    /// Number of quarter turns that rotate the direction of `site` nearest to the direction of `other`, which is itself
+    /// Returns the number of quarter turns that bring the direction of `site` nearest to the direction of `other`
     /// rotated by `quarters`.
     #[inline]
     pub(crate) fn quarters_toward(

@@ -3,7 +3,7 @@
 //!
 //! [`scatter`] draws random points of uniform density, and [`repel`] makes them push each other apart.
 //! [`nested_points`] does both for sets of n, 4n, 16n … points, where each set contains the coarser ones. A
-//! [`Hierarchy`] connects the sites of each level with their neighbors ([`SiteGraph`]). It has the operations on
+//! [`Hierarchy`] connects the sites of each level with their neighbors ([`SiteGraph`]). It also has the operations on
 //! columns: [interpolation](Hierarchy::interpolate), a [`LowPass`] filter, [down](Hierarchy::downsample)- and
 //! [upsampling](Hierarchy::upsample). Level 0 is the finest.
 //!

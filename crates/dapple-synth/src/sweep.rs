@@ -1,4 +1,5 @@
-//! Sweep distance: how far along the orientation field every site is. It defines the order in which sites get colors.
+//! Sweep distance: the distance of every site along the orientation field. It defines the order in which sites are
+//! assigned colors.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, section 4.2,
 //! <https://doi.org/10.1145/383259.383297>.
@@ -6,7 +7,7 @@
 //! Starting at an anchor, each site gets the distance along the field that its assigned neighbors predict (equation 5).
 //! The coarsest level comes first; every finer level starts from interpolated values. The consensus orientation of two
 //! sites lies in the plane of their mean normal, so that both predict the same difference. Where the paper is silent or
-//! slow:
+//! slow, this implementation differs:
 //!
 //! * the coarsest level is initialized breadth first and then solved by conjugate gradients. Repeating equation 5 until
 //!   it converges takes as many sweeps as the square of the number of sites across the surface;
@@ -34,7 +35,7 @@ use level::LevelSweep;
 /// Sweep distance s at every site, for every level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
-    /// Distances by level, finest first.
+    /// Distances of each level, finest first.
     levels: Vec<Distances>,
 }
 
@@ -48,16 +49,16 @@ struct Distances {
 }
 
 impl Sweep {
-    /// Computes sweep distances from the given anchor in its component, and from the lowest site in every other
-    /// component.
+    /// Computes sweep distances. In the component of `anchor` they start at `anchor`, and in every other component at
+    /// the site with the lowest index.
     ///
     /// Sites are scattered at random, so the lowest site is as suitable as any other. The anchor mainly determines
     /// where the distance is zero.
     ///
     /// # Errors
     ///
-    /// Returns [`SynthErrorKind::Range`] if the anchor is not a site, and [`SynthErrorKind::Count`] if the orientation
-    /// does not have one vector for each site of the hierarchy.
+    /// [`SynthErrorKind::Range`] if `anchor` is not a site, and [`SynthErrorKind::Count`] if `orientation` does not
+    /// have one vector for each site of the hierarchy.
     pub fn new(
         hierarchy: &Hierarchy,
         orientation: &Orientation,
@@ -147,7 +148,8 @@ impl Sweep {
         }
         let of_finest = finest.components.clone();
         for level in &mut self.levels {
-            // Each component of a level has one shift: that of the fine component that contains its lowest site.
+            // Each component of a level is shifted like the component of the finest level that contains its lowest
+            // site.
             let mut shifts: Vec<f64> = Vec::new();
             for (site, &component) in level.components.iter().enumerate() {
                 if component as usize == shifts.len() {
@@ -183,7 +185,7 @@ fn coarse_anchor(hierarchy: &Hierarchy, level: usize, anchor: Option<SiteIdx>) -
     None
 }
 
-/// Maps a distance to an integer of the same order; both zeros map to the same integer.
+/// Maps a distance to an integer with the same sort order. Both zeros map to the same integer.
 fn rising(distance: f64) -> u64 {
     let bits = (distance + 0.0).to_bits();
     if bits >> 63 == 1 {

@@ -1,5 +1,5 @@
-//! Midpoints of the Delaunay edges of an evenly spaced point set. Adding them makes the set four times as dense and
-//! almost as even.
+//! Finds the Delaunay edges of an evenly spaced point set and their midpoints. Adding the midpoints makes the set four
+//! times as dense and almost as even.
 //!
 //! A triangulation has about three edges per point, so points and midpoints together are four times as many, and a
 //! hexagonal lattice becomes a finer hexagonal lattice. Delaunay edges are found in the plane of a point's face: two
@@ -13,12 +13,13 @@ use dapple_mesh::{Surface, SurfacePoint};
 use dapple_raster::parallel;
 use glam::DVec2;
 
-/// Maximum length of an edge, in spacings.
+/// Maximum length of an edge, in multiples of the point spacing.
 const REACH: f64 = 2.2;
-/// Maximum distance from the center of an empty circle to the midpoint of its edge, in spacings. The limit excludes
-/// long edges along borders.
+/// Maximum distance from the center of an empty circle to the midpoint of its edge, in multiples of the point spacing.
+/// The limit excludes long edges along borders.
 const CENTER_REACH: f64 = 1.2;
-/// Distance between midpoints, in spacings, below which two edges count as crossing. Only one of them is kept.
+/// Two edges count as crossing if their midpoints are closer than this, in multiples of the point spacing. Only one of
+/// them is kept.
 const CLASH: f64 = 0.3;
 
 /// An edge between two points, as a walk over the surface: start, direction in the plane of the start's face, and
@@ -81,7 +82,7 @@ struct Arm {
 }
 
 impl Star {
-    /// Maps the neighbors to the plane around the site, sorted by distance. Each keeps its distance in space.
+    /// Maps the neighbors to the plane of the site's face, sorted by distance. Distances from the site are preserved.
     fn lay_out(
         &mut self,
         surface: &Surface,
@@ -105,7 +106,7 @@ impl Star {
             .sort_unstable_by(|a, b| a.length.total_cmp(&b.length).then(a.other.cmp(&b.other)));
     }
 
-    /// Appends the edges to neighbors with a higher index. Each edge is thus found once.
+    /// Appends the site's edges to neighbors with a higher index, so that each edge is found once.
     fn add_edges(
         &self,
         surface: &Surface,

@@ -1,4 +1,4 @@
-//! Value types that the operations on a hierarchy can mix.
+//! Trait of the value types that the operations on a hierarchy can blend.
 
 use glam::{DVec2, DVec3};
 

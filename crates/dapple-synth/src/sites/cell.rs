@@ -1,23 +1,23 @@
-//! Voronoi cell of the origin of a plane, found by clipping with the bisectors of points, one by one.
+//! Voronoi cell of the origin in a plane, computed by clipping with the bisectors of points, one point at a time.
 //!
 //! The points whose bisectors remain are the neighbors of the origin in the Delaunay triangulation of all points. A
-//! corner of the cell is stored as the pair of neighbors that makes it, so rounding errors do not accumulate. A
-//! bisector cuts off a corner if its point lies in the circle through the origin and the two neighbors. This is decided
-//! for the points as they were given: a fast floating-point test first, and an exact predicate where rounding could
+//! corner of the cell is stored as the pair of neighbors that defines it, so rounding errors do not accumulate. A
+//! bisector cuts off a corner if its point lies in the circle through the origin and the two neighbors. The test uses
+//! the original points. A fast floating-point test comes first, and an exact predicate decides where rounding could
 //! change the answer.
 //!
 //! Reference: Jonathan Richard Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
 //! Predicates", Discrete & Computational Geometry 18, 1997, doi 10.1007/PL00009321, for the exact predicates.
 //!
 //! Where several points lie on one empty circle through the origin, any diagonal between them would complete the
-//! triangulation. No diagonal is taken, so that the cell does not depend on the order of the points. Units: the units
-//! of the points.
+//! triangulation. None is used, so that the cell does not depend on the order of the points. Lengths have the unit of
+//! the points.
 
 use core::cmp::Ordering;
 use glam::DVec2;
 use robust::{Coord, incircle, orient2d};
 
-/// 2^-50, which is eight rounding units (2^-53): relative error bound of a sum of two products of two coordinates.
+/// Relative error bound of a sum of two products of two coordinates: 2^-50, which is eight rounding units of 2^-53.
 ///
 /// The bounds below are generous. The cross product of a and b is off by at most 2 units times `|a| |b|`, and 8 are
 /// allowed. The fast incircle test of c, which is farther away than both, is off by at most 20 units times
@@ -27,7 +27,7 @@ const ROUNDING: f64 = 8.881_784_197_001_252e-16;
 /// The Voronoi cell of the origin.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cell {
-    /// The neighbors, counterclockwise, each with the corner after it.
+    /// Neighbors, counterclockwise, each with the corner after it.
     sides: Vec<Side>,
     /// Index in `sides` of the neighbor inserted last.
     newest: usize,
@@ -50,9 +50,9 @@ struct Side {
 struct Corner {
     /// Whether the next neighbor is at least half a turn away. The bisectors then do not meet on this side.
     is_open: bool,
-    /// `|b|² a - |a|² b`.
+    /// The vector `|b|² a - |a|² b`. Rotated by a quarter turn and divided by `2 turn`, it is the center of the circle.
     lean: DVec2,
-    /// `a × b`.
+    /// Cross product `a × b`.
     turn: f64,
     /// Error bound of the fast incircle test, divided by the squared length of the tested point.
     slack: f64,
@@ -70,7 +70,7 @@ pub(crate) struct Neighbor {
 }
 
 impl Cell {
-    /// Resets the cell to the whole plane.
+    /// Resets the cell to the whole plane, without neighbors.
     pub(crate) fn clear(&mut self) {
         self.sides.clear();
         self.newest = 0;
@@ -84,10 +84,10 @@ impl Cell {
         self.diameter_sq
     }
 
-    /// Clips the cell by the bisector of a point, which must not be the origin.
+    /// Clips the cell by the bisector of the point `at`, which must not be the origin.
     ///
-    /// Points must come nearest first, with a tolerance of a millionth of their distance. The error bounds assume this
-    /// order.
+    /// Points must be passed nearest first, with a tolerance of a millionth of their distance. The error bounds assume
+    /// this order.
     #[inline]
     pub(crate) fn clip(&mut self, at: DVec2, tag: u32) {
         let length_sq = at.length_squared();
@@ -129,7 +129,7 @@ impl Cell {
             })
     }
 
-    /// Returns the index of the first corner that the bisector of a point cuts off, if any.
+    /// Returns the index of the first corner that the bisector of `new` cuts off, if any.
     #[inline]
     fn first_cut(&self, new: &Side) -> Option<usize> {
         for (index, side) in self.sides.iter().enumerate() {
@@ -144,8 +144,8 @@ impl Cell {
         None
     }
 
-    /// Returns whether the bisector of a point cuts off a corner (greater), passes through it (equal), or misses it
-    /// (less).
+    /// Returns whether the bisector of `new` cuts off the corner at `index` (greater), passes through it (equal), or
+    /// misses it (less).
     fn cuts(&self, index: usize, new: &Side) -> Ordering {
         let a = &self.sides[index];
         let b = &self.sides[self.after(index)];
@@ -174,7 +174,8 @@ impl Cell {
         ))
     }
 
-    /// Inserts a neighbor in place of the run of corners around `cut` that its bisector cuts off or passes through.
+    /// Inserts the neighbor `new`. It replaces the run of corners around `cut` that its bisector cuts off or passes
+    /// through.
     fn insert(&mut self, cut: usize, new: Side) {
         let n = self.sides.len();
         // Extend the run of removed corners clockwise, then counterclockwise.
@@ -202,7 +203,7 @@ impl Cell {
         }
     }
 
-    /// Replaces the `count` neighbors after `first` up to `last` by a new one. Returns the index of the new one.
+    /// Replaces the `count` neighbors after `first` up to `last` by `new`. Returns the index of `new`.
     #[inline]
     fn replace(&mut self, first: usize, last: usize, count: usize, new: Side) -> usize {
         if last < first {
@@ -224,8 +225,8 @@ impl Cell {
         at
     }
 
-    /// Returns whether the bisector of a point removes the whole side of a neighbor. The bisector is known to cut off
-    /// or pass through one end of the side; `corner` is the other end.
+    /// Returns whether the bisector of `new` removes the whole side of `neighbor`. The bisector is known to cut off or
+    /// pass through one end of the side; `corner` is the other end.
     #[inline]
     fn hides(&self, neighbor: usize, corner: usize, new: &Side) -> bool {
         let other = &self.sides[corner].corner;
@@ -281,7 +282,7 @@ impl Cell {
 }
 
 impl Corner {
-    /// A corner at infinity. Its infinite slack makes every test take the exact branch.
+    /// A corner at infinity. Its slack is infinite, so every test takes the exact branch.
     const OPEN: Self = Self {
         is_open: true,
         lean: DVec2::ZERO,
@@ -290,8 +291,8 @@ impl Corner {
         diameter_sq: f64::INFINITY,
     };
 
-    /// Fast incircle test: positive if a point lies in the circle through the two neighbors and the origin, up to
-    /// rounding; zero for an open corner.
+    /// Runs the fast incircle test: positive, up to rounding, if `new` is in the circle through the two neighbors and
+    /// the origin; zero for an open corner.
     #[inline]
     fn excess(&self, new: &Side) -> f64 {
         self.lean.perp_dot(new.at) - new.length_sq * self.turn

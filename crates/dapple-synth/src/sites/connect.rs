@@ -1,4 +1,4 @@
-//! Neighbor graph of sites, from the stars of all sites: two sites are connected if at least one has the other in its
+//! Builds the neighbor graph of sites from their stars. Two sites are connected if at least one has the other in its
 //! star.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1: sites
@@ -12,7 +12,8 @@ use glam::DVec3;
 
 /// Number of stars that one task computes.
 const CHUNK: usize = 1024;
-/// Side of the grid cells, in spacings. With this side most stars read two or three cells along each axis.
+/// Side of the grid cells, in multiples of the site spacing. With this size, most stars read two or three cells along
+/// each axis.
 const GRID_SIDE: f64 = 2.0;
 
 /// Graph in which two sites are connected if at least one of them has the other in its star.
@@ -28,12 +29,12 @@ impl Connected {
     /// Connects sites by the Delaunay triangulations in their tangent planes.
     ///
     /// `normals` are unit vectors; `spacing` is the expected distance between neighbors. Sites at the same position are
-    /// not connected to each other, but each of them may be connected to the sites around.
+    /// not connected to each other, but each of them may be connected to the sites around them.
     ///
     /// # Errors
     ///
-    /// Returns [`SynthErrorKind::Count`] if there is not one normal for each position, and [`SynthErrorKind::Range`]
-    /// for a spacing that is not above zero and finite.
+    /// [`SynthErrorKind::Count`] unless there is one normal for each position, and [`SynthErrorKind::Range`] unless
+    /// `spacing` is above zero and finite.
     ///
     /// # Examples
     ///
@@ -71,7 +72,7 @@ impl Connected {
         }))
     }
 
-    /// Connects sites whose columns and grid are known to match.
+    /// Connects sites like [`new`](Self::new), without checks: columns and grid are known to match.
     pub(crate) fn among(sites: &Oriented<'_>) -> Self {
         Stars::new(sites).union()
     }
@@ -85,7 +86,7 @@ pub(crate) struct Stars {
     spokes: Vec<Spoke>,
 }
 
-/// Stars of a run of sites, concatenated.
+/// Stars of consecutive sites, concatenated.
 #[derive(Debug, Default)]
 struct Part {
     ends: Vec<u32>,
@@ -93,7 +94,7 @@ struct Part {
 }
 
 impl Stars {
-    /// Finds the stars of all sites, on all cores where the feature `rayon` is on.
+    /// Finds the stars of all sites, on all cores if the feature `rayon` is on.
     pub(crate) fn new(sites: &Oriented<'_>) -> Self {
         // Process sites in grid order: consecutive sites are then near each other and share grid lookups.
         let members = sites.grid.members();
@@ -127,7 +128,7 @@ impl Stars {
         self.spans.len()
     }
 
-    /// Returns the star of a site, counterclockwise.
+    /// Returns the star of `site`, counterclockwise.
     #[inline]
     pub(crate) fn star(&self, site: SiteIdx) -> &[Spoke] {
         let [from, to] = self.spans[site.index()].map(|at| at as usize);

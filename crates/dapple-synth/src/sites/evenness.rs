@@ -4,8 +4,8 @@ use crate::{SiteGrid, SiteIdx, Sites};
 use dapple_mesh::Surface;
 use dapple_raster::parallel;
 
-/// Nearest-neighbor distances, relative to the spacing of a hexagonal lattice with the same number of points on the
-/// same area.
+/// Evenness of points, as nearest-neighbor distances relative to the spacing of a hexagonal lattice with the same
+/// number of points on the same area.
 ///
 /// Random points have a mean of 0.465 and a minimum near zero; in a hexagonal lattice both are 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,7 +16,8 @@ pub struct Evenness {
     pub min: f64,
 }
 
-/// Returns the spacing of a hexagonal lattice of `n` points on an area: the paper's r, `sqrt(2 A / (sqrt(3) n))`.
+/// Returns the spacing of a hexagonal lattice of `n` points on the given area. This is the paper's r, `sqrt(2 A /
+/// (sqrt(3) n))`.
 ///
 /// Returns 0 if `n` is 0.
 #[must_use]
@@ -27,11 +28,11 @@ pub fn hexagonal_spacing(area: f64, n: usize) -> f64 {
     (2.0 * area / (3.0_f64.sqrt() * n as f64)).sqrt()
 }
 
-/// Measures how even the first `n` sites are.
+/// Measures how evenly the first `n` sites are spaced.
 ///
-/// A neighbor whose normal is more than 90 degrees from the site's normal is on another sheet and does not count. A
-/// site without a neighbor within four hexagonal spacings counts as having one at that distance. Without sites, mean
-/// and minimum are 0.
+/// A neighbor whose normal is more than 90 degrees from the site's normal is on another sheet and does not count. If a
+/// site has no neighbor within four hexagonal spacings, its distance counts as four spacings. Without sites, mean and
+/// minimum are 0.
 ///
 /// # Examples
 ///

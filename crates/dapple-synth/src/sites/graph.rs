@@ -1,4 +1,4 @@
-//! Neighbor graph of sites.
+//! Neighbor graph of sites, in compressed rows.
 
 use crate::SiteIdx;
 
@@ -26,7 +26,8 @@ impl SiteGraph {
     pub fn from_edges(n_sites: usize, edges: impl IntoIterator<Item = [SiteIdx; 2]>) -> Self {
         let is_edge = |&[a, b]: &[SiteIdx; 2]| a != b && a.index().max(b.index()) < n_sites;
         let edges: Vec<[SiteIdx; 2]> = edges.into_iter().filter(is_edge).collect();
-        // Start of each row by counting. While the rows are filled, the position of the next neighbor.
+        // Count the neighbors to find the start of each row. While rows are filled, `next` is the index of the next
+        // neighbor.
         let mut next = vec![0_u32; n_sites + 1];
         for [a, b] in &edges {
             next[a.index() + 1] += 1;
@@ -86,7 +87,7 @@ impl SiteGraph {
         self.len() == 0
     }
 
-    /// Returns the neighbors of a site, in ascending order.
+    /// Returns the neighbors of `site`, in ascending order.
     ///
     /// # Panics
     ///

@@ -1,9 +1,9 @@
-//! Spatial index of sites: a cubic grid of cells, stored sparsely in bricks of cells.
+//! Spatial index of sites: a cubic grid of cells, stored sparsely as bricks.
 //!
 //! A surface meets only a few cells of its bounding box, so only bricks of 8x8x8 cells that contain sites are stored.
-//! An open-addressed hash table finds them. The cells of a brick are laid out densely: a row of cells is one contiguous
-//! run of sites, and a ball the size of a cell needs about two table lookups. Sites are sorted into cells by counting
-//! sort. Reference: our own.
+//! An open-addressed hash table finds them. The cells of a brick are stored densely, so the sites in a row of cells are
+//! contiguous. A query with a ball the size of a cell needs about two table lookups. Sites are sorted into cells by
+//! counting sort. The design is our own.
 
 use crate::SiteIdx;
 use core::ops::Range;
@@ -12,7 +12,7 @@ use glam::DVec3;
 /// Sites sorted into the cells of a cubic grid.
 #[derive(Clone, Debug)]
 pub struct SiteGrid {
-    /// Lower corner of the first cell.
+    /// Corner of the first cell with the lowest coordinates.
     low: DVec3,
     /// Inverse of the side of a cell.
     scale: f64,
@@ -22,13 +22,13 @@ pub struct SiteGrid {
     bricks: Vec<u64>,
     /// Open-addressed hash table from brick key to brick index.
     table: Vec<Slot>,
-    /// Start of each cell in `members`, brick by brick, and the end of the last one.
+    /// Start of each cell in `members`, brick by brick, plus the end of the last one.
     starts: Vec<u32>,
     /// Sites sorted by cell.
     members: Vec<SiteIdx>,
 }
 
-/// A slot of the table: a brick with its key, or the key [`EMPTY`].
+/// A slot of the hash table: a brick with its key, or the key [`EMPTY`].
 #[derive(Clone, Copy, Debug)]
 struct Slot {
     key: u64,
@@ -50,20 +50,21 @@ const BITS: u32 = 21;
 const BRICK_BITS: u32 = 3;
 /// Number of cells in a brick.
 const BRICK_CELLS: usize = 1 << (3 * BRICK_BITS);
-/// Minimum mean number of sites per brick. Below it cells are widened, which bounds the memory to 64 bytes per site.
+/// Minimum mean number of sites per brick. With fewer, cells are made larger, which bounds the memory to 64 bytes per
+/// site.
 const SITES_PER_BRICK: usize = 32;
 /// Number of bricks that is always allowed, however few the sites.
 const BRICKS_LEAST: usize = 64;
-/// Maximum number of bricks: their cells still have 32-bit indices.
+/// Maximum number of bricks, for which the cells still have 32-bit indices.
 const BRICKS_MOST: usize = (1 << 23) - 1;
 
 impl SiteGrid {
-    /// Sorts positions into cells of the given side, in units of the positions. Site indices follow the order of
-    /// `positions`.
+    /// Sorts `positions` into cells with sides of length `side`, in the same unit as the positions. Site indices are
+    /// indices in `positions`.
     ///
-    /// The side is widened where it is so small that more than 2^21 cells would lie along an axis, or that the mean
-    /// number of sites per brick would fall below 32. Time is linear in the number of sites, which must be below 2^32.
-    /// A position that is not finite is put into some cell.
+    /// The side is increased if there would be more than 2^21 cells along an axis, or fewer than 32 sites per brick on
+    /// average. Time is linear in the number of sites, which must be below 2^32. A position that is not finite is put
+    /// into an arbitrary cell.
     #[must_use]
     pub fn new(positions: &[DVec3], side: f64) -> Self {
         let low = positions.iter().copied().fold(DVec3::INFINITY, DVec3::min);
@@ -86,8 +87,8 @@ impl SiteGrid {
         }
     }
 
-    /// Calls `visit` with every site in the cells that the ball's bounding box meets: all sites in the ball, and some
-    /// around it. A ball with a negative radius has no sites.
+    /// Calls `visit` with every site in the cells that the bounding box of a ball meets. These are all sites in the
+    /// ball, and some around it. A ball with a negative radius has no sites.
     ///
     /// The order depends on the positions and the side alone: by brick, then by cell in the brick (x fastest and z
     /// slowest for both), then by site index in the cell.
@@ -115,7 +116,7 @@ impl SiteGrid {
         &self.members
     }
 
-    /// Returns the cells that any ball of this radius can meet if its center is in the cell of `position`.
+    /// Returns the cells that any ball of the given radius can meet if its center is in the same cell as `position`.
     #[inline]
     pub(crate) fn block(&self, position: DVec3, radius: f64) -> Block {
         // One cell more than needed if the radius is a whole number of cells, since rounding could matter there.
@@ -130,7 +131,7 @@ impl SiteGrid {
         }
     }
 
-    /// Calls `visit` with every site in the cells of a block, in the order of [`visit`](Self::visit).
+    /// Calls `visit` with every site in the cells of `block`, in the order of [`visit`](Self::visit).
     pub(crate) fn visit_block(&self, block: Block, mut visit: impl FnMut(SiteIdx)) {
         self.visit_between(block.low, block.high, |row| {
             for &site in &self.members[row] {
@@ -162,7 +163,7 @@ impl SiteGrid {
         }
     }
 
-    /// Returns a grid without sites or bricks over a bounding box.
+    /// Returns a grid over the bounding box from `low` to `high`, without sites or bricks.
     fn empty(low: DVec3, high: DVec3, side: f64) -> Self {
         let mut grid = Self {
             low,
@@ -177,8 +178,8 @@ impl SiteGrid {
         grid
     }
 
-    /// Fills the table, and returns for each site the index of its cell among the cells of all bricks. Returns `None`
-    /// if there are more than `most` bricks.
+    /// Fills the table, and returns for each site the index of its cell among the cells of all bricks. `None` if there
+    /// are more than `most` bricks.
     fn find_bricks(&mut self, positions: &[DVec3], most: usize) -> Option<Vec<u32>> {
         let slots = (2 * most.min(positions.len()) + 2).next_power_of_two();
         self.table = vec![
@@ -209,7 +210,7 @@ impl SiteGrid {
         Some(places)
     }
 
-    /// Returns the slot of a brick; adds the brick if it is new.
+    /// Returns the slot of the brick with the key `key`, and adds the brick if it is new.
     fn find_or_add(&mut self, key: u64) -> Slot {
         let mut at = self.slot(key);
         while self.table[at].key != key {
@@ -277,7 +278,7 @@ impl SiteGrid {
         ]
     }
 
-    /// Returns the index of the brick with a key, if the grid has it.
+    /// Returns the index of the brick with the key `key`; `None` if the grid has no such brick.
     #[inline]
     fn find(&self, key: u64) -> Option<u32> {
         let mut at = self.slot(key);
@@ -293,15 +294,15 @@ impl SiteGrid {
         }
     }
 
-    /// Returns the slot at which the search for a key begins.
+    /// Returns the slot at which the search for `key` begins.
     #[inline]
     fn slot(&self, key: u64) -> usize {
-        // Fibonacci hashing: the upper bits of the product with 2^64 over the golden ratio.
+        // Fibonacci hashing: take the upper bits of the product with 2^64 over the golden ratio.
         let mixed = key.wrapping_mul(0x9E37_79B9_7F4A_7C15);
         (mixed >> 32) as usize & (self.table.len() - 1)
     }
 
-    /// Visits the rows of cells of one brick that lie in the box from `low` to `high`.
+    /// Visits the rows of cells of a brick that are in the box from `low` to `high`.
     #[inline]
     fn visit_brick(
         &self,
@@ -321,7 +322,7 @@ impl SiteGrid {
         }
     }
 
-    /// Visits a box by scanning all bricks of the grid; for boxes with more bricks than the grid has.
+    /// Visits a box by scanning all bricks of the grid. Used for boxes that cover more bricks than the grid has.
     fn visit_all(&self, low: [u32; 3], high: [u32; 3], mut visit: impl FnMut(Range<usize>)) {
         let mask = (1 << BITS) - 1;
         for (brick, &key) in (0..).zip(&self.bricks) {
@@ -335,7 +336,7 @@ impl SiteGrid {
     }
 }
 
-/// Returns the coordinate of the brick of a cell along one axis.
+/// Returns the coordinate along one axis of the brick that contains `cell`.
 #[inline]
 fn brick_of(cell: u32) -> u32 {
     cell >> BRICK_BITS

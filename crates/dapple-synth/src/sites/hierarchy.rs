@@ -1,4 +1,5 @@
-//! Nested sets of evenly spaced sites on a surface, with a neighbor graph on every level: the paper's mesh hierarchy.
+//! Nested sets of evenly spaced sites on a surface, with a neighbor graph on every level. This is the paper's mesh
+//! hierarchy.
 
 use super::oriented::Oriented;
 use crate::{
@@ -15,28 +16,28 @@ const SITES_MAX: usize = 1 << 28;
 const BYTES_PER_SITE: usize = 220;
 /// Maximum number of levels. With 2^28 sites, the 15th level already has a single site.
 const LEVELS_MAX: usize = 16;
-/// Maximum number of iterations: a larger number is taken for a mistake, since it would run almost forever.
+/// Maximum number of iterations. A larger number is rejected as a mistake, since it would run almost forever.
 const ITERATIONS_MAX: usize = 10_000;
 
-/// Maximum mean number of sites within two spacings of a site. A single sheet has about 15.
+/// Maximum mean number of sites within two site spacings of a site. On a single sheet there are about 15.
 const NEAR_MAX: f64 = 512.0;
-/// Number of random points among which crossings are counted.
+/// Number of random points used to detect crossing sheets.
 const POINTS: usize = 1 << 16;
-/// Number of points around which neighbors are counted.
+/// Number of points in the sample whose neighbors are counted.
 const SAMPLE: usize = 256;
 
-/// Options of a hierarchy.
+/// Options for a hierarchy of sites.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HierarchyOptions {
-    /// Number of sites of the finest level, from 1 to 2^28; by default 65,536. Each coarser level has a quarter,
-    /// rounded up.
+    /// Number of sites on the finest level, from 1 to 2^28; by default 65,536. Each coarser level has a quarter of the
+    /// sites of the finer one, rounded up.
     pub n_sites: usize,
     /// Number of levels, from 1 to 16; by default 3.
     pub n_levels: usize,
     /// Seed of the random points that the sites start from; by default `Seed(0)`.
     pub seed: Seed,
     /// Number of repulsion steps for the new sites of each level, at most 10,000; by default 6. The coarsest level
-    /// takes four times as many. More than 40 change almost nothing.
+    /// takes four times as many. More than 40 steps change almost nothing.
     pub iterations: usize,
 }
 
@@ -52,11 +53,11 @@ impl Default for HierarchyOptions {
 }
 
 impl HierarchyOptions {
-    /// Checks the options and the surface as [`Hierarchy::new`] does, in a fraction of its time.
+    /// Checks the options and the surface in the same way as [`Hierarchy::new`], in a fraction of the time.
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`Hierarchy::new`].
+    /// Same as [`Hierarchy::new`].
     pub fn check(&self, surface: &Surface) -> Result<(), SynthError> {
         let counts = self.counts()?;
         check_crossings(surface, counts[0], self.seed)
@@ -81,7 +82,7 @@ impl HierarchyOptions {
             return refuse("iterations", self.iterations, "at most 10000");
         }
         let coarser = |&count: &usize| Some(count.div_ceil(4));
-        // Reserve the memory and release it at once: too many sites then give an error instead of an abort.
+        // Reserve the memory and release it at once, so that too many sites cause an error instead of an abort.
         let bytes = self.n_sites.saturating_mul(BYTES_PER_SITE);
         if Vec::<u8>::new().try_reserve_exact(bytes).is_err() {
             return refuse("sites", self.n_sites, "as few as fit into the memory");
@@ -109,13 +110,13 @@ pub struct Level {
 }
 
 impl Hierarchy {
-    /// Scatters and connects sites.
+    /// Scatters sites over `surface`, spaces them evenly, and connects them on every level.
     ///
     /// # Errors
     ///
-    /// Returns [`SynthErrorKind::Count`] unless there are 1 to 2^28 sites, 1 to 16 levels and at most 10,000
-    /// iterations, or if the sites do not fit into memory. Returns [`SynthErrorKind::Range`] for a surface that crosses
-    /// itself so often that a site has on average more than 512 other sites within two spacings; a single sheet has 15.
+    /// [`SynthErrorKind::Count`] unless there are 1 to 2^28 sites, 1 to 16 levels and at most 10,000 iterations, or if
+    /// the sites do not fit into memory. [`SynthErrorKind::Range`] if the surface crosses itself so often that a site
+    /// has on average more than 512 other sites within two site spacings; on a single sheet there are 15.
     pub fn new(surface: &Surface, options: &HierarchyOptions) -> Result<Self, SynthError> {
         options.check(surface)?;
         let counts = options.counts()?;
@@ -151,7 +152,7 @@ impl Hierarchy {
         &self.sites
     }
 
-    /// Returns the levels, finest first: `levels()[0]` is the paper's `M_1`.
+    /// Returns all levels, finest first; `levels()[0]` is the paper's `M_1`.
     #[must_use]
     pub fn levels(&self) -> &[Level] {
         &self.levels
@@ -165,7 +166,7 @@ impl Hierarchy {
 ///
 /// # Errors
 ///
-/// Returns [`SynthErrorKind::Range`] unless the number of repeats is above 0 and at most 10,000.
+/// [`SynthErrorKind::Range`] unless `repeats` is above 0 and at most 10,000.
 ///
 /// # Examples
 ///
@@ -196,7 +197,7 @@ pub fn sites_for_repeats(
 }
 
 /// Returns the number of times that an image of `size` pixels repeats along the longest side of the surface's bounding
-/// box, for a number of sites. Inverse of [`sites_for_repeats`].
+/// box, if there are `n_sites` sites. Inverse of [`sites_for_repeats`].
 #[must_use]
 pub fn repeats_of_sites(surface: &Surface, size: [u32; 2], n_sites: usize) -> f64 {
     let positions = surface.mesh().positions().iter().copied();
@@ -207,11 +208,11 @@ pub fn repeats_of_sites(surface: &Surface, size: [u32; 2], n_sites: usize) -> f6
     (high - low).max_element() / side
 }
 
-/// Returns an error for a surface of many sheets that cross each other. Each site would be compared with all sites
+/// Returns an error if `surface` has many sheets that cross each other. Each site would be compared with all sites
 /// around it in space, and time would grow with the square of their number.
 ///
-/// The number of sites is estimated before any site is placed: random points are counted within two spacings of a
-/// sample of them.
+/// The number of nearby sites is estimated before any site is placed, by counting the random points within two site
+/// spacings of each point of a sample.
 fn check_crossings(surface: &Surface, n_sites: usize, seed: Seed) -> Result<(), SynthError> {
     let n_points = n_sites.min(POINTS);
     let spacing = hexagonal_spacing(surface.area(), n_sites);
@@ -246,8 +247,8 @@ impl Level {
         self.n_sites
     }
 
-    /// Returns the paper's r, in units of the mesh: spacing of a hexagonal lattice with as many sites, `sqrt(2 A /
-    /// (sqrt(3) n))`.
+    /// Returns the site spacing, in units of the mesh. This is the paper's r, the spacing of a hexagonal lattice with
+    /// the same number of sites, `sqrt(2 A / (sqrt(3) n))`.
     #[must_use]
     pub fn spacing(&self) -> f64 {
         self.spacing

@@ -1,4 +1,4 @@
-//! Interpolation between sites: equation 1.
+//! Interpolates values between sites (equation 1).
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.2, with
 //! the weights `w(x) = 2x³ - 3x² + 1`, where x is the distance over the radius. The paper states neither the radius nor
@@ -6,31 +6,34 @@
 //! [`Hierarchy::interpolate`](crate::Hierarchy::interpolate).
 //!
 //! Differences to the value of the first site in reach are summed, so that a constant column gives exactly that
-//! constant. Sites are visited in the order of [`SiteGrid::visit`](crate::SiteGrid::visit). Units: units of the mesh.
+//! constant. Sites are visited in the order of [`SiteGrid::visit`](crate::SiteGrid::visit). Lengths are in units of the
+//! mesh.
 
 use super::oriented::Oriented;
 use crate::{Blend, SiteIdx};
 use fearless_simd::{f32x8, prelude::*};
 use glam::DVec3;
 
-/// Radius of interpolation, in spacings of the level.
+/// Interpolation radius, in multiples of the level's site spacing.
 ///
-/// The paper does not give a radius. At 1.0 most positions have three or four sites in reach; at 2.0 colors blur.
+/// The paper does not give a radius. At 1.0, most positions have three or four sites in reach. At 2.0, colors blur.
 pub const INTERPOLATION_RADIUS: f64 = 1.1;
 
-/// Minimum sum of weights. A smaller sum comes from sites at the rim of the ball only, and the nearest site is used.
+/// Minimum sum of weights. A smaller sum means that all sites are at the rim of the ball; the nearest site is then
+/// used.
 const WEIGHTS_LEAST: f64 = 1e-9;
-/// Search radii for the nearest site if no site is in reach, in radii of interpolation.
+/// Search radii for the nearest site if no site is in reach, in multiples of the interpolation radius.
 const NEAREST_REACHES: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 
-/// Returns the weight of a site in equation 1, `w(x) = 2x³ - 3x² + 1`, at a distance of `x` radii, from 0 to 1.
+/// Returns the weight of a site in equation 1, `w(x) = 2x³ - 3x² + 1`. `x` is the distance divided by the radius, from
+/// 0 to 1.
 #[inline]
 pub(crate) fn weight(x: f64) -> f64 {
     (2.0 * x - 3.0) * x * x + 1.0
 }
 
-/// Returns the weights of a site in equation 1 for eight positions, from squared distances in radii; 0 at one radius or
-/// more.
+/// Returns the weights of a site in equation 1 for eight positions. `x_sq` are the squares of distances divided by the
+/// radius; weights are 0 at one radius or more.
 #[inline(always)]
 pub(crate) fn weights<S: Simd>(simd: S, x_sq: f32x8<S>) -> f32x8<S> {
     let weights = (x_sq.sqrt() * 2.0 - 3.0) * x_sq + 1.0;
@@ -38,9 +41,10 @@ pub(crate) fn weights<S: Simd>(simd: S, x_sq: f32x8<S>) -> f32x8<S> {
 }
 
 impl Oriented<'_> {
-    /// Returns the value at a position: the weighted mean, or the value of the nearest site up to 8 radii away.
+    /// Returns the weighted mean of the values around `position`, or the value of the nearest site if none is in reach.
+    /// `None` if no site is within 8 radii.
     ///
-    /// `column` has a value for each site.
+    /// `column` has one value per site.
     #[inline]
     pub(crate) fn interpolate<T: Blend>(
         &self,
@@ -70,7 +74,7 @@ impl Oriented<'_> {
     }
 
     /// Returns the nearest site on the side of the surface that `normal` points to; ties go to the lowest index. `None`
-    /// if all are more than 8 radii of interpolation away.
+    /// if all are more than 8 interpolation radii away.
     #[cold]
     fn nearest(&self, position: DVec3, normal: DVec3) -> Option<SiteIdx> {
         for reach in NEAREST_REACHES {
@@ -88,7 +92,7 @@ impl Oriented<'_> {
         None
     }
 
-    /// Returns the nearest of all sites, on either side of the surface. `None` if there are no sites.
+    /// Returns the site nearest to `position`, on either side of the surface. `None` if there are no sites.
     #[cold]
     pub(crate) fn nearest_of_all(&self, position: DVec3) -> Option<SiteIdx> {
         let mut nearest = Nearest::within(f64::INFINITY);
@@ -98,7 +102,7 @@ impl Oriented<'_> {
         nearest.site
     }
 
-    /// Returns whether the normal of a site is at most 90 degrees from another normal.
+    /// Returns whether the normal of `site` is at most 90 degrees from `normal`.
     #[inline]
     fn is_on_side(&self, site: SiteIdx, normal: DVec3) -> bool {
         self.normals[site.index()].dot(normal) >= 0.0
@@ -120,7 +124,7 @@ impl Nearest {
         }
     }
 
-    /// Takes a site if it is nearer, or as near with a lower index.
+    /// Takes `site` if it is nearer than the best so far, or as near with a lower index.
     #[inline]
     fn offer(&mut self, site: SiteIdx, distance: f64) {
         let is_first = self.site.is_none_or(|nearest| site < nearest);

@@ -1,4 +1,4 @@
-//! Low-pass filter for columns of values at sites: equations 2 to 4.
+//! Low-pass filter for columns of values at sites (equations 2 to 4).
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.2. The
 //! smoothing is from Gabriel Taubin, "A Signal Processing Approach to Fair Surface Design", SIGGRAPH 1995, doi
@@ -38,7 +38,7 @@ const CHUNK: usize = 2048;
 #[derive(Clone, Debug)]
 pub struct LowPass<'a> {
     graph: &'a SiteGraph,
-    /// Weights of the neighbors of all sites, in the rows of the graph.
+    /// Weights of the neighbors of all sites, in the order of the graph's rows.
     weights: Vec<f64>,
 }
 
@@ -50,7 +50,7 @@ impl<'a> LowPass<'a> {
     ///
     /// # Errors
     ///
-    /// Returns [`SynthErrorKind::Count`] if there is not one position for each site.
+    /// [`SynthErrorKind::Count`] unless `positions` has one position for each site.
     pub fn new(graph: &'a SiteGraph, positions: &[DVec3]) -> Result<Self, SynthError> {
         check_length("positions", positions.len(), graph.len())?;
         let chunk = |index: usize| {
@@ -65,7 +65,7 @@ impl<'a> LowPass<'a> {
         Ok(Self { graph, weights })
     }
 
-    /// Returns the weights of the neighbors of a site, in the order of the neighbors. They sum to 1 up to rounding.
+    /// Returns the weights of the neighbors of `site`, in the order of the neighbors. They sum to 1 up to rounding.
     ///
     /// # Panics
     ///
@@ -76,15 +76,15 @@ impl<'a> LowPass<'a> {
         &self.weights[self.graph.row(site)]
     }
 
-    /// Filters a column in `steps` steps of strength `t`, from 0 to 1; equation 3. The paper uses a `t` of 0.1.
+    /// Filters `column` in `steps` steps of strength `t`, from 0 to 1 (equation 3). The paper uses a `t` of 0.1.
     ///
     /// If `t` is at most 0.99, no value leaves the range of the values of the site and its neighbors, not even by
     /// rounding.
     ///
     /// # Errors
     ///
-    /// Returns [`SynthErrorKind::Count`] if there is not one value for each site, and [`SynthErrorKind::Range`] for a
-    /// `t` outside of 0 to 1.
+    /// [`SynthErrorKind::Count`] unless `column` has one value for each site, and [`SynthErrorKind::Range`] if `t` is
+    /// outside 0 to 1.
     pub fn apply<T: Blend>(
         &self,
         column: &mut [T],
@@ -108,11 +108,12 @@ impl<'a> LowPass<'a> {
         Ok(())
     }
 
-    /// Applies one step from one column to another, for callers that change values between steps.
+    /// Applies one step to the column `from` and writes the result to `to`, for callers that change values between
+    /// steps.
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`apply`](Self::apply).
+    /// Same as [`apply`](Self::apply).
     pub fn step<T: Blend>(&self, from: &[T], to: &mut [T], t: f64) -> Result<(), SynthError> {
         for column in [from.len(), to.len()] {
             check_length("values", column, self.graph.len())?;
@@ -141,7 +142,7 @@ impl<'a> LowPass<'a> {
     }
 }
 
-/// Returns an error if a column's length differs from the number of sites.
+/// Returns an error if `count`, the length of a column, differs from the number of sites.
 pub(crate) fn check_length(
     what: &'static str,
     count: usize,
@@ -158,7 +159,7 @@ pub(crate) fn check_length(
     }))
 }
 
-/// Appends the weights of the neighbors of a site.
+/// Appends the weights of the neighbors of `site` to `weights`.
 fn push_weights(graph: &SiteGraph, positions: &[DVec3], site: SiteIdx, weights: &mut Vec<f64>) {
     let first = weights.len();
     let at = positions[site.index()];

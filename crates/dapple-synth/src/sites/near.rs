@@ -1,4 +1,4 @@
-//! Neighbor lists of sites: built once, read many times.
+//! Neighbor lists of sites, built once and read many times.
 
 use crate::{SiteGrid, SiteIdx};
 use dapple_mesh::{Surface, SurfacePoint};
@@ -7,11 +7,11 @@ use glam::DVec3;
 
 /// Number of sites whose lists are built and stored together.
 pub(crate) const CHUNK: usize = 1024;
-/// Maximum length of a list; longer lists keep the nearest neighbors. A sheet of evenly spaced points has about twenty
-/// in reach. The limit bounds the memory where many sheets overlap.
+/// Maximum length of a neighbor list; of more neighbors only the nearest are stored. On a single sheet of evenly spaced
+/// points about twenty are in reach. The limit bounds the memory where many sheets overlap.
 const CROWD_MAX: usize = 48;
-/// Radius of the first search in a crowd, relative to the distance of the farthest neighbor in the last full list. The
-/// ball has about twice as many sites as a list.
+/// Radius of the first search where sites are crowded, relative to the distance of the farthest neighbor in the last
+/// full list. A ball of this radius contains about twice as many sites as a full list.
 const SPARE: f64 = 1.25;
 
 /// Positions and normals of points in space.
@@ -21,7 +21,7 @@ pub(crate) struct Places {
     pub(crate) normals: Vec<DVec3>,
 }
 
-/// Neighbor lists of all sites from a first index to the last: other sites in reach on the same sheet.
+/// Neighbor lists of all sites from a first index to the last. Neighbors are other sites in reach on the same sheet.
 #[derive(Debug)]
 pub(crate) struct Near {
     chunks: Vec<Rows>,
@@ -43,18 +43,18 @@ impl Places {
     }
 }
 
-/// Positions in the order of a grid's members: the positions of a row of cells are contiguous.
+/// Positions in the order of the grid's members, so that the positions in a row of cells are contiguous.
 struct Sorted {
     grid: SiteGrid,
     positions: Vec<DVec3>,
 }
 
-/// Scratch memory for the sites in reach of a site, reused from site to site.
+/// Scratch memory for the sites in reach of the current site, reused from site to site.
 #[derive(Debug, Default)]
 struct Found {
-    /// Squared distances and sites.
+    /// Sites found, with their squared distances.
     sites: Vec<(f64, SiteIdx)>,
-    /// Distance of the farthest site in the last list that was full.
+    /// Distance of the farthest site in the last full list; `None` before the first one.
     last_full: Option<f64>,
 }
 
@@ -62,8 +62,8 @@ impl Near {
     /// Lists the neighbors of all sites with index `first` or more. A neighbor is nearer than `reach`, and the dot
     /// product of the two normals is at least `facing`.
     ///
-    /// Lists are in the order of [`SiteGrid::visit`]. A list of more than [`CROWD_MAX`] keeps the nearest neighbors,
-    /// nearest first.
+    /// Lists are in the order of [`SiteGrid::visit`]. If there are more than [`CROWD_MAX`] neighbors, the list has only
+    /// the nearest ones, nearest first.
     pub(crate) fn new(places: &Places, first: usize, reach: f64, facing: f64) -> Self {
         let grid = SiteGrid::new(&places.positions, reach);
         let positions = |&site: &SiteIdx| places.positions[site.index()];
@@ -88,7 +88,7 @@ impl Near {
         Self { chunks }
     }
 
-    /// Lists of the sites of a chunk. Chunks are counted from the first site that has a list.
+    /// Returns the lists of the sites in `chunk`. Chunks are counted from the first site that has a list.
     #[inline]
     pub(crate) fn chunk(&self, chunk: usize) -> &Rows {
         &self.chunks[chunk]
@@ -96,7 +96,7 @@ impl Near {
 }
 
 impl Rows {
-    /// Returns the list of a site, by its index in the chunk.
+    /// Returns the neighbor list of `site`, an index in the chunk.
     #[inline]
     pub(crate) fn row(&self, site: usize) -> &[SiteIdx] {
         &self.others[self.starts[site] as usize..self.starts[site + 1] as usize]
@@ -109,7 +109,7 @@ impl Rows {
 }
 
 impl Found {
-    /// Lists the neighbors of a site.
+    /// Lists the neighbors of `site` with their squared distances.
     fn list(
         &mut self,
         places: &Places,
@@ -117,7 +117,8 @@ impl Found {
         site: usize,
         [reach, facing]: [f64; 2],
     ) -> &[(f64, SiteIdx)] {
-        // In a crowd only the nearest neighbors matter: try a smaller ball first, and accept it if it fills the list.
+        // Where sites are crowded, only the nearest matter. Try a smaller ball first, and accept it if it fills the
+        // list.
         let smaller = self.last_full.map(|far| SPARE * far);
         let smaller = smaller.filter(|&smaller| smaller < reach);
         let mut n_found = 0;
@@ -140,7 +141,7 @@ impl Found {
         nearest
     }
 
-    /// Writes all neighbors of a site in reach to the front of `sites`, in the order of the grid. Returns their number.
+    /// Writes all neighbors within `reach` of `site` to the front of `self.sites`, in grid order. Returns their number.
     fn gather(
         &mut self,
         places: &Places,

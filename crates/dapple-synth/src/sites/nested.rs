@@ -24,18 +24,18 @@ use glam::DVec3;
 const RANDOM_MOST: usize = 256;
 /// Repulsion steps for random points. They are few, so the cost is negligible.
 const ITERATIONS_RANDOM: usize = 40;
-/// Factor on the number of repulsion steps for the coarsest set and the hidden sets before it, which are small as well.
+/// Factor on the number of repulsion steps for the coarsest set and for the smaller hidden sets from which it is built.
 const ITERATIONS_HIDDEN: usize = 4;
 /// Bits of a position along one axis in Morton order.
 const MORTON_BITS: u32 = 21;
 
-/// Returns nested sets of evenly spaced points, one for each of the ascending `counts`: the first `counts[0]` points
-/// are evenly spaced on their own, the first `counts[1]` are too, and so on.
+/// Returns nested sets of evenly spaced points, one for each of the ascending `counts`. The first `counts[0]` points
+/// are evenly spaced by themselves, so are the first `counts[1]` points, and so on.
 ///
-/// A ratio of four between counts gives the best spacing. A count below the previous one adds no points. `iterations`
-/// is the number of repulsion steps for the new points of each count; 6 are enough. The points of the first count take
-/// four times as many steps, or 40 steps where there are at most 256 of them. A piece of the surface smaller than about
-/// half of the mean area per point gets none.
+/// A ratio of four between consecutive counts gives the most even spacing. A count below the previous one adds no
+/// points. `iterations` is the number of repulsion steps for the new points of each count; 6 are enough. The points of
+/// the first count take four times as many steps, or 40 steps where there are at most 256 of them. A piece of the
+/// surface smaller than about half of the mean area per point gets none.
 ///
 /// # Examples
 ///
@@ -66,7 +66,7 @@ pub fn nested_points(
         points: Vec::new(),
     };
     let seed = seed.child("nested points", 0);
-    // Build the coarsest set from hidden ones; all points are free to move.
+    // Build the coarsest set from hidden sets; all points are free to move.
     for (level, &count) in hidden_counts(coarsest).iter().rev().enumerate() {
         let iterations = if level == 0 {
             ITERATIONS_RANDOM
@@ -112,7 +112,7 @@ struct Nest<'a> {
 }
 
 impl Nest<'_> {
-    /// Adds points up to `count`, and relaxes the points with index `n_fixed` or more.
+    /// Adds points until there are `count`, and relaxes the points with index `n_fixed` or more.
     fn add_level(&mut self, count: usize, n_fixed: usize, iterations: usize, seed: Seed) {
         self.grow(count, seed);
         // Sort before repulsion, which reads neighbors in every step, and again after it, for the later stages.
@@ -121,7 +121,7 @@ impl Nest<'_> {
         sort(self.surface, &mut self.points[n_fixed..]);
     }
 
-    /// Adds points up to `count`; each piece gets its share.
+    /// Adds points until there are `count`. Each piece of the surface gets its share.
     fn grow(&mut self, count: usize, seed: Seed) {
         let (surface, pieces) = (self.surface, &self.pieces);
         let piece_of = |point: SurfacePoint| pieces.of_face[point.face.index()] as usize;
@@ -162,14 +162,14 @@ impl Nest<'_> {
     }
 }
 
-/// Returns the indices of edges, longest first: the midpoints of long edges are farthest from other points.
+/// Returns the indices of `edges`, longest first, because the midpoints of long edges are farthest from other points.
 fn longest_first(edges: &[Edge]) -> Vec<u32> {
     // The bits of positive floats sort like their values; the complement reverses the order.
     sorted(edges.iter().map(|edge| !edge.length.to_bits()))
 }
 
-/// Adds `missing` points on edges, which come longest first: one at the midpoint of each edge. If there are too few
-/// edges, the first ones get two points, at their thirds.
+/// Adds `missing` points on `edges`, which are sorted longest first. Each edge gets one point at its midpoint. If there
+/// are too few edges, the first ones get two points, at one third and two thirds.
 fn split_edges<'a>(
     surface: &Surface,
     mut edges: impl ExactSizeIterator<Item = &'a Edge>,
@@ -212,7 +212,7 @@ fn sorted(keys: impl Iterator<Item = u64>) -> Vec<u32> {
     numbered.into_iter().map(|key| key as u32).collect()
 }
 
-/// Morton code: interleaves the bits of the three coordinates.
+/// Returns the Morton code of `cell`, which interleaves the bits of the three coordinates.
 fn morton(cell: DVec3) -> u64 {
     spread(cell.x as u64) | spread(cell.y as u64) << 1 | spread(cell.z as u64) << 2
 }

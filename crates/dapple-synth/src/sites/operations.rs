@@ -2,7 +2,7 @@
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.2. A
 //! column holds one value for each site of a level. The paper does not say how much to blur before downsampling. Here a
-//! spot is blurred to the variance of Burt and Adelson's kernel 1-4-6-4-1 on pixels of one spacing.
+//! spot is blurred to the same variance as with Burt and Adelson's kernel 1-4-6-4-1 on pixels one site spacing apart.
 
 use super::low_pass::check_length;
 use super::oriented::Oriented;
@@ -10,25 +10,25 @@ use crate::{Blend, Hierarchy, LowPass, SiteTriangles, SynthError};
 use dapple_raster::parallel;
 use glam::DVec3;
 
-/// Strength t of each low-pass step of [`Hierarchy::downsample`]: the value of the paper's example.
+/// Strength t of each low-pass step of [`Hierarchy::downsample`], from the paper's example.
 pub const DOWNSAMPLE_T: f64 = 0.1;
-/// Number of low-pass steps of [`Hierarchy::downsample`]. Each adds t / 2 to the variance, in squared spacings, and the
-/// target is 1.
+/// Number of low-pass steps of [`Hierarchy::downsample`]. Each adds t / 2 to the variance, in multiples of the squared
+/// site spacing; the target is 1.
 pub const DOWNSAMPLE_STEPS: usize = 20;
 
 /// Number of sites in one parallel task.
 const CHUNK: usize = 1024;
 
 impl Hierarchy {
-    /// Interpolates a column at a position of the surface: equation 1, with `w(x) = 2x³ - 3x² + 1` and a radius of
-    /// [`INTERPOLATION_RADIUS`](crate::INTERPOLATION_RADIUS) spacings of the level.
+    /// Interpolates `column` at `position` by equation 1, with `w(x) = 2x³ - 3x² + 1`. The radius is
+    /// [`INTERPOLATION_RADIUS`](crate::INTERPOLATION_RADIUS) times the level's site spacing.
     ///
-    /// Sites whose normal is more than 90 degrees from `normal` are on another sheet and do not count. Where no site is
-    /// in reach, the result is the value of the nearest site up to 8 radii away, or `None`.
+    /// Sites whose normal is more than 90 degrees from `normal` are on another sheet and do not count. If no site is in
+    /// reach, the result is the value of the nearest site up to 8 radii away, or `None` if there is none.
     ///
     /// # Errors
     ///
-    /// Returns [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if the level does not exist, and
+    /// [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if the level does not exist, and
     /// [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) if `column` does not have one value for each site of the
     /// level.
     #[inline]
@@ -44,23 +44,24 @@ impl Hierarchy {
         Ok(sites.interpolate(column, position, normal))
     }
 
-    /// Returns the low-pass filter for columns of a level.
+    /// Returns the low-pass filter for columns of `level`.
     ///
     /// # Errors
     ///
-    /// Returns [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if the level does not exist.
+    /// [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if the level does not exist.
     pub fn low_pass(&self, level: usize) -> Result<LowPass<'_>, SynthError> {
         let sites = self.oriented(level)?;
         LowPass::new(self.levels()[level].graph(), sites.positions)
     }
 
-    /// Returns the column of the next coarser level: the blurred values of a level at the sites that both levels share.
+    /// Downsamples `column` to the next coarser level: blurs the values, and returns them at the sites that both levels
+    /// share.
     ///
     /// # Errors
     ///
-    /// Returns [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if the level or the next coarser one does not
-    /// exist, and [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) if `column` does not have one value for each
-    /// site of the level.
+    /// [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if the level or the next coarser one does not exist, and
+    /// [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) if `column` does not have one value for each site of the
+    /// level.
     pub fn downsample<T: Blend>(&self, level: usize, column: &[T]) -> Result<Vec<T>, SynthError> {
         let n_sites = self.oriented(level.saturating_add(1))?.positions.len();
         let mut column = column.to_vec();
@@ -70,11 +71,11 @@ impl Hierarchy {
         Ok(column)
     }
 
-    /// Returns the column of the next finer level: the values of a level, interpolated at all sites of the finer level.
+    /// Upsamples `column` to the next finer level: returns the values interpolated at all sites of the finer level.
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`upsample_into`](Self::upsample_into).
+    /// Same as [`upsample_into`](Self::upsample_into).
     pub fn upsample<T: Blend>(&self, level: usize, column: &[T]) -> Result<Vec<T>, SynthError> {
         let n_sites = self.finer(level)?.positions.len();
         let mut finer = vec![T::ZERO; n_sites];
@@ -82,16 +83,16 @@ impl Hierarchy {
         Ok(finer)
     }
 
-    /// Interpolates like [`upsample`](Self::upsample) into an existing column.
+    /// Upsamples like [`upsample`](Self::upsample), into the existing column `finer`.
     ///
     /// Where interpolation finds no value, the value of the nearest site of the whole surface is used. This happens on
     /// a small piece of the surface that has no site on the coarser level.
     ///
     /// # Errors
     ///
-    /// Returns [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if the level or the next finer one does not
-    /// exist, and [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) if a column does not have one value for each
-    /// site of its level.
+    /// [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if the level or the next finer one does not exist, and
+    /// [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) if a column does not have one value for each site of its
+    /// level.
     pub fn upsample_into<T: Blend>(
         &self,
         level: usize,
@@ -117,17 +118,16 @@ impl Hierarchy {
         Ok(())
     }
 
-    /// Returns the sites of a level as the vertices of a triangle mesh, for export. See [`SiteTriangles`] for the
-    /// repairs.
+    /// Triangulates the sites of `level`, for export. See [`SiteTriangles`] for the counts of triangles and holes.
     ///
     /// # Errors
     ///
-    /// Returns [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if the level does not exist.
+    /// [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if the level does not exist.
     pub fn triangles(&self, level: usize) -> Result<SiteTriangles, SynthError> {
         SiteTriangles::new(&self.oriented(level)?)
     }
 
-    /// Returns the sites of a level.
+    /// Returns the sites of `level`.
     fn oriented(&self, level: usize) -> Result<Oriented<'_>, SynthError> {
         let exists = level < self.levels().len();
         SynthError::check(
@@ -145,7 +145,7 @@ impl Hierarchy {
         })
     }
 
-    /// Returns the sites of the next finer level.
+    /// Returns the sites of the level below `level`, which is finer.
     fn finer(&self, level: usize) -> Result<Oriented<'_>, SynthError> {
         SynthError::check(
             level > 0,

@@ -1,9 +1,9 @@
-//! Sites of one level: the columns that stars and interpolation read.
+//! Sites of a single level, as the columns that stars and interpolation read.
 
 use crate::SiteGrid;
 use glam::DVec3;
 
-/// Sites on a surface: columns of equal length, and a grid of the same sites.
+/// Sites on a surface, as columns of equal length, with a grid of the same sites.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Oriented<'a> {
     /// Positions in space, in units of the mesh.

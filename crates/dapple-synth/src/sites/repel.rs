@@ -1,9 +1,9 @@
-//! Repulsion of points on a surface until they are evenly spaced.
+//! Repels points on a surface from each other until they are evenly spaced.
 //!
 //! Reference: Greg Turk, "Generating Textures on Arbitrary Surfaces Using Reaction-Diffusion", SIGGRAPH 1991, doi
 //! 10.1145/127719.122749, section 3.1. A point is pushed away from its neighbors within a radius. The neighbors are
 //! mapped to the plane of its face, and keep their distances in space. The point then walks over the surface by the sum
-//! of the pushes. Where this departs from the paper, or the paper is silent:
+//! of the pushes. Where the paper is silent, or this implementation departs from it:
 //!
 //! * the radius is `2 sqrt(A / n)`, as in Turk's "Re-Tiling Polygonal Surfaces", SIGGRAPH 1992, doi
 //!   10.1145/133994.134008;
@@ -23,27 +23,28 @@ use dapple_mesh::{FaceEdge, FaceIdx, Surface, SurfacePoint};
 use dapple_raster::parallel;
 use glam::{DVec2, DVec3};
 
-/// Gain of the first step: fraction of the push that a point moves by. At 0.25 an even lattice was seen to oscillate.
+/// Gain of the first step, as the fraction of the push by which a point moves. At 0.25, an even lattice oscillated in
+/// tests.
 const GAIN_FIRST: f64 = 0.15;
 /// Gain of the last step.
 const GAIN_LAST: f64 = 0.045;
 /// Margin of the neighbor lists beyond the radius, as a fraction of the radius.
 const MARGIN: f64 = 0.2;
-/// Lists are rebuilt when more than one in this many free points was limited by its margin.
+/// Lists are rebuilt if more than one free point in this number was limited by its margin.
 const LIMITED_MOST: usize = 100;
 /// Minimum dot product of the normals of neighbors: at most 120 degrees. Sites count as neighbors up to 90 degrees;
 /// points a little beyond push too, since they could otherwise come together where the surface bends.
 const FACING: f64 = -0.5;
-/// Maximum distance along the face of points that count as coincident, as a fraction of the radius.
+/// Maximum distance of coincident points in the plane of the face, as a fraction of the radius.
 const SAME_PLACE: f64 = 1e-6;
 /// Barycentric weights of the three corners of a face.
 const CORNERS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 /// Inward slope of a walk along a border, so that rounding does not end the walk at the border.
 const LEAN: f64 = 1.0 / (1 << 20) as f64;
 
-/// Moves the points with index `n_fixed` or more apart. The points before them push, but stay fixed.
+/// Moves points apart in `iterations` repulsion steps. The first `n_fixed` points push others, but do not move.
 ///
-/// After 40 iterations random points are about as evenly spaced as repulsion makes them. Runs on all cores with the
+/// After 40 iterations, random points are about as evenly spaced as repulsion can make them. Runs on all cores with the
 /// feature `rayon`, with the same bits on any number of cores.
 ///
 /// # Panics
@@ -79,7 +80,7 @@ pub fn repel(surface: &Surface, points: &mut [SurfacePoint], n_fixed: usize, ite
     }
 }
 
-/// Points that push each other, with neighbor lists that are valid for some steps.
+/// Points that push each other, with neighbor lists that stay valid for several steps.
 struct Crowd<'a> {
     surface: &'a Surface,
     n_fixed: usize,
@@ -125,7 +126,7 @@ impl<'a> Crowd<'a> {
         n_limited.into_inner()
     }
 
-    /// Moves the free points of a chunk once. Returns the number of limited points.
+    /// Moves the free points of `chunk` once. Returns the number of points whose step was limited.
     fn step_chunk(&self, chunk: usize, points: &mut [SurfacePoint], gain: f64) -> usize {
         let rows = self.near.chunk(chunk);
         let mut n_limited = 0;
@@ -143,8 +144,8 @@ impl<'a> Crowd<'a> {
         n_limited
     }
 
-    /// Returns the sum of the pushes of other points on a point in a face, in units of length. The component along the
-    /// normal of the face is meaningless and must be projected out.
+    /// Returns the sum of the pushes of `others` on the point `site` in `face`, as a vector in units of the mesh. The
+    /// component along the normal of the face is meaningless and must be projected out.
     #[inline]
     fn push(&self, face: FaceIdx, site: usize, others: &[SiteIdx]) -> DVec3 {
         let normal = self.surface.face_normal(face);
@@ -171,7 +172,7 @@ impl<'a> Crowd<'a> {
     }
 }
 
-/// Walks a step over the surface, by at most `room`, and slides along a border.
+/// Walks from `from` by `step`, but at most `room` far, and slides along a border. `step` is in the plane of the face.
 #[inline]
 fn go(surface: &Surface, from: SurfacePoint, step: DVec2, room: f64) -> SurfacePoint {
     let length = step.length();
@@ -187,7 +188,7 @@ fn go(surface: &Surface, from: SurfacePoint, step: DVec2, room: f64) -> SurfaceP
     }
 }
 
-/// Slides from a point on a border along it, by the component of the rest of the step along the border.
+/// Slides along a border from the point `from`, by the component along the border of `rest`, the remaining step.
 fn slide(surface: &Surface, from: SurfacePoint, rest: DVec2) -> SurfacePoint {
     let corners = CORNERS.map(|weights| surface.point(from.face, weights).flat);
     let mut nearest = f64::INFINITY;

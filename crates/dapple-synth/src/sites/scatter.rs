@@ -1,16 +1,16 @@
 //! Random points on a surface, uniformly distributed by area.
 //!
-//! A face is chosen with a probability in proportion to its area, then a position in it. With two uniform numbers s and
-//! t the weights of the corners are `1 - sqrt(s)`, `sqrt(s) (1 - t)` and `sqrt(s) t` (Reference: Greg Turk, "Generating
-//! Random Points in Triangles", in Graphics Gems, 1990).
+//! A face is chosen with a probability in proportion to its area. Then a position in the face is chosen. With two
+//! uniform numbers s and t the weights of the corners are `1 - sqrt(s)`, `sqrt(s) (1 - t)` and `sqrt(s) t` (Reference:
+//! Greg Turk, "Generating Random Points in Triangles", in Graphics Gems, 1990).
 
 use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_mesh::{FaceIdx, Surface, SurfacePoint};
 
 /// Scatters `n` independent random points over a surface, uniformly by area.
 ///
-/// Point `i` depends on the surface, the seed and `i` alone, so a smaller `n` gives a prefix of the points of a larger
-/// one.
+/// Point `i` depends on the surface, the seed and `i` alone, so the points for a smaller `n` are a prefix of the points
+/// for a larger one.
 ///
 /// # Examples
 ///
@@ -34,11 +34,11 @@ pub fn scatter(surface: &Surface, n: usize, seed: Seed) -> Vec<SurfacePoint> {
         .collect()
 }
 
-/// Sampler of random points on some faces of a surface.
+/// Sampler of random points on a set of faces of a surface.
 #[derive(Debug)]
 pub(crate) struct Scatter {
     faces: Vec<FaceIdx>,
-    /// Cumulative area up to and including each face.
+    /// Cumulative area of the faces up to and including each face.
     ends: Vec<f64>,
 }
 
@@ -58,7 +58,7 @@ impl Scatter {
         self.ends.last().copied().unwrap_or(0.0)
     }
 
-    /// Returns the random point on the faces, by seed and number. `None` if there are no faces.
+    /// Returns a random point on the faces, which `seed` and `number` determine. `None` if there are no faces.
     pub(crate) fn point(&self, surface: &Surface, seed: Seed, number: u64) -> Option<SurfacePoint> {
         let hash = CellHash::new(seed, [number.cast_signed()]);
         let [place, s, t] = [0, 1, 2].map(|counter| unit_f64(hash.at(counter)));

@@ -1,4 +1,4 @@
-//! Connected pieces of a surface, and the number of sites on each.
+//! Splits a surface into connected pieces, and computes the number of sites on each.
 
 use dapple_mesh::{FaceIdx, Surface};
 use std::collections::BinaryHeap;
@@ -33,13 +33,13 @@ impl Pieces {
     /// half of the mean area per site may get none.
     pub(crate) fn shares(&self, n: usize) -> Vec<usize> {
         let total: f64 = self.areas.iter().sum();
-        // Start with rounded shares of `sure` sites. Rounding adds at most half a site per piece, so at most n are
-        // given away.
+        // Start with rounded shares of `sure` sites. Rounding adds at most half a site per piece, so at most n sites
+        // are assigned.
         let sure = (n as f64 - 0.5 * self.areas.len() as f64).max(0.0);
         let round = |area: &f64| (area / total * sure + 0.5) as usize;
         let mut shares: Vec<usize> = self.areas.iter().map(round).collect();
         let mut left = n.saturating_sub(shares.iter().sum());
-        // Give the remaining sites one at a time to the piece with the strongest claim.
+        // Give the remaining sites, one at a time, to the piece with the highest priority.
         let claim = |piece: usize, share: usize| Claim {
             weight: self.areas[piece] / (2 * share + 1) as f64,
             piece,
@@ -60,7 +60,7 @@ impl Pieces {
     }
 }
 
-/// Claim of a piece to one more site. Of equal claims, the lower piece wins.
+/// Priority of a piece for the next site in Webster's method. Of equal priorities, the lower piece wins.
 #[derive(Debug, PartialEq)]
 struct Claim {
     weight: f64,

@@ -1,4 +1,4 @@
-//! Sample points on a surface, stored in columns.
+//! Sites: sample points on a surface, stored in columns.
 
 use dapple_mesh::{Surface, SurfacePoint};
 use glam::DVec3;
@@ -25,7 +25,7 @@ pub struct Sites {
 }
 
 impl Sites {
-    /// Computes the positions and normals of points of a surface.
+    /// Creates sites from surface points, and computes their positions and normals.
     ///
     /// # Panics
     ///

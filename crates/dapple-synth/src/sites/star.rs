@@ -1,4 +1,4 @@
-//! Star of a site: its neighbors in the Delaunay triangulation of the sites around it, in its tangent plane.
+//! Computes the star of a site: its neighbors in a Delaunay triangulation of nearby sites in its tangent plane.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1, which
 //! projects nearby points to a tangent plane and triangulates them there. This implementation differs as follows:
@@ -12,7 +12,7 @@
 //!   spacings. Without this limit, every site along a border would have to search all other sites, and would be
 //!   connected across bays of any width.
 //!
-//! Units: the tangent plane is measured in spacings.
+//! Units: lengths in the tangent plane are multiples of the site spacing.
 
 use super::cell::Cell;
 use super::grid::Block;
@@ -20,14 +20,14 @@ use super::oriented::Oriented;
 use crate::SiteIdx;
 use glam::{DVec2, DVec3};
 
-/// Maximum radius of the empty circle through two neighbors, in spacings of the level.
+/// Maximum radius of the empty circle through two neighbors, in multiples of the level's site spacing.
 ///
 /// Evenly spaced sites have no empty circles of more than 1 spacing except at borders, and random sites rarely have any
 /// of more than 2.
 pub const STAR_RADIUS: f64 = 2.0;
 
-/// Search radii for neighbors, in spacings: diameters of the empty circles of evenly spaced sites, of unevenly spaced
-/// sites, and of the largest circles that count.
+/// Search radii for neighbors, in multiples of the site spacing. They are the diameters of the empty circles of evenly
+/// spaced sites, of unevenly spaced sites, and of the largest circles that count.
 const REACHES: [f64; 3] = [1.8, 2.8, 2.0 * STAR_RADIUS];
 
 /// A neighbor in a star.
@@ -43,9 +43,10 @@ pub(crate) struct Spoke {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StarFinder {
     cell: Cell,
-    /// Cached lookups, one for each of [`REACHES`].
+    /// Cached grid lookups, one per radius in [`REACHES`].
     windows: [Window; REACHES.len()],
-    /// Sort keys of some sites of a window: squared distance as the bits of an `f32`, then the index in the window.
+    /// Sort keys of the sites of a window within the current limits. The upper half is the squared distance as the bits
+    /// of an `f32`, and the lower half is the index in the window.
     order: Vec<u64>,
 }
 
@@ -56,21 +57,21 @@ struct Window {
     sites: Vec<SiteIdx>,
     /// Positions of the sites along each axis.
     columns: [Vec<f64>; 3],
-    /// Squared distances of the sites from the current center, in spacings.
+    /// Squared distances of the sites from the current center, in multiples of the squared site spacing.
     distances_sq: Vec<f64>,
 }
 
-/// Tangent plane of a site, in units of the spacing.
+/// Tangent plane of a site, in multiples of the site spacing.
 struct Tangent {
     position: DVec3,
     normal: DVec3,
-    /// Orthogonal axes of the plane, with a length of one over the spacing.
+    /// Orthogonal axes of the plane; their length is the inverse of the site spacing.
     axes: [DVec3; 2],
     scale_sq: f64,
 }
 
 impl StarFinder {
-    /// Appends the star of a site, counterclockwise as seen from outside.
+    /// Appends the star of `center` to `star`, counterclockwise as seen from outside.
     ///
     /// Sites at the same position are never neighbors.
     pub(crate) fn find(&mut self, sites: &Oriented<'_>, center: SiteIdx, star: &mut Vec<Spoke>) {
@@ -96,7 +97,8 @@ impl StarFinder {
         });
     }
 
-    /// Lists in `order` the sites with squared distances above the first limit and up to the second one, nearest first.
+    /// Lists the sites whose squared distance is greater than `above` and at most `up_to`, nearest first, in
+    /// `self.order`.
     #[inline]
     fn look(
         &mut self,
@@ -108,7 +110,8 @@ impl StarFinder {
         let window = &mut self.windows[window];
         window.move_to(sites, tangent.position, up_to.sqrt() * sites.spacing);
         let distances_sq = window.distances_sq(tangent);
-        // Every site is written, and sites outside of the limits are then overwritten: branches would be mispredicted.
+        // Every site is written, and sites outside the limits are then overwritten, because branches would be
+        // mispredicted.
         self.order.resize(distances_sq.len(), 0);
         let mut n_listed = 0;
         for (index, &distance_sq) in distances_sq.iter().enumerate() {
@@ -119,7 +122,7 @@ impl StarFinder {
         self.order.sort_unstable();
     }
 
-    /// Clips the cell by the listed sites on the same sheet, until the rest is too far away to change the cell.
+    /// Clips the cell by the listed sites on the same sheet, until the remaining sites are too far away to change it.
     #[inline]
     fn clip(&mut self, sites: &Oriented<'_>, tangent: &Tangent, window: usize) {
         let window = &self.windows[window];
@@ -142,7 +145,7 @@ impl StarFinder {
 }
 
 impl Window {
-    /// Looks up the sites in reach of a position, unless the window already holds them.
+    /// Looks up the sites within `radius` of `position`, unless the window already holds them.
     #[inline]
     fn move_to(&mut self, sites: &Oriented<'_>, position: DVec3, radius: f64) {
         let block = sites.grid.block(position, radius);
@@ -152,7 +155,7 @@ impl Window {
         }
     }
 
-    /// Reads the sites of a block and their positions.
+    /// Loads the sites of `block` and their positions into the window.
     fn fill(&mut self, sites: &Oriented<'_>, block: Block) {
         self.sites.clear();
         sites.grid.visit_block(block, |site| self.sites.push(site));
@@ -166,7 +169,8 @@ impl Window {
         z.extend(positions().map(|position| position.z));
     }
 
-    /// Returns the squared distances of all sites of the window from the center, in spacings.
+    /// Returns the squared distances of all sites of the window from the center, in multiples of the squared site
+    /// spacing.
     #[inline]
     fn distances_sq(&mut self, from: &Tangent) -> &[f64] {
         let n = self.sites.len();
@@ -199,8 +203,8 @@ impl Tangent {
         }
     }
 
-    /// Returns the position in the plane of a site at the vector `away` from the center. `None` if it is straight above
-    /// or below.
+    /// Maps a site at the vector `away` from the center to the tangent plane. `None` if the site is straight above or
+    /// below the center.
     #[inline]
     fn map(&self, away: DVec3, distance_sq: f64) -> Option<DVec2> {
         let projected = DVec2::new(away.dot(self.axes[0]), away.dot(self.axes[1]));

@@ -1,18 +1,19 @@
-//! Triangle mesh of the sites of a level, for export.
+//! Builds a triangle mesh from the sites of a level, for export.
 //!
-//! The paper's `M_k` is a graph: stars that disagree about an edge do not fit together, and adding the edge to both
-//! makes no triangles. (Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi
-//! 10.1145/383259.383297, section 3.1.) Synthesis needs only the graph. For a mesh, the graph is repaired:
+//! The paper's `M_k` is a graph and not a triangulation, because stars that disagree about an edge do not fit together.
+//! Adding the edge to both stars does not create triangles. (Reference: Greg Turk, "Texture Synthesis on Surfaces",
+//! SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1.) Synthesis needs only the graph. For a mesh, the graph is
+//! repaired:
 //!
 //! * only edges that are in the stars of both of their sites are kept. Where four sites have both diagonals, the longer
 //!   one is dropped;
 //! * faces are found by walking from site to site: at each site the walk continues along the edge next to the one it
 //!   came by, in the order of the star;
 //! * a triangle in the stars of all of its three sites is such a face. A larger face without a gap in the stars is a
-//!   hole. Holes form where stars disagree or where sites lie on one circle. They are filled by cutting off corners,
-//!   shortest diagonal first;
-//! * a small face with a gap, as sharp edges leave, is filled too, and so are real holes of a few spacings. Other faces
-//!   with a gap are borders.
+//!   hole in the triangulation. Holes form where stars disagree or where sites lie on one circle. They are filled by
+//!   cutting off corners, shortest diagonal first;
+//! * a small face with a gap, as left by sharp edges, is filled, too. So are real holes a few site spacings wide. Other
+//!   faces with a gap are borders.
 //!
 //! Each edge is then in at most two triangles, which traverse it in opposite directions.
 
@@ -40,7 +41,8 @@ pub struct SiteTriangles {
     pub filled: usize,
     /// Number of holes that could not be filled.
     pub holes: usize,
-    /// Number of edge loops along borders of the surface, and around places where stars found no neighbor on one side.
+    /// Number of edge loops along borders of the surface, and around positions where stars found no neighbor on one
+    /// side.
     pub borders: usize,
 }
 
@@ -57,7 +59,7 @@ impl SiteTriangles {
             diagonals: BTreeSet::new(),
         };
         let (mut triangles, mut agreed, mut holes, mut borders) = (Vec::new(), 0, 0, 0);
-        // Take over triangles that all stars agree on, and fill the holes between them.
+        // Keep the triangles that all stars agree on, and fill the holes between them.
         edges.visit_faces(|face, is_closed, is_agreed| {
             let is_hole = is_closed || face.len() <= GAP_MAX;
             if let (&[a, b, c], true) = (face, is_agreed) {
@@ -81,7 +83,8 @@ impl SiteTriangles {
     }
 }
 
-/// Edges that are in the stars of both of their sites, stored for both ends: compressed rows, counterclockwise.
+/// Edges that are in the stars of both of their sites, stored at both ends, in compressed rows. Rows are
+/// counterclockwise.
 struct Edges {
     offsets: Vec<usize>,
     rows: Vec<Edge>,
@@ -98,7 +101,8 @@ struct Edge {
 }
 
 impl Edges {
-    /// Collects the edges that are in both stars, except the edges in `left_out` (pairs with the lower site first).
+    /// Collects the edges that are in the stars of both ends, except the edges in `left_out` (pairs with the lower site
+    /// first).
     fn new(stars: &Stars, left_out: &BTreeSet<[u32; 2]>) -> Self {
         let mut edges = Self {
             offsets: vec![0],
@@ -126,7 +130,7 @@ impl Edges {
         edges
     }
 
-    /// Returns the edges of a site, counterclockwise.
+    /// Returns the edges of `site`, counterclockwise.
     fn row(&self, site: u32) -> &[Edge] {
         &self.rows[self.offsets[site as usize]..self.offsets[site as usize + 1]]
     }
@@ -160,7 +164,7 @@ impl Edges {
         crossed
     }
 
-    /// Returns whether these neighbors are consecutive in the row of a site.
+    /// Returns whether `neighbors` are consecutive in the row of `site`.
     fn are_in_a_row(&self, site: u32, neighbors: [u32; 3]) -> bool {
         let row = self.row(site);
         let begins =
@@ -194,7 +198,7 @@ impl Edges {
         }
     }
 
-    /// Returns the next edge around the face to the left of an edge: at the far end, the next edge clockwise.
+    /// Returns the next edge around the face to the left of an edge, which is the next edge clockwise at its far end.
     fn next_around(&self, from: u32, edge: usize) -> usize {
         let there = self.rows[edge].to;
         let row = self.row(there);
@@ -213,7 +217,7 @@ struct Filler<'a> {
 }
 
 impl Filler<'_> {
-    /// Divides a face into triangles that face outward. `None` if that is not possible, if the face meets itself, or if
+    /// Divides `face` into triangles that face outward. `None` if that is not possible, if the face meets itself, or if
     /// it has more than [`HOLE_MAX`] edges.
     fn fill(&mut self, face: &[u32]) -> Option<Vec<[u32; 3]>> {
         let is_simple = || (1..face.len()).all(|at| !face[..at].contains(&face[at]));
@@ -271,7 +275,7 @@ fn lower_first(a: u32, b: u32) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// Returns a site of a ring, with the sites before and after it.
+/// Returns the site at index `at` of `ring`, between the sites before and after it.
 fn corner(ring: &[u32], at: usize) -> [u32; 3] {
     let n = ring.len();
     [ring[(at + n - 1) % n], ring[at], ring[(at + 1) % n]]

@@ -1,9 +1,9 @@
-//! Moves points that are stuck between fixed points to an emptier place.
+//! Moves points that are stuck between fixed points to an emptier position.
 //!
-//! If the fixed points leave room for one new point and two are there, repulsion cannot push the second one out. Any
-//! curved surface has a few such places. Stuck points are found by the distance to their nearest neighbor, and are
-//! moved to the emptiest of some random places: Mitchell's best candidate (Don P. Mitchell, "Spectrally Optimal
-//! Sampling for Distribution Ray Tracing", SIGGRAPH 1991, doi 10.1145/122718.122736).
+//! If the fixed points leave space for one new point but two are there, repulsion cannot push the second one out. This
+//! happens at a few positions on any curved surface. Stuck points are found by the distance to their nearest neighbor,
+//! and are moved to the emptiest of several random positions. This is Mitchell's best-candidate method (Don P.
+//! Mitchell, "Spectrally Optimal Sampling for Distribution Ray Tracing", SIGGRAPH 1991, doi 10.1145/122718.122736).
 
 use super::evenness::hexagonal_spacing;
 use super::near::{CHUNK, Places};
@@ -15,14 +15,14 @@ use dapple_mesh::{Surface, SurfacePoint};
 use dapple_raster::parallel;
 use glam::DVec3;
 
-/// Distance to the nearest neighbor, in spacings, below which a point counts as stuck.
+/// A point counts as stuck if its nearest neighbor is closer than this, in multiples of the point spacing.
 const STUCK: f64 = 0.72;
-/// Number of random candidates per stuck point.
+/// Number of random candidate positions per stuck point.
 const N_PLACES: u64 = 256;
 /// Maximum number of points that are moved. If more are stuck, the surface itself is crowded.
 const MOVED_MOST: usize = 512;
 
-/// Moves each stuck point with index `n_fixed` or more to an emptier place of the same piece, if there is one.
+/// Moves each stuck point with index `n_fixed` or more to an emptier position on the same piece, if there is one.
 pub(crate) fn unstick(
     surface: &Surface,
     pieces: &Pieces,
@@ -68,8 +68,8 @@ impl Crowd {
         }
     }
 
-    /// Returns the stuck points with index `first` or more. Of two free points that are too close, only the later one
-    /// counts.
+    /// Returns the stuck points with index `first` or more. Of two free points that are too close to each other, only
+    /// the later one counts as stuck.
     fn stuck_from(&self, first: usize) -> Vec<usize> {
         let n_sites = self.places.positions.len();
         let chunks = parallel::map(n_sites.saturating_sub(first).div_ceil(CHUNK), |chunk| {
@@ -114,7 +114,8 @@ impl Crowd {
         least_sq.sqrt()
     }
 
-    /// Moves a point to the emptiest of some random places, if that is emptier than its current one.
+    /// Finds the emptiest of several random positions for the point `site`, and moves the point there if it is emptier
+    /// than the current position.
     fn find_room(
         &mut self,
         surface: &Surface,
@@ -124,7 +125,7 @@ impl Crowd {
     ) -> Option<(usize, SurfacePoint)> {
         let room = |crowd: &Self, position, normal| {
             let within = |reach| crowd.nearest(position, normal, reach, |other| other != site);
-            // Most places have a point nearby, so a small radius is searched first.
+            // Most positions have a point nearby, so a small radius is searched first.
             let close = 0.5 * crowd.spacing;
             let distance = within(close);
             if distance < close {

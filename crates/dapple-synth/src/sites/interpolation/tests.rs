@@ -18,7 +18,7 @@ fn with_sites(surface: &Surface, n_sites: usize, check: impl Fn(&Oriented<'_>)) 
     });
 }
 
-/// Equation 1, summed over all sites.
+/// Evaluates equation 1, summed over all sites.
 fn naive(sites: &Oriented<'_>, column: &[f64], position: DVec3, normal: DVec3) -> Option<f64> {
     let near = |&site: &usize| sites.normals[site].dot(normal) >= 0.0;
     let x = |site: usize| sites.positions[site].distance(position) / (1.1 * sites.spacing);

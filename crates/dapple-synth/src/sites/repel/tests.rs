@@ -8,7 +8,7 @@ use dapple_hash::Seed;
 use dapple_mesh::{FaceIdx, Surface, SurfacePoint};
 use glam::{DVec2, DVec3};
 
-/// Push on a site from all others by the formula, in the plane of its face.
+/// Computes the push on a site from all other sites by the formula, in the plane of its face.
 fn naive_push(surface: &Surface, sites: &Sites, site: usize, radius: f64) -> DVec2 {
     let face = sites.points()[site].face;
     let mut sum = DVec2::ZERO;

@@ -3,7 +3,7 @@
 use super::Pieces;
 use crate::shapes::{scraps, torus};
 
-/// Webster's method, one site at a time.
+/// Computes the shares by Webster's method, one site at a time.
 fn one_by_one(areas: &[f64], n: usize) -> Vec<usize> {
     let mut shares = vec![0; areas.len()];
     for _ in 0..n {

@@ -29,7 +29,8 @@ fn stars_equal_spade(surface: &Surface, sites: &Sites, n_sites: usize) -> usize 
     compared
 }
 
-/// Star by triangulating all sites in reach on the same sheet. `None` where the limit on empty circles could matter.
+/// Finds a star by triangulating all sites in reach on the same sheet. `None` if the limit on empty circles could
+/// matter.
 fn spade_star(sites: &Oriented<'_>, center: SiteIdx) -> Option<Vec<u32>> {
     let tangent = Tangent::new(sites, center);
     let mut triangulation = DelaunayTriangulation::<Point2<f64>>::new();
