@@ -108,7 +108,8 @@ pub fn bake_normals(
     })
 }
 
-/// Returns, for each texel, the tangential part of its normal as a vector in space, and the outward component.
+/// Returns the returns, for each texel, the tangential part of its normal as a vector in space, and the outward
+/// component.
 fn in_space(
     synthesizer: &Synthesizer,
     texture: &SurfaceTexture,

@@ -23,8 +23,8 @@ pub(crate) fn map<T: Send, U: Send>(
     parallel::map_mut_at_least(BLOCK, column, change)
 }
 
-/// Sums `row(i)` over all rows, first within blocks of fixed length and then over the blocks. The bits do not depend on
-/// the number of cores.
+/// Returns the sums `row(i)` over all rows, first within blocks of fixed length and then over the blocks. The bits do
+/// not depend on the number of cores.
 pub(crate) fn sum(n_rows: usize, row: impl Fn(usize) -> f64 + Sync) -> f64 {
     let block = |block: usize| {
         let mut sum = 0.0;

@@ -1,8 +1,9 @@
-//! Texture synthesis: more of an example image, as a flat image, a tile, an endless plane, or over a triangle mesh.
+//! Example-based texture synthesis: generates more of an example image, as a flat image, a tile, an endless plane, or
+//! over a triangle mesh.
 //!
 //! A small image, the *exemplar*, and a few directions become a texture that covers a mesh without seams and follows
-//! the directions. After Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001,
-//! <https://doi.org/10.1145/383259.383297>: all of it.
+//! the directions. This is a complete implementation of Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001,
+//! <https://doi.org/10.1145/383259.383297>.
 //!
 //! ```
 //! use dapple_color::LinearRgb;
@@ -46,10 +47,10 @@
 //! | a texture that follows an image, or several examples | [`synthesize_plane_guided`], [`SideBySide`] | 0.55 s and 0.38 s for 192 × 192 pixels |
 //! | directions and sizes from images | [`synthesize_plane_along`] | |
 //! | a tile of a photograph | [`tile_plane`] | |
-//! | a part of an image again | [`PlaneTexture::repair`] | 0.03 s for 39 × 39 pixels |
-//! | the texture of one mesh on another | [`MeshExemplar`], [`Synthesizer::lift`] | |
+//! | a repaired part of an image | [`PlaneTexture::repair`] | 0.03 s for 39 × 39 pixels |
+//! | the texture of one mesh on another mesh | [`MeshExemplar`], [`Synthesizer::lift`] | |
 //! | texture maps of colors, heights, normals | [`bake_colors`], [`bake_values`], [`bake_normals`] | |
-//! | a file of the covered mesh | [`textured_model`], [`site_model`] | |
+//! | a file with the textured mesh | [`textured_model`], [`site_model`] | |
 //!
 //! Times are from one thread of a server processor (AMD EPYC), with an exemplar of 64 × 64 pixels, three levels and
 //! default options; the two for 192 × 192 pixels and the repair are from other exemplars.
@@ -67,17 +68,17 @@
 //!
 //! # Limits
 //!
-//! * A texture in the plane, or a window of an endless one, has at most 2^26 pixels. While it is made, a pixel takes
+//! * A texture in the plane, or a window of an endless one, has at most 2^26 pixels. During synthesis, each pixel takes
 //!   about 200 bytes.
-//! * A whole run over a mesh with 1,048,576 sites took 541 MB of memory.
+//! * A complete run on a mesh with 1,048,576 sites took 541 MB of memory.
 //! * Each level of the exemplar must be larger than a neighborhood. There are at most 16 levels.
-//! * A side that wraps must be divisible by 2 once for each level but the last. The period of an endless texture is a
-//!   multiple of 2 to the number of levels.
-//! * A mesh may be open and in pieces, with any number of holes. Faces need an area and a consistent winding: call
-//!   [`Mesh::repair`](dapple_mesh::Mesh::repair) first.
-//! * Where a field of directions turns around a point, the texture has a tear.
-//! * No model is trained, and nothing is downloaded: all pixels are from the exemplar.
-//! * A result is a function of the inputs. Two of them are seeds: one of the sites, and one in [`Options`]. Results
+//! * A side that wraps must be divisible by 2 once for each level except the last. The period of an endless texture
+//!   must be a multiple of 2 to the power of the number of levels.
+//! * A mesh may be open, in several pieces, and with any number of holes. Every face must have an area, and the winding
+//!   must be consistent; call [`Mesh::repair`](dapple_mesh::Mesh::repair) first.
+//! * Where the orientation field rotates around a point, the texture has a tear.
+//! * No model is trained, and nothing is downloaded. All pixels are from the exemplar.
+//! * A result is a function of the inputs, which include two seeds: one for the sites, and one in [`Options`]. Results
 //!   have the same bits on every machine, with every SIMD level and any number of threads.
 //!
 //! # Without std
@@ -91,36 +92,36 @@
 //!    sites of the next coarser one ([`Hierarchy`]). Sites are the pixels of the texture.
 //! 2. **Orientation.** The given directions are interpolated to a unit tangent at every site ([`Orientation`]): the
 //!    texture's "down". Fields with two or four directions ([`Orientation::symmetric`]) have fewer and weaker
-//!    singularities; they suit examples that look alike when turned, such as bricks or checkers.
+//!    singularities; they suit examples that look similar when rotated, such as bricks or checkers.
 //! 3. **Matching.** The coarsest level follows the paper ([`Matching::Colors`]): sites are visited along the orientation
 //!    ([`Sweep`]), and each takes the exemplar pixel with the most similar neighborhood ([`Schedule`], [`Matcher`]).
-//! 4. **Correction.** By default ([`Matching::Appearance`]) every level is then corrected by appearance, after Lefebvre and
-//!    Hoppe (2006): a site is compared with windows of the exemplar around its neighbors' pixels. This takes a quarter of
-//!    the time of full matching and keeps strands and letters connected more often.
+//! 4. **Correction.** By default ([`Matching::Appearance`]) every level is then corrected by appearance, after Lefebvre
+//!    and Hoppe (2006): a site is compared with windows of the exemplar around its neighbors' pixels. This takes a
+//!    quarter of the time of full matching, and strands and letters stay connected more often.
 //! 5. **Baking.** A [`SurfaceTexture`] stores for each site its exemplar pixel, not only a color. Other maps of the exemplar
 //!    (height, roughness, normals) therefore follow: [`bake_colors`], [`bake_values`] and [`bake_normals`] write texture
 //!    maps with one [`Atlas`]. [`displaced_sites`] moves the mesh itself.
 //!
-//! [`Synthesizer`] keeps sites and orientation for reuse with other exemplars.
+//! [`Synthesizer`] stores sites and orientation for reuse with other exemplars.
 //!
-//! Channels decide what is matched and what follows: see [`Exemplar::from_planes`] and [`Exemplar::with_channels`].
-//! Guides ([`Exemplar::with_guides`]) steer which part of the exemplar goes where, by brightness or by the index of one of several
-//! examples ([`SideBySide`], [`Turned`]).
+//! The channels of an exemplar determine which values are matched; see [`Exemplar::from_planes`] and
+//! [`Exemplar::with_channels`]. Guides ([`Exemplar::with_guides`]) control which part of the exemplar is used where, by
+//! brightness or by the index of one of several examples ([`SideBySide`], [`Turned`]).
 //!
 //! Where directions diverge, new rows of features begin; where they converge, rows end. With
 //! [`Synthesizer::with_conformal_scales`] the features grow and shrink instead.
 //!
-//! [`Endless`] textures run the correction on a plane without bounds. Any window can be made on its own, in a tenth of the time
-//! of [`synthesize_plane`], and large or regular features, such as courses of bricks, stay intact.
+//! [`Endless`] textures run the correction on a plane without bounds. Any window can be computed independently, in a
+//! tenth of the time of [`synthesize_plane`], and large or regular features, such as courses of bricks, stay intact.
 //!
 //! # The paper's sections
 //!
-//! | section | what it says | here |
+//! | section | topic | here |
 //! |---|---|---|
 //! | 3.1 | points on several levels, by repulsion, and their neighbors | [`Hierarchy`] |
 //! | 3.2 | interpolation, low-pass filter, down- and upsampling | [`Hierarchy::interpolate`] and its siblings |
 //! | 4.1 | vector fields from a few directions, by pull and push | [`Orientation`], [`Direction`] |
-//! | 4.2, eq. 4, 5 | how far downstream a site is, and the order | [`Sweep`] |
+//! | 4.2, eq. 4, 5 | sweep distance along the field, and the order of sites | [`Sweep`] |
 //! | 5.1 | one level | [`Schedule::single_level`] |
 //! | 5.2 | several levels; figure 4 | [`Schedule::paper`], [`Part`], [`Shape`] |
 //! | 5 | the pixel whose neighborhood matches best | [`Candidates`], [`Matcher`] |
@@ -135,29 +136,30 @@
 //!
 //! * The neighborhood on the coarser level is centered at exactly half of the coordinates ([`CoarserCenter`]). Rounded
 //!   down, four pixels share a center, and the first of them always wins.
-//! * A worse match is accepted if it continues a neighbor's piece ([`Coherence`]). The smallest difference alone repeats
+//! * A worse match is accepted if it extends a neighbor's piece ([`Coherence`]). The smallest difference alone repeats
 //!   smooth parts of the exemplar and blurs structure such as bricks.
-//! * On the coarsest level, pixels that were used before cost more, and pixels near an edge of the exemplar are candidates,
-//!   too ([`Options::evenness`]). The smallest difference alone never uses a third of the exemplar, nor most rare colors.
+//! * On the coarsest level, pixels that were used before cost more, and pixels near an edge of the exemplar are
+//!   candidates, too ([`Options::evenness`]). The smallest difference alone would leave a third of the exemplar and
+//!   most rare colors unused.
 //! * Sites store positions between pixels, and texels read the exemplar there ([`Sources`]). Averages of site colors are
 //!   softer than the exemplar, with edges as jagged as the sites. A larger version of the exemplar can be read for detail.
 //! * On surfaces the exemplar is blurred as much as interpolated neighborhoods are before both are compared. Otherwise
 //!   smooth parts match best.
-//! * The rows and columns of a neighborhood turn with the field around its site ([`Axes`]). With straight axes, stripes
-//!   around a torus are off by 3.7 degrees instead of 1.5.
+//! * The rows and columns of a neighborhood rotate with the field around its site ([`Axes`]). With straight axes,
+//!   stripes around a torus are off by 3.7 degrees instead of 1.5.
 //!
-//! Both share these choices:
+//! [`Options::paper`] and the defaults share these choices:
 //!
 //! * P = n × O points to the right, so that nothing is mirrored. Neighborhoods are laid out by walking over the input's
 //!   faces, with both directions transported over its edges, and not over the graph of sites.
-//! * Only sites within 1.1 spacings contribute to an interpolated color. Sites on another sheet, with normals more than a
-//!   right angle apart, do not. At 2 spacings colors blur.
+//! * Only sites within 1.1 times the site spacing contribute to an interpolated color. Sites on another sheet, with
+//!   normals more than a right angle apart, do not. With a radius of twice the spacing, colors blur.
 //! * H(n, 0) has only the rows above the center ([`Shape::Half`]), since half of the center's row is still random.
 //! * Neighborhoods that cross an edge of the exemplar are excluded while enough others remain; exemplars may wrap.
 //! * A pass changes colors in place, in the order of the sweep. Among equally good pixels the first wins.
 //! * Colors are compared as sRGB codes; the pyramid is not rounded to codes.
-//! * Without a given direction, texture runs down an axis. Every piece of the surface has an anchor.
-//! * The texture has a tear where the field turns around a point, or where order and field conflict. No method avoids
+//! * Without a given direction, the texture is oriented along an axis. Every piece of the surface has its own anchor.
+//! * The texture has a tear where the field rotates around a point, or where order and field conflict. No method avoids
 //!   this.
 //!
 //! Sites run in parallel only if they do not read each other, so the number of threads does not change the result.
@@ -247,7 +249,7 @@ pub use synthesizer::{Synthesizer, synthesize};
 pub use table::{TableRow, parse_table};
 pub use turned::Turned;
 
-// For the benches and tests of the workspace alone.
+// Only for the benches and tests of the workspace.
 #[doc(hidden)]
 pub use candidates::{Candidates, CoarserCenter};
 #[doc(hidden)]

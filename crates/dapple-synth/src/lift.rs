@@ -1,30 +1,30 @@
-//! Lifting: synthesis whose exemplar is another textured surface.
+//! Lifting: synthesis with another textured surface as the exemplar.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI 10.1145/383259.383297. Section 8 ends with
 //! future work: "to extend this method to taking patterns directly from other surfaces. Imagine being able to "lift"
 //! the color, bumps and ridges from one model and place them onto another surface." The paper does not say how.
 //!
-//! Here the source surface has its own sites, on as many levels as the target, with directions and an order. These
-//! sites serve as the pixels of the exemplar:
+//! Here the source surface has its own sites, on as many levels as the target, with an orientation field and a sweep
+//! order. These sites serve as the pixels of the exemplar:
 //!
-//! * The color of a finest site is the mean of the source's texture over a square of one spacing. The square's points
-//!   are found by walking over the faces, so that borders of the texture's pieces do not show. Coarser levels are
-//!   low-pass filtered columns (section 3.2).
-//! * The neighborhood of a site is read on the source as on the target: by walking along the field, with
-//!   interpolation between sites by equation 1. Both are blurred equally; only the neighborhoods of an image need an
-//!   additional blur. All neighborhoods are compared, and the match is exact. Neighborhoods that meet a border or a
-//!   sharp fold of the source are excluded, as are those that reach past the edge of an image.
-//! * In an image, columns and rows define which pixel continues another. Here the site nearest to the end of a step
-//!   does.
+//! * The color of a finest site is the mean of the source's texture over a square with a side of one site spacing. The
+//!   square's points are found by walking over the faces, so that seams of the texture's charts do not show. Coarser
+//!   levels are low-pass filtered columns (section 3.2).
+//! * The neighborhood of a site is read on the source as on the target: by walking along the field, with interpolation
+//!   between sites by equation 1. Both are blurred equally, so the additional blur for image exemplars is not needed.
+//!   All neighborhoods are compared, and the match is exact. Neighborhoods that meet a border or a sharp fold of the
+//!   source are excluded, as are those that reach past the edge of an image.
+//! * In an image, columns and rows define which pixel is adjacent to another. Here it is the site nearest to the end of
+//!   a step along the surface.
 //! * A sub-pixel source is a site of the source plus an offset in the site's frame. A texel walks along the offset
 //!   and samples the texture at the texture coordinates where the walk ends. The result is as sharp as the source, and
 //!   every map of the source can be transferred.
 //!
-//! The alternative is to flatten patches of the source to an image, whose neighborhoods do not cross from patch to
-//! patch. On the coarsest of three levels a neighborhood reaches over 24 pixels: patches would either overlap many
+//! An alternative would be to flatten patches of the source to an image, in which neighborhoods cannot cross from patch
+//! to patch. On the coarsest of three levels a neighborhood reaches over 24 pixels: patches would either overlap many
 //! times, or lose most of a source as small as a typical model.
 //!
-//! Units: a pixel is one spacing of the finest sites, on the source and on the target.
+//! Units: a pixel is the spacing of the finest sites, on the source and on the target.
 
 mod origin;
 mod reading;
@@ -49,32 +49,32 @@ use core::ops::ControlFlow;
 use glam::DVec2;
 use std::sync::Arc;
 
-/// An exemplar that is a textured surface.
+/// A textured surface as an exemplar.
 #[derive(Clone, Debug)]
 pub struct MeshExemplar {
     origin: Arc<Origin>,
-    /// The sites of every level, stored as images of one row.
+    /// Sites of every level, each level stored as an image with one row.
     pyramid: Pyramid,
 }
 
 impl MeshExemplar {
-    /// Creates an exemplar from a surface with sites and directions, the texture coordinates of the corners of its
-    /// faces, and the texture at these coordinates. In the coordinates v points down, and integer offsets are removed
-    /// per face. The texture is an exemplar: colors, or any planes with weights, masks and guides.
+    /// Creates an exemplar from `source`, a surface with sites and directions. `uvs` has the texture coordinates of the
+    /// corners of each face, with v down; integer offsets are removed per face. `texture` is the source's texture in
+    /// these coordinates: an exemplar of colors or other planes, with optional weights, mask and guides.
     ///
-    /// The sites are matched as the pixels of an image are. Features have the same size on the target as on the source
-    /// if both have the same spacing of sites; more sites on the source make features larger. Sites next to texels
-    /// that a [mask](Exemplar::with_mask) excludes are not used. [Scales](Synthesizer::with_scales) of the source have
-    /// no effect.
+    /// The sites are matched like the pixels of an image. Features have the same size on the target as on the source if
+    /// both have the same site spacing. More sites on the source make features larger. Sites next to texels that a
+    /// [mask](Exemplar::with_mask) excludes are not used. [Scales](Synthesizer::with_scales) of the source have no
+    /// effect.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] unless there are coordinates for each face, and [`SynthErrorKind::Range`] for a
-    /// coordinate outside -10^6 to 10^6.
+    /// [`SynthErrorKind::Count`] unless `uvs` has an entry for each face, and [`SynthErrorKind::Range`] if a coordinate
+    /// is outside -10^6 to 10^6.
     ///
     /// # Examples
     ///
-    /// Lifts a checker from one tetrahedron to another.
+    /// Lift a checker from one tetrahedron to another.
     ///
     /// ```
     /// use core::ops::ControlFlow;
@@ -134,7 +134,7 @@ impl MeshExemplar {
         rows::candidates(&self.origin.synthesizer, &self.pyramid, pass, options)
     }
 
-    /// Returns the finest `n_levels` levels of sites; an error if the source has fewer.
+    /// Returns the finest `n_levels` levels of sites, or an error if the source has fewer.
     fn levels(&self, n_levels: usize) -> Result<&[Exemplar], SynthError> {
         self.pyramid.levels.get(..n_levels).ok_or_else(|| {
             SynthError::new(SynthErrorKind::Count {
@@ -145,7 +145,7 @@ impl MeshExemplar {
         })
     }
 
-    /// Runs the passes on the target's sites and their neighborhoods (`ground`).
+    /// Runs the passes of `options` on the target's sites, whose neighborhoods `ground` samples.
     fn grow(
         &self,
         target: &Synthesizer,
@@ -171,16 +171,17 @@ impl MeshExemplar {
 
 impl Synthesizer {
     /// Synthesizes a texture from another surface: every site takes the color of a source site. `guides` are as in
-    /// [`synthesize_guided`](Self::synthesize_guided); there must be as many as the exemplar's texture has.
+    /// [`synthesize_guided`](Self::synthesize_guided); their number must equal the number of guides of the exemplar's
+    /// texture.
     ///
-    /// Bake the texture like any other, for example with [`bake_colors`](crate::bake_colors), from maps of any size in
-    /// the exemplar's texture coordinates. The [sources](SurfaceTexture::sources) are indices of the exemplar's sites,
-    /// in row 0. [`Coherence::Auto`](crate::Coherence::Auto) means a factor of 2.
+    /// Bake the result like any other texture, for example with [`bake_colors`](crate::bake_colors), from maps of any
+    /// size in the exemplar's texture coordinates. The [sources](SurfaceTexture::sources) are indices of the exemplar's
+    /// sites, in row 0. [`Coherence::Auto`](crate::Coherence::Auto) means a factor of 2.
     ///
     /// # Errors
     ///
-    /// Same as [`synthesize_guided`](Self::synthesize_guided), and [`SynthErrorKind::Count`] for more levels than the
-    /// exemplar's sites have.
+    /// Same as [`synthesize_guided`](Self::synthesize_guided), and [`SynthErrorKind::Count`] if `options` has more
+    /// levels than the exemplar's sites.
     pub fn lift(
         &self,
         exemplar: &MeshExemplar,
@@ -199,7 +200,7 @@ impl Synthesizer {
     }
 }
 
-/// Filters the sites of a level to the next coarser level.
+/// Downsamples the values of `finer`, the sites of `level`, to the next coarser level.
 fn coarser(hierarchy: &Hierarchy, level: usize, finer: &Exemplar) -> Result<Exemplar, SynthError> {
     let n_sites = hierarchy.levels()[level + 1].n_sites();
     let halved = |values: &[f32], n: usize| {

@@ -163,7 +163,8 @@ impl Orientation {
         }
     }
 
-    /// Symmetry of the field: the number of equivalent directions at each site. One of them is stored.
+    /// Returns the symmetry of the field, which is the number of equivalent directions at each site. One of them is
+    /// stored.
     #[must_use]
     pub fn symmetry(&self) -> Symmetry {
         self.symmetry
@@ -194,7 +195,7 @@ impl Orientation {
             .quarters_toward(self.vectors[site], normals[site], other)
     }
 
-    /// Unit vectors at the sites, in the order of [`SiteIdx`](crate::SiteIdx). The sites of a coarser level
+    /// Returns the unit vectors at the sites, in the order of [`SiteIdx`](crate::SiteIdx). The sites of a coarser level
     /// come first.
     #[must_use]
     pub fn vectors(&self) -> &[DVec3] {
@@ -202,7 +203,7 @@ impl Orientation {
     }
 }
 
-/// Unit vector along an axis; an error if the axis is zero or not finite.
+/// Returns the unit vector along `axis`, or an error if `axis` is zero or not finite.
 fn checked(axis: DVec3) -> Result<DVec3, SynthError> {
     unit(axis).ok_or_else(|| {
         SynthError::new(SynthErrorKind::Range {
@@ -213,20 +214,21 @@ fn checked(axis: DVec3) -> Result<DVec3, SynthError> {
     })
 }
 
-/// Component of a vector in the plane with this unit normal.
+/// Returns the component of `vector` in the plane with the unit normal `normal`.
 #[inline]
 fn flat_part(vector: DVec3, normal: DVec3) -> DVec3 {
     vector - normal * vector.dot(normal)
 }
 
-/// Unit vector in the plane with this unit normal along the projection of a vector. `None` if the vector is normal to
-/// the plane, zero or not finite.
+/// Projects `vector` to the plane with the unit normal `normal`, and normalizes the result. `None` if `vector` is
+/// normal to the plane, zero or not finite.
 fn tangent(vector: DVec3, normal: DVec3) -> Option<DVec3> {
     let part = flat_part(unit(vector)?, normal);
     (part.length_squared() > LEAST_TANGENT_SQ).then(|| part.normalize())
 }
 
-/// Unit tangent along a unit axis; along a perpendicular axis where the plane is normal to the first one. Never fails.
+/// Returns the unit tangent along the unit vector `axis`. If `axis` is normal to the plane, the tangent along a
+/// perpendicular axis is returned, so this never fails.
 fn axis_tangent(axis: DVec3, normal: DVec3) -> DVec3 {
     let across = axis.any_orthonormal_vector();
     tangent(axis, normal)
@@ -234,7 +236,7 @@ fn axis_tangent(axis: DVec3, normal: DVec3) -> DVec3 {
         .unwrap_or(across)
 }
 
-/// Unit vector along a vector, computed without overflow. `None` if the vector is zero or not finite.
+/// Normalizes `vector` without overflow. `None` if it is zero or not finite.
 fn unit(vector: DVec3) -> Option<DVec3> {
     let most = vector.abs().max_element();
     (vector.is_finite() && most > 0.0).then(|| (vector / most).normalize())

@@ -96,7 +96,7 @@ impl Sweep {
         Ok(sweep)
     }
 
-    /// Sweep distances of the sites of a level, in units of the mesh; 0 at the anchor.
+    /// Returns the sweep distances of the sites of `level`, in units of the mesh; 0 at the anchor.
     ///
     /// Distances in different components are not comparable.
     ///
@@ -108,8 +108,8 @@ impl Sweep {
         &self.levels[level].distances
     }
 
-    /// Sites of a level in the order of the sweep: by component, then by distance, then by index. Components are in the
-    /// order of their lowest sites.
+    /// Returns the sites of `level` in sweep order: by component, then by distance, then by index. Components are in
+    /// the order of their lowest sites.
     ///
     /// # Panics
     ///
@@ -161,8 +161,8 @@ impl Sweep {
     }
 }
 
-/// Anchor on a coarser level: the first site of that level in a breadth-first search from the anchor on the finest
-/// level.
+/// Returns the anchor on a coarser level: the first site of that level that a breadth-first search from the finest
+/// anchor reaches.
 fn coarse_anchor(hierarchy: &Hierarchy, level: usize, anchor: Option<SiteIdx>) -> Option<SiteIdx> {
     let n_sites = hierarchy.levels()[level].n_sites();
     let graph = hierarchy.levels()[0].graph();

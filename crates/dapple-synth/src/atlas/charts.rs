@@ -1,10 +1,10 @@
-//! Charts: large pieces of a surface, each flattened as a whole.
+//! Lays out charts, which are large pieces of a surface, each flattened as a whole.
 //!
 //! `uvunwrap` cuts the surface into charts, flattens them (least squares conformal maps, then as rigid as possible) and
 //! packs them. It is written in Rust without dependencies, uses no function whose bits differ between platforms, and
 //! rejects charts that fold or overlap. `xatlas` is written in C++, its bindings need libclang, and it hangs on some
-//! meshes. A packer of our own that also rotated charts by 45 degrees and less used as much of the map, within 3 %.
-//! More than [`MANY`] charts are packed in rows.
+//! meshes. A packer of our own that also rotated charts by 45 degrees and less used the same fraction of the map,
+//! within 3 %. More than [`MANY`] charts are packed in rows.
 //!
 //! References: Bruno Lévy, Sylvain Petitjean, Nicolas Ray and Jérome Maillot, "Least Squares Conformal Maps for Automatic
 //! Texture Atlas Generation", SIGGRAPH 2002, doi 10.1145/566654.566590; Ligang Liu, Lei Zhang, Yin Xu, Craig Gotsman and
@@ -24,19 +24,20 @@ use uvunwrap::{Density, MeshInput, Options, Packing, Progress, Stage};
 const ANGLE_MAX: f32 = 40.0;
 
 /// Number of charts above which they are packed in rows instead of by shape. Packing by shape compares each chart with
-/// all places between the others: it took three quarters of the time for 2,000 charts, and most of the time for more.
+/// all free positions between the others: it took three quarters of the time for 2,000 charts, and most of the time for
+/// more.
 const MANY: usize = 512;
 
-/// Completed fraction of the work when all charts are flat.
+/// Completed fraction of the work when all charts have been flattened.
 const FLAT: f64 = 0.7;
 
 /// A callback that receives the completed fraction of the work, from 0 to 1.
 pub(super) type Callback<'a> = &'a mut (dyn FnMut(f64) -> ControlFlow<()> + Send);
 
-/// The reason why the unwrapping was stopped.
+/// Reason why the unwrapping was stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stop {
-    /// The caller cancelled.
+    /// The caller's callback cancelled.
     Asked,
     /// There are too many charts to pack them by shape.
     Many,
@@ -53,7 +54,7 @@ struct Watch<'a> {
     stopped: Option<Stop>,
 }
 
-/// Returns the default padding of charts, in texels, in a map of the given side.
+/// Returns the default padding around charts, in texels, in a map of the given side.
 pub(super) fn padding(side: u32) -> u32 {
     match side {
         0..512 => 1,
@@ -165,8 +166,8 @@ impl Watch<'_> {
     }
 }
 
-/// Returns the number of connected components of the faces with an area: a lower bound of the number of charts.
-/// Vertices at the same position count as one.
+/// Returns the number of connected components among the faces that have an area, which is a lower bound of the number
+/// of charts. Vertices at the same position count as one.
 fn n_components(positions: &[[f32; 3]], indices: &[u32]) -> usize {
     // Join vertices with the same position: each points to the first of them. Adding zero turns -0 into 0.
     let bits = |vertex: u32| positions[vertex as usize].map(|part| (part + 0.0).to_bits());
@@ -200,7 +201,7 @@ fn n_components(positions: &[[f32; 3]], indices: &[u32]) -> usize {
     counted.into_iter().filter(|&counted| counted).count()
 }
 
-/// Returns the root of a vertex in a union-find forest, with path halving.
+/// Returns the root of `vertex` in a union-find forest, with path halving.
 fn root(roots: &mut [u32], mut vertex: u32) -> u32 {
     while roots[vertex as usize] != vertex {
         let above = roots[roots[vertex as usize] as usize];
@@ -210,7 +211,7 @@ fn root(roots: &mut [u32], mut vertex: u32) -> u32 {
     vertex
 }
 
-/// Returns the corners of a face; NaN if it has no area or is mirrored.
+/// Returns the given corners; NaN if their triangle has no area or is mirrored.
 fn with_area([a, b, c]: [DVec2; 3]) -> [DVec2; 3] {
     // A comparison with NaN is false.
     if (b - a).perp_dot(c - a) < 0.0 {
@@ -220,7 +221,7 @@ fn with_area([a, b, c]: [DVec2; 3]) -> [DVec2; 3] {
     }
 }
 
-/// Returns the positions translated and scaled into the cube from -1 to 1.
+/// Translates and scales positions into the cube from -1 to 1.
 fn in_unit_cube(positions: &[DVec3]) -> Vec<[f32; 3]> {
     let low = positions.iter().copied().reduce(DVec3::min);
     let high = positions.iter().copied().reduce(DVec3::max);

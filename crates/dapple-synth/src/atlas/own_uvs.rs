@@ -1,4 +1,4 @@
-//! Atlases from a layout that the caller supplies.
+//! Builds atlases from a layout that the caller supplies.
 
 use super::tangents::center;
 use super::{Atlas, NONE, check_side, weights};
@@ -7,7 +7,8 @@ use dapple_mesh::Surface;
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// Tolerance of the inside test for texel centers, in barycentric weights: rounding leaves no gap between faces.
+/// Tolerance of the inside test for texel centers, in barycentric weights, so that rounding leaves no gap between
+/// faces.
 const ROUNDING: f64 = 1e-9;
 
 pub(super) fn from_uvs(
@@ -51,8 +52,8 @@ pub(super) fn covered(
     })
 }
 
-/// Returns the corners in texels, translated by whole units so that the centroid is in the unit square; NaN for a face
-/// without an area or too far away.
+/// Converts the texture coordinates of a face to texels, and translates them by whole units so that the centroid is in
+/// the unit square. NaN for a face that has no area or is too far away.
 fn place(uvs: [DVec2; 3], scale: DVec2) -> [DVec2; 3] {
     let turns = ((uvs[0] + uvs[1] + uvs[2]) / 3.0).floor();
     let corners = uvs.map(|uv| (uv - turns) * scale);
@@ -64,7 +65,7 @@ fn place(uvs: [DVec2; 3], scale: DVec2) -> [DVec2; 3] {
     }
 }
 
-/// Assigns a face to the texels whose centers it covers, unless they already show another face.
+/// Assigns `face` to the texels whose centers it covers, unless they already show another face.
 fn cover(faces: &mut Raster<u32>, face: u32, corners: &[DVec2; 3]) {
     let [a, b, c] = *corners;
     if !a.is_finite() {
@@ -92,8 +93,8 @@ fn cover(faces: &mut Raster<u32>, face: u32, corners: &[DVec2; 3]) {
     }
 }
 
-/// Dilates the covered texels `padding` times: each ring takes the faces of adjacent texels, the lowest index of
-/// several.
+/// Dilates the covered texels `padding` times: each new texel shows the face of an adjacent texel, the one with the
+/// lowest index if there are several.
 fn spread(faces: &mut Raster<u32>, padding: u32) {
     let covered = faces.pixels().iter().enumerate();
     let mut ring: Vec<usize> = covered
@@ -125,7 +126,7 @@ fn spread(faces: &mut Raster<u32>, padding: u32) {
     }
 }
 
-/// Returns the texel itself and its neighbors, diagonal ones included.
+/// Returns the indices of `texel` itself and its neighbors, diagonal ones included.
 fn neighbors(texel: usize, size: [u32; 2]) -> impl Iterator<Item = usize> {
     let [width, height] = size.map(|length| length as usize);
     let (row, column) = (texel / width, texel % width);

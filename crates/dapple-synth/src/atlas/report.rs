@@ -1,4 +1,4 @@
-//! Measures of the quality of a layout.
+//! Measures the quality of a layout.
 //!
 //! Reference: Pedro V. Sander, John Snyder, Steven J. Gortler and Hugues Hoppe, "Texture Mapping Progressive Meshes",
 //! SIGGRAPH 2001, doi 10.1145/383259.383307, section 3: the stretch of a parameterization.
@@ -11,12 +11,12 @@ use glam::DVec2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct AtlasReport {
-    /// Number of pieces: sets of faces that are connected in the map as on the surface.
+    /// Number of pieces. A piece is a set of faces that are connected both in the map and on the surface.
     pub pieces: usize,
-    /// Fraction of the texels whose centers lie on their faces, padding excluded: 0 to 1.
+    /// Fraction of texels whose centers lie on their faces, padding excluded; from 0 to 1.
     pub used: f64,
-    /// The L2 stretch of Sander et al.: the root mean square length of a texel on the surface over all directions,
-    /// divided by the length if all texels were squares of equal size. It is at least 1.
+    /// L2 stretch of Sander et al. This is the root mean square length of a texel on the surface, over all directions,
+    /// divided by the length it would have if all texels were squares of equal size. It is at least 1.
     pub stretch: f64,
 }
 
@@ -34,7 +34,7 @@ impl AtlasReport {
     }
 }
 
-/// Returns the index of each face's piece, from 0; [`NONE`] for a face without a place.
+/// Returns the index of each face's piece, from 0; [`NONE`] for a face that is not in the map.
 pub(super) fn pieces(atlas: &Atlas, surface: &Surface) -> Vec<u32> {
     let corners = &atlas.corners;
     let mut pieces = vec![NONE; corners.len()];
@@ -84,7 +84,7 @@ fn used(atlas: &Atlas) -> f64 {
     count as f64 / (f64::from(width) * f64::from(height))
 }
 
-/// Returns the L2 stretch of all faces with a place, weighted by their areas.
+/// Returns the L2 stretch over all faces in the map, weighted by their areas.
 fn stretch(atlas: &Atlas, surface: &Surface) -> f64 {
     let (mut sum, mut area) = (0.0, 0.0);
     for (face, stretch) in (0..).map(FaceIdx).zip(stretches(atlas, surface)) {
@@ -96,7 +96,7 @@ fn stretch(atlas: &Atlas, surface: &Surface) -> f64 {
     if area > 0.0 { (sum / area).sqrt() } else { 1.0 }
 }
 
-/// Returns the L2 stretch of every face; NaN for a face without a place.
+/// Returns the L2 stretch of every face; NaN for a face that is not in the map.
 pub(super) fn stretches(atlas: &Atlas, surface: &Surface) -> Vec<f64> {
     let (mut on_surface, mut in_map) = (0.0, 0.0);
     let faces = (0..).map(FaceIdx).zip(&atlas.corners);
@@ -120,7 +120,8 @@ pub(super) fn stretches(atlas: &Atlas, surface: &Surface) -> Vec<f64> {
     reaches.into_iter().map(|reach| reach * density).collect()
 }
 
-/// Returns the root mean square length, over all directions, of a texel on the surface; NaN for a face without a place.
+/// Returns the root mean square length, over all directions, of a texel on the surface; NaN for a face that is not in
+/// the map.
 fn reach(surface: &Surface, face: FaceIdx, [a, b, c]: [DVec2; 3]) -> f64 {
     let [pa, pb, pc] = surface.mesh().corners(face);
     let (b, c, pb, pc) = (b - a, c - a, pb - pa, pc - pa);

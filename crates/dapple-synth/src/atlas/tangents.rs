@@ -1,4 +1,4 @@
-//! Tangent frames of texture coordinates, as programs compute them for files without tangents.
+//! Computes tangent frames from texture coordinates, in the same way as other programs do for files without tangents.
 //!
 //! Reference: Morten S. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", master's thesis, University of
 //! Copenhagen, 2008. The tangent at a corner is the mean of the tangents of all faces with the same vertex, texture
@@ -10,7 +10,7 @@ use super::{Atlas, weights};
 use dapple_mesh::{FaceIdx, Surface};
 use glam::{DVec2, DVec3};
 
-/// The tangents along +u at the corners of all faces.
+/// Tangents along +u at the corners of all faces.
 #[derive(Clone, Debug)]
 pub(crate) struct Tangents {
     corners: Vec<[DVec3; 3]>,
@@ -18,7 +18,7 @@ pub(crate) struct Tangents {
     is_mirrored: Vec<bool>,
 }
 
-/// The key of corners that share a tangent: the vertex, the bits of its position in the map, the bits of its normal,
+/// Key of the corners that share a tangent: the vertex, the bits of its position in the map, the bits of its normal,
 /// and the handedness.
 type Key = (u32, [u64; 2], [u64; 3], bool);
 
@@ -60,7 +60,7 @@ impl Tangents {
         tangents
     }
 
-    /// Returns the tangent and the bitangent at a texel, perpendicular to the unit normal there. The bitangent points
+    /// Returns the tangent and the bitangent at `texel`, perpendicular to the unit normal there. The bitangent points
     /// to the top of the map.
     pub(crate) fn frame(&self, atlas: &Atlas, texel: [u32; 2], normal: DVec3) -> [DVec3; 2] {
         let Some(face) = atlas.face(texel) else {
@@ -70,7 +70,7 @@ impl Tangents {
         self.frame_of(face, weights_within(atlas, face, texel), normal)
     }
 
-    /// Returns the tangent and the bitangent at the point of a face with the given barycentric weights.
+    /// Returns the tangent and the bitangent at the point of `face` with the given barycentric weights.
     pub(crate) fn frame_of(&self, face: FaceIdx, weights: [f64; 3], normal: DVec3) -> [DVec3; 2] {
         let mixed = sum(self.corners[face.index()], weights);
         let tangent = flat_part(mixed, normal).normalize_or(normal.any_orthonormal_vector());
@@ -80,13 +80,13 @@ impl Tangents {
     }
 }
 
-/// Returns the interpolated vector of a face's corners at a texel. In the padding it is extrapolated as the border's
-/// value.
+/// Interpolates vectors at the corners of `face` at `texel`. In the padding, returns the value at the border of the
+/// face.
 pub(crate) fn mixed(atlas: &Atlas, face: FaceIdx, texel: [u32; 2], corners: [DVec3; 3]) -> DVec3 {
     sum(corners, weights_within(atlas, face, texel))
 }
 
-/// Returns the barycentric weights of a texel in a face, each clamped to 0 to 1.
+/// Returns the barycentric weights of the center of `texel` in `face`, each clamped to the range from 0 to 1.
 fn weights_within(atlas: &Atlas, face: FaceIdx, texel: [u32; 2]) -> [f64; 3] {
     let weights = weights(atlas.corners[face.index()], center(texel));
     weights.map(|weight| weight.clamp(0.0, 1.0))
@@ -98,13 +98,13 @@ pub(crate) fn sum(corners: [DVec3; 3], weights: [f64; 3]) -> DVec3 {
     parts.map(|(&corner, weight)| corner * weight).sum()
 }
 
-/// Returns the center of a texel, in texels.
+/// Returns the position of a texel's center, in texels.
 pub(super) fn center([column, row]: [u32; 2]) -> DVec2 {
     DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5)
 }
 
-/// Returns the direction of +u on a face, and whether the face is mirrored in the map; any direction for a face without
-/// a place.
+/// Returns the direction of +u on a face, and whether the face is mirrored in the map; an arbitrary direction for a
+/// face that is not in the map.
 fn face_tangent([a, b, c]: [DVec3; 3], [ua, ub, uc]: [DVec2; 3]) -> (DVec3, bool) {
     let (b, c, ub, uc) = (b - a, c - a, ub - ua, uc - ua);
     // Rows go down: a face that is counterclockwise from outside and not mirrored has a negative product.
@@ -114,12 +114,12 @@ fn face_tangent([a, b, c]: [DVec3; 3], [ua, ub, uc]: [DVec2; 3]) -> (DVec3, bool
     (tangent.normalize_or_zero(), is_mirrored)
 }
 
-/// Returns the component of a vector perpendicular to a unit vector.
+/// Returns the component of `vector` perpendicular to the unit vector `normal`.
 fn flat_part(vector: DVec3, normal: DVec3) -> DVec3 {
     vector - normal * vector.dot(normal)
 }
 
-/// Returns the angle of a triangle at a corner, in radians.
+/// Returns the angle of a triangle at the given corner, in radians.
 fn angle(corners: [DVec3; 3], corner: usize) -> f64 {
     let at = corners[corner];
     let [to, from] = [1, 2].map(|step| (corners[(corner + step) % 3] - at).normalize_or_zero());

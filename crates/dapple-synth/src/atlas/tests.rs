@@ -1,4 +1,4 @@
-//! Layouts on small meshes.
+//! Tests of layouts on small meshes.
 
 use super::{Atlas, NONE, Tangents, weights};
 use crate::SynthErrorKind;
@@ -164,7 +164,7 @@ fn bad_layouts_are_refused() {
     assert_eq!(atlas.coverage(), 0.0, "uv that are not finite show nothing");
 }
 
-/// Returns the set of faces that each texel of the next mipmap level mixes: the union over 2 × 2 texels.
+/// Returns the set of faces that each texel of the next mipmap level mixes, which is the union over 2 × 2 texels.
 fn halved(level: &[Vec<Vec<u32>>]) -> Vec<Vec<Vec<u32>>> {
     let side = level.len() / 2;
     let faces = |row: usize, column: usize| {
@@ -302,7 +302,7 @@ fn texels_beside_a_sliver_are_on_the_surface() {
     }
 }
 
-/// Returns the texture coordinates of a mesh above the unit square, projected along z.
+/// Returns texture coordinates for a mesh above the unit square, projected along z.
 fn from_above(surface: &Surface) -> Vec<[DVec2; 3]> {
     let faces = 0..surface.mesh().faces().len() as u32;
     let place = |at: DVec3| DVec2::new(at.x, 1.0 - at.y);

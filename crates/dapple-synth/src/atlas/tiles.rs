@@ -1,4 +1,4 @@
-//! Atlases of square tiles, each with two right triangles.
+//! Builds atlases of square tiles, each with two right triangles.
 
 use super::{Atlas, NONE, check_padding, check_side};
 use crate::{SynthError, SynthErrorKind};
@@ -6,7 +6,7 @@ use dapple_mesh::{FaceIdx, Surface};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// The padding around the triangles of a tile.
+/// Padding around the triangles of a tile, in texels.
 #[derive(Clone, Copy)]
 struct Frame {
     padding: u32,
@@ -18,13 +18,14 @@ impl Frame {
         Ok(Self { padding })
     }
 
-    /// Returns the side of a tile minus the legs of its triangles, in texels: padding at both ends of the legs, twice
-    /// the padding between the hypotenuses, measured along an axis, and half a texel at both ends.
+    /// Returns the difference between the side of a tile and the legs of its triangles, in texels. It consists of the
+    /// padding at both ends of a leg, twice the padding between the hypotenuses (measured along an axis), and half a
+    /// texel at both ends.
     fn width(self) -> u32 {
         4 * self.padding + 1
     }
 
-    /// Returns the minimum side of a tile, in texels: its triangles have legs of one texel.
+    /// Returns the minimum side of a tile, in texels, for which the legs of its triangles are one texel long.
     fn tile_min(self) -> u32 {
         self.width() + 1
     }
@@ -35,10 +36,11 @@ impl Frame {
     }
 }
 
-/// Returns the default padding, in texels, in a map of the given side, for tiles of one size and of several.
+/// Returns the default padding, in texels, in a map of the given side. It is used both for tiles of the same size and
+/// for tiles by area.
 ///
-/// Padding shortens the legs of the triangles by about four times its width: this leaves three quarters of a tile's
-/// side.
+/// The padding shortens the legs of the triangles by about four times its width. With the default, three quarters of a
+/// tile's side remain.
 pub(super) fn padding(surface: &Surface, side: u32) -> u32 {
     let part = side / tiles_across(surface) / 16;
     part.checked_ilog2().map_or(1, |log| 1 << log.min(10))
@@ -51,7 +53,7 @@ fn tiles_across(surface: &Surface) -> u32 {
     root + u32::from(root * root < n_tiles)
 }
 
-/// A tile of one or two faces. Positions and sides are in texels.
+/// A tile with one or two faces. Positions and sides are in texels.
 struct Tile {
     first: [u32; 2],
     side: u32,
@@ -98,7 +100,8 @@ pub(super) fn by_area(surface: &Surface, side: u32, padding: u32) -> Result<Atla
     fill(surface, side, frame, tiles.into_iter())
 }
 
-/// Packs the tiles of faces with the given legs, longest first, in shelves; `None` if they do not fit.
+/// Packs the tiles of `faces`, which are sorted by the lengths of their legs, longest first, in shelves. `None` if they
+/// do not fit.
 fn pack(faces: &[(f64, u32)], scale: f64, side: u32, frame: Frame) -> Option<Vec<Tile>> {
     let mut tiles = Vec::with_capacity(faces.len().div_ceil(2));
     let (mut at, mut shelf) = ([0, 0], 0);
@@ -175,7 +178,8 @@ fn fill(
     })
 }
 
-/// Returns the corner opposite the longest edge, where a right angle distorts least; of equal edges the first.
+/// Returns the corner opposite the longest edge, where a right angle causes the least distortion. Among equally long
+/// edges the first wins.
 fn opposite_longest(surface: &Surface, face: FaceIdx) -> usize {
     let [a, b, c] = surface.mesh().corners(face);
     let lengths = [

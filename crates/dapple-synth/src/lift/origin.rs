@@ -1,4 +1,4 @@
-//! Places on a source surface: the sources of a lifted texture.
+//! Positions on a source surface, which are the sources of a lifted texture.
 
 use crate::detail::Detail;
 use crate::magnify::footprints;
@@ -9,34 +9,34 @@ use dapple_raster::Raster;
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use std::sync::Arc;
 
-/// Maximum excess of the distance in space over that along the surface, in pixels. Beyond it, two places are on
-/// different sheets.
+/// Maximum difference between the distance of two positions in space and their distance along the surface, in pixels.
+/// If the distance in space is larger by more, the positions are on different sheets.
 const SHEETS: f32 = 1.0;
 
-/// Maximum absolute texture coordinate: texel indices of any map fit an integer.
+/// Maximum absolute texture coordinate, for which texel indices of any map fit an integer.
 const UV_MAX: f64 = 1e6;
 
-/// The source surface of a lifted texture.
+/// Source surface of a lifted texture.
 #[derive(Clone, Debug)]
 pub(crate) struct Origin {
     pub(crate) synthesizer: Synthesizer,
-    /// The texture coordinates of the corners of faces, with integer offsets removed.
+    /// Texture coordinates of the corners of each face, with integer offsets removed.
     pub(crate) uvs: Vec<[DVec2; 3]>,
-    /// The boundary of the texture.
+    /// Edge mode of the texture.
     pub(crate) edges: Edges,
     frames: Vec<Frame>,
-    /// The spacing of the finest sites.
+    /// Spacing of the finest sites, in units of the mesh.
     spacing: f32,
 }
 
-/// A place on the source: a finest site and an offset in the site's frame, in pixels.
+/// A position on the source: a finest site and an offset in the site's frame, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Place {
     pub(crate) site: u32,
     pub(crate) off: Vec2,
 }
 
-/// The sources of the finest sites of a texture.
+/// Sources of a texture's finest sites.
 #[derive(Clone, Debug)]
 pub(crate) struct LiftedPlaces {
     pub(crate) origin: Arc<Origin>,
@@ -82,7 +82,8 @@ impl Origin {
         self.synthesizer.hierarchy()
     }
 
-    /// Returns the point of a place, and the source's down direction there, in the plane of its face.
+    /// Walks from the site of `place` by its offset. Returns the surface point, and the source's down direction there,
+    /// in the plane of its face.
     pub(crate) fn walk(&self, place: Place) -> Walk {
         let surface = self.synthesizer.surface();
         let point = self.hierarchy().sites().points()[place.site as usize];
@@ -110,15 +111,15 @@ impl Origin {
         }
     }
 
-    /// Returns the texture coordinates at a point.
+    /// Returns the texture coordinates at `point`.
     pub(crate) fn uv(&self, point: SurfacePoint) -> DVec2 {
         let weights = self.synthesizer.surface().weights(point);
         let corners = self.uvs[point.face.index()].iter().zip(weights);
         corners.map(|(&uv, weight)| uv * weight).sum()
     }
 
-    /// Returns the side of a pixel in texels of a map of the given size, for every face; 0 for a face without an area
-    /// in the map.
+    /// Returns the side length of a pixel on each face, in texels of a map of the given size; 0 for a face without an
+    /// area in the map.
     pub(crate) fn texels(&self, size: [u32; 2]) -> Vec<f32> {
         let sides = footprints(&self.synthesizer, &self.uvs, size).into_iter();
         sides
@@ -126,7 +127,7 @@ impl Origin {
             .collect()
     }
 
-    /// Returns the offset from one finest site to another near it, in pixels.
+    /// Returns the offset between two nearby finest sites, `from` and `to`, in pixels.
     pub(super) fn step(&self, to: u32, from: u32) -> Vec2 {
         let [to_place, from_place] = [to, from].map(|site| Place {
             site,
@@ -135,14 +136,14 @@ impl Origin {
         self.flat(self.way(to_place, from_place), to, from)
     }
 
-    /// Converts an offset in space to pixels between two sites. Frames rotate along the way: the mean of the offsets in
-    /// both frames approximates the offset in the frame halfway.
+    /// Converts `way`, an offset in space between two sites, to pixels. Frames rotate along the way, so the mean of the
+    /// offsets in both frames approximates the offset in the frame halfway.
     fn flat(&self, way: Vec3, to: u32, from: u32) -> Vec2 {
         let [to, from] = [to, from].map(|site| self.frames[site as usize].flat(way));
         0.5 * (from + to)
     }
 
-    /// Returns the offset in space from one place to another.
+    /// Returns the offset in space between the positions `from` and `to`.
     fn way(&self, to: Place, from: Place) -> Vec3 {
         let positions = self.hierarchy().sites().positions();
         let [to_at, from_at] = [to, from].map(|place| positions[place.site as usize]);
@@ -156,8 +157,8 @@ impl Origin {
 }
 
 impl LiftedPlaces {
-    /// Creates the sources of sites from their matched source sites. With sub-pixel sources, places are averaged with
-    /// their neighbors' predictions.
+    /// Creates the source positions of sites from their matched source sites. With sub-pixel sources, positions are
+    /// averaged with their neighbors' predictions.
     pub(super) fn new(
         hierarchy: &Hierarchy,
         frames: &Frames,
@@ -183,7 +184,7 @@ impl LiftedPlaces {
         lifted
     }
 
-    /// Returns the nearest texel of a map at every place.
+    /// Returns the texel of `map` nearest to the source position of every site.
     pub(crate) fn transfer<T: Copy>(&self, map: &Raster<T>) -> Vec<T> {
         let size = map.size().map(f64::from);
         let wrap = self.origin.edges.wrap();
@@ -197,7 +198,7 @@ impl LiftedPlaces {
 }
 
 impl PartialEq for LiftedPlaces {
-    /// Compares the places and the identity of the source: equal copies of a source differ.
+    /// Compares the positions and the identity of the source. Two equal copies of a source are different.
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.origin, &other.origin)
             && self.of_site == other.of_site
@@ -221,7 +222,7 @@ impl Sourced for LiftedPlaces {
         let [to_normal, from_normal] = [to, from].map(|place| normals[place.site as usize]);
         let way = self.origin.way(to, from);
         let flat = self.origin.flat(way, to.site, from.site);
-        // Places on different sheets are infinitely far apart.
+        // Positions on different sheets are infinitely far apart.
         let is_far = way.length() > (flat.length() + SHEETS) * self.origin.spacing;
         if is_far || DVec3::dot(to_normal, from_normal) < 0.0 {
             return Vec2::INFINITY;
@@ -238,7 +239,7 @@ impl Sourced for LiftedPlaces {
     }
 }
 
-/// A map of the source, sampled at points of its surface.
+/// Samples a map of the source at points of its surface.
 pub(crate) struct LiftedDetail<'a, const N: usize> {
     origin: &'a Origin,
     detail: Detail<N>,
@@ -247,7 +248,7 @@ pub(crate) struct LiftedDetail<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> LiftedDetail<'a, N> {
-    /// Prepares a map of any size in the texture coordinates of the source.
+    /// Prepares `map`, which may have any size, for sampling in the source's texture coordinates.
     pub(crate) fn new(map: Raster<[f32; N]>, origin: &'a Origin) -> Result<Self, SynthError> {
         let size = map.size();
         Ok(Self {
@@ -258,7 +259,7 @@ impl<'a, const N: usize> LiftedDetail<'a, N> {
         })
     }
 
-    /// Returns the filtered value at a point. `footprint` is the side of the square filter region, in pixels.
+    /// Returns the filtered value at `point`. `footprint` is the side length of the square filter region, in pixels.
     pub(crate) fn sample(&self, point: SurfacePoint, footprint: f32) -> [f32; N] {
         let at = self.origin.uv(point) * self.size - 0.5;
         self.detail

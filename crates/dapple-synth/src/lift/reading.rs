@@ -1,4 +1,4 @@
-//! Colors of a source's finest sites: means of its texture.
+//! Computes the colors of a source's finest sites, as means of its texture.
 
 use super::Origin;
 use super::origin::Place;
@@ -8,11 +8,11 @@ use crate::{Edges, Exemplar, SiteGraph, SiteIdx, columns};
 use dapple_raster::Wrap;
 use glam::{DVec2, Vec2};
 
-/// Maximum number of sample points along the side of a site's square. In larger squares samples are more than a texel
-/// apart, and some texels are skipped.
+/// Maximum number of sample points along the side of a site's square. If a square spans more texels than this, samples
+/// are more than a texel apart and some texels are skipped.
 const POINTS_MAX: u32 = 8;
 
-/// Builds the finest level: the finest sites as an image of one row.
+/// Builds the finest level, in which the finest sites are stored as an image with one row.
 pub(super) fn at_sites(origin: &Origin, texture: &Exemplar) -> Exemplar {
     let texels = origin.texels(texture.size);
     let reader = Reader { origin, texture };
@@ -51,23 +51,23 @@ pub(super) fn eroded(usable: &[bool], graph: &SiteGraph) -> Vec<bool> {
     (0..usable.len()).map(all).collect()
 }
 
-/// The averaged values of a site.
+/// Averaged values of a site.
 struct Site {
-    /// The values of the channels, followed by the values of the guides.
+    /// Values of the channels, followed by the values of the guides.
     values: Vec<f32>,
     /// Whether all averaged texels are usable.
     is_usable: bool,
 }
 
-/// A texture with its texture coordinates on the source.
+/// Reads a texture at points of the source surface.
 struct Reader<'a> {
     origin: &'a Origin,
     texture: &'a Exemplar,
 }
 
 impl Reader<'_> {
-    /// Averages the texture over a square of one pixel around a site. `texels` has the side of a pixel in texels for
-    /// each face.
+    /// Averages the texture over a square of one pixel around `site`. `texels` is the side length of a pixel in texels,
+    /// for each face.
     fn site(&self, site: u32, texels: &[f32]) -> Site {
         let point = self.origin.hierarchy().sites().points()[site as usize];
         let side = texels[point.face.index()].ceil();
@@ -87,7 +87,7 @@ impl Reader<'_> {
         mean
     }
 
-    /// Adds the bilinear sample at texture coordinates, with the weight `part`, to a mean.
+    /// Adds the bilinear sample at the texture coordinates `uv`, with the weight `part`, to `mean`.
     fn add(&self, uv: DVec2, part: f32, mean: &mut Site) {
         let Exemplar { size, usable, .. } = self.texture;
         let colors = self.texture.plain();

@@ -1,10 +1,10 @@
-//! Repair on surfaces: synthesizing the masked part of a source's texture again while the rest stays as it is.
+//! Repair on surfaces: synthesizes the masked part of a source's texture again and leaves the rest unchanged.
 //!
-//! A stain or a scar is covered with the texture around it: the surface is lifted onto itself. As in a repair in the
-//! plane, all sites have a source before any is visited, and each compares its full neighborhood, several times. Kept
-//! sites are their own sources. On the coarsest level a hole starts as the piece of the surface that fits its
-//! surroundings best. Where no piece is as large as the hole, it starts with random sites. A pass proceeds from the rim
-//! of a hole inward.
+//! A stain or a scar is replaced by texture from the rest of the surface, by lifting the surface onto itself. As in a
+//! repair in the plane, all sites have a source before any is visited, and each compares its full neighborhood, several
+//! times. Kept sites are their own sources. On the coarsest level a hole starts as the piece of the surface that fits
+//! its surroundings best. Where no piece is as large as the hole, it starts with random sites. A pass proceeds from the
+//! rim of a hole inward.
 //!
 //! Reference: our own. The passes are those of [`Schedule::repair_on_mesh`].
 
@@ -18,24 +18,26 @@ use core::ops::ControlFlow;
 use dapple_raster::parallel;
 use glam::Vec2;
 
-/// Width of the ring around a hole that is compared, in edges: as far as a neighborhood reaches.
+/// Width of the compared ring around a hole, in edges. A neighborhood reaches as far.
 const RING: u32 = 3;
 
-/// Search radius for the site nearest to the end of a walk, in spacings.
+/// Search radius for the site nearest to the end of a walk, in multiples of the site spacing.
 const NEAR: f64 = 1.5;
 
 impl MeshExemplar {
-    /// Synthesizes the sites that the texture's [mask](Exemplar::with_mask) excludes. All others keep their sources.
+    /// Synthesizes the sites that the texture's [mask](Exemplar::with_mask) excludes. All other sites remain their own
+    /// sources.
     ///
     /// The result is a texture for [`source`](Self::source) itself. Baked to a map in the exemplar's texture
-    /// coordinates, it has the repaired colors of the excluded texels; all others need no change.
+    /// coordinates, it has the repaired colors of the excluded texels; all other texels need no change.
     ///
-    /// If the options have no schedule, [`Schedule::repair_on_mesh`] is used. [`Options::evenness`] has no effect: a
-    /// small part need not use all of the texture.
+    /// If the options have no schedule, [`Schedule::repair_on_mesh`] is used. [`Options::evenness`] has no effect,
+    /// because a small part need not use all of the texture.
     ///
     /// # Errors
     ///
-    /// Same as [`Synthesizer::lift`](crate::Synthesizer::lift), except those of guides, which a repair does not use.
+    /// Same as [`Synthesizer::lift`](crate::Synthesizer::lift), except for errors about guides, which a repair does not
+    /// use.
     pub fn repair(
         &self,
         options: &Options,
@@ -92,7 +94,8 @@ impl MeshExemplar {
     }
 }
 
-/// Returns the sites of a level to synthesize, from the rims of holes inward; the sites of a ring keep the given order.
+/// Returns the sites to synthesize on a level, from the rims of holes inward. Sites at the same distance from the rim
+/// stay in the given `order`.
 pub(crate) fn order(start: &Start, graph: &SiteGraph, mut order: Vec<u32>) -> Vec<u32> {
     let rings = rings(graph, &start.is_kept);
     order.retain(|&site| !start.is_kept[site as usize]);
@@ -121,14 +124,14 @@ fn rings(graph: &SiteGraph, is_kept: &[bool]) -> Vec<u32> {
     rings
 }
 
-/// A connected group of sites to synthesize, and the ring of sites around it. Each site has its offset from a site in
-/// the middle, in pixels.
+/// A hole: a connected group of sites to synthesize, and the ring of sites around it. Each site has its offset from a
+/// middle site, in pixels.
 struct Hole {
     sites: Vec<(u32, Vec2)>,
     ring: Vec<(u32, Vec2)>,
 }
 
-/// Finds the holes of a level.
+/// Finds the holes of a level, which are the connected groups of sites that are not kept.
 fn holes(origin: &Origin, graph: &SiteGraph, is_kept: &[bool]) -> Vec<Hole> {
     let rings = rings(graph, is_kept);
     let mut is_found = is_kept.to_vec();
@@ -150,7 +153,7 @@ fn holes(origin: &Origin, graph: &SiteGraph, is_kept: &[bool]) -> Vec<Hole> {
             }
             at += 1;
         }
-        // Lay out the hole from its innermost site, the first of several.
+        // Lay out the hole from its innermost site; if there are several, from the first.
         let middle = sites
             .iter()
             .copied()
@@ -210,8 +213,8 @@ struct Filler<'a> {
 }
 
 impl Filler<'_> {
-    /// Returns the middle site of the piece whose ring is most similar to the ring of the hole, the first of several;
-    /// `None` if no piece is as large as the hole.
+    /// Returns the middle site of the piece whose ring is most similar to the ring of `hole`. Among equal pieces the
+    /// first wins. `None` if no piece is as large as the hole.
     fn best(&self, hole: &Hole) -> Option<u32> {
         const CHUNK: usize = 64;
         let n_sites = self.is_kept.len();
@@ -236,8 +239,8 @@ impl Filler<'_> {
         best.1
     }
 
-    /// Returns the sum of squared differences between the ring of a hole and that of the piece around a middle site.
-    /// `None` if it is not below a limit, or if a site of the piece is not kept.
+    /// Returns the sum of squared differences between the ring of `hole` and the ring of the piece around the middle
+    /// site `first`. `None` if the sum is not below `limit`, or if a site of the piece is not kept.
     fn distance(&self, hole: &Hole, first: u32, limit: f64) -> Option<f64> {
         let mut distance = 0.0;
         let colors = self.exemplar.plain();
@@ -256,8 +259,8 @@ impl Filler<'_> {
         is_whole.then_some(distance)
     }
 
-    /// Returns the site nearest to the end of a walk of `off` from a site; `None` if the walk meets a border, or if no
-    /// site is in reach or the nearest is not kept.
+    /// Walks from `site` by the offset `off`, in pixels, and returns the nearest site. `None` if the walk meets a
+    /// border, if no site is in reach, or if the nearest site is not kept.
     fn site_at(&self, site: u32, off: Vec2) -> Option<u32> {
         let walk = self.origin.walk(Place { site, off });
         if walk.left != 0.0 {

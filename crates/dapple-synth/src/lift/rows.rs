@@ -1,4 +1,4 @@
-//! Candidate neighborhoods: the neighborhoods of a source's sites.
+//! Gathers the neighborhoods of a source's sites as candidates.
 
 use crate::candidates::{self, Beside};
 use crate::ground::{Ground, Rows, Samples, Square};
@@ -10,11 +10,12 @@ use dapple_raster::parallel;
 /// Number of sites per parallel task.
 const CHUNK: usize = 512;
 
-/// Minimum distance between adjacent samples, in spacings. A smaller distance means a border or a sharp fold.
+/// Minimum distance between adjacent samples, in multiples of the site spacing. A smaller distance indicates a border
+/// or a sharp fold.
 const LEAST: f64 = 0.5;
 
-/// Returns the neighborhoods of all sites of the pass's level that meet no border, fold or unusable site. If too few
-/// remain, the neighborhoods of all usable sites.
+/// Returns the neighborhoods of the sites of the pass's level that meet no border, fold or unusable site. If too few
+/// remain, returns the neighborhoods of all usable sites.
 pub(super) fn candidates(
     source: &Synthesizer,
     pyramid: &Pyramid,
@@ -67,7 +68,7 @@ pub(super) fn candidates(
     Candidates::of_sites(level, pass.level, rows, pixels, Beside(beside))
 }
 
-/// The neighborhoods of consecutive sites.
+/// Neighborhoods of consecutive sites.
 #[derive(Default)]
 struct Chunk {
     rows: Vec<f32>,
@@ -82,7 +83,8 @@ struct Reader<'a> {
     prepared: <MeshGround<'a> as Ground>::Prepared,
     beside: <MeshGround<'a> as Ground>::Prepared,
     terms: Vec<Term>,
-    /// The extents of the squares on the level itself and on the coarser one.
+    /// Extents of the squares on the level itself and on the coarser level; `None` if the pass does not read that
+    /// level.
     halves: [Option<Half>; 2],
     level: usize,
     pyramid: &'a Pyramid,
@@ -90,7 +92,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Returns the number of values of a neighborhood, guides included.
+    /// Returns the number of values per neighborhood, guides included.
     fn dims(&self) -> usize {
         let level = &self.pyramid.levels()[self.level];
         self.terms.len() * level.n_channels + level.n_guides()
@@ -125,8 +127,8 @@ impl Reader<'_> {
         chunk
     }
 
-    /// Reads the square of a site on its level or on the one `step` coarser, if the pass reads that level. Returns
-    /// whether the square meets no border or fold.
+    /// Reads the square of `site` on the level `step` levels above the site's own, if the pass reads that level.
+    /// Returns whether the square meets no border or fold.
     fn read(&self, site: u32, step: usize, samples: &mut Samples, memory: &mut MeshMemory) -> bool {
         let Some(half) = self.halves[step] else {
             return true;
@@ -146,7 +148,7 @@ impl Reader<'_> {
         memory.is_spread(LEAST * self.ground.hierarchy.levels()[reads].spacing())
     }
 
-    /// Returns whether all sites of a neighborhood are usable.
+    /// Returns whether all sites in the neighborhood of `site` are usable.
     fn is_usable(&self, site: u32, samples: [&Samples; 2]) -> bool {
         let usable = |step: usize, site: u32| {
             self.pyramid.levels()[self.level + step].is_usable(site as usize)
@@ -158,8 +160,8 @@ impl Reader<'_> {
             })
     }
 
-    /// Returns the 3 × 3 sites around a site, row by row: the nearest site to each of the eight steps, with the site
-    /// itself in the center.
+    /// Returns the 3 × 3 sites around `site`, row by row. `site` is in the center, and the others are the sites nearest
+    /// to the ends of the eight steps.
     fn read_beside(&self, site: u32, memory: &mut MeshMemory) -> [u32; 9] {
         let square = Square {
             site,

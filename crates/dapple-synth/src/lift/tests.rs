@@ -1,4 +1,4 @@
-//! Lifting compared with the paper's pseudo-code on two surfaces, and with synthesis from an image.
+//! Tests of lifting against the paper's pseudo-code on two surfaces, and against synthesis from an image.
 
 use super::*;
 use crate::ground::{Ground, Painted, Rows, Samples, Square};
@@ -25,7 +25,7 @@ fn sites(surface: Surface, n_sites: usize) -> Synthesizer {
     Synthesizer::new(surface, &[], &options).unwrap()
 }
 
-/// Returns the blurred noise, identical in every run.
+/// Returns blurred noise, identical in every run.
 fn noise(side: u32, blur: f32) -> Raster<f32> {
     let at = |x: u32, y: u32| unit_f32((hash2(Seed(5), [x.into(), y.into()], 0) >> 32) as u32);
     let image = Raster::from_fn([side; 2], at).unwrap();
@@ -64,7 +64,7 @@ fn options(n_levels: usize) -> Options {
     }
 }
 
-/// Returns the neighborhood of a site, part by part, on a surface whose sites have the given sources.
+/// Returns the neighborhood of `site`, part by part, on a surface whose sites have the sources `levels`.
 fn neighborhood(
     ground: &MeshGround<'_>,
     pass: &Pass,
@@ -103,7 +103,7 @@ fn neighborhood(
     values
 }
 
-/// Returns the sources in which every site is its own source.
+/// Returns sources that make every site its own source.
 fn own_pixels(exemplar: &MeshExemplar) -> Vec<Sources> {
     let levels = exemplar.pyramid.levels().iter();
     let numbers = levels.map(|level| Sources {
@@ -209,7 +209,7 @@ fn square_with_a_picture_gives_about_what_the_picture_gives() {
     }
 }
 
-/// Returns the texture of a source on itself: every site is its own source.
+/// Returns the identity texture of a surface, in which every site is its own source.
 fn identity(exemplar: &MeshExemplar, between: crate::Sources) -> SurfaceTexture {
     let source = exemplar.source();
     let n_sites = source.hierarchy().sites().len() as u32;

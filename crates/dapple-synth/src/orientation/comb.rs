@@ -1,4 +1,4 @@
-//! Combing: chooses one of the equivalent directions at each site, so that neighbors agree except across cuts.
+//! Combing: chooses one of the equivalent directions at each site so that neighbors agree, except across cuts.
 //!
 //! A field with a symmetry has several equivalent directions at each site. Matching needs a single one: it reads the
 //! rows above a pixel, which are synthesized before it. Around a singularity no choice fits everywhere. Choices spread
@@ -15,7 +15,7 @@ use core::cmp::Reverse;
 use glam::DVec3;
 use std::collections::BinaryHeap;
 
-/// Rotates the directions of a level to equivalent ones, so that most neighbors agree.
+/// Rotates each direction of a level to an equivalent one so that most neighbors agree.
 pub(super) fn comb(field: &Field<'_>, vectors: &mut [DVec3]) {
     let bends = columns::column(vectors.len(), |site| bend(field, site, vectors));
     let mut is_combed = vec![false; vectors.len()];
@@ -54,8 +54,8 @@ pub(super) fn comb(field: &Field<'_>, vectors: &mut [DVec3]) {
     }
 }
 
-/// Returns the bend of the field around a site: weighted mean squared distance between its direction and the nearest
-/// equivalent directions of its neighbors.
+/// Returns the bend of the field around `site`, as the weighted mean squared distance between its direction and the
+/// nearest equivalent directions of its neighbors.
 fn bend(field: &Field<'_>, site: usize, vectors: &[DVec3]) -> f64 {
     let links = field.links;
     let mut sum = 0.0;

@@ -8,7 +8,7 @@ use glam::DVec3;
 /// Number of low-pass steps before a level is downsampled. Together they have the variance of the filter 1-4-6-4-1 of
 /// image pyramids.
 const BLUR_STEPS: usize = 20;
-/// Strength t of a low-pass step, equation 3.
+/// Strength t of a low-pass step (equation 3).
 const BLUR_STRENGTH: f64 = 0.1;
 /// Extent of the blur around a known site, in edges. Less than 1e-7 of the weight would spread farther.
 const BLUR_RINGS: usize = 8;
@@ -18,23 +18,24 @@ const LEAST_WEIGHT: f64 = 0.01;
 /// Factor on the weights when a level is downsampled. The coarser level has a quarter of the sites, so the sum of
 /// weights stays the same.
 const THINNING: f64 = 4.0;
-/// Minimum length of a sum of directions relative to the sum of their weights. Shorter sums count as canceled.
+/// Minimum length of a sum of directions, relative to the sum of their weights. Shorter sums count as canceled.
 const LEAST_PART: f64 = 1e-3;
 
-/// Radius of the grid search for the site nearest to a direction, in spacings.
+/// Radius of the grid search for the site nearest to a direction, in multiples of the site spacing.
 const SEARCH_RADIUS: f64 = 4.0;
 
-/// Known direction of a site: mean of the directions there, and its weight.
+/// Known direction of a site: the mean of the directions given there, and its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Known {
     pub(super) site: usize,
-    /// A unit tangent vector.
+    /// Direction, as a unit tangent vector.
     pub(super) vector: DVec3,
     /// Weight, from 0 to 1; 1 where a direction was given.
     pub(super) weight: f64,
 }
 
-/// Assigns directions to the nearest sites of the finest level. Returns them in ascending order of the site.
+/// Assigns directions to the nearest sites of the finest level. Returns one known direction per such site, in ascending
+/// order of the site.
 pub(super) fn known(
     hierarchy: &Hierarchy,
     directions: &[Direction],
@@ -60,7 +61,7 @@ pub(super) fn known(
 
 /// Averages the directions at each site, in ascending order of the site. Sites whose directions cancel are dropped.
 fn means(mut given: Vec<(usize, DVec3)>, normals: &[DVec3], symmetry: Symmetry) -> Vec<Known> {
-    // Stable sort: the directions of one site are added in the order of the caller.
+    // Stable sort: the directions at each site are added in the caller's order.
     given.sort_by_key(|&(site, _)| site);
     let mean = |group: &[(usize, DVec3)]| {
         let (site, first) = group[0];
@@ -72,7 +73,7 @@ fn means(mut given: Vec<(usize, DVec3)>, normals: &[DVec3], symmetry: Symmetry) 
     given.chunk_by(|a, b| a.0 == b.0).filter_map(mean).collect()
 }
 
-/// Returns the known directions of every level, finest first, by repeated downsampling.
+/// Downsamples known directions repeatedly. Returns the known directions of every level, finest first.
 pub(super) fn pull(hierarchy: &Hierarchy, finest: Vec<Known>) -> Vec<Vec<Known>> {
     let mut levels = vec![finest];
     for pair in hierarchy.levels().windows(2) {
@@ -82,8 +83,9 @@ pub(super) fn pull(hierarchy: &Hierarchy, finest: Vec<Known>) -> Vec<Vec<Known>>
     levels
 }
 
-/// Returns the known directions of a field with a symmetry on every level, finest first. On a coarser level each
-/// direction moves to the nearest site and keeps its full weight, since directions up to rotation cannot be blurred.
+/// Returns the known directions on every level, finest first, for a field with a symmetry. On a coarser level each
+/// direction moves to the nearest site and retains its full weight, since directions that are known only up to a
+/// rotation cannot be blurred.
 pub(super) fn pull_nearest(
     hierarchy: &Hierarchy,
     finest: Vec<Known>,
@@ -104,8 +106,8 @@ pub(super) fn pull_nearest(
     levels
 }
 
-/// Returns the known direction of a site from a sum of vectors and the sum of their weights. `None` if the vectors
-/// cancel.
+/// Returns the known direction of `site` from the sum of vectors there and the sum of their weights. `None` if the
+/// vectors cancel.
 fn summed(site: usize, sum: DVec3, weight: f64) -> Option<Known> {
     let length = sum.length();
     (length > LEAST_PART * weight).then(|| Known {
@@ -115,7 +117,7 @@ fn summed(site: usize, sum: DVec3, weight: f64) -> Option<Known> {
     })
 }
 
-/// Downsampling: blurs the known directions of a level, and keeps the result at sites of the coarser level.
+/// Downsamples the known directions of a level: blurs them, and retains the results at sites of the coarser level.
 fn down(hierarchy: &Hierarchy, [finer, coarser]: [&Level; 2], known: &[Known]) -> Vec<Known> {
     let near = Near::new(hierarchy, finer, known);
     let mut kept: Vec<Known> = Vec::new();
@@ -130,11 +132,11 @@ fn down(hierarchy: &Hierarchy, [finer, coarser]: [&Level; 2], known: &[Known]) -
     kept
 }
 
-/// Subgraph of the sites around the known ones: the part of a level that the blur changes.
+/// Subgraph of the sites around the known sites, which is the part of a level that the blur changes.
 struct Near {
     /// Indices of the sites; known sites come first.
     sites: Vec<usize>,
-    /// For each site, its neighbors as positions in `sites`, with normalized weights.
+    /// For each site, its neighbors as indices in `sites`, with normalized weights.
     edges: Vec<Vec<(usize, f64)>>,
 }
 
@@ -185,7 +187,8 @@ impl Near {
         }
     }
 
-    /// Returns the sums of vectors and of weights after all steps of equation 3.
+    /// Blurs the known directions by all steps of equation 3. Returns the weighted sum of vectors and the sum of
+    /// weights at each site.
     fn blur(&self, known: &[Known]) -> Vec<(DVec3, f64)> {
         let mut values: Vec<(DVec3, f64)> = known
             .iter()
@@ -199,7 +202,7 @@ impl Near {
     }
 }
 
-/// One step of equation 3 for one site.
+/// Computes one step of equation 3 for a single site.
 fn step(values: &[(DVec3, f64)], at: usize, edges: &[(usize, f64)]) -> (DVec3, f64) {
     if edges.is_empty() {
         return values[at];
@@ -216,7 +219,8 @@ fn step(values: &[(DVec3, f64)], at: usize, edges: &[(usize, f64)]) -> (DVec3, f
     )
 }
 
-/// Returns the site of a level nearest to a position; ties go to the lowest index. `None` only if there are no sites.
+/// Returns the site of `level` nearest to the position `at`; ties go to the lowest index. `None` only if there are no
+/// sites.
 fn nearest_site(hierarchy: &Hierarchy, level: usize, at: DVec3) -> Option<usize> {
     let level = hierarchy.levels().get(level)?;
     let positions = &hierarchy.sites().positions()[..level.n_sites()];

@@ -1,4 +1,4 @@
-//! Push: diffuses the known directions on the coarsest level, and refines the field down to the finest level.
+//! Push: diffuses the known directions on the coarsest level, and refines the field from there to the finest level.
 
 use super::comb::comb;
 use super::pull::Known;
@@ -10,9 +10,9 @@ use crate::solve::{System, conjugate_gradients};
 use crate::{Hierarchy, SiteIdx, columns};
 use glam::DVec3;
 
-/// Tolerance of the diffusion, in radians: it ends when averaging once more would rotate no vector by more.
+/// Tolerance of the diffusion, in radians. The solver stops when another averaging step would rotate no vector by more.
 const TOLERANCE: f64 = 1e-5;
-/// Maximum number of solver steps; bounds the time for a large coarsest level.
+/// Maximum number of solver steps. It bounds the time if the coarsest level is large.
 const STEPS_MAX: usize = 500;
 /// Number of sweeps of equation 4 on every finer level.
 const SWEEPS: usize = 4;
@@ -54,7 +54,7 @@ pub(super) fn push(
     vectors
 }
 
-/// Context of a level: weighted edges, normals of the tangent planes, axis and symmetry.
+/// Context of a level: its weighted edges, the normals of the tangent planes, the axis and the symmetry.
 pub(super) struct Field<'a> {
     pub(super) links: &'a Links<'a>,
     pub(super) normals: &'a [DVec3],
@@ -63,8 +63,8 @@ pub(super) struct Field<'a> {
 }
 
 impl Field<'_> {
-    /// Returns the unit vectors on the coarsest level for the sites that are connected to a known one; zero for the
-    /// others.
+    /// Diffuses the known directions over the coarsest level. Returns unit vectors at the sites that are connected to a
+    /// known site; zero at the others.
     fn diffuse(&self, known: &[Known]) -> Vec<DVec3> {
         let n_sites = self.links.len();
         let mut vectors = vec![DVec3::ZERO; n_sites];
@@ -94,14 +94,14 @@ impl Field<'_> {
         vectors
     }
 
-    /// Returns the smoothest field of the symmetry on the coarsest level with the known directions, combed.
+    /// Returns the combed, smoothest field on the coarsest level that has the known directions.
     fn smoothest(&self, components: &[u32], known: &[Known]) -> Vec<DVec3> {
         let mut vectors = smoothest(self, components, known);
         comb(self, &mut vectors);
         vectors
     }
 
-    /// Upsampling: unit vectors on a finer level for the sites that are connected to a known one.
+    /// Upsamples a field to a finer level. Returns unit vectors at the sites that are connected to a known site.
     fn refine(
         &self,
         hierarchy: &Hierarchy,
@@ -138,8 +138,8 @@ impl Field<'_> {
         vectors
     }
 
-    /// Returns the weighted mean direction of the coarser sites around a site, as a unit vector; zero if they have
-    /// none.
+    /// Returns the weighted mean direction of the coarser sites around `site`, as a unit vector; zero if they have no
+    /// direction.
     fn inherit(
         &self,
         hierarchy: &Hierarchy,
@@ -161,7 +161,7 @@ impl Field<'_> {
             });
     }
 
-    /// One sweep of equation 4 for a site: relaxed average of vectors, projected and normalized.
+    /// Computes one sweep of equation 4 for `site`: the relaxed average of vectors, projected and normalized.
     #[inline]
     fn sweep(&self, site: usize, vectors: &[DVec3]) -> DVec3 {
         let sum = self.links.sums()[site];
@@ -206,7 +206,7 @@ impl Field<'_> {
         sum
     }
 
-    /// Returns the neighbors of a site with their weights.
+    /// Returns the neighbors of `site` with their weights.
     #[inline]
     fn near(&self, site: usize) -> impl Iterator<Item = (usize, f64)> + Clone {
         let neighbors = self.links.neighbors(site).iter();
@@ -214,7 +214,8 @@ impl Field<'_> {
         neighbors.map(|other| other.index()).zip(weights)
     }
 
-    /// Returns the unit tangent vector along a sum of vectors; the tangent along the axis if the sum cancels.
+    /// Returns the unit tangent vector along `vector`, a sum of vectors. If the sum cancels, returns the tangent along
+    /// the axis.
     #[inline]
     pub(super) fn unit(&self, site: usize, vector: DVec3) -> DVec3 {
         let normal = self.normals[site];
@@ -236,7 +237,8 @@ impl Field<'_> {
     }
 }
 
-/// Linear system of the diffusion: every free vector equals the projected average of its neighbors; fixed vectors stay.
+/// Linear system of the diffusion. At the solution, every free vector equals the projected average of its neighbors;
+/// fixed vectors do not change.
 struct Diffusion<'a> {
     field: &'a Field<'a>,
     is_fixed: Vec<bool>,

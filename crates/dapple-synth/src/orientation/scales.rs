@@ -1,15 +1,15 @@
-//! Conformal scales: local sizes of the texture for which features that run along the field neither begin nor end.
+//! Conformal scales: local texture scales for which features that run along the field neither begin nor end.
 //!
 //! Where directions diverge, rows of features of constant size leave gaps, and where they converge, some rows must end.
-//! This does not happen if features grow as directions diverge. The direction and the size at every position are the
-//! derivative of a conformal map to the exemplar if the logarithm u of the size grows across the field at the rate at
-//! which the field rotates. The derivative of u along P is minus the rate at which O rotates toward P along O. The
-//! derivative of u along O is the rate at which O rotates toward P along P.
+//! This does not happen if features grow as directions diverge. Let u be the logarithm of the size. Direction and size
+//! are the derivative of a conformal map to the exemplar if u grows across the field at the rate at which the field
+//! rotates. The derivative of u along P is minus the rate at which O rotates toward P along O. The derivative of u
+//! along O is the rate at which O rotates toward P along P.
 //!
-//! For most fields no size satisfies this everywhere, so a least-squares solution is computed. It minimizes
-//! `Σ w_ij (u_j - u_i - g_ij)²` over the edges of the coarsest level, where `g_ij` is the mean of the differences that
-//! the two ends ask for. Near a singularity u is unbounded. In each connected component a constant is therefore added
-//! to u that brings as many sites as possible within the bounds, and u is clamped to them.
+//! For most fields no size satisfies this everywhere, so a least-squares solution is computed. It minimizes `Σ w_ij
+//! (u_j - u_i - g_ij)²` over the edges of the coarsest level, where `g_ij` is the mean of the differences that the two
+//! ends predict. Near a singularity u is unbounded. In each connected component a constant is therefore added to u that
+//! brings as many sites as possible within the bounds, and u is clamped to them.
 //!
 //! Reference: our own, after the correction of curl of Nicolas Ray, Wan Chiu Li, Bruno Lévy, Alla Sheffer, Pierre
 //! Alliez, "Periodic Global Parameterization", ACM Transactions on Graphics 25 (4), 2006,
@@ -22,14 +22,14 @@ use crate::solve::{System, conjugate_gradients};
 use crate::{Hierarchy, SiteIdx, SynthError, columns};
 use glam::DVec3;
 
-/// Maximum number of solver steps; bounds the time for a large coarsest level.
+/// Maximum number of solver steps. It bounds the time if the coarsest level is large.
 const STEPS_MAX: usize = 500;
 
-/// Tolerance of the solver, relative to the size: it ends when averaging once more would change no size by more.
+/// Solver tolerance, relative to the size. The solver stops when another averaging step would change no size by more.
 const TOLERANCE: f64 = 1e-3;
 
 impl Orientation {
-    /// Computes a scale for every site within `bounds`: lower and upper bound, both above 0.
+    /// Computes a scale for every site. `bounds` are the lower and upper bound of the scales, both above 0.
     pub(crate) fn conformal_scales(
         &self,
         hierarchy: &Hierarchy,
@@ -55,8 +55,8 @@ impl Orientation {
         Ok(logs.into_iter().map(size).collect())
     }
 
-    /// Returns the logarithm of the conformal factor at the sites of a level, up to a constant in each connected
-    /// component.
+    /// Returns the logarithm of the conformal factor at the sites of `level`. In each connected component it is
+    /// determined up to a constant.
     fn growth(&self, hierarchy: &Hierarchy, level: usize) -> Vec<f64> {
         let system = Growth::new(hierarchy, self, level);
         let mut logs = vec![0.0; system.links.len()];
@@ -65,7 +65,7 @@ impl Orientation {
     }
 }
 
-/// Returns the offset to add to the values of each component, so that as many values as possible lie within the bounds.
+/// Returns the offset to add to the values of each component so that as many as possible are from `least` to `most`.
 fn shifts(components: &[u32], values: &[f64], [least, most]: [f64; 2]) -> Vec<f64> {
     let n_components = components.iter().max().map_or(0, |&last| last as usize + 1);
     let mut of_components = vec![Vec::new(); n_components];
@@ -89,10 +89,11 @@ fn shifts(components: &[u32], values: &[f64], [least, most]: [f64; 2]) -> Vec<f6
     of_components.into_iter().map(shift).collect()
 }
 
-/// Linear system of the least-squares problem: every value is the weighted average of the values its neighbors ask for.
+/// Linear system of the least-squares problem. At the solution, every value is the weighted average of the values that
+/// its neighbors predict.
 struct Growth<'a> {
     links: Links<'a>,
-    /// For each link, the wanted difference of the value at the far end from the value at the near end.
+    /// For each link, the wanted difference: the value at the far end minus the value at the near end.
     steps: Vec<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! Smoothest field of a symmetry on the coarsest level: a globally optimal direction field.
+//! Computes the smoothest field with a symmetry on the coarsest level: a globally optimal direction field.
 //!
 //! Reference: Felix Knöppel, Keenan Crane, Ulrich Pinkall, Peter Schröder, "Globally Optimal Direction Fields",
 //! SIGGRAPH 2013, <https://doi.org/10.1145/2461912.2462005>.
@@ -29,12 +29,12 @@ const ITERATIONS: usize = 12;
 const STEPS_MAX: usize = 200;
 /// Maximum number of solver steps for a field with fixed directions.
 const STEPS_MAX_FIXED: usize = 500;
-/// Tolerance of the solver: it ends when averaging once more would change no power by more. Powers are about 1.
+/// Solver tolerance. The solver stops when another averaging step would change no power by more. Powers are about 1.
 const TOLERANCE: f64 = 1e-7;
-/// Relative tolerance of the eigenvalues: the iteration ends when none falls by more.
+/// Relative tolerance of the eigenvalues. The iteration stops when none decreases by more.
 const EIGENVALUE_TOLERANCE: f64 = 1e-3;
-/// Shift of the diagonal, as a fraction of its mean. It makes the system regular where a constant field has eigenvalue
-/// 0.
+/// Shift of the diagonal, as a fraction of its mean. It makes the system nonsingular where a constant field has
+/// eigenvalue 0.
 const SHIFT: f64 = 1e-6;
 /// λ of the system with fixed directions, as a fraction of the lowest eigenvalue. At 1 the system would be nearly
 /// singular with a single direction.
@@ -43,8 +43,8 @@ const TOWARD_EIGENVALUE: f64 = 0.9;
 /// could be orthogonal to the smoothest one.
 const NOISE: f64 = 0.5;
 
-/// Returns the smoothest field of a level: unit tangent vectors at all sites. Each is an arbitrary one of the
-/// equivalent directions.
+/// Computes the smoothest field of a level, as unit tangent vectors at all sites. Each vector is an arbitrary one of
+/// the equivalent directions.
 pub(super) fn smoothest(field: &Field<'_>, components: &[u32], known: &[Known]) -> Vec<DVec3> {
     let mut smooth = Smooth::new(field, components);
     // Solve for the powers of the smoothest field, and rotate it to the known directions or the axis.
@@ -66,7 +66,7 @@ pub(super) fn smoothest(field: &Field<'_>, components: &[u32], known: &[Known]) 
     })
 }
 
-/// Linear system of a level: connection Laplacian with a shifted diagonal, and the right-hand side.
+/// Linear system of a level: the connection Laplacian with a shifted diagonal, and the right-hand side.
 pub(super) struct Smooth<'a> {
     field: &'a Field<'a>,
     components: &'a [u32],
@@ -112,7 +112,8 @@ impl<'a> Smooth<'a> {
         }
     }
 
-    /// Returns the lowest eigenvector of every component, scaled to a mean square of 1, and the eigenvalues.
+    /// Computes the lowest eigenvector of every component, scaled to a mean square of 1. Returns the eigenvectors and
+    /// the eigenvalues.
     pub(super) fn lowest(&mut self) -> (Vec<DVec2>, Vec<f64>) {
         let n_sites = self.frames.len();
         let mut powers: Vec<DVec2> = (0..n_sites as i64).map(first).collect();
@@ -135,7 +136,7 @@ impl<'a> Smooth<'a> {
         (powers, eigenvalues)
     }
 
-    /// Scales the powers of every component to a mean square of 1. Returns the Rayleigh quotients.
+    /// Scales the powers of every component to a mean square of 1. Returns the Rayleigh quotient of each component.
     fn normalize(&self, powers: &mut [DVec2]) -> Vec<f64> {
         let images = columns::column(powers.len(), |site| {
             self.row(powers, site).dot(powers[site])
@@ -197,7 +198,7 @@ impl<'a> Smooth<'a> {
         conjugate_gradients(self, powers, STEPS_MAX_FIXED);
     }
 
-    /// Returns the n-th power of a known direction in the frame of its site.
+    /// Returns the n-th power of a known direction, in the frame of its site.
     fn power(&self, known: &Known) -> DVec2 {
         let [x, y] = self.frames[known.site].map(|axis| axis.dot(known.vector));
         self.field
@@ -205,7 +206,7 @@ impl<'a> Smooth<'a> {
             .power(DVec2::new(x, y).normalize_or(DVec2::X))
     }
 
-    /// Sums a value over the sites of each component.
+    /// Sums `value(site)` over the sites of each component.
     fn by_component(&self, value: impl Fn(usize) -> f64) -> Vec<f64> {
         let mut sums = Vec::new();
         for (site, &component) in self.components.iter().enumerate() {
@@ -256,7 +257,7 @@ impl System<DVec2> for Smooth<'_> {
     }
 }
 
-/// Returns the initial power of a site: the power of the axis plus noise.
+/// Returns the initial power of `site`: the power of the axis plus noise.
 fn first(site: i64) -> DVec2 {
     let part = |index| {
         f64::from(unit_f32(

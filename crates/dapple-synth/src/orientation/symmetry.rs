@@ -29,8 +29,8 @@ impl Symmetry {
         }
     }
 
-    /// Returns the number of quarter turns, allowed by the symmetry, that rotate a direction about a normal nearest to
-    /// another direction.
+    /// Returns the number of quarter turns, among those the symmetry allows, whose rotation about `normal` brings
+    /// `direction` nearest to `other`.
     #[inline]
     pub(crate) fn quarters_toward(self, direction: DVec3, normal: DVec3, other: DVec3) -> u8 {
         if self == Self::One {
@@ -40,8 +40,8 @@ impl Symmetry {
         self.quarters_to(DVec2::new(direction.dot(other), right.dot(other)))
     }
 
-    /// Returns the number of quarter turns, allowed by the symmetry, that rotate (1, 0) nearest to a vector. One
-    /// quarter turn gives (0, 1). Ties go to 0, then to 2.
+    /// Returns the number of quarter turns, among those the symmetry allows, whose rotation brings (1, 0) nearest to a
+    /// vector. One quarter turn gives (0, 1). Ties go to 0, then to 2.
     #[inline]
     pub(crate) fn quarters_to(self, DVec2 { x, y }: DVec2) -> u8 {
         match self {
@@ -52,7 +52,8 @@ impl Symmetry {
         }
     }
 
-    /// Among the directions equivalent to a direction in the plane of a normal, the one nearest to another direction.
+    /// Returns the direction equivalent to `direction` that is nearest to `other`. Equivalent directions are rotations
+    /// in the plane with the given normal.
     #[inline]
     pub(crate) fn nearest(self, direction: DVec3, normal: DVec3, other: DVec3) -> DVec3 {
         turned(
@@ -62,8 +63,8 @@ impl Symmetry {
         )
     }
 
-    /// Returns the n-th power of a unit complex number, where n is the number of equivalent directions. They all have
-    /// the same power.
+    /// Returns the n-th power of a unit complex number, where n is the number of equivalent directions. All equivalent
+    /// directions have the same power.
     pub(crate) fn power(self, number: DVec2) -> DVec2 {
         match self {
             Self::One => number,
@@ -94,7 +95,7 @@ fn square_root(unit: DVec2) -> DVec2 {
     }
 }
 
-/// Rotates a direction in the plane of a normal by a number of quarter turns.
+/// Rotates `direction` about `normal` by `quarters` quarter turns.
 #[inline]
 pub(crate) fn turned(direction: DVec3, normal: DVec3, quarters: u8) -> DVec3 {
     match quarters {
@@ -105,8 +106,8 @@ pub(crate) fn turned(direction: DVec3, normal: DVec3, quarters: u8) -> DVec3 {
     }
 }
 
-/// Returns the offset, to the right and down, that a sample of a rotated square has in the square before the rotation
-/// by `quarters`.
+/// Converts an offset, to the right and down, in a square that was rotated by `quarters` quarter turns to the offset
+/// before the rotation.
 #[inline]
 pub(crate) fn offset_before<T: Copy + Neg<Output = T>>([i, j]: [T; 2], quarters: u8) -> [T; 2] {
     match quarters {
@@ -118,8 +119,8 @@ pub(crate) fn offset_before<T: Copy + Neg<Output = T>>([i, j]: [T; 2], quarters:
     }
 }
 
-/// Returns the offset, to the right and down, that a sample of a square has after the rotation by `quarters`. Inverse
-/// of [`offset_before`].
+/// Converts an offset, to the right and down, in a square to the offset after a rotation by `quarters` quarter turns.
+/// Inverse of [`offset_before`].
 #[inline]
 pub(crate) fn offset_after<T: Copy + Neg<Output = T>>(offset: [T; 2], quarters: u8) -> [T; 2] {
     // Rotate by the same angle in the opposite direction.

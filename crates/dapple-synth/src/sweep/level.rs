@@ -1,4 +1,4 @@
-//! Sweep distances of one level.
+//! Computes the sweep distances of a single level.
 
 use super::Distances;
 use crate::links::Links;
@@ -7,18 +7,18 @@ use crate::solve::{System, conjugate_gradients};
 use crate::{Hierarchy, Orientation, SiteIdx, Symmetry, columns};
 use glam::DVec3;
 
-/// Tolerance of the solver on the coarsest level, in spacings: it ends when equation 5 would change no distance by
-/// more.
+/// Solver tolerance on the coarsest level, in multiples of the site spacing. The solver stops when another sweep of
+/// equation 5 would change no distance by more.
 const TOLERANCE: f64 = 1e-6;
-/// Maximum number of solver steps; bounds the time for a large coarsest level.
+/// Maximum number of solver steps. It bounds the time if the coarsest level is large.
 const STEPS_MAX: usize = 500;
 /// Number of sweeps of equation 5 on every finer level.
 const SWEEPS: usize = 20;
 /// Sum of the β in equation 5; α is 1 minus this.
 const SWEEP_STRENGTH: f64 = 0.8;
 
-/// Number of solves on the coarsest level: iteratively reweighted least squares. Each solve takes its edge weights from
-/// the previous solution.
+/// Number of solves on the coarsest level in iteratively reweighted least squares. Each solve derives its edge weights
+/// from the previous solution.
 const ROUNDS: usize = 3;
 
 /// Linear system of equation 5 on a level.
@@ -27,7 +27,8 @@ pub(super) struct LevelSweep<'a> {
     level: usize,
     orientation: &'a Orientation,
     links: Links<'a>,
-    /// Right-hand side of the system: for each site, the weighted sum of its leads over its neighbors along the field.
+    /// Right-hand side of the system. For each site, this is the weighted sum of its leads over its neighbors along the
+    /// field.
     ahead: Vec<f64>,
     /// Spacing of the level, in units of the mesh.
     spacing: f64,
@@ -53,7 +54,7 @@ impl<'a> LevelSweep<'a> {
     pub(super) fn solve(mut self, components: &[u32], anchor: Option<SiteIdx>) -> Vec<f64> {
         let mut distances = vec![0.0; self.links.len()];
         let mut assigned = vec![false; self.links.len()];
-        // Start at the anchor of each component: the given one, or the lowest site.
+        // Start at the anchor of each component, which is the given anchor or the lowest site.
         let anchored = anchor.map(|site| (site.index(), components[site.index()]));
         for (site, component) in lowest_sites(components) {
             let site = anchored
@@ -79,7 +80,7 @@ impl<'a> LevelSweep<'a> {
     /// its lowest site is inherited. The distances of the others are not comparable.
     pub(super) fn refine(mut self, components: &[u32], coarser: &Distances) -> Vec<f64> {
         let n_coarser = coarser.distances.len();
-        // For each component, the coarser component that it inherits.
+        // For each component, find the coarser component whose distances it inherits.
         let pieces: Vec<Option<u32>> = lowest_sites(components)
             .map(|(site, _)| coarser.components.get(site).copied())
             .collect();
@@ -117,7 +118,8 @@ impl<'a> LevelSweep<'a> {
         distances
     }
 
-    /// Returns the distance of a site as predicted by the coarser sites around it. `None` if no coarser site counts.
+    /// Returns the distance of `site` as predicted by the coarser sites around it. `None` if there is no coarser site
+    /// for which `inherits` is true.
     fn inherit(
         &self,
         site: usize,
@@ -133,8 +135,8 @@ impl<'a> LevelSweep<'a> {
         self.consensus(site, believers, coarser)
     }
 
-    /// Assigns all sites that are connected to assigned ones, breadth first, by equation 5 with assigned neighbors
-    /// only. Sites that cuts separate from all assigned sites start at 0.
+    /// Assigns distances to all sites that are connected to assigned ones, breadth first. Each uses equation 5 with its
+    /// assigned neighbors only. Sites that cuts separate from all assigned sites start at 0.
     fn fill(&self, assigned: &mut [bool], distances: &mut [f64]) {
         let opinion = |site, assigned: &[bool], distances: &[f64]| {
             let neighbors = self.links.neighbors(site).iter();
@@ -158,8 +160,8 @@ impl<'a> LevelSweep<'a> {
         }
     }
 
-    /// Returns the distance of a site as predicted by others: their weighted mean. Predictions that disagree with the
-    /// prediction of the largest weight count less.
+    /// Returns the distance of `site` as the weighted mean of the predictions of other sites, `believers`. Predictions
+    /// that disagree with the one with the largest weight count less.
     #[inline]
     fn consensus(
         &self,
@@ -168,7 +170,7 @@ impl<'a> LevelSweep<'a> {
         distances: &[f64],
     ) -> Option<f64> {
         let (mut leader, mut most) = (site, 0.0);
-        // Find the prediction of the largest weight.
+        // Find the prediction with the largest weight.
         for (other, weight) in believers.clone() {
             if weight > most {
                 (leader, most) = (other, weight);
@@ -213,7 +215,7 @@ impl<'a> LevelSweep<'a> {
         });
     }
 
-    /// One sweep of equation 5 for a site.
+    /// Computes one sweep of equation 5 for `site`.
     #[inline]
     fn sweep(&self, site: usize, distances: &[f64]) -> f64 {
         let sum = self.links.sums()[site];
@@ -224,7 +226,7 @@ impl<'a> LevelSweep<'a> {
         distances[site] * (1.0 - SWEEP_STRENGTH) + average * SWEEP_STRENGTH
     }
 
-    /// Returns the weighted sum of the neighbors' distances.
+    /// Returns the weighted sum of the distances of the neighbors of `site`.
     #[inline]
     fn neighbors_sum(&self, site: usize, distances: &[f64]) -> f64 {
         let mut sum = 0.0;
@@ -239,8 +241,8 @@ impl<'a> LevelSweep<'a> {
         sum
     }
 
-    /// Returns the paper's Δ: lead of `site` over `other` along the field, in units of the mesh; 0 where their
-    /// orientations cancel.
+    /// Returns the lead of `site` over `other` along the field, in units of the mesh; 0 if their orientations cancel.
+    /// This is the paper's Δ.
     #[inline]
     fn step(&self, site: usize, other: usize) -> f64 {
         let vectors = self.orientation.vectors();
@@ -256,7 +258,7 @@ impl<'a> LevelSweep<'a> {
     }
 }
 
-/// Returns the links of a level, with weight 0 where they cross a cut of the field.
+/// Builds the links of `level`, with weight 0 where they cross a cut of the field.
 fn links<'a>(hierarchy: &'a Hierarchy, orientation: &Orientation, level: usize) -> Links<'a> {
     let mut links = Links::new(hierarchy, level);
     let normals = hierarchy.sites().normals();
@@ -275,15 +277,15 @@ fn links<'a>(hierarchy: &'a Hierarchy, orientation: &Orientation, level: usize) 
     links
 }
 
-/// Returns the Cauchy weight of a prediction that is off by `difference`; 1/2 at one spacing.
+/// Returns the Cauchy weight of a prediction that is off by `difference`. It is 1/2 if `difference` equals `spacing`.
 #[inline]
 fn trust(difference: f64, spacing: f64) -> f64 {
     let x = difference / spacing;
     1.0 / (1.0 + x * x)
 }
 
-/// Returns the component of `way` along the projection of `sum` to the plane perpendicular to `normal`; 0 if the
-/// projection vanishes.
+/// Projects `sum` to the plane perpendicular to `normal`, and returns the component of `way` along the projection; 0 if
+/// the projection vanishes.
 #[inline]
 pub(super) fn step(way: DVec3, sum: DVec3, normal: DVec3) -> f64 {
     let up = normal.length_squared();
@@ -301,7 +303,7 @@ pub(super) fn step(way: DVec3, sum: DVec3, normal: DVec3) -> f64 {
     }
 }
 
-/// Returns the lowest site of every component with the component, in the order of the components.
+/// Returns, for every component in ascending order, its lowest site and its index.
 fn lowest_sites(components: &[u32]) -> impl Iterator<Item = (usize, u32)> {
     let mut next = 0;
     components

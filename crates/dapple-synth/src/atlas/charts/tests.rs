@@ -1,4 +1,4 @@
-//! Charts of small meshes.
+//! Tests of charts on small meshes.
 
 use super::{MANY, n_components, padding};
 use crate::SynthErrorKind;

@@ -1,4 +1,4 @@
-//! Repair of a stained checker, on a square and around a torus.
+//! Tests of repairing a stained checker, on a square and around a torus.
 
 use super::*;
 use crate::shapes::{square, synthesizer, torus};

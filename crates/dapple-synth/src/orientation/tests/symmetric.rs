@@ -25,9 +25,9 @@ fn angle(number: DVec2) -> f64 {
     libm::atan2(number.y, number.x)
 }
 
-/// Returns the index of the field in each triangle of sites times the number of directions, and the Euler
-/// characteristic of the mesh. The index is the number of turns of the field's power around the triangle, minus the
-/// holonomy of the frame.
+/// Returns the index of the field in each triangle of sites, multiplied by the number of equivalent directions, and the
+/// Euler characteristic of the mesh. The index is the number of turns of the field's power around the triangle, minus
+/// the holonomy of the frame.
 fn indices(mesh: &Mesh, normals: &[DVec3], orientation: &Orientation) -> (Vec<f64>, i64) {
     let symmetry = orientation.symmetry();
     let n = symmetry.quarters().len() as f64;
