@@ -93,14 +93,15 @@
 //! 2. **Orientation.** The given directions are interpolated to a unit tangent at every site ([`Orientation`]): the
 //!    texture's "down". Fields with two or four directions ([`Orientation::symmetric`]) have fewer and weaker
 //!    singularities; they suit examples that look similar when rotated, such as bricks or checkers.
-//! 3. **Matching.** The coarsest level follows the paper ([`Matching::Colors`]): sites are visited along the orientation
-//!    ([`Sweep`]), and each takes the exemplar pixel with the most similar neighborhood ([`Schedule`], [`Matcher`]).
+//! 3. **Matching.** The coarsest level follows the paper ([`Matching::Colors`]): sites are visited along the
+//!    orientation ([`Sweep`]), and each takes the exemplar pixel with the most similar neighborhood ([`Schedule`],
+//!    [`Matcher`]).
 //! 4. **Correction.** By default ([`Matching::Appearance`]) every level is then corrected by appearance, after Lefebvre
 //!    and Hoppe (2006): a site is compared with windows of the exemplar around its neighbors' pixels. This takes a
 //!    quarter of the time of full matching, and strands and letters stay connected more often.
-//! 5. **Baking.** A [`SurfaceTexture`] stores for each site its exemplar pixel, not only a color. Other maps of the exemplar
-//!    (height, roughness, normals) therefore follow: [`bake_colors`], [`bake_values`] and [`bake_normals`] write texture
-//!    maps with one [`Atlas`]. [`displaced_sites`] moves the mesh itself.
+//! 5. **Baking.** A [`SurfaceTexture`] stores for each site its exemplar pixel, not only a color. Other maps of the
+//!    exemplar (height, roughness, normals) therefore follow: [`bake_colors`], [`bake_values`] and [`bake_normals`]
+//!    write texture maps with one [`Atlas`]. [`displaced_sites`] moves the mesh itself.
 //!
 //! [`Synthesizer`] stores sites and orientation for reuse with other exemplars.
 //!
@@ -131,8 +132,8 @@
 //!
 //! # What the paper leaves open
 //!
-//! [`Options::paper`] follows the paper literally and documents its departures. The defaults differ where another choice
-//! measured better:
+//! [`Options::paper`] follows the paper literally and documents its departures. The defaults differ where another
+//! choice measured better:
 //!
 //! * The neighborhood on the coarser level is centered at exactly half of the coordinates ([`CoarserCenter`]). Rounded
 //!   down, four pixels share a center, and the first of them always wins.
@@ -141,8 +142,9 @@
 //! * On the coarsest level, pixels that were used before cost more, and pixels near an edge of the exemplar are
 //!   candidates, too ([`Options::evenness`]). The smallest difference alone would leave a third of the exemplar and
 //!   most rare colors unused.
-//! * Sites store positions between pixels, and texels read the exemplar there ([`Sources`]). Averages of site colors are
-//!   softer than the exemplar, with edges as jagged as the sites. A larger version of the exemplar can be read for detail.
+//! * Sites store positions between pixels, and texels read the exemplar there ([`Sources`]). Averages of site colors
+//!   are softer than the exemplar, with edges as jagged as the sites. A larger version of the exemplar can be read for
+//!   detail.
 //! * On surfaces the exemplar is blurred as much as interpolated neighborhoods are before both are compared. Otherwise
 //!   smooth parts match best.
 //! * The rows and columns of a neighborhood rotate with the field around its site ([`Axes`]). With straight axes,

@@ -6,10 +6,10 @@
 //! meshes. A packer of our own that also rotated charts by 45 degrees and less used the same fraction of the map,
 //! within 3 %. More than [`MANY`] charts are packed in rows.
 //!
-//! References: Bruno Lévy, Sylvain Petitjean, Nicolas Ray and Jérome Maillot, "Least Squares Conformal Maps for Automatic
-//! Texture Atlas Generation", SIGGRAPH 2002, doi 10.1145/566654.566590; Ligang Liu, Lei Zhang, Yin Xu, Craig Gotsman and
-//! Steven J. Gortler, "A Local/Global Approach to Mesh Parameterization", Computer Graphics Forum 27(5), 2008,
-//! doi 10.1111/j.1467-8659.2008.01290.x.
+//! References: Bruno Lévy, Sylvain Petitjean, Nicolas Ray and Jérome Maillot, "Least Squares Conformal Maps for
+//! Automatic Texture Atlas Generation", SIGGRAPH 2002, doi 10.1145/566654.566590; Ligang Liu, Lei Zhang, Yin Xu, Craig
+//! Gotsman and Steven J. Gortler, "A Local/Global Approach to Mesh Parameterization", Computer Graphics Forum 27(5),
+//! 2008, doi 10.1111/j.1467-8659.2008.01290.x.
 
 use super::{Atlas, check_padding, check_side, own_uvs};
 use crate::{SynthError, SynthErrorKind};

@@ -42,7 +42,7 @@ pub(super) fn at_sites(origin: &Origin, texture: &Exemplar) -> Exemplar {
     }
 }
 
-/// For each site, whether it and all its neighbors are usable.
+/// Returns, for each site, whether the site and all its neighbors are usable.
 pub(super) fn eroded(usable: &[bool], graph: &SiteGraph) -> Vec<bool> {
     let all = |site: usize| {
         let mut neighbors = graph.neighbors(SiteIdx(site as u32)).iter();

@@ -127,8 +127,8 @@ impl Reader<'_> {
         chunk
     }
 
-    /// Reads the square of `site` on the level `step` levels above the site's own, if the pass reads that level.
-    /// Returns whether the square meets no border or fold.
+    /// Reads the square of `site` on the level that is `step` levels coarser than the site's own, if the pass reads
+    /// that level. Returns whether the square meets no border or fold.
     fn read(&self, site: u32, step: usize, samples: &mut Samples, memory: &mut MeshMemory) -> bool {
         let Some(half) = self.halves[step] else {
             return true;
