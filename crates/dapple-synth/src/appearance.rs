@@ -87,9 +87,9 @@ const STEP: f32 = 0.8;
 /// A site searches the whole exemplar if the squared distance of its guides, divided by the squared distance of its
 /// features, exceeds this value.
 ///
-/// Measured on leaves, guided by a soft and by a hard image: the correlation of the brightness of the texture with that
-/// of the image is 0.42 and 0.41, as in synthesis by colors, in the same time as with 1 (0.40 and 0.39). A search for
-/// every site gives 0.01 more and takes a quarter longer.
+/// Measured on leaves, guided by a soft and by a hard image: the correlation between the brightness of the texture and
+/// that of the image is 0.42 and 0.41, as in synthesis by colors, in the same time as with 1 (0.40 and 0.39). A search
+/// for every site gives 0.01 more and takes a quarter longer.
 const MISFIT: f32 = 0.25;
 
 /// Number of tasks that search between two progress callbacks.
@@ -349,8 +349,8 @@ impl<'a> Appearance<'a> {
     }
 }
 
-/// Returns the rotation of the exemplar at all sites, in quarter turns. `coarsest` holds the rotations at the
-/// coarsest sites. Every other site continues the rotation of the nearest coarser site among its neighbors.
+/// Returns the rotation of the exemplar at all sites, in quarter turns. `coarsest` holds the rotations at the coarsest
+/// sites. Every other site has the rotation of the nearest coarser site among its neighbors.
 fn quarters(synthesizer: &Synthesizer, coarsest: &[u8], n_levels: usize) -> Vec<u8> {
     if coarsest.is_empty() {
         return Vec::new();
@@ -513,7 +513,7 @@ fn distance_sq(stage: &Stage, around: &[Option<[f32; N_FEATURES]>; 4], place: [i
     stage.distance_sq_of(known, place)
 }
 
-/// Returns `place` plus the offset `way` in pixels. The result may be outside of the exemplar.
+/// Returns `place` plus the offset `way` in pixels. The result may be outside the exemplar.
 #[inline(always)]
 fn moved(place: [u32; 2], way: Vec2) -> [i64; 2] {
     let way = (way * (1 << PART_BITS) as f32).round();

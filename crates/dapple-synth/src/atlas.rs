@@ -203,7 +203,7 @@ impl Atlas {
         covered.count() as f64 / self.faces.pixels().len() as f64
     }
 
-    /// Measures the quality of the layout for its surface.
+    /// Measures the quality of the layout on `surface`, for which it was built.
     #[must_use]
     pub fn report(&self, surface: &Surface) -> AtlasReport {
         AtlasReport::new(self, surface)

@@ -31,8 +31,8 @@ use glam::DVec3;
 /// `y` is the direction of the green channel, in `map` and in the result. `shading` has the normal of every corner of
 /// every face, as in [`textured_model`](crate::textured_model). Texels without a face get the flat normal.
 ///
-/// Codes adjacent to the middle code of an image count as 0 (see [`Normal::centered`]): rotated into the frames of
-/// charts, their slope would show at seams of flat regions.
+/// Codes adjacent to the middle code of an image count as 0 (see [`Normal::centered`]), because their slope, rotated
+/// into the frames of charts, would show at seams in flat regions.
 ///
 /// # Errors
 ///
@@ -108,8 +108,7 @@ pub fn bake_normals(
     })
 }
 
-/// Returns the returns, for each texel, the tangential part of its normal as a vector in space, and the outward
-/// component.
+/// Returns, for each texel, the tangential part of its normal as a vector in space, and the outward component.
 fn in_space(
     synthesizer: &Synthesizer,
     texture: &SurfaceTexture,

@@ -267,8 +267,8 @@ impl Candidates {
         [pixel % self.size[0], pixel / self.size[0]]
     }
 
-    /// Returns the index of a pixel's neighborhood, or `None` if the pixel is not a candidate. If the exemplar wraps,
-    /// the coordinates may be past its edges.
+    /// Returns the row index of a pixel's neighborhood, or `None` if the pixel is not a candidate. If the exemplar
+    /// wraps, the coordinates may be past its edges.
     #[must_use]
     #[inline]
     pub fn row_of_pixel(&self, [mut column, mut line]: [i64; 2]) -> Option<u32> {
@@ -292,8 +292,8 @@ impl Candidates {
         }
     }
 
-    /// Returns the neighborhood of the pixel at an offset from `pixel`. On a surface the offset is at most 1 along each
-    /// axis.
+    /// Returns the index of the neighborhood of the pixel at the offset `[i, j]` from `pixel`. On a surface the offset
+    /// is at most 1 along each axis.
     #[inline]
     pub(crate) fn row_beside(&self, pixel: u32, [i, j]: [i32; 2]) -> Option<u32> {
         if let Some(Beside(beside)) = &self.beside {
@@ -304,8 +304,8 @@ impl Candidates {
         self.row_of_pixel([x + i64::from(i), y + i64::from(j)])
     }
 
-    /// Returns the neighborhood of one of the four children of a pixel of the coarser level, which has `width` columns.
-    /// The offset is 0 or 1 along each axis.
+    /// Returns the index of the neighborhood of one of the four children of `coarser`, a pixel of the coarser level,
+    /// which has `width` columns. `[i, j]` selects the child (each is 0 or 1).
     #[inline]
     pub(crate) fn row_under(&self, coarser: u32, width: u32, [i, j]: [i32; 2]) -> Option<u32> {
         if self.beside.is_some() {

@@ -3,12 +3,12 @@
 use core::ops::Range;
 use glam::DVec3;
 
-/// Cells that contain sites, sorted by x, then y, then z.
+/// Grid cells that contain sites, sorted by x, then y, then z.
 #[derive(Clone, Debug)]
 pub(crate) struct Cells {
     /// Cell of each site.
     of_site: Vec<u32>,
-    /// Start of the ranges of each cell in `near`, and the end.
+    /// Start of each cell's ranges in `near`, plus the end of the last one.
     offsets: Vec<u32>,
     /// Ranges of nearby cells, concatenated over the cells.
     near: Vec<Range<u32>>,

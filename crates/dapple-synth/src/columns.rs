@@ -23,8 +23,8 @@ pub(crate) fn map<T: Send, U: Send>(
     parallel::map_mut_at_least(BLOCK, column, change)
 }
 
-/// Returns the sums `row(i)` over all rows, first within blocks of fixed length and then over the blocks. The bits do
-/// not depend on the number of cores.
+/// Sums `row(i)` over all rows, first within blocks of fixed length and then over the blocks. The bits do not depend on
+/// the number of cores.
 pub(crate) fn sum(n_rows: usize, row: impl Fn(usize) -> f64 + Sync) -> f64 {
     let block = |block: usize| {
         let mut sum = 0.0;
@@ -37,7 +37,7 @@ pub(crate) fn sum(n_rows: usize, row: impl Fn(usize) -> f64 + Sync) -> f64 {
     sums.into_iter().sum()
 }
 
-/// Returns whether a predicate holds for every row.
+/// Returns whether the predicate `row` is true for every row.
 pub(crate) fn all(n_rows: usize, row: impl Fn(usize) -> bool + Sync) -> bool {
     let holds = parallel::map(n_rows.div_ceil(BLOCK), |block| {
         (block * BLOCK..((block + 1) * BLOCK).min(n_rows)).all(&row)

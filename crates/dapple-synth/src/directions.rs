@@ -11,15 +11,15 @@ use glam::DVec3;
 const COLUMNS: [&str; 6] = ["x", "y", "z", "dx", "dy", "dz"];
 
 impl Direction {
-    /// Parses directions from lines `x,y,z,dx,dy,dz`: a position and a vector.
+    /// Parses directions from CSV lines `x,y,z,dx,dy,dz`, each a position and a vector.
     ///
     /// Blank lines and lines that start with `#` are skipped. If no field of the first remaining line is a number, the
-    /// line is a header, and gives the order of the columns.
+    /// line is a header that defines the order of the columns.
     ///
     /// # Errors
     ///
-    /// Returns [`SynthErrorKind::Text`](crate::SynthErrorKind::Text), with the line number, for a wrong header or a
-    /// line that does not have six finite numbers.
+    /// [`SynthErrorKind::Text`](crate::SynthErrorKind::Text), with the line number, if the header is wrong or a line
+    /// does not have six finite numbers.
     ///
     /// # Examples
     ///
@@ -49,7 +49,7 @@ impl Direction {
     ///
     /// # Errors
     ///
-    /// Returns [`SynthErrorKind::Text`](crate::SynthErrorKind::Text) with the number of the invalid line.
+    /// [`SynthErrorKind::Text`](crate::SynthErrorKind::Text), with the line number, if a line is invalid.
     #[cfg(feature = "json")]
     pub fn parse_json(text: &str) -> Result<Vec<Self>, SynthError> {
         let text = decode(text.as_bytes());

@@ -35,7 +35,7 @@ pub fn displaced_sites(
 /// Displaces the input mesh, moving every vertex along its normal by the interpolated height times `scale`.
 ///
 /// Vertices without a face and vertices without a nearby site do not move. Separate vertices at the same position have
-/// different normals and come apart: join them first with [`Mesh::repair`].
+/// different normals and come apart, so join them first with [`Mesh::repair`].
 ///
 /// # Errors
 ///

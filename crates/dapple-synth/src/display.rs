@@ -1,5 +1,4 @@
-//! The two displays of the paper as models for export: the sites with their colors, and the input mesh with a texture
-//! map.
+//! Exports the two displays of the paper as models: the sites with their colors, and the input mesh with a texture map.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, section 6,
 //! <https://doi.org/10.1145/383259.383297>. `M_1` is a graph, not a mesh;

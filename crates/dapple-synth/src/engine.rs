@@ -5,7 +5,7 @@
 //!
 //! Input: a [`Ground`] (sites on several levels and how their neighborhoods are sampled), the [`Pyramid`] of the
 //! exemplar, and [`Options`] with the schedule of passes. Each pass visits all sites of one level; coarser levels come
-//! first. The work of one pass is in [`Visit`]. Output: [`Sources`] per level, the exemplar pixel and the rotation of
+//! first. [`Visit`] runs a single pass. Output: [`Sources`] for each level, with the exemplar pixel and the rotation of
 //! each site.
 
 use crate::grid;
@@ -83,8 +83,8 @@ impl<'a> Wanted<'a> {
     }
 }
 
-/// Runs the passes of `options`. Returns, for each level from the finest, the exemplar pixel of each site, as `row *
-/// width + column` in that level of the pyramid. The list is empty for a level that no pass visited.
+/// Runs the passes of `options`. Returns, for each level from the finest, the exemplar pixel of each site, as
+/// `row * width + column` in that level of the pyramid. The list is empty for a level that no pass visited.
 pub(crate) fn run<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,
@@ -216,8 +216,8 @@ fn first_sources<G: Ground>(
     sources
 }
 
-/// Initializes the sites to repair: each takes the child, in the exemplar, of its parent's pixel on the coarser level.
-/// Sites without a parent, or for which that pixel is not usable, keep their initial value.
+/// Initializes the sites to repair. Each takes the exemplar pixel that is the matching child of its parent's pixel on
+/// the coarser level. Sites without a parent, or for which that pixel is not usable, keep their initial value.
 fn go_on_with<G: Ground>(
     coarser: &Sources,
     sources: &Sources,

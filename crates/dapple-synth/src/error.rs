@@ -1,21 +1,21 @@
-//! Errors of synthesis: invalid exemplars, schedules, directions and other input.
+//! Synthesis errors: invalid exemplars, schedules, directions and other input.
 
 use dapple_color::ColorError;
 use dapple_mesh::MeshError;
 use dapple_raster::RasterError;
 
 dapple_raster::error! {
-    /// An error of synthesis.
+    /// A synthesis error.
     SynthError,
-    /// The kind of an error, with the limit and the value.
+    /// Kind of a synthesis error, with the limit and the value.
     SynthErrorKind with Range {
         /// The number of elements is wrong.
         Count {
             /// Name of the counted elements.
             what: &'static str,
-            /// Their number.
+            /// Number of elements found.
             count: usize,
-            /// The number needed, as text.
+            /// Number of elements needed, as text.
             needed: &'static str,
         } => "there are {count} {what}, but {needed} are needed";
         /// A level of the exemplar is too small for a neighborhood.
@@ -40,14 +40,14 @@ dapple_raster::error! {
             exemplar: [u32; 2],
         } => "a map has {} x {} pixels, which is not the {} x {} of the exemplar times a whole number",
             map[0], map[1], exemplar[0], exemplar[1];
-        /// The period of a texture is not a positive multiple of 2 to the number of levels.
+        /// The period of a texture is not a positive multiple of 2 to the power of the number of levels.
         Period {
             /// Requested period in columns or rows.
             period: u32,
             /// Number of levels, at most 16.
             n_levels: u32,
         } => "the period is {period}, but with {n_levels} levels it must be a multiple of {}, above 0", 1 << n_levels;
-        /// The source of a pixel is outside of the exemplar.
+        /// The source of a pixel is outside the exemplar.
         Source {
             /// Column and row of the source.
             source: [u32; 2],
@@ -76,7 +76,7 @@ dapple_raster::error! {
             /// Index of the direction.
             direction: usize,
         } => "direction {direction} is zero, not finite or normal to the surface";
-        /// A line of text does not follow its format.
+        /// A line of text does not match the expected format.
         Text {
             /// Name of the format.
             format: &'static str,
@@ -89,11 +89,11 @@ dapple_raster::error! {
         Cancelled => "the callback asked to stop";
     }
     from {
-        /// An error of the mesh.
+        /// A mesh error.
         Mesh(MeshError),
-        /// An error of a raster, or two rasters of different sizes.
+        /// A raster error, or two rasters of different sizes.
         Raster(RasterError),
-        /// An error of the color crate.
+        /// An error from the color crate.
         Color(ColorError),
     }
 }

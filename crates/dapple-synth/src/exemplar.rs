@@ -50,7 +50,7 @@ impl Edges {
     }
 }
 
-/// The example image whose neighborhoods are matched, with one or several channels per pixel.
+/// Example image whose neighborhoods are matched, with one or more channels per pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exemplar {
     pub(crate) size: [u32; 2],
@@ -96,7 +96,7 @@ impl Area {
     }
 }
 
-/// A Gaussian pyramid: the exemplar and its reduced versions, finest first.
+/// Gaussian pyramid of an exemplar: the exemplar and its reduced versions, finest first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pyramid {
     pub(crate) levels: Vec<Exemplar>,
@@ -170,7 +170,7 @@ impl Exemplar {
     ///
     /// # Examples
     ///
-    /// Heights that count half as much as one channel of the colors.
+    /// Match colors together with heights that count half as much as one color channel.
     ///
     /// ```
     /// use dapple_color::LinearRgb;
@@ -275,7 +275,7 @@ impl Exemplar {
         Ok(Self { areas, ..exemplar })
     }
 
-    /// Returns the rectangles of the images; the whole exemplar for a single image.
+    /// Returns the rectangles of the images, or a single rectangle, the whole exemplar, if there is only one image.
     pub(crate) fn areas(&self) -> Vec<Area> {
         if self.areas.is_empty() {
             let [first, end] = [[0; 2], self.size];
@@ -397,7 +397,7 @@ impl Exemplar {
         }
     }
 
-    /// Returns whether textures may use a pixel.
+    /// Returns whether textures may use the pixel with index `pixel`.
     pub(crate) fn is_usable(&self, pixel: usize) -> bool {
         let usable = self.usable.as_ref();
         usable.is_none_or(|usable| usable[pixel])
@@ -456,7 +456,7 @@ impl Exemplar {
         }
     }
 
-    /// Returns the next coarser level of the pyramid.
+    /// Returns this exemplar reduced to the next coarser level of the pyramid.
     fn halved(&self) -> Self {
         let half = self.size.map(|side| side.div_ceil(2));
         let odd = self.size.iter().any(|side| side % 2 == 1);

@@ -26,7 +26,7 @@ pub(crate) trait Colors: Copy + Sync {
     /// Returns the number of channels.
     fn n_channels(&self) -> usize;
 
-    /// Channels of one site or pixel.
+    /// Returns the channels of the site or pixel `at`.
     fn of(&self, at: usize) -> &[f32];
 }
 
@@ -37,11 +37,11 @@ pub(crate) struct Plain<'a> {
     pub(crate) n_channels: usize,
 }
 
-/// Colors of sites by reference to pixels. Other threads may change the references at the same time.
+/// Colors of sites, stored as references to exemplar pixels. Other threads may change the references at the same time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Painted<'a> {
     pub(crate) pixels: Plain<'a>,
-    /// Source of each site.
+    /// Source pixel and rotation of each site.
     pub(crate) sources: &'a Sources,
 }
 
@@ -80,7 +80,7 @@ pub(crate) enum Rows {
 /// Samples of a square, row by row from the top. The content of rows that are not needed is arbitrary.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Samples {
-    /// Channels, `n_channels` values for each sample.
+    /// Channel values of all samples, `n_channels` per sample.
     pub(crate) values: Vec<f32>,
     /// Site with the largest weight at each sample; [`UNKNOWN`] past an edge of a texture under repair.
     pub(crate) nearest: Vec<u32>,
@@ -90,7 +90,7 @@ pub(crate) struct Samples {
 pub(crate) trait Ground: Sync {
     /// Tables that a pass needs to sample squares.
     type Prepared: Sync;
-    /// Scratch memory of [`read`](Self::read).
+    /// Scratch memory for [`read`](Self::read).
     type Memory: Default + Send;
 
     /// Returns the number of sites of a level.

@@ -114,7 +114,7 @@ impl Planes {
     }
 }
 
-/// Returns the sliced Wasserstein distance between the two sets of patches of the given side.
+/// Returns the sliced Wasserstein distance between the sets of patches of two images. Patches are `side` pixels wide.
 fn distance(images: &[Planes; 2], side: usize) -> f64 {
     let dims = images[0].channels.len() * side * side;
     let mut sum = 0.0;
@@ -170,7 +170,7 @@ mod tests {
     use dapple_hash::{Seed, hash2, unit_f32};
     use dapple_raster::Raster;
 
-    /// Returns an image of `channels` channels.
+    /// Returns an image with `channels` channels.
     fn image(size: [u32; 2], channels: u64, value: impl Fn(u32, u32, u64) -> f32) -> Exemplar {
         let plane = |channel| Raster::from_fn(size, |x, y| value(x, y, channel)).unwrap();
         let planes: Vec<Raster<f32>> = (0..channels).map(plane).collect();

@@ -42,7 +42,7 @@ use glam::DVec3;
 /// normal count as having no direction in the tangent plane.
 const LEAST_TANGENT_SQ: f64 = 1e-6;
 
-/// A direction of the texture near a position, given by the user.
+/// A texture direction that the user gives at a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Direction {
@@ -87,8 +87,8 @@ impl Orientation {
     ///
     /// # Errors
     ///
-    /// Returns [`SynthErrorKind::Direction`] if a position or a vector is not finite, or if a vector is zero or within
-    /// a thousandth of a radian of the normal of its site.
+    /// [`SynthErrorKind::Direction`] if a position or a vector is not finite, or if a vector is zero or within a
+    /// thousandth of a radian of the normal of its site.
     pub fn new(hierarchy: &Hierarchy, directions: &[Direction]) -> Result<Self, SynthError> {
         Self::with_axis(hierarchy, directions, Self::AXIS)
     }

@@ -127,7 +127,7 @@ impl Origin {
             .collect()
     }
 
-    /// Returns the offset between two nearby finest sites, `from` and `to`, in pixels.
+    /// Returns the offset from `from` to `to`, two nearby finest sites, in pixels.
     pub(super) fn step(&self, to: u32, from: u32) -> Vec2 {
         let [to_place, from_place] = [to, from].map(|site| Place {
             site,
@@ -143,7 +143,7 @@ impl Origin {
         0.5 * (from + to)
     }
 
-    /// Returns the offset in space between the positions `from` and `to`.
+    /// Returns the offset in space from the position `from` to the position `to`.
     fn way(&self, to: Place, from: Place) -> Vec3 {
         let positions = self.hierarchy().sites().positions();
         let [to_at, from_at] = [to, from].map(|place| positions[place.site as usize]);

@@ -77,7 +77,7 @@ struct Chunk {
     beside: Vec<[u32; 9]>,
 }
 
-/// Reads neighborhoods on the source in the same way as on the target.
+/// Reads neighborhoods on the source, in the same way as on the target.
 struct Reader<'a> {
     ground: &'a MeshGround<'a>,
     prepared: <MeshGround<'a> as Ground>::Prepared,

@@ -14,7 +14,7 @@ use glam::DVec3;
 const TOLERANCE: f64 = 1e-5;
 /// Maximum number of solver steps. It bounds the time if the coarsest level is large.
 const STEPS_MAX: usize = 500;
-/// Number of sweeps of equation 4 on every finer level.
+/// Number of sweeps of equation 4 on each finer level.
 const SWEEPS: usize = 4;
 /// Weight of the neighbors' average in a sweep, from 0 to 1.
 const SWEEP_STRENGTH: f64 = 0.8;
@@ -94,7 +94,7 @@ impl Field<'_> {
         vectors
     }
 
-    /// Returns the combed, smoothest field on the coarsest level that has the known directions.
+    /// Returns the smoothest field on the coarsest level that has the known directions, after combing.
     fn smoothest(&self, components: &[u32], known: &[Known]) -> Vec<DVec3> {
         let mut vectors = smoothest(self, components, known);
         comb(self, &mut vectors);
@@ -187,7 +187,7 @@ impl Field<'_> {
         sum
     }
 
-    /// Returns the weighted sum of vectors, each rotated to the equivalent direction nearest to the vector of the
+    /// Returns the weighted sum of vectors, each rotated to the equivalent direction nearest to the vector with the
     /// largest weight.
     fn sum(&self, near: impl Iterator<Item = (usize, f64)> + Clone, vectors: &[DVec3]) -> DVec3 {
         let (mut leader, mut most) = (DVec3::ZERO, 0.0);

@@ -6,8 +6,8 @@
 //! rotates. The derivative of u along P is minus the rate at which O rotates toward P along O. The derivative of u
 //! along O is the rate at which O rotates toward P along P.
 //!
-//! For most fields no size satisfies this everywhere, so a least-squares solution is computed. It minimizes `Σ w_ij
-//! (u_j - u_i - g_ij)²` over the edges of the coarsest level, where `g_ij` is the mean of the differences that the two
+//! For most fields no size satisfies this everywhere, so a least-squares solution is computed. It minimizes
+//! `Σ w_ij (u_j - u_i - g_ij)²` over the edges of the coarsest level, where `g_ij` is the mean of the differences that the two
 //! ends predict. Near a singularity u is unbounded. In each connected component a constant is therefore added to u that
 //! brings as many sites as possible within the bounds, and u is clamped to them.
 //!

@@ -20,7 +20,7 @@ dapple_raster::named! {
 }
 
 impl Symmetry {
-    /// Rotations between equivalent directions, in quarter turns.
+    /// Returns the rotations between equivalent directions, in quarter turns.
     pub(crate) fn quarters(self) -> &'static [u8] {
         match self {
             Self::One => &[0],

@@ -128,7 +128,7 @@ impl Star {
         }
     }
 
-    /// Returns whether some circle through the site and the neighbor of an arm has no other neighbor inside.
+    /// Returns whether some circle through the site and the neighbor of `arm` has no other neighbor inside.
     ///
     /// The center of such a circle is `flat / 2 + t perp(flat)`. Every other neighbor bounds t from one side, and the
     /// circle exists if the interval of t is not empty.
@@ -159,7 +159,8 @@ impl Star {
     }
 }
 
-/// Removes every edge whose midpoint is nearer than `clash` to the midpoint of an earlier kept edge on the same sheet.
+/// Removes every edge whose midpoint is nearer than `clash` to the midpoint of an earlier retained edge on the same
+/// sheet.
 fn remove_clashes(surface: &Surface, edges: &mut Vec<Edge>, clash: f64) {
     let middles: Vec<SurfacePoint> = edges.iter().map(|edge| edge.middle).collect();
     let places = Places::new(surface, &middles);

@@ -24,7 +24,7 @@ use robust::{Coord, incircle, orient2d};
 /// `|a| |b| |c|²`, and 32 are allowed.
 const ROUNDING: f64 = 8.881_784_197_001_252e-16;
 
-/// The Voronoi cell of the origin.
+/// Voronoi cell of the origin.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cell {
     /// Neighbors, counterclockwise, each with the corner after it.
@@ -63,7 +63,7 @@ struct Corner {
 /// A neighbor of the origin, as returned by [`Cell::neighbors`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Neighbor {
-    /// The tag that was given with the point.
+    /// Tag that the caller passed with the point.
     pub(crate) tag: u32,
     /// Whether the origin, this neighbor and the next one counterclockwise form a triangle.
     pub(crate) joined: bool,
@@ -77,7 +77,7 @@ impl Cell {
         self.diameter_sq = f64::INFINITY;
     }
 
-    /// Returns the upper bound of the squared diameter of the largest circle through the origin and two consecutive
+    /// Returns an upper bound of the squared diameter of the largest circle through the origin and two consecutive
     /// neighbors; infinite while the cell is open. A point farther away than this diameter does not change the cell.
     #[inline]
     pub(crate) fn diameter_sq(&self) -> f64 {
@@ -240,8 +240,8 @@ impl Cell {
             && (!after.corner.is_open || turns(after.at, new.at).is_gt())
     }
 
-    /// Returns whether a neighbor lies on an empty circle through the origin with a squared diameter of at most
-    /// `limit_sq`.
+    /// Returns whether the neighbor at `index` is on an empty circle through the origin with a squared diameter of at
+    /// most `limit_sq`.
     ///
     /// The centers of its empty circles form its side of the cell. The smallest circle is centered halfway between the
     /// neighbor and the origin if that point is on the side, and at the nearer corner otherwise.
@@ -334,7 +334,7 @@ fn turns(a: DVec2, b: DVec2) -> Ordering {
     order(orient2d(coord(DVec2::ZERO), coord(a), coord(b)))
 }
 
-/// Returns the sign of a value as an ordering; NaN counts as less.
+/// Returns the sign of `value` as an ordering; NaN counts as less.
 #[inline]
 fn order(value: f64) -> Ordering {
     value.partial_cmp(&0.0).unwrap_or(Ordering::Less)

@@ -16,8 +16,8 @@ pub struct Evenness {
     pub min: f64,
 }
 
-/// Returns the spacing of a hexagonal lattice of `n` points on the given area. This is the paper's r, `sqrt(2 A /
-/// (sqrt(3) n))`.
+/// Returns the spacing of a hexagonal lattice of `n` points on the given area. This is the paper's r:
+/// `sqrt(2 A / (sqrt(3) n))`.
 ///
 /// Returns 0 if `n` is 0.
 #[must_use]

@@ -12,7 +12,7 @@ use glam::DVec3;
 /// Sites sorted into the cells of a cubic grid.
 #[derive(Clone, Debug)]
 pub struct SiteGrid {
-    /// Corner of the first cell with the lowest coordinates.
+    /// Corner of the grid with the lowest coordinates.
     low: DVec3,
     /// Inverse of the side of a cell.
     scale: f64,
@@ -90,7 +90,7 @@ impl SiteGrid {
     /// Calls `visit` with every site in the cells that the bounding box of a ball meets. These are all sites in the
     /// ball, and some around it. A ball with a negative radius has no sites.
     ///
-    /// The order depends on the positions and the side alone: by brick, then by cell in the brick (x fastest and z
+    /// The order depends only on the positions and the side: by brick, then by cell in the brick (x fastest and z
     /// slowest for both), then by site index in the cell.
     #[inline]
     pub fn visit(&self, center: DVec3, radius: f64, mut visit: impl FnMut(SiteIdx)) {

@@ -22,7 +22,7 @@ use glam::DVec3;
 
 /// Maximum number of points that start at random positions.
 const RANDOM_MOST: usize = 256;
-/// Repulsion steps for random points. They are few, so the cost is negligible.
+/// Number of repulsion steps for random points. There are few such points, so the cost is negligible.
 const ITERATIONS_RANDOM: usize = 40;
 /// Factor on the number of repulsion steps for the coarsest set and for the smaller hidden sets from which it is built.
 const ITERATIONS_HIDDEN: usize = 4;

@@ -145,7 +145,7 @@ impl Hierarchy {
         })
     }
 
-    /// Returns the sites of the level below `level`, which is finer.
+    /// Returns the sites of the next finer level.
     fn finer(&self, level: usize) -> Result<Oriented<'_>, SynthError> {
         SynthError::check(
             level > 0,

@@ -30,7 +30,7 @@ const GAIN_FIRST: f64 = 0.15;
 const GAIN_LAST: f64 = 0.045;
 /// Margin of the neighbor lists beyond the radius, as a fraction of the radius.
 const MARGIN: f64 = 0.2;
-/// Lists are rebuilt if more than one free point in this number was limited by its margin.
+/// Neighbor lists are rebuilt if more than 1 in `LIMITED_MOST` free points was limited by its margin.
 const LIMITED_MOST: usize = 100;
 /// Minimum dot product of the normals of neighbors: at most 120 degrees. Sites count as neighbors up to 90 degrees;
 /// points a little beyond push too, since they could otherwise come together where the surface bends.

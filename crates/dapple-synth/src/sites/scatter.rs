@@ -7,9 +7,9 @@
 use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_mesh::{FaceIdx, Surface, SurfacePoint};
 
-/// Scatters `n` independent random points over a surface, uniformly by area.
+/// Scatters `n` independent random points over `surface`, uniformly by area.
 ///
-/// Point `i` depends on the surface, the seed and `i` alone, so the points for a smaller `n` are a prefix of the points
+/// Point `i` depends only on the surface, the seed and `i`, so the points for a smaller `n` are a prefix of the points
 /// for a larger one.
 ///
 /// # Examples

@@ -16,7 +16,7 @@ impl SiteIdx {
     }
 }
 
-/// Points of a surface that synthesis assigns colors to, as columns indexed by [`SiteIdx`].
+/// Surface points to which synthesis assigns colors, stored as columns indexed by [`SiteIdx`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sites {
     points: Vec<SurfacePoint>,

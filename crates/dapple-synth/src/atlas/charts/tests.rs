@@ -28,7 +28,7 @@ fn cube() -> Mesh {
     Mesh::new(bits.map(DVec3::from).collect(), &faces).unwrap()
 }
 
-/// Surfaces with and without borders, handles and creases, in one and in several components.
+/// Returns surfaces with and without borders, handles and creases, in one and in several components.
 fn surfaces() -> Vec<Surface> {
     let meshes = [cube(), sphere(), cap(), tube(), two_squares()];
     let meshes = meshes.into_iter().map(|mesh| Surface::new(mesh).unwrap());

@@ -5,7 +5,7 @@ use crate::Connected;
 use crate::shapes::{even_sites, geodesic_sphere, spacing};
 use dapple_hash::{Seed, hash1, unit_f64};
 
-/// Returns the evenly spaced sites of a sphere, and their graph.
+/// Returns evenly spaced sites on a sphere, and their graph.
 fn even(n_sites: usize) -> (Vec<DVec3>, SiteGraph) {
     let surface = geodesic_sphere(3);
     let sites = even_sites(&surface, n_sites, 21);
