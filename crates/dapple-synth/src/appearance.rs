@@ -25,8 +25,8 @@
 //!
 //! - Sites are not pixels of a chart, so there are no jumps between charts. The offset of a neighbor in the exemplar
 //!   follows from the orientation field, half from the site and half from the neighbor ([`links`]).
-//! - Sites are corrected in classes, one class after the other. Sites of a class are not connected. Classes depend on
-//!   the graph alone.
+//! - Sites are corrected in classes, one class after the other. Sites of a class are not connected. Classes depend only
+//!   on the graph.
 //! - The coarsest level begins with the first pass of Turk's sweep (2001), in which large features grow from one side
 //!   to the other.
 //! - Parts of the exemplar that the texture uses too often cost more from pass to pass, as in endless textures.

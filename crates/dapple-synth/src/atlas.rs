@@ -4,9 +4,9 @@
 //! triangulations", The Visual Computer 12(10), 1996: every face is mapped to a separate right triangle, and two
 //! triangles share a square tile.
 //!
-//! Tiles have a single size, or sizes in proportion to the areas of the faces. Other layouts consist of
-//! [charts](Atlas::charts), which are large pieces of the surface, or are supplied by the caller. Layouts computed here
-//! never mirror a piece: faces that are counterclockwise from outside are counterclockwise in the map.
+//! All tiles have the same size, or larger faces get larger tiles. Other layouts consist of [charts](Atlas::charts),
+//! which are large pieces of the surface, or are supplied by the caller. Layouts computed here never mirror a piece:
+//! faces that are counterclockwise from outside are counterclockwise in the map.
 //!
 //! Texel (x, y) has its center at `(x + 0.5, y + 0.5)`. Row 0 is the top. Texture coordinates go from 0 to 1, with v
 //! down.

@@ -1,4 +1,4 @@
-//! Baking: rendering a texture map from the sites (section 6).
+//! Baking: renders a texture map from the sites (section 6).
 //!
 //! Texels are processed in small blocks. Within a block, all texels of the same face read the same sites. A texel shows
 //! either a weighted mean of the values of the sites around it, as in the paper, or a piece of the exemplar

@@ -1,4 +1,4 @@
-//! Baking of normal maps: rotation of the exemplar's normals into the tangent frames of a texture map.
+//! Bakes normal maps: rotates the exemplar's normals into the tangent frames of a texture map.
 //!
 //! A normal of the exemplar has three components: right, up or down (see [`NormalY`]), and outward. On the surface
 //! these directions are P, O (which points down) and n of the site that copies the normal. Between sites, the

@@ -16,7 +16,7 @@
 //! the exemplar is a layout of several images, each image is counted and mirrored separately.
 //!
 //! If [`Options::evenness`] is on, all pixels are candidates on all levels. Otherwise the first of three levels would
-//! compare only two thirds of the pixels of an exemplar of 128 × 128. Measured on four such exemplars, the distance of
+//! compare only two thirds of the pixels of a 128 × 128 exemplar. Measured on four such exemplars, the distance of
 //! colors ([`Likeness`](crate::Likeness)) falls by a third. Passes that read both levels are an exception. They still
 //! require [`FEW`] usable pixels, since narrow pieces mirrored at an edge caused specks.
 //!

@@ -21,8 +21,8 @@
 //!   every map of the source can be transferred.
 //!
 //! An alternative would be to flatten patches of the source to an image, in which neighborhoods cannot cross from patch
-//! to patch. On the coarsest of three levels a neighborhood reaches over 24 pixels: patches would either overlap many
-//! times, or lose most of a source as small as a typical model.
+//! to patch. On the coarsest of three levels a neighborhood spans 24 pixels. Patches would therefore either overlap
+//! many times, or lose most of a source as small as a typical model.
 //!
 //! Units: a pixel is the spacing of the finest sites, on the source and on the target.
 

@@ -13,13 +13,13 @@
 //!   it converges takes as many sweeps as the square of the number of sites across the surface;
 //! * interpolation adds the distance along the field from each coarser site to the new one. Then 20 sweeps of equation
 //!   5 follow, with 0.2 for α and 0.8 for the sum of the β;
-//! * where the field circles a point or a tube, no distance can increase along it everywhere. In a least-squares
+//! * where the field circles a point or a tube, no distance can increase along the field everywhere. In a least-squares
 //!   solution it would not increase there at all. So predictions that are off by about a spacing or more get less
 //!   weight (Cauchy's weights). The error then gathers in a tear, a line across which the order jumps, and the distance
 //!   increases everywhere else;
 //! * edges that cross a cut of a field with a symmetry, where neighbors have different rotations, have weight 0. Cuts
 //!   join singularities, so nearly all of a component is still reached;
-//! * every connected component of a level has its own anchor, and the order takes one component at a time.
+//! * every connected component of a level has its own anchor, and the order lists one component after the other.
 //!
 //! Distances are in units of the mesh.
 

@@ -7,9 +7,9 @@
 //! along O is the rate at which O rotates toward P along P.
 //!
 //! For most fields no size satisfies this everywhere, so a least-squares solution is computed. It minimizes
-//! `Σ w_ij (u_j - u_i - g_ij)²` over the edges of the coarsest level, where `g_ij` is the mean of the differences that the two
-//! ends predict. Near a singularity u is unbounded. In each connected component a constant is therefore added to u that
-//! brings as many sites as possible within the bounds, and u is clamped to them.
+//! `Σ w_ij (u_j - u_i - g_ij)²` over the edges of the coarsest level, where `g_ij` is the mean of the differences that
+//! the two ends predict. Near a singularity, u is unbounded. In each connected component a constant is therefore added
+//! to u that brings as many sites as possible within the bounds, and u is clamped to them.
 //!
 //! Reference: our own, after the correction of curl of Nicolas Ray, Wan Chiu Li, Bruno Lévy, Alla Sheffer, Pierre
 //! Alliez, "Periodic Global Parameterization", ACM Transactions on Graphics 25 (4), 2006,

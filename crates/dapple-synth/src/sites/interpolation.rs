@@ -1,8 +1,8 @@
 //! Interpolates values between sites (equation 1).
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.2, with
-//! the weights `w(x) = 2x³ - 3x² + 1`, where x is the distance over the radius. The paper states neither the radius nor
-//! the value where no site is in reach; see [`INTERPOLATION_RADIUS`] and
+//! the weights `w(x) = 2x³ - 3x² + 1`, where x is the distance divided by the radius. The paper states neither the
+//! radius nor the value where no site is in reach; see [`INTERPOLATION_RADIUS`] and
 //! [`Hierarchy::interpolate`](crate::Hierarchy::interpolate).
 //!
 //! Differences to the value of the first site in reach are summed, so that a constant column gives exactly that

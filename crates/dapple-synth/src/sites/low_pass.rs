@@ -3,7 +3,7 @@
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.2. The
 //! smoothing is from Gabriel Taubin, "A Signal Processing Approach to Fair Surface Design", SIGGRAPH 1995, doi
 //! 10.1145/218380.218473. Each step moves the value of a site by a fraction t toward the weighted mean of its
-//! neighbors. The weights are the inverse lengths of the edges over their sum:
+//! neighbors. The weights are the inverse lengths of the edges, divided by their sum:
 //!
 //! `C' = C + t Σ wᵢ (Cᵢ - C)`
 //!

@@ -9,8 +9,8 @@
 //! * the star is found by clipping the Voronoi cell of the center, nearest site first. Triangles that do not touch the
 //!   center are never computed;
 //! * two sites are neighbors only if there is an empty circle through them with a radius of at most [`STAR_RADIUS`]
-//!   spacings. Without this limit, every site along a border would have to search all other sites, and would be
-//!   connected across bays of any width.
+//!   times the site spacing. Without this limit, every site along a border would have to search all other sites, and
+//!   would be connected across bays of any width.
 //!
 //! Units: lengths in the tangent plane are multiples of the site spacing.
 
