@@ -1,5 +1,5 @@
-//! Synthesis on surfaces by correction in appearance space: each site of a level is moved, in a few passes, to the
-//! exemplar position whose surroundings are most similar to its own.
+//! Surface synthesis by correction in appearance space: on each level, every site is moved a few times to the exemplar
+//! position whose surroundings are most similar to the site's surroundings.
 //!
 //! References: Sylvain Lefebvre and Hugues Hoppe, "Appearance-Space Texture Synthesis", SIGGRAPH 2006, DOI
 //! 10.1145/1141911.1141921, and "Parallel Controllable Texture Synthesis", SIGGRAPH 2005, DOI 10.1145/1186822.1073261.
@@ -7,37 +7,37 @@
 //! Input: the sites of a [`Synthesizer`], an exemplar, guides, and the pixels that the first pass of [`engine`]
 //! assigned to the coarsest sites. Output: for each site of each level, a pixel of the exemplar.
 //!
-//! The source of a site is a position in the exemplar, with subpixel precision. On every level, positions refer to the
+//! The source of a site is a position in the exemplar, with subpixel precision. On every level it is a position in the
 //! full-size exemplar. A feature vector describes the window around a pixel: the principal components of its colors
-//! ([`stage`]). Neighborhoods are compared by the features at the four diagonal neighbors, one site spacing of the
-//! level away. This takes 32 numbers per neighborhood, compared with 171 for two squares of colors. Features are looked
-//! up at the positions that the neighbors predict; nothing is interpolated, so nothing is blurred.
+//! ([`stage`]). Neighborhoods are compared by the features on their four diagonals, which are as far apart as the sites
+//! of the level. They have 32 values, whereas the two squares of colors in the paper's neighborhoods have 171. Features
+//! are looked up at the positions that the neighbors predict; nothing is interpolated, so nothing is blurred.
 //!
 //! Steps on each level, from the coarsest:
 //!
 //! - Sites of the coarser level keep their exemplar positions. A new site takes the position that its nearest coarser
 //!   neighbor predicts.
 //! - Each site compares several candidates and takes the best ([`choose`]): the positions that its neighbors predict,
-//!   positions half a pixel from the best of these, and the positions most similar to the predicted ones. This is
-//!   repeated a few times for all sites.
+//!   positions half a pixel from the best of these, and the positions most similar to the predicted ones. All sites are
+//!   corrected a few times in this way.
 //!
 //! Departures from the papers:
 //!
-//! - Sites are not pixels of a chart, so there are no jumps between charts. The offset of a neighbor in the exemplar
-//!   follows from the orientation field, half from the site and half from the neighbor ([`links`]).
-//! - Sites are corrected in classes, one class after the other. Sites of a class are not connected. Classes depend only
-//!   on the graph.
+//! - Sites are not pixels of a chart, so there are no jumps between charts. The offset of a neighbor in the exemplar is
+//!   the average of two offsets, one in the frame of the site and one in the frame of the neighbor ([`links`]).
+//! - Sites are corrected in classes, one class after the other. Sites of the same class are not connected. Classes
+//!   depend on the graph alone.
 //! - The coarsest level begins with the first pass of Turk's sweep (2001), in which large features grow from one side
 //!   to the other.
 //! - Parts of the exemplar that the texture uses too often cost more from pass to pass, as in endless textures.
 //!
 //! If the orientation field has a symmetry, the first pass determines the rotation of the exemplar at the coarsest
-//! sites. Finer sites take the rotation of the nearest coarser site. A site continues only neighbors with the same
-//! rotation; for neighbors with a different rotation, it reads the features of the rotated exemplar.
+//! sites, and finer sites take the rotation of the nearest coarsest site. A site continues only neighbors with the same
+//! rotation; at the others it reads the features of the rotated exemplar.
 //!
-//! Guides are compared along with the features. The guides at the position predicted by the coarser level may differ a
-//! lot from the wanted guides, with no better position nearby. So a site searches the whole exemplar before correction
-//! if the distance of its guides is large relative to the distance of its features ([`MISFIT`]).
+//! Guides are compared along with the features. The position predicted by the coarser level may have guides far from
+//! the target guides, with no better position near it. So before correction, a site searches the whole exemplar if the
+//! squared distance of its guides exceeds a fraction of the squared distance of its features ([`MISFIT`]).
 
 mod links;
 
@@ -57,18 +57,17 @@ use dapple_raster::simd::{self, dispatch};
 use glam::Vec2;
 use links::Links;
 
-/// Number of subpixel bits of a position: positions are in units of 1/8 pixel along each axis. With whole pixels, a
-/// prediction would be off by up to half a pixel at every step, which cuts up pieces of the exemplar.
+/// Number of subpixel bits of a position, which is in units of 1/8 pixel along each axis. With whole pixels, a
+/// prediction would be off by up to half a pixel at every step, which would break up pieces of the exemplar.
 ///
 /// Coordinates of 32 bits allow 2^29 pixels along a side. An image with at least five rows cannot have more.
 const PART_BITS: u32 = 3;
 
-/// Step from the best position to the additional positions that a site tries around it: half a pixel, in units of 1/8
-/// pixel.
+/// Offset, in units of 1/8 pixel, of the additional positions that a site tries around the best one: half a pixel.
 ///
 /// Measured on the six models of figure 5: 13 to 18 % of neighbors belong to other pieces, compared with 14 to 27 %
-/// with whole pixels. Colors where pieces meet differ by 7 to 34 % less (mean squares over all neighbors). Without this
-/// step pieces are larger still, and differ more where they meet; the same is true of a step of a whole pixel.
+/// with whole pixels, and colors where pieces meet differ by 7 to 34 % less (mean squares over all neighbors). Without
+/// this step pieces are larger still, but differ more where they meet; the same holds for an offset of a whole pixel.
 const ASIDE: i64 = 1 << (PART_BITS - 1);
 
 /// Number of correction passes per level; the coarsest level has twice as many.
@@ -77,25 +76,24 @@ const N_PASSES: usize = 3;
 /// Minimum number of sites per task.
 const TASK: usize = 64;
 
-/// Maximum number of predicted positions that a site compares. The positions similar to them are not counted.
+/// Maximum number of predicted positions that a site compares. Positions similar to the predicted ones are not counted.
 const MAX_COHERENT: usize = 16;
 
-/// Amount by which the cost of an unused exemplar region decreases per pass, as a multiple of the mean squared
-/// distance.
+/// Decrease per pass in the cost of a part that the texture does not use, in multiples of the mean squared distance.
 const STEP: f32 = 0.8;
 
 /// A site searches the whole exemplar if the squared distance of its guides, divided by the squared distance of its
 /// features, exceeds this value.
 ///
-/// Measured on leaves, guided by a soft and by a hard image: the correlation between the brightness of the texture and
-/// that of the image is 0.42 and 0.41, as in synthesis by colors, in the same time as with 1 (0.40 and 0.39). A search
-/// for every site gives 0.01 more and takes a quarter longer.
+/// Measured on leaves, guided by a soft and by a hard image: the brightness of the texture has a correlation of 0.42
+/// and 0.41 with the brightness of the image, as in synthesis by colors, in the same time as with a value of 1 (0.40
+/// and 0.39). Searching for every site gives 0.01 more and takes a quarter longer.
 const MISFIT: f32 = 0.25;
 
-/// Number of tasks that search between two progress callbacks.
+/// Number of search tasks between two progress callbacks.
 const TASKS: usize = 256;
 
-/// Corrects the sites of a surface: holds the sites with their frames and guides, and the exemplar on all levels.
+/// Correction of the sites of a surface: the sites with their frames and guides, and all levels of the exemplar.
 pub(crate) struct Appearance<'a> {
     hierarchy: &'a Hierarchy,
     targets: &'a Targets,
@@ -105,12 +103,12 @@ pub(crate) struct Appearance<'a> {
     /// Levels of the exemplar, the finest first.
     stages: Vec<Stage>,
     seed: Seed,
-    /// Factor on the cost changes between passes; 0 if exemplar regions have no costs.
+    /// Factor on the changes in costs; 0 if parts have no costs.
     evenness: f32,
 }
 
-/// A candidate position in units of 1/8 pixel. Its score is the squared distance of its features and guides from the
-/// site's, plus its cost.
+/// A candidate position, in units of 1/8 pixel, and its score: the squared distance from the site in features and
+/// guides, plus the cost of the position.
 #[derive(Clone, Copy, Debug)]
 struct Choice {
     place: [u32; 2],
@@ -118,7 +116,7 @@ struct Choice {
 }
 
 impl<'a> Appearance<'a> {
-    /// Prepares all levels of `exemplar`. `coarsest` holds its rotation at each of the coarsest sites, in quarter
+    /// Prepares the levels of an exemplar. `coarsest` is the rotation of the exemplar at each coarsest site, in quarter
     /// turns. `targets` has as many guides as the exemplar.
     ///
     /// # Errors
@@ -167,7 +165,7 @@ impl<'a> Appearance<'a> {
     }
 
     /// Corrects all levels. Returns the exemplar pixel of each site of each level, the finest level first. `coarsest`
-    /// holds the initial pixels of the coarsest sites, on the coarsest level of a pyramid.
+    /// holds the initial pixels of the coarsest sites, as indices in the coarsest level of a pyramid.
     pub(crate) fn run(
         &mut self,
         coarsest: &[u32],
@@ -211,7 +209,7 @@ impl<'a> Appearance<'a> {
         Ok(levels.into_iter().map(pixels).collect())
     }
 
-    /// Returns the initial positions of the coarsest sites. `pixels` are on the coarsest level of a pyramid.
+    /// Returns the initial positions of the coarsest sites. `pixels` are indices in the coarsest level of a pyramid.
     fn begin(&self, level: usize, pixels: &[u32]) -> Vec<[u32; 2]> {
         let stage = &self.stages[level];
         let width = ((stage.size[0] - 1) >> level) + 1;
@@ -224,8 +222,8 @@ impl<'a> Appearance<'a> {
         pixels.iter().enumerate().map(place).collect()
     }
 
-    /// Returns the initial positions of a level. Sites of the coarser level keep theirs; a new site takes the position
-    /// that its nearest coarser neighbor predicts.
+    /// Returns the initial positions of a level. Sites of the coarser level keep their positions; a new site takes the
+    /// position that its nearest coarser neighbor predicts.
     fn refine(&self, level: usize, coarser: &[[u32; 2]], links: &Links) -> Vec<[u32; 2]> {
         let stage = &self.stages[level];
         let n_sites = self.hierarchy.levels()[level].n_sites();
@@ -264,7 +262,8 @@ impl<'a> Appearance<'a> {
         middle([pixel % stage.size[0], pixel / stage.size[0]].map(i64::from))
     }
 
-    /// Moves each site whose guides differ too much to the exemplar position with the most similar features and guides.
+    /// Moves each site whose guides differ much from the targets to the exemplar position with the most similar
+    /// features and guides.
     fn obey(
         &self,
         level: usize,
@@ -286,7 +285,7 @@ impl<'a> Appearance<'a> {
                     let own = pixel(*place);
                     let off = stage.guides_distance_sq(wanted, own);
                     let around = around(stage, links, site, &before);
-                    // Search only if the guides differ by a large fraction of the features' difference.
+                    // Search only if the squared distance of the guides is a large fraction of that of the features.
                     if off <= MISFIT * distance_sq(stage, &around, own) {
                         continue;
                     }
@@ -311,7 +310,7 @@ impl<'a> Appearance<'a> {
     ) -> Result<(), SynthError> {
         let simd = simd::level();
         let Stage { size, spacing, .. } = self.stages[level];
-        // Start without costs; the wanted usage is even over the usable pixels.
+        // Start without costs. The target is even usage of the usable pixels.
         let mut costs = Costs::new(size, spacing as u32);
         let usable = self.stages[level].usable_pixels();
         let usable = usable
@@ -377,8 +376,8 @@ fn quarters(synthesizer: &Synthesizer, coarsest: &[u8], n_levels: usize) -> Vec<
     quarters
 }
 
-/// Returns the position with the lowest score for `site`: the distance of the features around it, the distance of its
-/// guides from `wanted`, and its cost. Among equally good positions the first wins.
+/// Returns the position with the lowest score for a site: squared distance in the features around the site, plus
+/// squared distance in guides from `wanted`, plus cost. The first of equally good positions is returned.
 #[inline(always)]
 fn choose(
     stage: &Stage,
@@ -413,7 +412,7 @@ fn choose(
             best.compare(stage, &around, wanted, place, 1.0);
         }
     }
-    // Compare positions half a pixel from the best one: they let pieces stretch without a break.
+    // Compare positions half a pixel from the best one. They let pieces stretch without a break.
     let found = best.place;
     for [x, y] in [[ASIDE, 0], [-ASIDE, 0], [0, ASIDE], [0, -ASIDE]] {
         let aside = [i64::from(found[0]) + x, i64::from(found[1]) + y];
@@ -434,8 +433,8 @@ fn choose(
 }
 
 impl Choice {
-    /// Takes `place` if it is better than the best position so far. `factor` multiplies its squared distance, costs
-    /// excluded.
+    /// Takes a position if its score is lower than the lowest so far. `factor` multiplies its squared distance, but not
+    /// its cost.
     #[inline(always)]
     fn compare(
         &mut self,
@@ -454,8 +453,8 @@ impl Choice {
     }
 }
 
-/// Returns the features on each diagonal of a site: the mean of the features that the sites there predict. `None` for a
-/// diagonal without sites, for example past an edge of the surface.
+/// Returns the features on each diagonal of a site: the mean of the features that the sites near the diagonal predict.
+/// `None` for a diagonal without sites, for example past an edge of the surface.
 #[inline(always)]
 fn around(
     stage: &Stage,
@@ -504,7 +503,7 @@ fn filled(around: [Option<[f32; N_FEATURES]>; 4]) -> Option<[[f32; N_FEATURES]; 
     Some(around.map(|features| features.unwrap_or(mean)))
 }
 
-/// Returns the squared distance between the features `around` a site and the features on the diagonals of `place`.
+/// Returns the squared distance between the features on the diagonals of a site and those on the diagonals of a pixel.
 /// Missing diagonals are skipped.
 #[inline(always)]
 fn distance_sq(stage: &Stage, around: &[Option<[f32; N_FEATURES]>; 4], place: [i64; 2]) -> f32 {
@@ -513,7 +512,7 @@ fn distance_sq(stage: &Stage, around: &[Option<[f32; N_FEATURES]>; 4], place: [i
     stage.distance_sq_of(known, place)
 }
 
-/// Returns `place` plus the offset `way` in pixels. The result may be outside the exemplar.
+/// Returns a position plus an offset in pixels. The result may be outside the exemplar.
 #[inline(always)]
 fn moved(place: [u32; 2], way: Vec2) -> [i64; 2] {
     let way = (way * (1 << PART_BITS) as f32).round();

@@ -4,35 +4,34 @@
 //! 10.1145/1186822.1073261, and, by the same authors, "Appearance-Space Texture Synthesis", SIGGRAPH 2006, DOI
 //! 10.1145/1141911.1141921.
 //!
-//! Input: an exemplar, and [`EndlessOptions`] with the seed, the number of levels and the period. Output: for each
-//! pixel of a window, its source pixel in the exemplar.
+//! Input: an exemplar, and [`EndlessOptions`] with the seed, number of levels and period. Output: for each pixel of a
+//! window, its source pixel in the exemplar.
 //!
 //! Steps, from the coarsest level to the finest:
 //!
-//! - Upsampling: each pixel becomes four, whose sources are adjacent pixels of the exemplar.
-//! - Correction, in a few passes: each pixel compares the source pixels that its neighbors predict, and the exemplar
-//!   pixel most similar to each of these. It takes the one whose surroundings in the exemplar are most similar to its
-//!   own in the texture. Features are compared instead of colors; they are the principal components of windows
-//!   ([`stage`]). A quarter of the pixels is corrected at a time, for example all pixels with even column and row,
-//!   because they do not read each other.
+//! - Upsampling: each pixel is split into four, whose sources are adjacent in the exemplar.
+//! - Correction, repeated a few times: each pixel compares the source pixels that its neighbors predict, and the pixel
+//!   most similar to each of these. It takes the one whose surroundings in the exemplar are most similar to its own in
+//!   the texture. Features are compared, not colors: the principal components of windows ([`stage`]). A quarter of the
+//!   pixels is corrected at a time, for example all pixels with even column and row, because they do not read each
+//!   other.
 //!
-//! So a pixel depends on nearby pixels on each level, down to random pixels of the coarsest level, which are hashes of
-//! their columns and rows. A window is computed with a margin on every level.
+//! So a pixel depends on nearby pixels on each level, and ultimately on random pixels of the coarsest level, which are
+//! hashes of their columns and rows. A window is computed with a margin on every level.
 //!
 //! Departures from the papers:
 //!
 //! - The coarsest level begins with random pixels of the exemplar instead of copies of it. An exception is an exemplar
-//!   that wraps and repeats within itself, such as bricks, because random pixels would settle into courses that do not
-//!   line up. For such an exemplar the coarsest level begins with copies, and each pixel is replaced several times in
-//!   succession by the most similar one.
-//! - Finer levels are not jittered.
-//! - For exemplars that are not regular, similar pixels are at a disadvantage against predicted ones ([`COHERENCE`]).
+//!   that wraps and repeats within itself, such as bricks: there random pixels would form courses that do not line up.
+//!   Its coarsest level begins with copies, and each pixel is repeatedly replaced by its most similar pixel.
+//! - There is no jitter on finer levels.
+//! - For exemplars that are not regular, similar pixels have a penalty relative to predicted ones ([`COHERENCE`]).
 //! - Levels are corrected three times, and the coarsest six times, instead of twice.
-//! - Searches for the most similar pixel use a coarser grid of the level's pixels. A pixel between pixels of the grid
-//!   takes the result of its grid pixel, displaced by the same offset.
-//! - Pixels near a cut edge are not used if enough others remain ([`stage`]).
-//! - Averages of the texture's features are not projected a second time.
-//! - Exemplar regions that textures would use too often cost more ([`evenness`]).
+//! - The most similar pixel is found by searching a grid of the level. A pixel between grid pixels takes the result of
+//!   its grid pixel, displaced by the same offset.
+//! - Pixels near a cut edge are excluded if enough others remain ([`stage`]).
+//! - Averages of texture features are not projected a second time.
+//! - Parts of the exemplar that textures would use too often have higher costs ([`evenness`]).
 
 pub(crate) mod evenness;
 pub(crate) mod stage;
@@ -47,13 +46,13 @@ use dapple_hash::Seed;
 use evenness::REPETITION;
 use stage::Stage;
 
-/// Penalty on the distance of similar pixels relative to predicted pixels, for exemplars that are not regular. The
-/// distances of similar pixels are multiplied by `1 + COHERENCE`. Continuing a piece of the exemplar preserves its
-/// detail.
+/// Penalty on similar pixels relative to predicted ones, for exemplars that are not regular: squared distances are
+/// multiplied by `1 + COHERENCE`. Continuing a piece of the exemplar preserves its detail.
 ///
 /// Measured on photographs, with four textures from each: the distances of colors and patches from the exemplar
 /// ([`Likeness`](crate::Likeness)) fall by half for grass, rock, sand and gravel, and by a tenth for leaves; they rise
-/// by a seventh for a meadow and for wood. At 2, leaves lose this gain. Weave, which is regular, is torn even at 1.
+/// by a seventh for a meadow and for wood. With a value of 2, leaves lose this gain. Weave, which is regular, is
+/// already torn with a value of 1.
 const COHERENCE: f32 = 1.0;
 
 /// Maximum number of levels.
@@ -74,17 +73,17 @@ const MAX_PLACE: i64 = 1 << 52;
     serde(default, deny_unknown_fields)
 )]
 pub struct EndlessOptions {
-    /// Seed of the coarsest level; by default `Seed(0)`.
+    /// Seed for the coarsest level; by default `Seed(0)`.
     pub seed: Seed,
-    /// Number of levels, from 1 to 16. More levels preserve larger features of the exemplar. The default depends on the
-    /// size of the exemplar: its coarsest level then has 4 to 7 pixels along the shorter side.
+    /// Number of levels, from 1 to 16. More levels preserve larger features of the exemplar. By default, as many levels
+    /// as the exemplar's size allows: the coarsest one has from 4 to 7 pixels along the exemplar's shorter side.
     pub n_levels: Option<u32>,
-    /// Period of the texture in columns and in rows, each a multiple of 2 to the power of the number of levels. `None`,
-    /// the default, means that the texture does not repeat.
+    /// Period of the texture along columns and rows, in pixels. Each must be a multiple of 2 to the power of the number
+    /// of levels; `None` means no period (default).
     pub period: [Option<u32>; 2],
 }
 
-/// An unbounded texture that looks like an exemplar. Any window of it can be computed independently.
+/// An unbounded texture that looks like an exemplar. Any window of it can be computed.
 ///
 /// Two windows have the same pixels where they overlap.
 ///
@@ -113,34 +112,35 @@ pub struct Endless {
     period: [Option<u32>; 2],
     /// Levels of the exemplar, the finest first.
     stages: Vec<Stage>,
-    /// Usable pixels of the coarsest level.
+    /// Usable pixels of the exemplar on the coarsest level, as row-major indices.
     coarsest: Vec<u32>,
     /// Whether the exemplar is a tile that repeats within itself.
     is_lattice: bool,
 }
 
 impl Endless {
-    /// Prepares a texture. For small windows, this setup takes most of the time: about a microsecond per exemplar pixel
-    /// and level. Trials that measure how often textures use each region of the exemplar add half a second on one core.
+    /// Prepares a texture. For small windows this dominates the total time: it takes about a microsecond per pixel of
+    /// the exemplar and level. Trials that measure how often textures use each part of the exemplar add half a second
+    /// on one core.
     ///
-    /// A [mask](Exemplar::with_mask) of the exemplar applies; its [guides](Exemplar::with_guides) are ignored.
+    /// The exemplar's [mask](Exemplar::with_mask) applies; its [guides](Exemplar::with_guides) are ignored.
     ///
     /// # Errors
     ///
-    /// If the number of levels is not from 1 to 16, or so large that the coarsest level would have less than one pixel
-    /// along a side. If a period is not a multiple of 2 to the power of the number of levels. If a mask allows no
+    /// If the number of levels is not from 1 to 16, or leaves less than one pixel of the coarsest level along a side of
+    /// the exemplar; if a period is not a multiple of 2 to the power of the number of levels; or if a mask allows no
     /// pixel.
     pub fn new(exemplar: &Exemplar, options: &EndlessOptions) -> Result<Self, SynthError> {
         Self::new_cancellable(exemplar, options, &|| false)
     }
 
-    /// Prepares a texture like [`new`](Self::new), and stops if `is_cancelled` returns true. The callback is called
-    /// from any thread, every few milliseconds of work.
+    /// Prepares a texture like [`new`](Self::new), and stops when `is_cancelled` returns true. The callback is called
+    /// from any thread, once every few milliseconds of work.
     ///
     /// # Errors
     ///
-    /// Same as [`new`](Self::new), and [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled) if
-    /// `is_cancelled` returns true.
+    /// Same as [`new`](Self::new), or [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled) if `is_cancelled`
+    /// returns true.
     pub fn new_cancellable(
         exemplar: &Exemplar,
         options: &EndlessOptions,
@@ -173,7 +173,7 @@ impl Endless {
             n_levels as usize,
             &wanted,
         )?;
-        // For regular exemplars, similar pixels have no penalty.
+        // Similar pixels have no penalty in regular exemplars.
         let is_tile = exemplar.edges == Edges::Wrap && exemplar.usable.is_none();
         let is_regular = exemplar.regularity() > REGULAR;
         for stage in &mut stages {
@@ -188,7 +188,7 @@ impl Endless {
             coarsest: stages.last().map_or(Vec::new(), Stage::usable_pixels),
             stages,
         };
-        // Copies of a repeating tile use all regions evenly, and costs would break the repetition.
+        // Copies of a repeating tile use all parts evenly, and costs would disturb the repetition.
         if !texture.is_lattice {
             let repetition = if is_regular { 0.0 } else { REPETITION };
             texture.even_out(repetition, &wanted)?;
@@ -202,15 +202,15 @@ impl Endless {
         self.stages.len()
     }
 
-    /// Computes the window of `size` pixels whose first pixel is at column `first[0]` and row `first[1]`. A window has
-    /// at most 2^26 pixels.
+    /// Computes a window of `size` pixels, at most 2^26 in total, whose top left pixel is at column `first[0]` and row
+    /// `first[1]`.
     ///
-    /// The result wraps along an axis if its size equals the period.
+    /// The result wraps along an axis if its size along that axis equals the period.
     ///
     /// # Errors
     ///
-    /// If the window has no pixels or too many, or if its first column or row is beyond ±2^52.
-    /// [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled) if the callback breaks.
+    /// If the window has no pixels or too many, if its first column or row is beyond ±2^52, or if the callback breaks
+    /// ([`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled)).
     pub fn window(
         &self,
         first: [i64; 2],

@@ -1,5 +1,5 @@
-//! The sites that each site reads during correction: its neighbors in the graph, whose pieces it continues, and the
-//! sites near its four diagonals, whose features it compares.
+//! Links of each site: the sites that it reads during correction. These are its neighbors in the graph, whose pieces it
+//! continues, and the sites near its four diagonals, whose features it compares.
 //!
 //! Input: the graphs of a [`Hierarchy`] and the [`Frames`] of its sites. Output: for each site, its links in compressed
 //! rows, and the classes of unconnected sites. The graph and the frames do not change, so links are computed once per
@@ -12,36 +12,37 @@ use crate::{Hierarchy, SiteGraph, SiteIdx};
 use dapple_raster::parallel;
 use glam::Vec2;
 
-/// Center of the disk from which the sites of a diagonal are taken, along both axes, in units of the distance between
-/// features. A value above 1 lies beyond the corner, so a site sees more than its neighbors.
+/// Center of the disk from which the sites of a diagonal are taken, along both axes, in multiples of the distance
+/// between features. Values above 1 are beyond the diagonal, so a site reads more than its immediate neighbors.
 ///
-/// Measured on hooks, text, leaves and bricks: windows of the texture are 2 to 5 % nearer to those of the exemplar with
-/// 1.6 than with 1.0.
+/// Measured on hooks, text, leaves and bricks: windows of the texture are 2 to 5 % closer to windows of the exemplar
+/// with 1.6 than with 1.0.
 const CORNER: f32 = 1.6;
 
-/// Radius of this disk, in the same unit.
+/// Radius of the disk at [`CORNER`], in multiples of the distance between features.
 const REACH: f32 = 1.1;
 
-/// Maximum distance between features, in spacings of the sites that are read. Only the coarsest level has larger pixels
-/// of the exemplar; there twelve rings of sites around each site would take most of the time.
+/// Maximum distance between features, in multiples of the spacing of the sites that are read. Only on the coarsest
+/// level are pixels of the exemplar larger; there, reading twelve rings of sites around each site would take most of
+/// the time.
 const MAX_SPACINGS: f32 = 3.0;
 
-/// Number of sites that a task links.
+/// Number of sites that a task processes.
 const TASK: usize = 256;
 
 /// Number of tasks whose links are merged before the next ones run.
 const TASKS: usize = 256;
 
-/// Largest index of a class. Further classes would only add waiting.
+/// Largest index of a class. More classes would only add synchronization.
 const MAX_CLASSES: u32 = 63;
 
-/// Another site and its offset. There are so many links that every byte counts.
+/// Another site and its offset. Links dominate memory use, so they are stored compactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Link {
-    /// Index of the site; above [`SITE_BITS`], the rotation of the exemplar there relative to this site, in quarter
-    /// turns.
+    /// Index of the site in the lower [`SITE_BITS`] bits; above them, the rotation of the exemplar at that site
+    /// relative to this one, in quarter turns.
     turned_site: u32,
-    /// Offset of the site in pixels of the exemplar.
+    /// Offset from this site to the linked site, in pixels of the exemplar.
     way: [f32; 2],
 }
 
@@ -52,13 +53,14 @@ const SITE_BITS: u32 = 30;
 #[derive(Debug)]
 pub(super) struct Links {
     links: Vec<Link>,
-    /// Compressed rows: for each site, the start of its neighbors and of the sites of its four diagonals in `links`.
+    /// Compressed rows: for each site, the start in `links` of its neighbors and of the sites near each of its four
+    /// diagonals.
     rows: Vec<[u32; 5]>,
     /// Classes of sites. Classes are corrected sequentially; connected sites are in different classes.
     pub(super) classes: Vec<Vec<u32>>,
 }
 
-/// The links of one site.
+/// Links of one site.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Around<'a> {
     /// Neighbors of the site in the graph.
@@ -137,7 +139,7 @@ impl Links {
     }
 }
 
-/// Appends the links of a site to `links`, and the start of each group to `rows`.
+/// Appends the links of a site to `links`, and the start of each of its groups to `rows`.
 fn add(
     hierarchy: &Hierarchy,
     frames: &Frames,
@@ -174,10 +176,10 @@ fn add(
     rows.push(row);
 }
 
-/// Returns the sites that may lie near the diagonals of a site, and the distance between features in spacings of the
-/// finest level. `scale` is the size of a pixel of the exemplar, in spacings.
+/// Returns the sites that may be near the diagonals of a site, and the distance between features in multiples of the
+/// finest spacing. `scale` is the size of a pixel of the exemplar, in the same unit.
 ///
-/// If a pixel is large, it contains many sites; then sites of a coarser level are used, which have the same
+/// If a pixel is large, it contains many sites. Sites of a coarser level are used then, because they carry the same
 /// information. If a pixel is smaller than the spacing, the features are one spacing apart.
 fn around(hierarchy: &Hierarchy, level: usize, site: SiteIdx, scale: f32) -> (Vec<SiteIdx>, f32) {
     let levels = hierarchy.levels();
@@ -197,7 +199,7 @@ fn around(hierarchy: &Hierarchy, level: usize, site: SiteIdx, scale: f32) -> (Ve
     (found, spacings * (1_u64 << read) as f32)
 }
 
-/// Adds the neighbors of the sites in `found`, without `site`, and sorts by index.
+/// Adds the neighbors of the sites in `found`, removes `site` and duplicates, and sorts by index.
 fn add_ring(graph: &SiteGraph, site: SiteIdx, found: &mut Vec<SiteIdx>) {
     for at in 0..found.len() {
         found.extend(graph.neighbors(found[at]));
@@ -207,8 +209,8 @@ fn add_ring(graph: &SiteGraph, site: SiteIdx, found: &mut Vec<SiteIdx>) {
     found.dedup();
 }
 
-/// Returns the link to another site, or `None` if it is on another sheet of the surface: the normals are more than a
-/// right angle apart.
+/// Returns the link to another site, or `None` if it is on another sheet of the surface, that is, if the two normals
+/// are more than a right angle apart.
 fn link(hierarchy: &Hierarchy, frames: &Frames, from: SiteIdx, to: SiteIdx) -> Option<Link> {
     let (sites, [a, b]) = (hierarchy.sites(), [from, to].map(|site| site.index()));
     if sites.normals()[a].dot(sites.normals()[b]) < 0.0 {
@@ -217,12 +219,12 @@ fn link(hierarchy: &Hierarchy, frames: &Frames, from: SiteIdx, to: SiteIdx) -> O
     let way = (sites.positions()[b] - sites.positions()[a]).as_vec3();
     let quarters = frames.quarters_between(a, b);
     let [here, there] = [a, b].map(|site| frames.of_site[site].flat(way));
-    // The frame changes along the way; average the offsets in the frames of both ends.
+    // The frame changes along the offset; average the offsets in the frames of both ends.
     let way = 0.5 * (here + Vec2::from(offset_before(there.to_array(), quarters)));
     Some(Link::new(to, quarters, way))
 }
 
-/// Graph coloring: puts every site into the first class that contains none of its neighbors with a lower index.
+/// Colors the graph: puts every site into the first class that contains none of its neighbors with a lower index.
 fn classes(hierarchy: &Hierarchy, level: usize) -> Vec<Vec<u32>> {
     let graph = hierarchy.levels()[level].graph();
     let mut class_of = vec![0_u32; graph.len()];

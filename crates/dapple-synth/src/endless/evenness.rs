@@ -1,22 +1,22 @@
-//! Even usage of the parts of an exemplar, by costs that are added to the distances of correction.
+//! Evens out how often the parts of an exemplar are used, by costs that are added to the distances during correction.
 //!
-//! Without costs, correction prefers pixels that fit many neighborhoods: textures of a photograph of grass that is
-//! lighter on one side use little but its middle. So the exemplar is divided into at most 16 × 16 parts, and the cost
-//! of a part is added to the squared distance of its pixels.
+//! Without costs, correction prefers pixels that fit many neighborhoods. For example, textures of a photograph of grass
+//! that is lighter on one side use little but its middle. So the exemplar is divided into at most 16 × 16 parts, and
+//! the cost of a part is added to the squared distance of its pixels.
 //!
-//! Costs are found by trials. Each trial makes a piece of the texture, then raises the costs of parts that it uses too
-//! often and lowers those of parts that it uses too rarely. The costs of the most even trial are kept. They belong to
-//! the texture and not to a window, so a window has the same pixels as any larger one.
+//! Costs are found by trials. Each trial computes a piece of the texture, then raises the costs of parts that it uses
+//! too often and lowers the costs of parts that it uses too rarely. The costs of the most even trial are retained. They
+//! belong to the texture and not to a window, so a pixel does not depend on the window that contains it.
 //!
-//! A second cost is for repetition: two equal details close to each other are visible even if all parts are used
-//! equally often. It applies to a source that is nearly the source of a nearby pixel, instead of as far from it as the
-//! two pixels are from each other. Regular exemplars such as bricks repeat everywhere, and have no such cost.
+//! A second cost penalizes repetition: two equal details close to each other are visible even if all parts are used
+//! equally often. It applies if two nearby pixels have sources that are much closer to each other than the pixels are.
+//! Regular exemplars such as bricks repeat everywhere, and have no such cost.
 //!
-//! Only levels on which the piece is at least as wide as the exemplar have costs. On finer levels it is too small to
-//! show all parts, and their usage follows from the coarser levels.
+//! Costs are used only on levels on which the trial piece is at least as wide as the exemplar. On finer levels the
+//! piece is too small to show all parts, and the usage of parts follows from the coarser levels.
 //!
-//! Reference: the method is our own. Prices that rise with demand are from Bertsekas's auction algorithm for assignment
-//! problems.
+//! Reference: the method is our own. Prices that rise with demand come from Bertsekas's auction algorithm for
+//! assignment problems.
 
 use super::Endless;
 use super::stage::Stage;
@@ -25,7 +25,7 @@ use crate::SynthError;
 use crate::engine::Wanted;
 use dapple_raster::parallel;
 
-/// Side of the piece that a trial makes, in pixels of the level.
+/// Side of the piece that a trial computes, in pixels of the level.
 const SIDE: i64 = 64;
 
 /// Number of trials per level.
@@ -34,29 +34,30 @@ const N_TRIALS: u32 = 20;
 /// Maximum number of parts along an axis.
 const MAX_PARTS: u32 = 16;
 
-/// Decrease of the cost of a part that the first trial does not use, in units of the mean squared distance.
+/// Decrease in the cost of a part that the first trial does not use, in multiples of the mean squared distance.
 const STEP: f32 = 0.8;
 
-/// Number of trials after which the changes of costs are half as large.
+/// Number of trials after which the changes in costs are half as large.
 const HALF_STEP: f32 = 8.0;
 
-/// Cost of a source that repeats one near it, in units of the mean squared distance.
+/// Cost of a source that is repeated nearby, in multiples of the mean squared distance.
 ///
-/// Measured on a texture of leaves: 4 % of the pixels have their source again within 16 pixels without this cost, and 1
-/// % with it. A cost twice as large hardly lowers this further.
+/// Measured on a texture of leaves: 4 % of the pixels have their source repeated within 16 pixels without this cost,
+/// and 1 % with it. Doubling the cost hardly lowers this further.
 pub(super) const REPETITION: f32 = 1.0;
 
 /// Costs of the parts of an exemplar; empty if all parts cost nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Costs {
-    /// Index of the part of a pixel: the sum of a value of its column and a value of its row.
+    /// Contribution of each column to the index of a pixel's part; the index is the sum of a column's and a row's
+    /// value.
     of_column: Vec<u32>,
     of_row: Vec<u32>,
     of_part: Vec<f32>,
 }
 
 impl Costs {
-    /// Divides an exemplar into parts that cost nothing. A part is at least `spacing` pixels wide.
+    /// Divides an exemplar into parts without costs. A part is at least `spacing` pixels wide.
     pub(crate) fn new(size: [u32; 2], spacing: u32) -> Self {
         let side = spacing.max((size[0].max(size[1]) - 1) / MAX_PARTS + 1);
         let [n_columns, n_rows] = size.map(|n| (n - 1) / side + 1);
@@ -94,8 +95,9 @@ impl Costs {
         counts.into_iter().map(share).collect()
     }
 
-    /// Raises the costs of parts with a larger share than wanted, and lowers those of parts with a smaller one. The
-    /// change is `step` for a part without pixels, and approaches `step` for a part with far too many.
+    /// Raises the costs of parts whose share exceeds the one in `wanted`, and lowers the costs of parts with a smaller
+    /// share. The decrease is `step` for a part without pixels; the increase approaches `step` for a part with far too
+    /// many.
     pub(crate) fn change(&mut self, shares: &[f32], wanted: &[f32], step: f32) {
         for (cost, (share, wanted)) in self.of_part.iter_mut().zip(shares.iter().zip(wanted)) {
             if *wanted > 0.0 {
@@ -106,8 +108,8 @@ impl Costs {
 }
 
 impl Endless {
-    /// Finds the costs of the parts of the exemplar on the coarser levels. `repetition` is the cost of repetition in
-    /// units of the mean squared distance.
+    /// Finds the costs of the exemplar's parts on the coarser levels. `repetition` is the cost of a repeated source, in
+    /// multiples of the mean squared distance.
     pub(crate) fn even_out(
         &mut self,
         repetition: f32,
@@ -115,7 +117,7 @@ impl Endless {
     ) -> Result<(), SynthError> {
         let mut coarser: Option<Area> = None;
         for level in (0..self.stages.len()).rev() {
-            // End at the first level on which the piece is smaller than the exemplar.
+            // Stop at the first level on which the piece is smaller than the exemplar.
             let Stage { size, spacing, .. } = self.stages[level];
             if SIDE * spacing < i64::from(size[0].max(size[1])) {
                 return Ok(());
@@ -127,7 +129,7 @@ impl Endless {
                     .iter()
                     .map(|pixel| [pixel % size[0], pixel / size[0]]),
             );
-            // Make a piece with the current costs.
+            // Compute a piece with the current costs.
             let half = SIDE / 2;
             let mut scale = None;
             let mut best = (f32::INFINITY, costs.clone(), None);
@@ -136,12 +138,11 @@ impl Endless {
                 self.stages[level].costs = costs.clone();
                 let made = self.area(level, coarser.as_ref(), [-half..half, -half..half]);
                 let scale = *scale.get_or_insert_with(|| made.mean_sq(&self.stages[level]));
-                // With a larger distance, an exemplar that wraps would count as repeated where it continues past its
-                // edge.
+                // At larger distances, an exemplar that wraps would count as repeated where it continues past its edge.
                 if 2 * READS * spacing <= i64::from(size[0].min(size[1])) {
                     self.stages[level].repetition_cost = repetition * scale;
                 }
-                // Measure the unevenness, and keep the costs and the piece of the most even trial.
+                // Measure the unevenness; retain the costs and the piece of the most even trial.
                 let shares = costs.shares(made.inner().map(|at| made.at(at).map(|at| at as u32)));
                 let pairs = || shares.iter().zip(&even);
                 let uneven = pairs().map(|(a, b)| (a - b).abs()).sum();
@@ -162,7 +163,7 @@ impl Endless {
 }
 
 impl Area {
-    /// Returns the pixels whose correction reads only pixels of the area.
+    /// Returns the pixels whose correction reads only pixels within the area.
     fn inner(&self) -> impl Iterator<Item = [i64; 2]> {
         let rows = self.rows.start + READS..self.rows.end - READS;
         let columns = self.columns.start + READS..self.columns.end - READS;

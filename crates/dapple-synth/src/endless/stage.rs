@@ -4,11 +4,11 @@
 //! 10.1145/1141911.1141921.
 //!
 //! Input: an exemplar, its guides and mask, and a number of levels. Output: a [`Stage`] per level, with the features,
-//! the usable pixels, and for each pixel the most similar other one.
+//! the usable pixels, and the most similar other pixel of each pixel.
 //!
-//! All levels have the full size of the exemplar, as in an à trous pyramid. Each level is the previous one blurred with
-//! the weights 1-4-6-4-1; their distance is the spacing of the texture's pixels on the previous level, 1, 2, 4 and so
-//! on. So a source can be any pixel of the exemplar, on coarse levels too.
+//! All levels have the full size of the exemplar, as in an à trous pyramid. Each level is computed by blurring the
+//! previous one with the weights 1-4-6-4-1. The taps are as far apart as the texture's pixels on the previous level: 1,
+//! 2, 4 and so on, in exemplar pixels. So a source can be any pixel of the exemplar, on coarse levels too.
 
 use super::evenness::Costs;
 use crate::engine::Wanted;
@@ -26,19 +26,19 @@ pub(crate) const N_FEATURES: usize = 8;
 /// Offsets of the pixels whose features are compared, in pixels of the level.
 pub(crate) const DIAGONALS: [[i64; 2]; 4] = [[-1, -1], [1, -1], [-1, 1], [1, 1]];
 
-/// Half side of the window that features describe, in pixels of the level.
+/// Half-side length of the window that features describe, in pixels of the level.
 const HALF: i64 = 2;
 
 /// Squared weights of the columns and of the rows of a window.
 const WEIGHTS: [f32; 2 * HALF as usize + 1] = [1.0, 4.0, 6.0, 4.0, 1.0];
 
-/// Minimum distance between a pixel and the most similar one, as a fraction of the exemplar's shorter side.
+/// Minimum distance between a pixel and its most similar pixel, as a fraction of the exemplar's shorter side.
 const APART: f64 = 0.05;
 
 /// Maximum number of pixels of the grid. A search among them takes a tenth of a millisecond.
 const GRID: i64 = 1 << 14;
 
-/// Number of pixels of the grid that a task searches for.
+/// Number of grid pixels that a search task processes.
 const PIXELS: usize = 512;
 
 /// Number of searches between two polls for cancellation.
@@ -47,7 +47,7 @@ const ASKED: usize = 64;
 /// Maximum number of windows from which the principal components are computed.
 const SAMPLE: usize = 4096;
 
-/// In place of a row or a pixel: there is none.
+/// Marks a missing row or pixel.
 const NONE: u32 = u32::MAX;
 
 /// One level of an exemplar.
@@ -55,33 +55,33 @@ const NONE: u32 = u32::MAX;
 pub(crate) struct Stage {
     pub(crate) size: [u32; 2],
     wrap: Wrap,
-    /// Distance of two pixels of the level, in pixels of the exemplar.
+    /// Distance between adjacent pixels of the level, in pixels of the exemplar.
     pub(crate) spacing: i64,
     /// Features of each pixel: principal components of the window around it. There is one list for each rotation of the
-    /// exemplar, from 0 to 3 quarter turns; rotations that the symmetry lacks have an empty list.
+    /// exemplar, from 0 to 3 quarter turns; the list is empty for rotations that are not in the symmetry.
     features: [Vec<[f32; N_FEATURES]>; 4],
-    /// Whether each pixel may be a source; `None` if all may.
+    /// Whether each pixel can be a source; `None` if all can.
     usable: Option<Vec<bool>>,
-    /// Distance of two pixels of the grid on which similar pixels are searched, in pixels of the exemplar.
+    /// Spacing of the grid on which similar pixels are searched, in pixels of the exemplar.
     pub(crate) step: i64,
-    /// For each pixel of the grid, the index of the most similar pixel of the grid, or [`NONE`].
+    /// For each grid pixel, the index of the most similar grid pixel, or [`NONE`].
     similar: Vec<u32>,
-    /// Guides of every pixel, each times the root of its weight.
+    /// Guides of every pixel, each multiplied by the square root of its weight.
     guides: Vec<f32>,
-    /// Usable pixels of the grid, for [`search`](Self::search); `None` without guides.
+    /// Usable grid pixels, for [`search`](Self::search); `None` if the exemplar has no guides.
     searched: Option<Grid>,
     /// Costs of the parts of the exemplar, added to squared distances.
     pub(crate) costs: Costs,
-    /// Cost of a source that repeats one near it, added to its squared distance.
+    /// Cost of a source that is repeated nearby, added to its squared distance.
     pub(super) repetition_cost: f32,
-    /// Additional weight of similar pixels: their distances are multiplied by `1 + coherence`.
+    /// Penalty on similar pixels: their squared distances are multiplied by `1 + coherence`.
     pub(crate) coherence: f32,
 }
 
-/// Usable pixels of a grid, with a matcher over their features and guides.
+/// Usable pixels of a grid, with a matcher for their features and guides.
 #[derive(Clone, Debug)]
 struct Grid {
-    /// Index in the grid of each usable pixel.
+    /// Grid index of each usable pixel.
     pixels: Vec<usize>,
     matcher: Matcher,
 }
@@ -109,7 +109,7 @@ pub(crate) fn stages(
         ));
         guides_of.push(blurred(exemplar, &guides_of[level - 1], n_guides, step));
     }
-    // A level excludes at most as wide a margin as the next coarser one, so sources of the coarser level stay usable.
+    // The margin excluded on a level is at most as wide as on the next coarser one, so the coarser sources stay usable.
     let mut reach = i64::MAX;
     let mut masks = Vec::with_capacity(n_levels);
     for level in (0..n_levels).rev() {
@@ -129,12 +129,12 @@ pub(crate) fn stages(
     parallel::map(n_levels, stage).into_iter().collect()
 }
 
-/// Converts the coordinates of a pixel of the exemplar to `u32`; they are below 2^32.
+/// Converts the coordinates of an exemplar pixel to `u32`; they are below 2^32.
 pub(crate) fn narrow(place: [i64; 2]) -> [u32; 2] {
     place.map(|at| at as u32)
 }
 
-/// Blurs an image of `n` channels with the weights 1-4-6-4-1 along both axes, at pixels `step` apart.
+/// Blurs an image of `n` channels with the weights 1-4-6-4-1 along both axes, with taps `step` pixels apart.
 fn blurred(exemplar: &Exemplar, pixels: &[f32], n: usize, step: i64) -> Vec<f32> {
     let [width, height] = exemplar.size;
     let wrap = exemplar.edges.wrap();
@@ -182,7 +182,7 @@ fn features(
         let (columns, rows) = (taps(column, width), taps(row, height));
         for (y, down) in (-HALF..).zip(WEIGHTS) {
             for (x, across) in (-HALF..).zip(WEIGHTS) {
-                // The weights of the columns add up to 16, and so do those of the rows.
+                // The weights of the columns add up to 16, and the weights of the rows as well.
                 let weight = (down * across).sqrt() / 16.0;
                 let [x, y] = offset_after([x, y], quarters).map(|at| (at + HALF) as usize);
                 let pixel = &pixels[(rows[y] * width as usize + columns[x]) * n..][..n];
@@ -229,7 +229,7 @@ fn features(
 }
 
 /// Returns the usable pixels, and the width of the margin that was excluded around cut edges and masked pixels. The
-/// margin is `reach`, or smaller, down to 0, if more than half of the pixels would be excluded.
+/// margin is at most `reach` pixels wide; it is halved while it would exclude more than half of the allowed pixels.
 fn usable(
     exemplar: &Exemplar,
     level: usize,
@@ -271,7 +271,7 @@ fn usable(
     }
 }
 
-/// Returns for each position of a line whether a condition holds everywhere within `reach` of it (binary erosion).
+/// Returns whether a condition holds everywhere within `reach` of each position of a line (binary erosion).
 fn inner(edges: Edges, side: usize, reach: i64, holds: impl Fn(usize) -> bool) -> Vec<bool> {
     let side = side as i64;
     let reach = reach.min(side);
@@ -279,7 +279,7 @@ fn inner(edges: Edges, side: usize, reach: i64, holds: impl Fn(usize) -> bool) -
         Edges::Wrap => holds(at.rem_euclid(side) as usize),
         Edges::Cut => (0..side).contains(&at) && holds(at as usize),
     };
-    // Count the positions in a row at which the condition holds, up to `at + reach`.
+    // Count the consecutive positions up to `at + reach` at which the condition holds.
     let mut run = (-reach..reach).rev().take_while(|&at| holds_at(at)).count() as i64;
     let mut inner = Vec::with_capacity(side as usize);
     for at in 0..side {
@@ -330,17 +330,18 @@ impl Stage {
         self.turned_features(place, 0)
     }
 
-    /// Returns the features of a pixel like [`features`](Self::features), with the exemplar rotated by `quarters`.
+    /// Returns the features of a pixel like [`features`](Self::features), with the exemplar rotated by `quarters`
+    /// quarter turns.
     #[inline(always)]
     pub(crate) fn turned_features(&self, place: [i64; 2], quarters: u8) -> &[f32; N_FEATURES] {
         let (column, row) = (self.within(0, place[0]), self.within(1, place[1]));
         &self.features[usize::from(quarters)][row * self.size[0] as usize + column]
     }
 
-    /// Maps a column or row to the exemplar, mirrored or wrapped past its edges.
+    /// Maps a column or row to one within the exemplar, mirrored or wrapped past its edges.
     #[inline(always)]
     fn within(&self, axis: usize, at: i64) -> usize {
-        // Avoid the remainder of a division, the most expensive operation here.
+        // Avoid the remainder operation, the most expensive one here.
         if (0..i64::from(self.size[axis])).contains(&at) {
             at as usize
         } else {
@@ -348,15 +349,15 @@ impl Stage {
         }
     }
 
-    /// Squared distance between features on the diagonals of a texture pixel and those on the diagonals of an exemplar
-    /// pixel.
+    /// Returns the squared distance between the features on the diagonals of a texture pixel and those on the diagonals
+    /// of an exemplar pixel.
     #[inline(always)]
     pub(crate) fn distance_sq(&self, around: &[[f32; N_FEATURES]; 4], place: [i64; 2]) -> f32 {
         self.distance_sq_of(around.iter().zip(DIAGONALS), place)
     }
 
-    /// Squared distance between features on some diagonals of a texture pixel and those on the same diagonals of an
-    /// exemplar pixel.
+    /// Returns the squared distance between the features on some diagonals of a texture pixel and those on the same
+    /// diagonals of an exemplar pixel.
     #[inline(always)]
     pub(crate) fn distance_sq_of<'a>(
         &self,
@@ -375,8 +376,8 @@ impl Stage {
         ((a + e) + (c + g)) + ((b + f) + (d + h))
     }
 
-    /// Squared distance between the wanted guides and those of an exemplar pixel, times the number of diagonals: a
-    /// guide counts as a channel that differs everywhere.
+    /// Returns the squared distance between the guides `wanted` and those of an exemplar pixel, times the number of
+    /// diagonals, because a guide counts as a channel that differs on every diagonal.
     #[inline]
     pub(crate) fn guides_distance_sq(&self, wanted: &[f32], [column, row]: [i64; 2]) -> f32 {
         if wanted.is_empty() {
@@ -388,7 +389,7 @@ impl Stage {
         DIAGONALS.len() as f32 * squares.sum::<f32>()
     }
 
-    /// Returns the pixel of the grid with the most similar features and guides; `None` if the exemplar has no guides.
+    /// Returns the grid pixel with the most similar features and guides; `None` if the exemplar has no guides.
     pub(crate) fn search(
         &self,
         around: &[[f32; N_FEATURES]; 4],
@@ -401,16 +402,16 @@ impl Stage {
         Some(self.grid_place(grid.pixels[found.row as usize]))
     }
 
-    /// Returns the initial source of the pixel `at`, given the source of its parent on the coarser level: the pixel
-    /// half a spacing from it toward the child, or `parent` itself if that pixel is not usable.
+    /// Returns the initial source of the texture pixel `at`, given the source of its parent on the coarser level: the
+    /// pixel half a spacing from the parent's source toward the child, or `parent` itself if that pixel is not usable.
     pub(crate) fn child(&self, parent: [i64; 2], at: [i64; 2]) -> [i64; 2] {
-        // Half of the spacing to either side, rounded down: 1 or 0 pixels on the finest level.
+        // Offset by half a spacing in the child's direction, rounded down: 1 or 0 pixels on the finest level.
         let step = at.map(|at| ((2 * at.rem_euclid(2) - 1) * self.spacing).div_euclid(2));
         let beside = [parent[0] + step[0], parent[1] + step[1]];
         self.usable(beside).unwrap_or(parent)
     }
 
-    /// Returns a pixel within the exemplar, wrapped if the exemplar wraps, or `None` if it is not usable.
+    /// Returns a pixel moved into the exemplar if the exemplar wraps, or `None` if the pixel is not usable.
     #[inline(always)]
     pub(crate) fn usable(&self, mut place: [i64; 2]) -> Option<[i64; 2]> {
         for (at, side) in place.iter_mut().zip(self.size) {
@@ -438,8 +439,8 @@ impl Stage {
         }
     }
 
-    /// Returns the pixel most similar to a given one, if it is usable: the most similar pixel of the grid, plus the
-    /// offset of the given pixel from its grid pixel.
+    /// Returns the pixel most similar to `place`, if it is usable: the most similar grid pixel, plus the offset of
+    /// `place` from its own grid pixel.
     #[inline(always)]
     pub(crate) fn similar(&self, place: [i64; 2]) -> Option<[i64; 2]> {
         let [column, row] = place.map(|at| at / self.step);
@@ -452,18 +453,18 @@ impl Stage {
         self.usable([0, 1].map(|axis| found[axis] * self.step + place[axis] % self.step))
     }
 
-    /// Number of columns and rows of the grid.
+    /// Returns the number of columns and rows of the grid.
     fn grid(&self) -> [i64; 2] {
         self.size.map(|side| (i64::from(side) - 1) / self.step + 1)
     }
 
-    /// Converts the index of a grid pixel to the pixel of the exemplar.
+    /// Converts the index of a grid pixel to its position in the exemplar.
     fn grid_place(&self, pixel: usize) -> [i64; 2] {
         let [width, _] = self.grid();
         [pixel as i64 % width, pixel as i64 / width].map(|at| at * self.step)
     }
 
-    /// Finds the most similar other pixel of the grid for each pixel of the grid, at least [`apart`](Self::apart) away.
+    /// For each grid pixel, finds the most similar other grid pixel at least [`apart`](Self::apart) steps away.
     fn search_alike(&mut self, wanted: &Wanted<'_>) -> Result<(), SynthError> {
         let [width, height] = self.grid();
         let n_pixels = (width * height) as usize;
@@ -483,7 +484,7 @@ impl Stage {
             compared(&DIAGONALS.map(|step| *self.features(around(step))), guides)
         });
         let dims = DIAGONALS.len() * N_FEATURES + n_guides;
-        // Search for each pixel. Infinite factors exclude the pixels near it.
+        // Search for each pixel. Infinite factors exclude nearby pixels.
         let matcher = Matcher::with_factors(dims, &values.concat());
         let apart = self.apart();
         let found = parallel::map(pixels.len().div_ceil(PIXELS), |block| {
@@ -504,7 +505,7 @@ impl Stage {
                 };
                 let found = matcher.find(query, &mut memory).map(|found| found.row);
                 self.mark(&row_of, pixels[row], apart, 1.0, &mut factors);
-                // Hint for the next pixel: the pixel most similar to it is often next to this result.
+                // Hint for the next pixel: its most similar pixel is often next to this result.
                 hint = found.map(|row| row + 1);
                 Some(found.map_or(NONE, |row| pixels[row as usize] as u32))
             };
@@ -520,14 +521,14 @@ impl Stage {
         Ok(())
     }
 
-    /// Minimum distance between a pixel and the most similar one, in steps of the grid, up to rounding.
+    /// Returns the minimum distance between a pixel and its most similar pixel, in grid steps, up to rounding.
     pub(crate) fn apart(&self) -> i64 {
         let side = f64::from(self.size[0].min(self.size[1]));
         ((APART * side) as i64 / self.step).max(1)
     }
 
-    /// Sets the factors of the pixels of the grid within a disk around a pixel; `apart` is its radius in steps of the
-    /// grid.
+    /// Sets the factors of the grid pixels within a disk around the grid pixel `at`. `apart` is the radius of the disk
+    /// in grid steps.
     fn mark(&self, row_of: &[u32], at: usize, apart: i64, factor: f32, factors: &mut [f32]) {
         let [width, height] = self.grid();
         let [column, line] = [at as i64 % width, at as i64 / width];
@@ -544,8 +545,8 @@ impl Stage {
     }
 }
 
-/// Returns the vector that the matcher compares: the features on the four diagonals of a pixel, and its guides, which
-/// count four times.
+/// Returns the vector that the matcher compares: the features on the four diagonals of a pixel, followed by its guides,
+/// which count four times.
 fn compared(around: &[[f32; N_FEATURES]; 4], guides: &[f32]) -> Vec<f32> {
     let mut values = around.as_flattened().to_vec();
     let root = (DIAGONALS.len() as f32).sqrt();

@@ -1,4 +1,4 @@
-//! Computation of a window of an endless texture, level by level.
+//! Computes a window of an endless texture, level by level.
 //!
 //! Input: the levels of the exemplar and the rectangle of the window. Output: the source pixel of each pixel. Margins
 //! are added on each level, so that every value that the window depends on is computed.
@@ -17,25 +17,26 @@ use dapple_raster::{Raster, parallel};
 /// Number of correction passes per level; the coarsest level has twice as many.
 pub(super) const N_PASSES: usize = 3;
 
-/// Number of possible replacement counts: a pixel of the coarsest level of a regular exemplar is replaced by the most
-/// similar one 0 to 7 times.
+/// Number of possible replacement counts. For a regular exemplar that wraps, a pixel of the coarsest level is replaced
+/// by its most similar pixel 0 to 7 times.
 const MOVES: f64 = 8.0;
 
-/// Maximum distance of the pixels that the correction of a pixel reads, along each axis.
+/// Maximum distance, along each axis, of the pixels that the correction of a pixel reads.
 pub(super) const READS: i64 = 2;
 
-/// Number of pixels between two progress reports. A quarter of them is corrected, which takes some milliseconds.
+/// Number of pixels between two progress reports. A quarter of them is corrected in between, which takes a few
+/// milliseconds.
 const REPORTED: i64 = 1 << 16;
 
-/// The four subpasses of a correction pass, in order: the remainders of column and row by 2 of the corrected pixels.
+/// The four subpasses of a correction pass, in order: column and row of the corrected pixels modulo 2.
 pub(super) const QUARTERS: [[i64; 2]; 4] = [[0, 0], [1, 1], [0, 1], [1, 0]];
 
-/// Returns the distance of the farthest pixels that a pixel depends on after `n_passes` passes over a level.
+/// Returns the maximum distance of the pixels that a pixel depends on after `n_passes` passes over a level.
 const fn reach(n_passes: usize) -> i64 {
     READS * (QUARTERS.len() * n_passes) as i64
 }
 
-/// Number of correction passes of a level, given the coarser one.
+/// Returns the number of correction passes on a level. `coarser` is the coarser level, or `None` on the coarsest.
 fn n_passes(coarser: Option<&Area>) -> usize {
     match coarser {
         None => 2 * N_PASSES,
@@ -43,7 +44,7 @@ fn n_passes(coarser: Option<&Area>) -> usize {
     }
 }
 
-/// A rectangle of the texture on one level, with the source pixel in the exemplar of each of its pixels.
+/// A rectangle of the texture on one level, with the source in the exemplar of each of its pixels.
 #[derive(Debug)]
 pub(super) struct Area {
     pub(super) columns: Range<i64>,
@@ -57,12 +58,12 @@ pub(super) struct Area {
 struct Turn {
     quarter: [i64; 2],
     row: i64,
-    /// Number of turns, from the first one, that must be finished before this one.
+    /// Number of turns at the start of the schedule that must finish before this one runs.
     wait: usize,
 }
 
 impl Endless {
-    /// Computes the sources of a window.
+    /// Computes the source of each pixel in a window.
     pub(super) fn sources(
         &self,
         [column, row]: [i64; 2],
@@ -71,7 +72,7 @@ impl Endless {
     ) -> Result<Raster<[u32; 2]>, SynthError> {
         let [columns, rows] =
             [(column, size[0]), (row, size[1])].map(|(first, side)| first..first + i64::from(side));
-        // Find the range of pixels that are needed on each level, the finest first.
+        // Find the range of pixels needed on each level, the finest first.
         let mut needs = vec![[columns.clone(), rows.clone()]];
         for level in 1..self.stages.len() {
             let reach = reach(N_PASSES);
@@ -117,7 +118,7 @@ impl Endless {
         Ok(Raster::from_fn(size, place)?)
     }
 
-    /// Creates a level before its correction: from the coarser level, or at random on the coarsest.
+    /// Creates a level before its correction: upsampled from the coarser level, or random on the coarsest.
     fn start(
         &self,
         level: usize,
@@ -133,7 +134,7 @@ impl Endless {
         })
     }
 
-    /// Creates a level and corrects the pixels whose neighborhoods lie within the area.
+    /// Creates a level and corrects the pixels whose neighborhoods are within the area.
     pub(super) fn area(
         &self,
         level: usize,
@@ -147,8 +148,8 @@ impl Endless {
     }
 
     /// Returns the initial source of a pixel of the coarsest level: a random pixel of the exemplar. For a regular
-    /// exemplar that wraps, it is the pixel at this position in copies of the exemplar, replaced by the most similar
-    /// one 0 to 7 times.
+    /// exemplar that wraps, the source is the pixel's position in tiled copies of the exemplar, replaced by its most
+    /// similar pixel 0 to 7 times.
     fn random(&self, level: usize, mut at: [i64; 2]) -> [i64; 2] {
         for (at, period) in at.iter_mut().zip(self.period) {
             if let Some(period) = period {
@@ -174,7 +175,7 @@ impl Endless {
     }
 }
 
-/// Returns the columns or rows of a range with the remainder `rest` by 2, except those whose correction reads past the
+/// Returns the columns or rows of a range that equal `rest` modulo 2, except those whose correction reads past the
 /// range.
 fn odd_or_even(range: &Range<i64>, rest: i64) -> impl Iterator<Item = i64> + use<> {
     let first = range.start + READS;
@@ -203,26 +204,26 @@ impl Area {
         }
     }
 
-    /// Index of a pixel in `places`.
+    /// Returns the index of a pixel in `places`.
     #[inline(always)]
     fn index(&self, [column, row]: [i64; 2]) -> usize {
         let width = self.columns.end - self.columns.start;
         ((row - self.rows.start) * width + column - self.columns.start) as usize
     }
 
-    /// Source of a pixel.
+    /// Returns the source of a pixel.
     #[inline(always)]
     pub(super) fn at(&self, pixel: [i64; 2]) -> [i64; 2] {
         let [column, row] = &self.places[self.index(pixel)];
-        // Relaxed is enough: the board orders reads after writes of other threads.
+        // Relaxed ordering suffices, because the board orders reads after writes by other threads.
         [
             column.load(Ordering::Relaxed).into(),
             row.load(Ordering::Relaxed).into(),
         ]
     }
 
-    /// Corrects the pixels of the given subpasses in some rows, except pixels whose correction reads past the area.
-    /// Subpasses follow each other; rows run in parallel.
+    /// Corrects the pixels of the given subpasses in `rows`, except pixels whose correction reads past the area.
+    /// Subpasses run in order; the rows of a subpass run in parallel.
     fn correct(&self, stage: &Stage, quarters: &[[i64; 2]], rows: Range<i64>) {
         let level = simd::level();
         let turns = self.turns(quarters, &rows);
@@ -238,7 +239,7 @@ impl Area {
         });
     }
 
-    /// Splits the rows into parts for progress reports. Each part includes the rows around it that it reads.
+    /// Splits the rows into parts for progress reports. Each part includes the surrounding rows that it reads.
     fn parts(&self) -> impl Iterator<Item = Range<i64>> + use<> {
         let rows = self.rows.start..self.rows.end - 2 * READS;
         let n_rows = (REPORTED / (self.columns.end - self.columns.start)).max(2);
@@ -246,7 +247,7 @@ impl Area {
         firsts.map(move |first| first..rows.end.min(first + n_rows) + 2 * READS)
     }
 
-    /// Corrects the given pixels of a row.
+    /// Corrects the pixels of a row at the given columns.
     #[inline(always)]
     fn correct_row(&self, stage: &Stage, columns: impl Iterator<Item = i64>, row: i64) {
         for column in columns {
@@ -257,8 +258,8 @@ impl Area {
         }
     }
 
-    /// Wavefront schedule of the rows of all subpasses. A row waits for the rows of the previous subpass that it reads,
-    /// and for those that read it.
+    /// Builds the wavefront schedule of the rows of all subpasses. A row waits for the rows of the previous subpass
+    /// that it reads, and for those that read it.
     fn turns(&self, quarters: &[[i64; 2]], rows: &Range<i64>) -> Vec<Turn> {
         let mut turns: Vec<Turn> = Vec::new();
         let mut before = 0..0;
@@ -274,8 +275,8 @@ impl Area {
         turns
     }
 
-    /// Returns the best source of a pixel: the exemplar pixel whose surroundings are most similar to those of the pixel
-    /// in the texture. Of equally good sources the first wins.
+    /// Returns the best source of a pixel: the exemplar pixel whose surroundings are most similar to the pixel's
+    /// surroundings in the texture. The first of equally good sources is returned.
     #[inline(always)]
     fn corrected(&self, stage: &Stage, [column, row]: [i64; 2]) -> [i64; 2] {
         let mut choice = Choice {
@@ -301,7 +302,7 @@ impl Area {
                 }
             }
         }
-        // Compare the pixels most similar to these, at a disadvantage.
+        // Compare the pixels most similar to these, with a penalty.
         for &place in &coherent[..n_coherent] {
             if let Some(place) = stage.similar(place) {
                 choice.compare(place, 1.0 + stage.coherence);
@@ -310,9 +311,9 @@ impl Area {
         choice.best.1
     }
 
-    /// Returns whether a source repeats one near it: its distance from the source of a nearby pixel is less than half
-    /// of the distance of the two pixels. Pixels of the same subpass are ignored, since they are corrected at the same
-    /// time.
+    /// Returns whether the source `place` is repeated nearby: its distance from the source of a nearby pixel is less
+    /// than half the distance between the two pixels. Pixels of the same subpass are ignored, because they are
+    /// corrected at the same time.
     #[inline(always)]
     fn repeats(&self, stage: &Stage, [column, row]: [i64; 2], place: [i64; 2]) -> bool {
         for y in -READS..=READS {
@@ -330,8 +331,8 @@ impl Area {
         false
     }
 
-    /// Returns the features on each diagonal of a pixel: the mean of those of the diagonal pixel and those that two
-    /// pixels beyond it, one along each axis, predict for it.
+    /// Returns the features on each diagonal of a pixel: the mean of three values. One is at the source of the diagonal
+    /// pixel; the other two are predicted by the pixels one step beyond it along each axis.
     #[inline(always)]
     pub(super) fn around(&self, stage: &Stage, [column, row]: [i64; 2]) -> [[f32; N_FEATURES]; 4] {
         let mut around = [[0.0; N_FEATURES]; 4];
@@ -356,19 +357,20 @@ impl Area {
     }
 }
 
-/// Search for the best source of a pixel.
+/// State of the search for the best source of a pixel.
 struct Choice<'a> {
     stage: &'a Stage,
     area: &'a Area,
     pixel: [i64; 2],
     /// Features on the diagonals of the pixel.
     around: [[f32; N_FEATURES]; 4],
-    /// Squared distance of the best source so far, costs included, and the source.
+    /// Score (squared distance plus costs) and position of the best source so far.
     best: (f32, [i64; 2]),
 }
 
 impl Choice<'_> {
-    /// Takes a source if it is better than the best so far. `factor` multiplies its squared distance, costs excluded.
+    /// Takes a source if its score is lower than the lowest so far. `factor` multiplies its squared distance, but not
+    /// its costs.
     #[inline(always)]
     fn compare(&mut self, place: [i64; 2], factor: f32) {
         let stage = self.stage;
