@@ -5,8 +5,8 @@
 //!
 //! Input: a [`Ground`] (sites on several levels and how their neighborhoods are sampled), the [`Pyramid`] of the
 //! exemplar, and [`Options`] with the schedule of passes. Each pass visits all sites of one level; coarser levels come
-//! first. [`Visit`] runs a single pass. Output: [`Sources`] for each level, with the exemplar pixel and the rotation of
-//! each site.
+//! first. [`Visit`] implements a single pass. Output: [`Sources`] per level, with the exemplar pixel and the rotation
+//! at each site.
 
 use crate::grid;
 use crate::ground::{Ground, Sources, UNKNOWN};
@@ -19,7 +19,7 @@ use core::ops::ControlFlow;
 use core::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, Ordering};
 use dapple_hash::{Seed, hash1};
 
-/// Progress of a synthesis, or of other work done in passes.
+/// Progress of a synthesis, or of other work done in several passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
     /// Index of the current pass, from 0.
@@ -83,8 +83,8 @@ impl<'a> Wanted<'a> {
     }
 }
 
-/// Runs the passes of `options`. Returns, for each level from the finest, the exemplar pixel of each site, as
-/// `row * width + column` in that level of the pyramid. The list is empty for a level that no pass visited.
+/// Runs the passes of the options. Returns, for each level from the finest, the exemplar pixel of each site, as `row *
+/// width + column` in that level of the pyramid. A level that no pass visited has an empty list.
 pub(crate) fn run<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,
@@ -95,8 +95,8 @@ pub(crate) fn run<G: Ground>(
     Ok(Sources::pixels_and_quarters(levels).0)
 }
 
-/// Runs the passes of `options`. Returns, for each level from the finest, the exemplar pixel and the exemplar's
-/// rotation (in quarter turns) at each site.
+/// Runs the passes of the options. Returns the exemplar pixel and the rotation (in quarter turns) at each site of each
+/// level.
 pub(crate) fn run_turned<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,
@@ -107,7 +107,7 @@ pub(crate) fn run_turned<G: Ground>(
     run_passes(ground, pyramid, &passes, options, callback)
 }
 
-/// Runs `passes` instead of the schedule in `options`. Returns the same as [`run_turned`].
+/// Runs the given passes instead of the schedule in the options. Returns the same as [`run_turned`].
 pub(crate) fn run_passes<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,
@@ -115,13 +115,13 @@ pub(crate) fn run_passes<G: Ground>(
     options: &Options,
     callback: Callback<'_>,
 ) -> Result<Vec<Sources>, SynthError> {
-    // Match against a pyramid that is blurred as much as the samples of the ground.
+    // Match with a pyramid that is blurred as much as the samples of the ground.
     let seen = match ground.blur() {
         0.0 => None,
         blur => Some(pyramid.blurred(blur)),
     };
     let seen = seen.as_ref().unwrap_or(pyramid);
-    // Gather the candidates; a repair has its own rule for neighborhoods that reach past an edge.
+    // Gather the candidates. A repair treats neighborhoods that reach past an edge differently.
     let candidates = |pass: &Pass| match ground.start(pass.level) {
         Some(_) => Candidates::of_repair(seen, pass, options.center),
         None => Candidates::for_options(seen, pass, options),
@@ -129,7 +129,7 @@ pub(crate) fn run_passes<G: Ground>(
     run_with(ground, pyramid, passes, &candidates, options, callback)
 }
 
-/// Runs `passes` like [`run_passes`], with candidates from the callback `candidates`.
+/// Runs the given passes like [`run_passes`], with candidates computed by the callback `candidates`.
 pub(crate) fn run_with<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,
@@ -216,8 +216,8 @@ fn first_sources<G: Ground>(
     sources
 }
 
-/// Initializes the sites to repair. Each takes the exemplar pixel that is the matching child of its parent's pixel on
-/// the coarser level. Sites without a parent, or for which that pixel is not usable, keep their initial value.
+/// Initializes the sites of a repair that do not keep their pixel: each takes the pixel that continues its parent on
+/// the coarser level. A site keeps its initial value if it has no parent or if that pixel is not usable.
 fn go_on_with<G: Ground>(
     coarser: &Sources,
     sources: &Sources,
@@ -256,7 +256,7 @@ impl Sources {
     }
 }
 
-/// Returns a random pixel for every site of a level. If the exemplar has a mask, only the center pixels of candidates
+/// Returns a random exemplar pixel for every site of a level. If the exemplar has a mask, only the pixels of candidates
 /// are drawn.
 fn random_pixels(
     n_sites: usize,
@@ -279,9 +279,9 @@ fn random_pixels(
         .collect()
 }
 
-/// Returns the side, in samples, of the coarser-level squares to cache for the next pass; 0 for none. They are cached
-/// if the next pass is on the same level and its coarser square is not larger. The coarser level does not change
-/// between the two passes.
+/// Returns the side of the coarser square to retain for the next pass, in samples, or 0. The square is retained if the
+/// next pass is on the same level and its coarser square is not larger, since the coarser level does not change between
+/// the two passes.
 fn side_to_keep(pass: &Pass, next: Option<&Pass>) -> u32 {
     let coarser_side = |pass: &Pass| {
         let coarser = |part: &&Part| part.reads == Reads::Coarser;

@@ -1,11 +1,11 @@
-//! Magnified bakes: texels sample the exemplar itself, at the places that the sites around them predict.
+//! Bakes magnified textures: texels sample the exemplar itself, at the positions that the sites around them predict.
 //!
-//! Each site near a texel predicts a place in the exemplar: its own source plus the offset to the texel in the site's
-//! frame. Sites whose predictions agree form a piece, which predicts their weighted mean. Where there are several
-//! pieces, the one whose sites have the largest sum of weights is shown. The others fade over a seam that is too narrow
-//! to blur anything.
+//! Each site near a texel predicts a position in the exemplar: its own source plus the offset to the texel in the
+//! site's frame. Sites whose predictions agree form a piece, which predicts their weighted mean. Where several pieces
+//! meet, the texel shows the piece whose sites have the largest sum of weights. The others fade out over a seam that is
+//! too narrow to cause visible blur.
 //!
-//! Reference: our own, after the magnification of Sylvain Lefebvre and Hugues Hoppe, "Parallel Controllable Texture
+//! Reference: our own, based on the magnification in Sylvain Lefebvre and Hugues Hoppe, "Parallel Controllable Texture
 //! Synthesis", SIGGRAPH 2005, DOI 10.1145/1186822.1073261, section 5.
 
 use crate::bake::{Group, Paint, bake_with};
@@ -18,26 +18,26 @@ use reach::{Reach, Reaching};
 
 mod reach;
 
-/// Radius of the weights of sites, in spacings. It is half again as large as for means of values, so that seams are
-/// smooth and a single site between others is outvoted.
+/// Radius within which sites have weight, in multiples of the spacing. It is 1.5 times the radius for means of values,
+/// so that seams are smooth and a single site between others is outvoted.
 const RADIUS: f32 = 1.5;
 
-/// Minimum share of a piece, relative to the largest: pieces below it are not shown.
+/// Minimum weight of a piece, relative to the largest; pieces below it are not shown.
 const SHARE_LEAST: f32 = 1.0 / 256.0;
 
-/// The part of the exemplar that a texel shows.
+/// Position and frame at which a texel samples the exemplar.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spot<P> {
-    /// The place in the exemplar.
+    /// Position in the exemplar.
     pub(crate) place: P,
-    /// Side of the texel in pixels of the exemplar: the square root of its area.
+    /// Side of the texel, in pixels of the exemplar: the square root of its area.
     pub(crate) footprint: f32,
-    /// The directions in space of the exemplar's rows (`right`) and columns (`down`); unit vectors up to rounding.
+    /// Directions in space of the exemplar's rows (`right`) and columns (`down`); unit vectors up to rounding.
     pub(crate) right: Vec3,
     pub(crate) down: Vec3,
 }
 
-/// Renders the values of an exemplar's map at every texel of an atlas.
+/// Renders the values of an exemplar's map at every texel of an atlas. Texels without a face get `background`.
 pub(crate) fn magnify<const N: usize, P: Sourced>(
     synthesizer: &Synthesizer,
     places: &P,
@@ -69,7 +69,8 @@ pub(crate) fn magnify<const N: usize, P: Sourced>(
     })
 }
 
-/// Side of a texel on every face, in spacings: the square root of its area; 0 for a face without an area in the map.
+/// Returns the side of a texel on every face, as the square root of its area, in multiples of the spacing. It is 0 for
+/// a face without area in the atlas.
 pub(crate) fn footprints(
     synthesizer: &Synthesizer,
     uvs: &[[DVec2; 3]],
@@ -84,16 +85,16 @@ pub(crate) fn footprints(
         let texels = (ub - ua).perp_dot(uc - ua).abs();
         let area = (b - a).cross(c - a).length();
         let side = (area / texels).sqrt() / spacing;
-        // A face without a place is not finite here; no texel shows it.
+        // The side is not finite if the face has no area in the atlas; no texel shows such a face.
         if side.is_finite() { side as f32 } else { 0.0 }
     };
     (0..).map(FaceIdx).zip(uvs).map(side).collect()
 }
 
-/// A function that writes the channels of a spot.
+/// Function that writes the channels of a spot.
 type ValueOf<'a, P> = dyn Fn(&Spot<P>, &mut [f32]) + Sync + 'a;
 
-/// The input shared by all texels.
+/// Input shared by all texels.
 struct Magnified<'a, P: Sourced> {
     places: &'a P,
     frames: Frames,
@@ -102,12 +103,13 @@ struct Magnified<'a, P: Sourced> {
     value: &'a ValueOf<'a, P::Place>,
 }
 
-/// Sites that predict about the same place, summed with their weights.
+/// Sites that predict about the same position, summed by weight.
 #[derive(Clone, Copy, Debug)]
 struct Piece<P> {
-    /// The prediction of the first site, which has the largest weight.
+    /// Prediction of the first site, which has the largest weight.
     place: P,
-    /// Weighted sums over the sites: offsets of the predictions from `place`, directions, and scales.
+    /// Weighted sums over the sites: offsets of the predictions from `place`, directions, and scales; then the sum of
+    /// weights.
     off: Vec2,
     right: Vec3,
     down: Vec3,
@@ -119,11 +121,11 @@ struct Piece<P> {
 #[derive(Debug)]
 struct Pieces<P> {
     pieces: Vec<Piece<P>>,
-    /// The channels of one piece.
+    /// Channels of one piece.
     channels: Vec<f32>,
 }
 
-/// The input shared by all texels, with the scratch memory of a thread.
+/// Input shared by all texels, with the scratch memory of a thread.
 struct Magnifier<'a, P: Sourced> {
     input: &'a Magnified<'a, P>,
     reach: Reach,
@@ -135,7 +137,7 @@ impl<P: Sourced> Paint for Magnifier<'_, P> {
         let (input, memory) = (self.input, &mut self.pieces);
         let footprint = input.footprints[group.face.index()];
         let n_channels = values.len() / group.points.len();
-        // Find the sites in reach of each point, largest weight first.
+        // Find the sites within reach of each point, largest weight first.
         self.reach
             .find(simd::level(), group, RADIUS * input.spacing);
         let values = values.chunks_exact_mut(n_channels);
@@ -147,11 +149,11 @@ impl<P: Sourced> Paint for Magnifier<'_, P> {
 }
 
 impl<P: Sourced> Magnified<'_, P> {
-    /// Groups the sites in reach into pieces whose predictions agree.
+    /// Groups the sites within reach into pieces whose predictions agree.
     fn gather(&self, reaching: &[Reaching], pieces: &mut Vec<Piece<P::Place>>) {
         pieces.clear();
         for &Reaching { site, way, weight } in reaching {
-            // Predict the place at the texel.
+            // Predict the position at the texel.
             let frame = &self.frames.of_site[site as usize];
             let own = self.places.of_site(site as usize);
             let place = self.places.moved(own, frame.flat(way));
@@ -180,7 +182,7 @@ impl<P: Sourced> Magnified<'_, P> {
         }
     }
 
-    /// Writes the channels of the piece with the largest weight; at a seam, a mixture of several.
+    /// Writes the channels of the piece with the largest weight, or a mixture of several pieces at a seam.
     fn mix(&self, memory: &mut Pieces<P::Place>, footprint: f32, mixed: &mut [f32]) {
         let most = memory
             .pieces

@@ -1,9 +1,9 @@
-//! Baking of color maps and plain value maps, from the sources of the finest sites.
+//! Bakes color maps and scalar maps from the sources of the finest sites.
 //!
-//! Every map of the exemplar follows the same sources as the matched image. So does an enlarged version of a map, which
-//! shows more detail. All maps that are baked with the same [`Atlas`] are aligned texel by texel.
+//! All maps of the exemplar use the sources that were found for the matched image. An enlarged version of a map can be
+//! baked too, and shows more detail. Maps that are baked with the same [`Atlas`] are aligned texel by texel.
 //!
-//! Texels without a face get the mean of the map. Only coarse levels of a mipmap can show them.
+//! Texels without a face get the mean of the map. Only coarse mipmap levels can show them.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 6.
 
@@ -14,16 +14,17 @@ use crate::{Atlas, SurfaceTexture, SynthError, SynthErrorKind, Synthesizer, bake
 use dapple_color::{Code, LinearRgb, LinearRgba};
 use dapple_raster::Raster;
 
-/// Bakes colors: the exemplar's image, a map of it, or a version whose size is an integer multiple.
+/// Bakes a color map: the exemplar's image, another map of the exemplar, or a version of one enlarged by an integer
+/// factor.
 ///
 /// Colors are interpolated as 16-bit sRGB codes, as [`Exemplar::new`](crate::Exemplar::new) compares them. Values
 /// outside 0 to 1 are clamped.
 ///
 /// # Errors
 ///
-/// [`SynthErrorKind::Count`] for a texture of other sites, [`SynthErrorKind::Detail`] for a map whose size is not a
-/// multiple of the exemplar's, [`SynthErrorKind::Raster`] for a larger map if the [sources](crate::Options::sources)
-/// are pixels, and [`SynthErrorKind::Range`] if a color is not finite.
+/// [`SynthErrorKind::Count`] if the texture was synthesized for other sites, [`SynthErrorKind::Detail`] if the map's
+/// size is not a multiple of the exemplar's, [`SynthErrorKind::Raster`] if the map is larger than the exemplar but the
+/// [sources](crate::Options::sources) are pixels, and [`SynthErrorKind::Range`] if a color is not finite.
 pub fn bake_colors(
     synthesizer: &Synthesizer,
     texture: &SurfaceTexture,
@@ -41,12 +42,12 @@ pub fn bake_colors(
 
 /// Bakes colors with alpha, like [`bake_colors`].
 ///
-/// Colors are weighted by alpha, so that the colors of transparent pixels do not show at edges. Where all pixels are
-/// transparent, alpha is ignored and the colors are interpolated without it. Alpha is clamped to 0 to 1.
+/// Colors are weighted by alpha, so that the colors of transparent pixels do not bleed into edges. Where all pixels are
+/// transparent, colors are interpolated without weights. Alpha is clamped to 0 to 1.
 ///
 /// # Errors
 ///
-/// The errors of [`bake_colors`].
+/// Same as [`bake_colors`].
 pub fn bake_colors_alpha(
     synthesizer: &Synthesizer,
     texture: &SurfaceTexture,
@@ -59,7 +60,7 @@ pub fn bake_colors_alpha(
         }
         check_finite("alpha", pixel.alpha)?;
     }
-    // Interpolate premultiplied colors, with the plain ones for fully transparent texels.
+    // Interpolate premultiplied colors, and plain ones for fully transparent texels.
     let codes = map.par_map(|pixel| {
         let code = |code: u16| f32::from(code) / f32::from(u16::MAX);
         let [r, g, b] = pixel.color.to_srgb::<u16>().map(code);
@@ -80,11 +81,11 @@ pub fn bake_colors_alpha(
     }))
 }
 
-/// Bakes plain values, such as heights or roughness, which are interpolated without conversion.
+/// Bakes scalar values, such as height or roughness. They are interpolated without conversion.
 ///
 /// # Errors
 ///
-/// The errors of [`bake_colors`].
+/// Same as [`bake_colors`].
 ///
 /// # Examples
 ///
@@ -133,7 +134,7 @@ pub fn bake_values(
     Ok(map.par_map(|&[value]| value))
 }
 
-/// Bakes a map by the kind of sources that the texture has: lifted, between pixels, or at pixels.
+/// Bakes a map according to the kind of sources that the texture has: on another surface, between pixels, or at pixels.
 fn bake_map<const N: usize>(
     synthesizer: &Synthesizer,
     texture: &SurfaceTexture,
@@ -175,7 +176,7 @@ fn bake_map<const N: usize>(
     )
 }
 
-/// Returns an error unless a column has one value per finest site.
+/// Fails unless a column has one value per finest site.
 pub(crate) fn check_column(
     synthesizer: &Synthesizer,
     what: &'static str,
@@ -191,12 +192,12 @@ pub(crate) fn check_column(
     }))
 }
 
-/// Returns an error for NaN and infinity.
+/// Fails for NaN and infinity.
 pub(crate) fn check_finite(what: &'static str, value: f32) -> Result<(), SynthError> {
     SynthError::check(value.is_finite(), what, value.into(), "finite")
 }
 
-/// The mean of all pixels.
+/// Returns the mean of all pixels.
 fn mean<const N: usize>(pixels: &[[f32; N]]) -> [f32; N] {
     let mut sums = [0.0_f64; N];
     for pixel in pixels {

@@ -1,5 +1,5 @@
-//! Exact nearest-neighbor search: the row (vector of `f32`) nearest to a query, with the same result as a comparison
-//! with every row.
+//! Exact nearest-neighbor search: finds the row (a vector of `f32`) nearest to a query, with the same result as
+//! comparing with every row.
 //!
 //! Method: rows are centered and rotated to their principal components, as in Hertzmann, Jacobs, Oliver, Curless and
 //! Salesin, "Image Analogies", SIGGRAPH 2001, who search approximately in the first components. The first components
@@ -10,8 +10,8 @@
 //! Proved bounds on all rounding errors ([`margin`]) ensure that no nearer row is rejected. So the result does not
 //! depend on the tree, the components, or the machine.
 //!
-//! Input: rows of `dims` values each, and a query of `dims` values. Output: [`Match`], the row and its squared
-//! distance.
+//! Input: rows of `dims` values each, and a query of `dims` values. Output: a [`Match`] with the row's index and
+//! squared distance.
 
 mod basis;
 mod distance;
@@ -41,8 +41,8 @@ pub use distance::distance_sq;
 /// Minimum number of rows for an index; fewer are compared one by one.
 const FEW: usize = 64;
 
-/// Maximum number of values of a row for an index, since the covariance matrix grows with its square. Longer rows are
-/// compared one by one.
+/// Maximum number of values per row for an index, since the size of the covariance matrix grows with its square. Longer
+/// rows are compared one by one.
 const MOST_DIMS: usize = 1024;
 
 /// Result of a search: the nearest row and its distance.
@@ -50,13 +50,14 @@ const MOST_DIMS: usize = 1024;
 pub struct Match {
     /// Index of the row.
     pub row: u32,
-    /// Squared distance of the row from the query, as [`distance_sq`] computes it.
+    /// Squared distance between the row and the query, as computed by [`distance_sq`].
     pub distance_sq: f32,
 }
 
 /// Index over rows for exact nearest-neighbor search.
 ///
-/// Memory: a copy of the rows and about 140 bytes more per row; up to 512 bytes more per row while it is built.
+/// Memory: a copy of the rows and about 140 additional bytes per row; up to 512 additional bytes per row during
+/// construction.
 #[derive(Clone, Debug)]
 pub struct Matcher {
     dims: usize,
@@ -64,7 +65,7 @@ pub struct Matcher {
     index: Option<Index>,
 }
 
-/// Scratch memory of a search, reusable for any number of searches.
+/// Scratch memory for a search, reusable for any number of searches.
 #[derive(Clone, Debug, Default)]
 pub struct MatcherMemory {
     query: Vec<[f32; LANES]>,
@@ -75,19 +76,19 @@ pub struct MatcherMemory {
     order: Vec<u64>,
 }
 
-/// A query, with a bound, a hint and factors.
+/// A query, with a bound, a hint, and a factor per row.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Query<'a> {
     pub(crate) values: &'a [f32],
-    /// Exclusive upper bound of the squared distance; infinity for no limit.
+    /// Exclusive upper bound on the squared distance; infinity for no limit.
     pub(crate) below: f32,
-    /// A row that is likely near. It saves time and does not change the result.
+    /// Index of a row that is likely near. It saves time and does not change the result.
     pub(crate) hint: Option<u32>,
-    /// Factor of the squared distance of each row, at least 1. All comparisons, bounds and results use the product.
+    /// Factor on the squared distance of each row, at least 1. All comparisons, bounds and results use the product.
     pub(crate) factors: Option<&'a [f32]>,
 }
 
-/// Search structure over the rows; all of it serves to reject rows early.
+/// Search structure over the rows; all its parts serve to reject rows early.
 #[derive(Clone, Debug)]
 struct Index {
     basis: Basis,
@@ -98,11 +99,11 @@ struct Index {
 
 impl Matcher {
     /// Builds an index over rows of `dims` values each, stored contiguously. An incomplete row at the end is ignored,
-    /// and so are rows after the first 2³² - 1.
+    /// as are rows after the first 2³² - 1.
     ///
-    /// Any values are accepted. The search falls back to a comparison with every row, which is slow, if a value is not
-    /// finite, if a row is farther than 10¹⁵ from the mean, or if rows have more than 1024 values. A row with a value
-    /// that is not finite is never the nearest.
+    /// Any values are accepted. The search falls back to a slow comparison with every row if a value is not finite, if
+    /// a row is farther than 10¹⁵ from the mean, or if rows have more than 1024 values. A row with a value that is not
+    /// finite is never the nearest.
     ///
     /// # Examples
     ///
@@ -137,11 +138,11 @@ impl Matcher {
         }
     }
 
-    /// Returns the row nearest to a query, or `None` if no row is nearer than `below`. Of equally near rows the first
+    /// Returns the row nearest to a query, or `None` if no row is nearer than `below`. The first of equally near rows
     /// is returned.
     ///
-    /// `below` is a squared distance; infinity means no limit. `hint` is a row that is likely near; it saves time and
-    /// does not change the result. Returns `None` for a query that is not finite or whose length is not that of the
+    /// `below` is a squared distance; infinity means no limit. `hint` is the index of a row that is likely near; it
+    /// saves time and does not change the result. Returns `None` for a query that is not finite or not as long as the
     /// rows.
     #[must_use]
     pub fn nearest(
@@ -160,12 +161,13 @@ impl Matcher {
         self.find(query, memory)
     }
 
-    /// Returns the row nearest to a query that may have factors, or `None` if there are fewer factors than rows.
+    /// Returns the row nearest to a query, which may have factors. Returns `None` if there are fewer factors than rows,
+    /// or no row is nearer than the query's bound.
     pub(crate) fn find(&self, query: Query<'_>, memory: &mut MatcherMemory) -> Option<Match> {
         self.find_at(simd::level(), query, memory)
     }
 
-    /// Returns the nearest of the given rows; `hint` is ignored.
+    /// Returns the nearest of the given rows. The query's `hint` is ignored.
     pub(crate) fn find_among(
         &self,
         query: Query<'_>,
@@ -182,7 +184,7 @@ impl Matcher {
         })
     }
 
-    /// Returns whether the query has the length of the rows, and at least one factor per row.
+    /// Returns whether the query is as long as the rows and has at least one factor per row.
     fn can_find(&self, query: Query<'_>) -> bool {
         let enough = |factors: &[f32]| factors.len() >= self.rows.len();
         query.values.len() == self.dims && query.factors.is_none_or(enough)
@@ -233,7 +235,7 @@ impl Matcher {
         Some(search.best)
     }
 
-    /// Returns the nearest of the given rows by comparing with each; of equally near rows the one with the lowest
+    /// Returns the nearest of the given rows by comparing with each; of equally near rows, the one with the lowest
     /// index.
     #[inline(always)]
     fn compare<S: Simd>(
@@ -259,7 +261,7 @@ impl Matcher {
     }
 }
 
-/// Returns the complete rows, at most 2³² - 1.
+/// Returns all complete rows, up to 2³² - 1 of them.
 fn whole_rows(dims: usize, rows: &[f32]) -> &[f32] {
     let n_rows = rows.len().checked_div(dims).unwrap_or(0);
     &rows[..n_rows.min(u32::MAX as usize) * dims]

@@ -1,4 +1,4 @@
-//! Search of the sites in reach of texels, for all texels of a face at once.
+//! Finds the sites within reach of texels, for all texels of a face at once.
 
 use crate::bake::Group;
 use crate::mesh_ground::{Around, Record};
@@ -10,11 +10,12 @@ use glam::Vec3;
 /// Number of sites per SIMD register.
 const LANES: usize = 8;
 
-/// Maximum number of sites per point; the largest weights are kept. One sheet has about ten in reach. Where many sheets
-/// cross there can be thousands, and ranking takes time proportional to the square of their number.
+/// Maximum number of sites per point; those with the largest weights are retained. About ten sites of one sheet are
+/// within reach of a point. Where many sheets cross there can be thousands, and ranking takes time proportional to the
+/// square of their number.
 const MOST: usize = 64;
 
-/// A site in reach of a point.
+/// A site within reach of a point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Reaching {
     pub(super) site: u32,
@@ -23,33 +24,34 @@ pub(super) struct Reaching {
     pub(super) weight: f32,
 }
 
-/// For each point of a group, the sites in reach on the same sheet, in order of decreasing weight; sites of equal
-/// weight are in the order of the group. If there is none, the nearest site, on the same sheet if possible.
+/// For each point of a group, the sites within reach on the same sheet, in order of decreasing weight; sites of equal
+/// weight are in the order of the group. If there are none, the nearest site, on the same sheet if possible.
 #[derive(Debug, Default)]
 pub(super) struct Reach {
-    /// The points and their smooth normals, relative to the center of the group.
+    /// Points and their smooth normals. Points are relative to the center of the group.
     points: Vec<[Vec3; 2]>,
     sites: Vec<u32>,
-    /// The coordinates of positions and normals of the sites, padded to a multiple of [`LANES`].
+    /// Coordinates of the sites' positions and normals, padded to a multiple of [`LANES`].
     columns: [Vec<f32>; 6],
     found: Found,
-    /// The sites in reach of all points, point by point.
+    /// Sites within reach of all points, point by point.
     reaching: Vec<Reaching>,
     /// For each point, the end of its range in `reaching`.
     ends: Vec<usize>,
 }
 
-/// The sites in reach of one point, in the order of the group, padded to a multiple of [`LANES`].
+/// Sites within reach of one point, in the order of the group, padded to a multiple of [`LANES`].
 #[derive(Debug, Default)]
 struct Found {
     numbers: Vec<u32>,
     weights: Vec<f32>,
 }
 
-/// A slab that contains all positions in reach of the points of a face: the space between two planes parallel to it.
+/// A slab that contains all positions within reach of the points of a face: the space between two planes parallel to
+/// the face.
 ///
-/// The sites are collected from a ball around the points. Where sheets cross, most of those sites are above or below
-/// the slab.
+/// Sites are collected from a ball around the points. Where sheets cross, most of those sites are above or below the
+/// slab.
 #[derive(Clone, Copy, Debug)]
 struct Slab {
     normal: Vec3,
@@ -64,7 +66,7 @@ impl Slab {
             .iter()
             .map(|[at, _]| at.length())
             .fold(radius, f32::max);
-        // Margin for rounding of coordinates, of the normal, and of products: a few times 2^-24 of the largest
+        // Margin for the rounding of coordinates, of the normal and of products: a few times 2^-24 of the largest
         // coordinate.
         let reach = radius + 1e-5 * far;
         Self {
@@ -91,7 +93,7 @@ impl Reach {
         }));
         self.sites.clear();
         self.columns.iter_mut().for_each(Vec::clear);
-        // Collect the sites in the slab, as columns of coordinates.
+        // Collect the sites in the slab as columns of coordinates.
         let face_normal = group.surface.face_normal(group.face).as_vec3();
         let slab = Slab::around(&self.points, face_normal, radius);
         for record in group.sites.sites() {
@@ -106,7 +108,7 @@ impl Reach {
         }
         let n_slots = self.sites.len().next_multiple_of(LANES);
         for column in &mut self.columns {
-            // Padding: positions out of reach.
+            // Pad with positions out of reach.
             column.resize(n_slots, f32::MAX);
         }
         self.found.numbers.resize(n_slots, 0);
@@ -116,7 +118,7 @@ impl Reach {
         dispatch!(level, simd => self.list(simd, radius, group.sites));
     }
 
-    /// The sites in reach, for one point after another.
+    /// Returns the sites within reach of each point, in the order of the points.
     pub(super) fn of_points(&self) -> impl Iterator<Item = &[Reaching]> {
         let starts = core::iter::once(0).chain(self.ends.iter().copied());
         starts
@@ -172,10 +174,10 @@ impl Found {
             let [x, y, z] = [x - at.x, y - at.y, z - at.z];
             let weight = weights(simd, (x * x + y * y + z * z) * inverse_sq);
             let along = nx * normal.x + ny * normal.y + nz * normal.z;
-            // In reach: a positive weight, and a normal that is not opposed (the same sheet).
+            // A site is within reach if its weight is positive and its normal is not opposed (the same sheet).
             let reaches = (weight.simd_gt(0.0) & along.simd_ge(0.0)).to_bitmask();
             let weight: [f32; LANES] = weight.into();
-            // Compact without branches: which lanes are in reach is unpredictable.
+            // Compact without branches, because the lanes within reach are unpredictable.
             for (lane, weight) in weight.into_iter().enumerate() {
                 self.numbers[n_found] = (first + lane) as u32;
                 self.weights[n_found] = weight;
@@ -187,8 +189,8 @@ impl Found {
         n_found
     }
 
-    /// Keeps the [`MOST`] sites of the largest weights in their order, the first of equal ones. Returns the number of
-    /// sites.
+    /// Retains the [`MOST`] sites with the largest weights, in their order; of equal weights, the first. Returns the
+    /// number of sites.
     fn keep_largest(&mut self, n_found: usize) -> usize {
         if n_found <= MOST {
             return n_found;
@@ -208,7 +210,8 @@ impl Found {
         MOST
     }
 
-    /// Rank of a site: the number of sites with a larger weight, or with an equal weight and an earlier position.
+    /// Returns the rank of a site: the number of sites with a larger weight, or with an equal weight and an earlier
+    /// position.
     #[inline(always)]
     fn rank<S: Simd>(&self, simd: S, found: usize, n_found: usize) -> usize {
         let weight = f32x8::splat(simd, self.weights[found]);
@@ -225,7 +228,7 @@ impl Found {
     }
 }
 
-/// The site nearest to a point, the first of equally near ones. Sites on the same sheet take precedence.
+/// Returns the site nearest to a point, the first of equally near ones. Sites on the same sheet take precedence.
 #[cold]
 fn nearest([at, normal]: [Vec3; 2], around: Around<'_>) -> Option<Reaching> {
     let far = |record: &Record| {
@@ -255,7 +258,7 @@ mod tests {
     use fearless_simd::{Level, f32x8, prelude::*};
     use glam::{DVec3, Vec3};
 
-    /// The weight of one site, computed with SIMD arithmetic.
+    /// Returns the weight of one site, computed with SIMD arithmetic.
     fn weight(level: Level, x_sq: f32) -> f32 {
         dispatch!(level, simd => {
             let all: [f32; LANES] = weights(simd, f32x8::splat(simd, x_sq)).into();

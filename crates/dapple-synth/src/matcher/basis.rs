@@ -1,8 +1,9 @@
-//! Principal components of the rows, and the rotation of rows and queries to them.
+//! Principal components of the rows, and rotation of rows and queries into them.
 //!
-//! The components are those of a sample of the rows: the eigenvectors of the covariance with the largest eigenvalues.
-//! They are computed by orthogonal iteration with a Rayleigh-Ritz step (Golub and Van Loan, Matrix Computations, 4th
-//! edition, sections 8.2 and 8.5), in `f64` and in a fixed order. Code and comments call a component a direction.
+//! The components are computed from a sample of the rows: the eigenvectors of its covariance with the largest
+//! eigenvalues. The algorithm is orthogonal iteration with a Rayleigh-Ritz step (Golub and Van Loan, Matrix
+//! Computations, 4th edition, sections 8.2 and 8.5), in `f64` and in a fixed order. Code and comments call a component
+//! a direction.
 //!
 //! The search is exact for any matrix whose norm is known, so the accuracy of the components affects only the speed.
 //! [`Basis::norm_sq`] bounds the norm of the matrix as it is stored.
@@ -13,13 +14,13 @@ use dapple_raster::simd;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{f32x16, prelude::*};
 
-/// Number of directions that are rotated together: the lanes of a register.
+/// Number of directions that are rotated together: the number of lanes in a register.
 pub(crate) const LANES: usize = 16;
 
 /// Number of rows of the covariance matrix that are summed together, so that they stay in the cache.
 const BAND: usize = 8;
 
-/// Accuracy of the directions against the time to compute them.
+/// Parameters that trade the accuracy of the directions against the time to compute them.
 #[derive(Clone, Copy, Debug)]
 struct Effort {
     /// Maximum number of directions.
@@ -37,7 +38,8 @@ impl Effort {
     }
 }
 
-/// Effort for many rows. More than 64 directions would cost as much each, and hold almost none of the variance.
+/// Effort for many rows. Additional directions would cost as much as the first 64, and capture almost none of the
+/// variance.
 const EFFORT: Effort = Effort {
     most: 64,
     sample: 2048,
@@ -54,13 +56,13 @@ const LESS: Effort = Effort {
 /// Minimum number of rows for [`EFFORT`].
 const FEW: usize = 20_000;
 
-/// Seed of the initial directions of the iteration.
+/// Seed for the initial directions of the iteration.
 const START: Seed = Seed(2001);
 
-/// A vector is linearly dependent on others if orthogonalization leaves at most this fraction of its squared length.
+/// Threshold for linear dependence: orthogonalization leaves at most this fraction of a vector's squared length.
 const DEPENDENT: f64 = 1e-20;
 
-/// Number of partial sums of a rotation; an addition need not wait for the previous one.
+/// Number of partial sums in a rotation. With several, an addition need not wait for the previous one.
 const SUMS: usize = 4;
 
 /// Directions, in order of decreasing variance.
@@ -68,15 +70,15 @@ const SUMS: usize = 4;
 pub(crate) struct Basis {
     /// Mean of the sample, which is subtracted from rows and queries.
     mean: Vec<f32>,
-    /// Matrix W, transposed in groups: for each group of [`LANES`] directions, and for each value of a row, the
-    /// factors.
+    /// Matrix W, transposed in groups: for each group of [`LANES`] directions and each value of a row, the factors of
+    /// all directions of the group.
     groups: Vec<[f32; LANES]>,
-    /// Upper bound of the squared spectral norm of W.
+    /// Upper bound on the squared spectral norm of W.
     pub(crate) norm_sq: f64,
 }
 
 impl Basis {
-    /// Computes the directions of rows of `dims` finite values, for a search.
+    /// Computes the directions for a search among rows of `dims` finite values.
     pub(crate) fn new(dims: usize, rows: &[f32]) -> Self {
         let is_few = rows.len() < FEW * dims;
         let effort = if is_few { LESS } else { EFFORT };
@@ -129,7 +131,7 @@ impl Basis {
         vec![[0.0; LANES]; self.n_directions() / LANES]
     }
 
-    /// Subtracts the mean, in `f32`.
+    /// Subtracts the mean from `values`, in `f32`.
     #[inline(always)]
     pub(crate) fn center(&self, values: &[f32], centered: &mut Vec<f32>) {
         centered.clear();
@@ -154,8 +156,8 @@ impl Basis {
         }
     }
 
-    /// Returns how often a term of [`Self::rotate`] is rounded at most: by the subtraction of the mean, the product and
-    /// the sums.
+    /// Returns the maximum number of times that a term of [`Self::rotate`] is rounded: by the subtraction of the mean,
+    /// the product and the sums.
     pub(crate) fn roundings(&self) -> usize {
         2 + self.mean.len().div_ceil(SUMS) + 2
     }
@@ -178,7 +180,7 @@ fn rotate_group<S: Simd>(simd: S, values: &[f32], factors: &[[f32; LANES]]) -> f
     (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-/// Returns the mean of rows, rounded to `f32`. The search is exact for any point in its place.
+/// Returns the mean of the rows, rounded to `f32`. The search is exact for any center, so rounding does no harm.
 fn mean(dims: usize, rows: &[&[f32]]) -> Vec<f32> {
     let mut sums = vec![0.0_f64; dims];
     for row in rows {
@@ -210,7 +212,7 @@ fn centered(rows: &[&[f32]], mean: &[f32]) -> Vec<f64> {
     values
 }
 
-/// Returns the covariance matrix of the centered rows, up to a factor: sums of products.
+/// Returns the covariance matrix of the centered rows, up to a constant factor: sums of products.
 fn covariance(dims: usize, sample: &[f64]) -> Vec<f64> {
     let level = simd::level();
     let bands = parallel::map(dims.div_ceil(BAND), |band| {
@@ -228,7 +230,7 @@ fn covariance(dims: usize, sample: &[f64]) -> Vec<f64> {
     matrix
 }
 
-/// Adds the products of rows to a band of the matrix that begins at row and column `first`.
+/// Adds the products of each row's values to a band of the matrix that begins at row and column `first`.
 #[inline(always)]
 fn add_products(dims: usize, first: usize, sample: &[f64], sums: &mut [f64]) {
     for row in sample.chunks_exact(dims) {
@@ -241,8 +243,8 @@ fn add_products(dims: usize, first: usize, sample: &[f64], sums: &mut [f64]) {
     }
 }
 
-/// Returns the unit eigenvectors with the largest eigenvalues, stored contiguously. If there are fewer, the rest are
-/// zero vectors.
+/// Returns the unit eigenvectors with the largest eigenvalues, stored contiguously. If there are fewer than
+/// `n_directions`, the rest are zero vectors.
 fn principal(dims: usize, n_directions: usize, matrix: &[f64], n_steps: usize) -> Vec<f64> {
     // Start with random directions.
     let mut directions: Vec<f64> = (0..(dims * n_directions) as i64)
@@ -279,10 +281,10 @@ fn principal(dims: usize, n_directions: usize, matrix: &[f64], n_steps: usize) -
     sorted
 }
 
-/// Returns an upper bound of the squared spectral norm of W: the largest sum of magnitudes in a row of W times its
+/// Returns an upper bound on the squared spectral norm of W: the largest row sum of magnitudes in W times its
 /// transpose.
 ///
-/// The products are exact in `f64`, and the error of their sums is below the constant that is added.
+/// The products are exact in `f64`, and the added constant exceeds the rounding error of their sums.
 fn norm_sq(dims: usize, groups: &[[f32; LANES]]) -> f64 {
     let mut directions = Vec::with_capacity(groups.len() * LANES);
     for group in groups.chunks_exact(dims) {
@@ -300,7 +302,7 @@ fn norm_sq(dims: usize, groups: &[[f32; LANES]]) -> f64 {
     largest + 1e-9
 }
 
-/// Multiplies each direction with a symmetric matrix.
+/// Multiplies each direction by a symmetric matrix.
 fn times(dims: usize, directions: &[f64], matrix: &[f64]) -> Vec<f64> {
     let level = simd::level();
     let images = parallel::map(directions.len() / dims, |i| {
@@ -312,7 +314,7 @@ fn times(dims: usize, directions: &[f64], matrix: &[f64]) -> Vec<f64> {
     images.concat()
 }
 
-/// Adds the rows of a matrix, each times its factor.
+/// Adds the rows of a matrix, each multiplied by its factor.
 #[inline(always)]
 fn add_lines(factors: &[f64], lines: &[f64], sums: &mut [f64]) {
     for (&factor, line) in factors.iter().zip(lines.chunks_exact(sums.len())) {
@@ -322,7 +324,7 @@ fn add_lines(factors: &[f64], lines: &[f64], sums: &mut [f64]) {
     }
 }
 
-/// Makes directions orthonormal (modified Gram-Schmidt). A direction that depends on earlier ones becomes zero.
+/// Orthonormalizes directions (modified Gram-Schmidt). A direction that depends linearly on earlier ones becomes zero.
 fn orthonormalize(dims: usize, directions: &mut [f64]) {
     for i in 0..directions.len() / dims {
         let (before, rest) = directions.split_at_mut(i * dims);

@@ -1,4 +1,4 @@
-//! The distance that defines which row is nearest.
+//! The distance that determines which row is nearest.
 //!
 //! It is the squared Euclidean distance in `f32`, with one fixed order of additions, so that all SIMD levels give the
 //! same bits.
@@ -8,11 +8,11 @@ use fearless_simd::{f32x16, prelude::*};
 /// Number of partial sums.
 pub(crate) const LANES: usize = 16;
 
-/// Squared distance of two vectors in `f32`, D(M, N) of Turk's paper, summed in the one fixed order that defines which
-/// row is nearest.
+/// Returns the squared distance between two vectors in `f32`, D(M, N) in Turk's paper. Its fixed order of additions
+/// defines which row is nearest.
 ///
-/// Sixteen partial sums, each of every sixteenth term, are added in pairs. If one slice is longer, its excess values
-/// are ignored.
+/// Sixteen partial sums, each over every sixteenth term, are added in pairs. If one slice is longer, its remaining
+/// values are ignored.
 #[must_use]
 #[inline]
 pub fn distance_sq(a: &[f32], b: &[f32]) -> f32 {
@@ -31,7 +31,7 @@ pub fn distance_sq(a: &[f32], b: &[f32]) -> f32 {
     add_in_pairs(sums)
 }
 
-/// Rows padded with zeros to whole registers. The padding adds zeros to a sum, which change no bit.
+/// Rows padded with zeros to whole registers. The padding adds zeros to the sums, which does not change any bit.
 #[derive(Clone, Debug)]
 pub(crate) struct PaddedRows {
     values: Vec<[f32; LANES]>,
@@ -49,18 +49,18 @@ impl PaddedRows {
         Self { values, stride }
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub(crate) fn len(&self) -> usize {
         self.values.len() / self.stride
     }
 
-    /// Values of a row, padded.
+    /// Returns the values of a row, padded.
     #[inline(always)]
     pub(crate) fn row(&self, row: u32) -> &[[f32; LANES]] {
         &self.values[row as usize * self.stride..][..self.stride]
     }
 
-    /// Returns [`distance_sq`] of a row and a padded query.
+    /// Returns the [`distance_sq`] between a row and a padded query.
     #[inline(always)]
     pub(crate) fn distance_sq<S: Simd>(&self, simd: S, query: &[[f32; LANES]], row: u32) -> f32 {
         let row = self.row(row);
@@ -89,8 +89,8 @@ pub(crate) fn pad(values: &[f32], target: &mut Vec<[f32; LANES]>) {
     }
 }
 
-/// Returns how often a term of [`distance_sq`] is rounded at most: once as a difference, which is squared and so counts
-/// twice, once as a square, and by the additions.
+/// Returns the maximum number of times that a term of [`distance_sq`] is rounded: once as a difference, which is
+/// squared and so counts twice, once as a square, and in the additions.
 pub(crate) fn roundings(dims: usize) -> usize {
     3 + dims.div_ceil(LANES) + 4
 }

@@ -1,6 +1,6 @@
-//! Eigenvalues and eigenvectors of a small symmetric matrix, by cyclic Jacobi rotations.
+//! Eigenvalues and eigenvectors of a small symmetric matrix, computed by cyclic Jacobi rotations.
 //!
-//! Reference: Golub and Van Loan, Matrix Computations, 4th edition, section 8.5. Computed in `f64`, in one fixed order.
+//! Reference: Golub and Van Loan, Matrix Computations, 4th edition, section 8.5. Computed in `f64`, in a fixed order.
 
 /// Maximum number of sweeps over all pairs. The method converges quadratically, so fewer are needed.
 const SWEEPS: usize = 12;
@@ -8,7 +8,7 @@ const SWEEPS: usize = 12;
 /// Convergence threshold: sum of squares off the diagonal, divided by the sum of squares on the diagonal.
 const DONE: f64 = 1e-24;
 
-/// Returns the eigenvalues, unordered, and the unit eigenvectors in the same order, stored contiguously.
+/// Returns the eigenvalues in no particular order, and the unit eigenvectors in the same order, stored contiguously.
 ///
 /// `matrix` is symmetric and has `n` rows of `n` values.
 pub(crate) fn eigen(n: usize, mut matrix: Vec<f64>) -> (Vec<f64>, Vec<f64>) {

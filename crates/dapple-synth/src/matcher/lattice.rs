@@ -1,25 +1,26 @@
-//! Quantization of components to 16-bit integers, whose squared differences are summed exactly.
+//! Quantization of components to 16-bit integers. Sums of their squared differences are exact.
 //!
-//! A point outside of a ball is moved onto its surface, along the ray from the center; then its coordinates are rounded
-//! to whole units. The move never increases the distance of two points, so distances remain lower bounds. The radius of
-//! the ball is [`RADIUS`] units: a difference of two coordinates fits 16 bits with its sign, and a squared distance 31
-//! bits.
+//! A point outside of a ball is moved onto the ball's surface, along the ray from the center; then its coordinates are
+//! rounded to whole units. The move never increases the distance between two points, so distances remain lower bounds.
+//! The radius of the ball is [`RADIUS`] units, so that a signed difference of two coordinates fits in 16 bits, and a
+//! squared distance in 31 bits.
 
 use super::margin;
 
-/// Radius of the ball in units. Rounding included, the diameter is less than 2^15.
+/// Radius of the ball, in units. Including rounding, the diameter is less than 2^15.
 const RADIUS: f64 = 16_000.0;
 
-/// Maximum number of units per length of 1; prevents overflow.
+/// Maximum number of units per unit length; prevents overflow.
 const FINEST: f64 = 1e30;
 
-/// Radius of the ball, in root mean squares of the lengths: few points lie outside, and the others span many units.
+/// Radius of the ball, in multiples of the root mean square length of the points. Few points are outside, and the
+/// others span many units.
 const SPREADS: f64 = 4.0;
 
-/// Maximum error of a coordinate in units: 0.5 by rounding, and less than 0.01 by the arithmetic.
+/// Maximum error of a coordinate, in units: 0.5 from rounding, and less than 0.01 from the arithmetic.
 const ERROR: f64 = 0.51;
 
-/// Ball around the origin, and the number of units per length of 1.
+/// A ball around the origin, and the number of units per unit length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lattice {
     radius: f64,
@@ -27,7 +28,7 @@ pub(crate) struct Lattice {
 }
 
 impl Lattice {
-    /// Creates the ball for points, given the length of the longest and the root mean square of all lengths.
+    /// Creates the ball for points, given the length of the longest point and the root mean square of all lengths.
     pub(crate) fn new(longest: f64, spread: f64) -> Self {
         let radius = longest.min(SPREADS * spread);
         let per_unit = (RADIUS / radius).min(FINEST);
@@ -56,7 +57,7 @@ impl Lattice {
         ERROR * (n as f64).sqrt()
     }
 
-    /// Number of units per length of 1.
+    /// Returns the number of units per unit length.
     pub(crate) fn per_unit(&self) -> f64 {
         self.per_unit
     }

@@ -1,4 +1,4 @@
-//! Proof of the pruning bound: when a row may be rejected without a comparison in full.
+//! Proves the pruning bound: the condition under which a row may be rejected without a full comparison.
 //!
 //! Notation:
 //!
@@ -36,30 +36,30 @@ use super::lattice::Lattice;
 /// Maximum length of a centered row or query in the tree. Its square is far below the largest `f32`.
 pub(crate) const LONGEST: f64 = 1e15;
 
-/// Relative error of rounding to `f32`.
+/// Maximum relative error of rounding to `f32`.
 const U: f64 = 1.0 / (1 << 24) as f64;
 
-/// Absolute error of a product below the normal numbers: half of the smallest positive `f32`.
+/// Absolute error of a subnormal product: half of the smallest positive `f32`.
 const V: f64 = f32::from_bits(1) as f64 / 2.0;
 
-/// Factor above the relative error of a few operations, or of a sum of a thousand terms, in `f64`.
+/// Factor that exceeds the relative error of a few operations, or of a sum of a thousand terms, in `f64`.
 const SLACK: f64 = 1.0 + 1e-12;
 
 /// The terms of the bound that do not depend on the query, for one tree.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Margin {
-    /// 2 dims v.
+    /// 2 dims v, in the notation of the module.
     distance_underflow: f64,
     /// (|W| in units)^2 / (1 - a u).
     units_sq: f64,
     /// 1.01 b u sqrt(k) |W| in units.
     rotation: f64,
-    /// E for a row and a query of length zero.
+    /// E for a row of the maximum length and a query of length zero.
     fixed: f64,
 }
 
 impl Margin {
-    /// Computes the bound for rows of `dims` values, given the length of the longest centered row.
+    /// Computes the bound for rows of `dims` values. `longest` is the length of the longest centered row.
     pub(crate) fn new(dims: usize, basis: &Basis, lattice: &Lattice, longest: f64) -> Self {
         let k = basis.n_directions() as f64;
         let norm = basis.norm_sq.sqrt() * lattice.per_unit();
@@ -74,13 +74,13 @@ impl Margin {
         }
     }
 
-    /// Returns E in units, given the length of the centered query.
+    /// Returns E in units. `length` is the length of the centered query.
     #[inline(always)]
     pub(crate) fn error(&self, length: f64) -> f64 {
         self.rotation * length + self.fixed
     }
 
-    /// Returns T: the largest possible P of a row with D <= `distance_sq`. For infinity it is `i32::MAX`.
+    /// Returns T: the maximum P of a row with D <= `distance_sq`. If `distance_sq` is infinite, T is `i32::MAX`.
     #[inline(always)]
     pub(crate) fn threshold(&self, distance_sq: f32, error: f64) -> i32 {
         let distance_sq = (f64::from(distance_sq) + self.distance_underflow) * self.units_sq;

@@ -2,8 +2,8 @@
 //!
 //! Steps: compute the distances of the query from the boxes of all groups of leaves, and visit the groups in order of
 //! this distance. In a group, reject leaves by their boxes, then by the partial distances of their rows. Compare the
-//! remaining rows in full, which lowers the threshold for all others. A sum is a squared distance, or a part of it, in
-//! integer units of the [lattice](super::lattice).
+//! remaining rows in full, which lowers the threshold for all others. A sum is a full or partial squared distance, in
+//! the integer units of the [lattice](super::lattice).
 
 use super::basis::LANES;
 use super::margin::Margin;
@@ -17,8 +17,8 @@ pub(crate) struct Search<'a, S> {
     pub(crate) tree: &'a Tree,
     pub(crate) margin: &'a Margin,
     pub(crate) rows: &'a PaddedRows,
-    /// Factor of the squared distance of each row. All are at least 1, so a row that is too far without its factor is
-    /// too far with it, and the bounds of the tree stay valid.
+    /// Factor on the squared distance of each row. All are at least 1, so a row that is too far without its factor is
+    /// also too far with it, and the bounds of the tree remain valid.
     pub(crate) factors: Option<&'a [f32]>,
     /// Query, padded with zeros.
     pub(crate) query: &'a [[f32; LANES]],
@@ -28,9 +28,9 @@ pub(crate) struct Search<'a, S> {
     pub(crate) error: f64,
     /// Nearest row so far.
     pub(crate) best: Option<Match>,
-    /// Squared distance of `best`, or the bound of the caller.
+    /// Squared distance of `best`, or the caller's bound.
     pub(crate) below: f32,
-    /// Rows with a larger sum are farther than `below`.
+    /// Rows with a sum above this threshold are farther than `below`.
     pub(crate) threshold: i32,
 }
 
@@ -38,7 +38,8 @@ impl<S: Simd> Search<'_, S> {
     /// Finds the nearest row. `order` is scratch memory.
     #[inline(always)]
     pub(crate) fn run(&mut self, order: &mut Vec<u64>) {
-        // Collect the groups whose boxes are near. An entry is the squared distance (upper half) and the index.
+        // Collect the groups whose boxes are near. An entry packs the squared distance (upper half) and the group's
+        // index (lower half).
         order.clear();
         for (first, boxes) in (0..).step_by(LANES).zip(&self.tree.groups) {
             let sums: [i32; LANES] = self.box_sums(boxes).into();
@@ -59,7 +60,7 @@ impl<S: Simd> Search<'_, S> {
         }
     }
 
-    /// Compares the query with a row in full, and lowers the threshold if it is the nearest so far.
+    /// Compares the query with a row in full, and lowers the threshold if the row is the nearest so far.
     #[inline(always)]
     pub(crate) fn compare(&mut self, row: u32) {
         let mut distance_sq = self.rows.distance_sq(self.simd, self.query, row);
@@ -94,8 +95,8 @@ impl<S: Simd> Search<'_, S> {
 
     /// Compares the rows of leaves that may be near. Leaf `first + i` is visited if bit `i` of `near` is set.
     ///
-    /// All leaves advance by one step before the next step begins. Which ones remain is computed without branches,
-    /// because a processor could not predict them.
+    /// All leaves advance by one step before the next step begins. The remaining leaves are determined without
+    /// branches, because they are unpredictable.
     #[inline(always)]
     fn visit_leaves(&mut self, first: usize, mut near: u64) {
         let mut sums = [[0_i32; LANES]; LANES];
@@ -123,7 +124,7 @@ impl<S: Simd> Search<'_, S> {
         }
     }
 
-    /// Compares with the rows of a leaf whose sums are within the threshold, in order of increasing sums.
+    /// Compares the query with the rows of a leaf whose sums are within the threshold, in order of increasing sums.
     #[inline(always)]
     fn compare_rows(&mut self, leaf: usize, mut sums: [i32; LANES]) {
         for _ in 0..LANES {
@@ -136,7 +137,8 @@ impl<S: Simd> Search<'_, S> {
         }
     }
 
-    /// Adds the squared differences of the query and sixteen rows along [`STEP`] pairs of directions to their sums.
+    /// Adds the squared differences between the query and sixteen rows, along [`STEP`] pairs of directions, to the
+    /// rows' sums.
     #[inline(always)]
     fn add_squares(
         &self,
@@ -153,7 +155,7 @@ impl<S: Simd> Search<'_, S> {
         sums
     }
 
-    /// Returns the squared distances of the query from sixteen boxes.
+    /// Returns the squared distances between the query and sixteen boxes.
     #[inline(always)]
     fn box_sums(&self, boxes: &Boxes) -> i32x16<S> {
         let mut sums = i32x16::splat(self.simd, 0);
@@ -168,7 +170,7 @@ impl<S: Simd> Search<'_, S> {
     }
 }
 
-/// Returns the index of the minimum, and the minimum.
+/// Returns the index of the minimum, and the minimum itself.
 #[inline(always)]
 fn least(values: &[i32]) -> (usize, i32) {
     let mut least = (0, i32::MAX);

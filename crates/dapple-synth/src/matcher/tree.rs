@@ -1,9 +1,9 @@
-//! k-d tree of the rows, with bounding boxes.
+//! k-d tree over the rows, with bounding boxes.
 //!
-//! Rows are split in two along the direction in which they spread most (Bentley, Multidimensional binary search
-//! trees used for associative searching, Communications of the ACM 18, 1975), recursively until sixteen are left. They
-//! form a leaf, and fill the lanes of a register. Sixteen consecutive leaves are a subtree, called a group; sixteen
-//! consecutive groups are a subtree as well. The boxes of sixteen leaves or groups are tested at once.
+//! Rows are split in two along the direction in which they spread most (Bentley, Multidimensional binary search trees
+//! used for associative searching, Communications of the ACM 18, 1975), recursively until at most sixteen are left.
+//! These form a leaf, and fill the lanes of a register. Sixteen consecutive leaves are a subtree, called a group;
+//! sixteen consecutive groups are a subtree as well. The boxes of sixteen leaves or groups are tested at once.
 //!
 //! Coordinates are integers of a [`Lattice`]. The coordinates along two directions are interleaved, as required by the
 //! instruction that multiplies and adds pairs.
@@ -15,10 +15,10 @@ use dapple_raster::parallel;
 use dapple_raster::simd;
 use dapple_raster::simd::dispatch;
 
-/// Number of pairs of directions between two tests of the rows of a leaf.
+/// Number of pairs of directions between two tests of a leaf's rows.
 pub(crate) const STEP: usize = 4;
 
-/// Number of directions that are split and have boxes: the first ones, in which rows differ most.
+/// Number of directions along which rows are split and boxed: the first ones, in which rows differ most.
 const BOX_DIRECTIONS: usize = 2 * STEP;
 
 /// Coordinates of sixteen rows along two directions, interleaved: both of the first row, both of the second, and so on.
@@ -34,17 +34,17 @@ pub(crate) struct Boxes {
     pub(crate) high: [Pairs; STEP],
 }
 
-/// The rows as coordinates along the directions of a basis, in leaves.
+/// The rows, grouped into leaves, as coordinates along the directions of a basis.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
-    /// The row in each lane of each leaf. Unused lanes of the last leaf repeat its last row.
+    /// Row index in each lane of each leaf. Unused lanes of the last leaf repeat its last row.
     pub(crate) rows: Vec<[u32; LANES]>,
-    /// Coordinates of all leaves along the first eight directions, then along the next eight, and so on. A step reads
-    /// contiguous memory.
+    /// Coordinates of all leaves along the first eight directions, then along the next eight, and so on. So each step
+    /// reads contiguous memory.
     pub(crate) steps: Vec<Vec<[Pairs; STEP]>>,
     /// Bounding boxes of the leaves, in groups of sixteen.
     pub(crate) leaves: Vec<Boxes>,
-    /// Bounding boxes of the groups, in sixteens.
+    /// Bounding boxes of the groups, sixteen at a time.
     pub(crate) groups: Vec<Boxes>,
 }
 
@@ -58,10 +58,10 @@ pub(crate) struct Placed {
 }
 
 impl Placed {
-    /// Rotates and quantizes rows of `dims` values. Returns `None` if a row is not finite or longer than
+    /// Rotates and quantizes rows of `dims` values. Returns `None` if a row is not finite or is longer than
     /// [`margin::LONGEST`].
     pub(crate) fn new(dims: usize, rows: &[f32], basis: &Basis) -> Option<Self> {
-        // Rotate the rows to the directions.
+        // Rotate the rows into the basis.
         let n_directions = basis.n_directions();
         let chunks: Vec<&[f32]> = rows.chunks(CHUNK * dims).collect();
         let rotated = parallel::map(chunks.len(), |chunk| rotate(dims, chunks[chunk], basis));
@@ -133,9 +133,9 @@ pub(crate) fn every_row(dims: usize, rows: &[f32]) -> Vec<u32> {
     (0..rows.len().checked_div(dims).unwrap_or(0) as u32).collect()
 }
 
-/// Returns the indices of all rows except bitwise duplicates of an earlier row. They are not in ascending order.
+/// Returns the indices of all rows except bitwise duplicates of an earlier row, in no particular order.
 ///
-/// Of equal rows only the first is ever the nearest. An image that is constant along one axis has many duplicates.
+/// Of equal rows, only the first is ever returned. An image that is constant along one axis has many duplicates.
 pub(crate) fn distinct_rows(dims: usize, rows: &[f32]) -> Vec<u32> {
     let mut order = every_row(dims, rows);
     let bits = |row: u32| {
@@ -232,7 +232,7 @@ fn around_boxes(boxes: &[Box]) -> Box {
     ]
 }
 
-/// Interleaves up to sixteen boxes for a test at once. The content of unused lanes does not matter.
+/// Interleaves up to sixteen boxes so that they can be tested at once. Unused lanes repeat the last box.
 fn side_by_side(boxes: &[Box]) -> Boxes {
     let side = |side: usize| {
         let lanes = |i: usize| &boxes[i.min(boxes.len() - 1)][side];
