@@ -1,15 +1,16 @@
-//! Sampling of neighborhoods on a surface, by walks along the orientation field.
+//! Samples neighborhoods on a surface by walks along the orientation field.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297.
 //!
 //! The field has two directions at each site, O (down) and P (right). The sample at offset (i, j) is found by a walk on
-//! the polygons of the surface: i spacings along P, and from there j spacings along O. Both directions are transported
+//! the faces of the surface: i spacings along P, and from there j spacings along O. Both directions are transported
 //! along the walk, and rotate with the field ([`turning`]). The color of the sample is interpolated from the sites near
-//! it, as in equation 1 of the paper, with distances in space. Only sites within reach of the square as it would be on
-//! a plane have weight.
+//! it, as in equation 1 of the paper, with Euclidean distances in space. Only sites within reach of the square,
+//! measured as on a plane, have weight.
 //!
 //! Input: a site, a level and a square of offsets. Output: colors and nearest sites of the samples. The steps are
-//! [`nearby`] (sites in reach), [`lattice`] (positions of the samples) and [`interpolate()`] (their colors).
+//! [`nearby`] (finds the sites within reach), [`lattice`] (positions the samples) and [`interpolate()`] (computes their
+//! colors).
 
 mod interpolate;
 mod lattice;
@@ -31,19 +32,20 @@ pub(crate) use lattice::Lattice;
 pub(crate) use nearby::{Around, Nearby, Record};
 pub(crate) use turning::turn_rates;
 
-/// Additional reach: how much farther than on a plane a site may be from the center of a square, in spacings.
+/// Additional reach: how much farther than on a plane a site may be from the center of a square, in multiples of the
+/// spacing.
 const REACH_SPARE: f64 = 0.5;
 
 /// Blur of the samples: the weight of each of the two adjacent pixels along an axis. Half of this variance comes from
-/// the weights of equation 1 and from pixels that are up to a half off. The rest is for sources that bend where sites
-/// continue a piece of the exemplar.
+/// the weights of equation 1 and from pixels that are off by up to a half. The rest accounts for sources that bend
+/// where sites continue a piece of the exemplar.
 ///
 /// Measured on flat textures of leaves, rock and grass of 128 × 128 pixels: the standard deviation, relative to that of
-/// the exemplar, is 0.77 to 0.85 without a blur, 0.86 to 0.90 with 0.11, and 0.92 to 0.95 with 0.2. With 0.2 the
-/// lengths of gradients are within a tenth of those of the exemplar.
+/// the exemplar, is 0.77 to 0.85 without a blur, 0.86 to 0.90 with 0.11, and 0.92 to 0.95 with 0.2. With 0.2, gradient
+/// lengths are within a tenth of the exemplar's.
 const BLUR: f32 = 0.2;
 
-/// Sites of a hierarchy with the orientation field of the texture.
+/// Sites of a hierarchy, with the orientation field of the texture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MeshGround<'a> {
     pub(crate) surface: &'a Surface,
@@ -51,7 +53,7 @@ pub(crate) struct MeshGround<'a> {
     pub(crate) orientation: &'a Orientation,
     pub(crate) sweep: &'a Sweep,
     pub(crate) axes: Axes,
-    /// Size of a pixel of the exemplar at each site, in spacings; empty if all are 1.
+    /// Size of a pixel of the exemplar at each site, in multiples of the spacing; empty if all are 1.
     pub(crate) scales: &'a [f32],
     /// Whether the exemplar is blurred as much as the samples.
     pub(crate) is_blurred: bool,
@@ -60,7 +62,7 @@ pub(crate) struct MeshGround<'a> {
     pub(crate) starts: &'a [Start],
 }
 
-/// Tables of a pass: the sites within reach of each site, on its level and on the next coarser one.
+/// Tables for a pass: the sites within reach of each site, on its own level and on the next coarser one.
 #[derive(Debug)]
 pub(crate) struct Prepared {
     level: usize,
@@ -68,7 +70,7 @@ pub(crate) struct Prepared {
     coarser: Option<Neighborhoods>,
 }
 
-/// Scratch memory for sampling, reusable from square to square.
+/// Scratch memory for sampling, reusable for any number of squares.
 #[derive(Debug, Default)]
 pub(crate) struct MeshMemory {
     nearby: Nearby,
@@ -78,19 +80,20 @@ pub(crate) struct MeshMemory {
 
 impl MeshMemory {
     /// Returns whether the samples of the last square are at least `least` apart along rows and columns. They are
-    /// closer if a walk ended at a border or a sharp fold.
+    /// closer where a walk ended at a border or a sharp fold.
     pub(crate) fn is_spread(&self, least: f64) -> bool {
         self.lattice.is_spread(least as f32)
     }
 }
 
 impl MeshGround<'_> {
-    /// Size of a pixel of the exemplar at a site, in spacings.
+    /// Returns the size of a pixel of the exemplar at a site, in multiples of the spacing.
     fn scale(&self, site: usize) -> f64 {
         self.scales.get(site).map_or(1.0, |&scale| scale.into())
     }
 
-    /// Gathers, for each site of `level`, the sites of level `reads` that squares of this half side can reach.
+    /// Gathers, for each site of `level`, the sites of level `reads` that squares with half-side length `half` can
+    /// reach.
     fn neighborhoods(&self, level: usize, reads: usize, half: i32) -> Neighborhoods {
         let largest = self.scales.iter().copied().fold(0.0, f32::max);
         let largest = if largest > 0.0 {
@@ -109,8 +112,8 @@ impl MeshGround<'_> {
     }
 }
 
-/// Radius within which sites have weight at a sample, in spacings, for a pixel of this size. A large pixel takes all
-/// sites within it.
+/// Returns the radius within which sites have weight at a sample, in multiples of the spacing. `scale` is the size of a
+/// pixel; a large pixel takes in all sites within it.
 fn radius(scale: f64) -> f64 {
     INTERPOLATION_RADIUS * scale.max(1.0)
 }
@@ -186,13 +189,13 @@ impl Ground for MeshGround<'_> {
         };
         let Some(around) = around else { return };
         let at = square.site as usize;
-        // Find the distance of the samples.
+        // Compute the distance between adjacent samples.
         let spacing = self.hierarchy.levels()[square.reads].spacing();
         let scale = self.scale(at);
         let step = spacing * scale;
         let point = self.hierarchy.sites().points()[at];
         let vectors = self.orientation.vectors();
-        // Fit the rotation of the field, if directions follow it.
+        // Fit the rotation of the field, if the axes follow it.
         let turning = match self.axes {
             Axes::Carried => Turning::default(),
             Axes::Followed => Turning::around(
@@ -202,7 +205,7 @@ impl Ground for MeshGround<'_> {
                 (step, square.half),
             ),
         };
-        // Collect the sites in reach, walk to the samples, and interpolate.
+        // Collect the sites within reach, walk to the samples, and interpolate.
         let level = simd::level();
         let sites = around.collect(level, square.site, &mut memory.nearby);
         let lattice = &mut memory.lattice;

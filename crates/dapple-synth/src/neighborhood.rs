@@ -1,4 +1,4 @@
-//! Shapes of neighborhoods, and schedules: the sequence of passes that use them.
+//! Neighborhood shapes, and schedules: the sequence of passes that use them.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI 10.1145/383259.383297, figure 4 and
 //! section 5; the causal shape is from Li-Yi Wei and Marc Levoy, "Fast Texture Synthesis using Tree-structured Vector
@@ -11,14 +11,14 @@
 //! | F(n, 1) | `Part::new(Shape::Full, n, Reads::Coarser)` | 49: all, since the center is known on the coarser level |
 //!
 //! Two choices that the paper does not state: H has no pixel of the center's own row, because half of that row is not
-//! colored yet ([`Shape::HalfWithRow`] is the other reading). Half of a side is rounded to an odd number; the paper
+//! colored yet ([`Shape::HalfWithRow`] is the other reading). Half of the side is rounded to an odd number; the paper
 //! rounds half of 7 to 3.
 //!
-//! Offsets are in pixels of the level that is read, to the right and down.
+//! Offsets are in pixels of the level that is read; x points right and y down.
 
 use crate::error::{SynthError, SynthErrorKind};
 
-/// Maximum weight of a part; sums of squares cannot overflow.
+/// Maximum weight of a part. It ensures that sums of squares do not overflow.
 const MAX_WEIGHT: f32 = 1e6;
 
 /// Pixels of a square that belong to a neighborhood.
@@ -55,12 +55,12 @@ pub struct Part {
     pub side: u32,
     /// Level that is read.
     pub reads: Reads,
-    /// Factor of the squared differences, above 0 and at most 10^6; by default 1.
+    /// Factor on the squared differences, above 0 and at most 10^6; by default 1.
     pub weight: f32,
 }
 
 impl Part {
-    /// Creates a part with the weight 1.
+    /// Creates a part with weight 1.
     #[must_use]
     pub const fn new(shape: Shape, side: u32, reads: Reads) -> Self {
         Self {
@@ -71,13 +71,13 @@ impl Part {
         }
     }
 
-    /// Returns this part with another weight.
+    /// Returns this part with the given weight.
     #[must_use]
     pub const fn with_weight(self, weight: f32) -> Self {
         Self { weight, ..self }
     }
 
-    /// Returns the offsets of the pixels from the center, to the right and down, row by row from the top.
+    /// Returns the offsets of the pixels from the center, x to the right and y down, row by row from the top.
     ///
     /// Empty for a side of 0.
     ///
@@ -111,24 +111,24 @@ impl Part {
     }
 }
 
-/// One visit of all sites of a level, in the order of the sweep.
+/// One pass over all sites of a level, in the order of the sweep.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pass {
-    /// Level; 0 is the finest.
+    /// Level to visit; 0 is the finest.
     pub level: usize,
     /// Parts of the neighborhood, compared together.
     pub parts: Vec<Part>,
 }
 
 impl Pass {
-    /// Pass that initializes a level from the coarser one: F(7, 1).
+    /// Returns the pass that initializes a level from the coarser one: F(7, 1).
     fn extrapolate(level: usize) -> Self {
         let parts = vec![Part::new(Shape::Full, 7, Reads::Coarser)];
         Self { level, parts }
     }
 
-    /// Pass that corrects a level: F(side, 0) + F(3, 1).
+    /// Returns the pass that corrects a level: F(side, 0) + F(3, 1).
     fn correct(level: usize, side: u32) -> Self {
         let parts = vec![
             Part::new(Shape::Full, side, Reads::Same),
@@ -142,15 +142,16 @@ impl Pass {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Schedule {
-    /// Passes in order. Before its first pass, a level is filled with random pixels of the exemplar. The last pass over
-    /// level 0 gives the result.
+    /// Passes, in order. Before its first pass, a level is filled with random pixels of the exemplar. The last pass
+    /// over level 0 yields the result.
     pub passes: Vec<Pass>,
 }
 
 impl Schedule {
-    /// Schedule of section 5.2: H(7, 0) on the coarsest level; F(7, 1), then F(7, 0) + F(3, 1), on each finer level.
+    /// Returns the schedule of section 5.2: H(7, 0) on the coarsest level; F(7, 1), then F(7, 0) + F(3, 1), on each
+    /// finer level.
     ///
-    /// The paper has three or four levels. One level gives only the first pass.
+    /// The paper uses three or four levels. With one level, only the first pass remains.
     #[must_use]
     pub fn paper(n_levels: usize) -> Self {
         let coarsest = n_levels.saturating_sub(1);
@@ -164,12 +165,12 @@ impl Schedule {
         Self { passes }
     }
 
-    /// Schedule of a [repair](crate::PlaneTexture::repair): F(7, 0) eight times on the coarsest level, F(7, 0) + F(3,
-    /// 1) four times on each finer level, and F(5, 0) + F(3, 1) twice on the finest.
+    /// Returns the schedule of a [repair](crate::PlaneTexture::repair): F(7, 0) eight times on the coarsest level, F(7,
+    /// 0) + F(3, 1) four times on each finer level except the finest, and F(5, 0) + F(3, 1) twice on the finest.
     ///
-    /// Measured on 33 photographs of 128 × 128 pixels with three holes of 39 × 39 each, by comparing windows of 7 × 7
-    /// pixels in and near a hole with those of the photograph: their distance is 3 % less than with the schedule of a
-    /// [mesh](Self::repair_on_mesh), in 40 % of the time.
+    /// Measured on 33 photographs of 128 × 128 pixels with three holes of 39 × 39 each. Windows of 7 × 7 pixels in and
+    /// near a hole, compared with those of the photograph, have a distance that is 3 % less than with the schedule for
+    /// a [mesh](Self::repair_on_mesh), in 40 % of the time.
     #[must_use]
     pub fn repair(n_levels: usize) -> Self {
         let coarsest = n_levels.saturating_sub(1);
@@ -181,8 +182,8 @@ impl Schedule {
         Self { passes }
     }
 
-    /// Schedule of a [repair of a mesh](crate::MeshExemplar::repair): F(7, 0) eight times on the coarsest level; F(7,
-    /// 1), then F(7, 0) + F(3, 1) twice, on each finer level.
+    /// Returns the schedule of a [mesh repair](crate::MeshExemplar::repair): F(7, 0) eight times on the coarsest level;
+    /// F(7, 1), then F(7, 0) + F(3, 1) twice, on each finer level.
     #[must_use]
     pub fn repair_on_mesh(n_levels: usize) -> Self {
         let coarsest = n_levels.saturating_sub(1);
@@ -194,7 +195,7 @@ impl Schedule {
         Self { passes }
     }
 
-    /// Passes of a repair on the coarsest level.
+    /// Returns the passes of a repair on the coarsest level.
     fn of_a_hole(coarsest: usize) -> Vec<Pass> {
         let parts = vec![Part::new(Shape::Full, 7, Reads::Same)];
         vec![
@@ -206,7 +207,7 @@ impl Schedule {
         ]
     }
 
-    /// Schedule without levels, as in the pseudocode of section 5.1: one pass with one neighborhood.
+    /// Returns a schedule without multiple levels, as in the pseudocode of section 5.1: one pass with one neighborhood.
     #[must_use]
     pub fn single_level(shape: Shape, side: u32) -> Self {
         let parts = vec![Part::new(shape, side, Reads::Same)];
@@ -219,10 +220,10 @@ impl Schedule {
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] without a pass, for a pass without parts, and without a pass over level 0;
-    /// [`SynthErrorKind::Range`] for a level that does not exist, a side that is even or not from 3 to 15, and a weight
-    /// that is not above 0 and at most 10^6; [`SynthErrorKind::Unfilled`] for a pass that reads a coarser level that no
-    /// earlier pass visited.
+    /// [`SynthErrorKind::Count`] if there is no pass, if a pass has no parts, or if no pass visits level 0;
+    /// [`SynthErrorKind::Range`] if a level does not exist, if a side is even or not from 3 to 15, or if a weight is
+    /// not above 0 and at most 10^6; [`SynthErrorKind::Unfilled`] if a pass reads a coarser level that no earlier pass
+    /// visited.
     pub fn check(&self, n_levels: usize) -> Result<(), SynthError> {
         check_any(self.passes.len(), "passes")?;
         let mut filled = vec![false; n_levels];
@@ -243,7 +244,7 @@ impl Schedule {
 }
 
 impl Pass {
-    /// Checks that the parts and levels are in range.
+    /// Checks that the parts and the levels are in range.
     pub(crate) fn check(&self, n_levels: usize) -> Result<(), SynthError> {
         check_any(self.parts.len(), "parts of a pass")?;
         for part in &self.parts {
@@ -278,7 +279,7 @@ impl Pass {
 }
 
 impl Reads {
-    /// Number of levels from the pass's level to the coarser level that is read: 0 or 1.
+    /// Returns the number of levels from the pass's own level to the one that is read: 0 or 1.
     pub(crate) const fn step(self) -> usize {
         match self {
             Self::Same => 0,

@@ -1,18 +1,19 @@
-//! Options of a synthesis.
+//! Synthesis options.
 
 use crate::{CoarserCenter, Exemplar, Schedule, SynthError, SynthErrorKind};
 use core::num::ParseFloatError;
 use core::str::FromStr;
 use dapple_hash::Seed;
 
-/// Maximum of [`Options::evenness`]: no factor within it can make a distance infinite.
+/// Maximum of [`Options::evenness`]; no factor up to this value can make a distance infinite.
 const MAX_EVENNESS: f32 = 1000.0;
 
-/// Regularity of an exemplar above which [`Coherence::Auto`] always takes the smallest distance. Exemplars from 0.93
-/// look better with the smallest distance, exemplars up to 0.86 with a coherence of 2.
+/// Regularity of an exemplar above which [`Coherence::Auto`] always picks the smallest distance in passes that read a
+/// coarser level. Exemplars with a regularity of 0.93 or more look better with the smallest distance, exemplars of 0.86
+/// or less with a coherence of 2.
 pub(crate) const REGULAR: f64 = 0.9;
 
-/// Options of a synthesis from an exemplar.
+/// Options for a synthesis from an exemplar.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -20,74 +21,74 @@ pub(crate) const REGULAR: f64 = 0.9;
     serde(default, deny_unknown_fields)
 )]
 pub struct Options {
-    /// Seed of the initial random colors [default: `Seed(0)`].
+    /// Seed for the initial random colors [default: `Seed(0)`].
     pub seed: Seed,
-    /// Number of levels of the pyramid and of the sites, from 1 to 16 [default: 3].
+    /// Number of pyramid and site levels, from 1 to 16 [default: 3].
     pub n_levels: usize,
     /// The passes [default: the paper's passes for `n_levels` levels].
     pub schedule: Option<Schedule>,
-    /// Center of neighborhoods on the coarser level [default: exact].
+    /// Placement of neighborhood centers on the coarser level [default: exact].
     pub center: CoarserCenter,
-    /// The values that are compared on surfaces [default: appearance].
+    /// Values that are compared on surfaces [default: appearance].
     pub matching: Matching,
-    /// The axes of neighborhoods on surfaces away from their site [default: they follow the field].
+    /// Axes of neighborhoods on surfaces, away from the central site [default: they follow the field].
     pub axes: Axes,
-    /// The kind of sources of the finest sites on surfaces [default: places between pixels].
+    /// Kind of sources of the finest sites on surfaces [default: positions between pixels].
     pub sources: Sources,
-    /// Permitted excess in the distance of a match that continues the source of a neighboring site [default: chosen by
-    /// the exemplar].
+    /// Permitted excess distance of a match that continues the source of a neighboring site, relative to the best match
+    /// [default: depends on the exemplar].
     pub coherence: Coherence,
     /// Preference for even use of the exemplar's pixels, from 0 to 1000 [default: 1].
     ///
     /// In passes that read no coarser level (the paper's schedule has one), the squared distance of a pixel is
     /// multiplied by `1 + evenness` if the pixel and its neighbors have already been used as often as the average pixel
-    /// at the end of the pass. Such a pass runs on one thread. Pixels near an edge of the exemplar are candidates, too,
-    /// as if it were mirrored there. With [`Matching::Appearance`], parts of the exemplar that the texture uses too
-    /// often cost more from one correction to the next. At 0 only the smallest distance counts, as in the paper: many
-    /// pixels are then never used, and rare colors vanish.
+    /// at the end of the pass. Such a pass runs on one thread. Pixels near an edge of the exemplar are candidates too,
+    /// as if the exemplar were mirrored there. With [`Matching::Appearance`], parts of the exemplar that the texture
+    /// uses too often cost more from one correction to the next. At 0, only the smallest distance counts, as in the
+    /// paper; many pixels are then never used, and rare colors vanish.
     pub evenness: f32,
 }
 
-/// Permitted excess in the distance of a coherent match: one that continues the source of a neighboring site.
+/// Permitted excess distance of a coherent match, that is, one that continues the source of a neighboring site.
 ///
-/// In text it is `auto` or a number.
+/// Its text form is `auto` or a number.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/coherence.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Coherence {
-    /// A factor of 2. For a regular exemplar, one whose [`Exemplar::regularity`] is above 0.9, the smallest distance
+    /// A factor of 2. For a regular exemplar (one whose [`Exemplar::regularity`] is above 0.9), the smallest distance
     /// wins instead in passes that read a coarser level.
     ///
     /// Where the exemplar has pieces that fit together, such as interlocking hooks and courses of bricks, the smallest
     /// distance finds them, and a factor of 2 tears the texture. In photographs no detail occurs twice, and the
     /// smallest distance blurs it: leaves keep 0.65 of their standard deviation with 0, and 0.87 with 2.
     ///
-    /// In passes that read no coarser level the factor is 1 for any exemplar, as with a coherence of 2. There the sweep
-    /// begins among random colors, and their averages resemble only a few pixels of the exemplar. With 0 those pixels
-    /// are used again and again: the squares of a checker run together where the sweep begins.
+    /// In passes that read no coarser level, the factor is 1 for any exemplar, as with `Factor(2.0)`. There the sweep
+    /// begins among random colors, and their averages resemble only a few pixels of the exemplar. With 0, those pixels
+    /// would be used again and again; for example, the squares of a checker merge where the sweep begins.
     ///
     /// Measuring the regularity takes a few milliseconds.
     #[default]
     Auto,
     /// The coherent match wins if its squared distance is at most 1 + this factor times the smallest. In passes that
-    /// read no coarser level, where no later pass can repair mismatches, the limit is 1 + half of this factor. Finite
-    /// and at least 0; at 0 the smallest distance always wins, as in the paper.
+    /// read no coarser level, where no later pass can repair mismatches, the limit is 1 + half of this factor. The
+    /// factor must be finite and at least 0; at 0 the smallest distance always wins, as in the paper.
     Factor(f32),
 }
 
-/// Permitted excess in the squared distance of coherent matches, relative to the smallest one; at least 0.
+/// Permitted excess squared distance of coherent matches, relative to the smallest; at least 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CoherenceFactors {
-    /// The excess in passes that read no coarser level.
+    /// Excess in passes that read no coarser level.
     pub(crate) initial: f32,
-    /// The excess in passes that read a coarser level.
+    /// Excess in passes that read a coarser level.
     pub(crate) finer: f32,
 }
 
 impl Coherence {
-    /// The factors to use with an exemplar.
+    /// Returns the factors to use with an exemplar.
     pub(crate) fn factors(self, exemplar: &Exemplar) -> CoherenceFactors {
         let (factor, is_least) = match self {
             Self::Auto => (2.0, exemplar.regularity() > REGULAR),
@@ -174,10 +175,10 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The options of the paper: neighborhoods on the coarser level are centered at rounded coordinates and follow
-    /// straight axes, the smallest distance always wins, and texture maps interpolate the colors of sites.
+    /// Returns the options of the paper: neighborhoods on the coarser level are centered at rounded coordinates and
+    /// follow straight axes, the smallest distance always wins, and texture maps interpolate the colors of sites.
     ///
-    /// Some differences from its text remain, on every surface and with any options:
+    /// Some differences from the paper's text remain, on every surface and with any options:
     ///
     /// * On levels where fewer than 400 neighborhoods lie within an exemplar that does not wrap, neighborhoods that
     ///   reach past its edges are candidates as well, as if it were mirrored there. The paper compares none of them. A
@@ -205,12 +206,12 @@ impl Options {
         }
     }
 
-    /// The given passes, or else the paper's.
+    /// Returns the given passes, or else the paper's.
     ///
     /// # Errors
     ///
-    /// Typed errors for a number of levels that is not from 1 to 16, a coherence that is negative or not finite, an
-    /// evenness that is not from 0 to 1000, and the errors of [`Schedule::check`].
+    /// If the number of levels is not from 1 to 16, the coherence is negative or not finite, or the evenness is not
+    /// from 0 to 1000. Also the same as [`Schedule::check`].
     pub(crate) fn passes(&self) -> Result<Schedule, SynthError> {
         if !(1..=16).contains(&self.n_levels) {
             return Err(SynthError::new(SynthErrorKind::Count {

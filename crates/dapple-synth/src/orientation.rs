@@ -1,25 +1,25 @@
-//! Orientation field: a unit tangent vector at every site, interpolated from a few directions that the user gives.
+//! Orientation field: a unit tangent vector at every site, interpolated from a few directions that the user specifies.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, section 4.1,
 //! <https://doi.org/10.1145/383259.383297>; after the pull-push of Steven Gortler, Radek Grzeszczuk, Richard Szeliski
 //! and Michael Cohen, "The Lumigraph", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237200>.
 //!
 //! Directions are assigned to their nearest sites and pulled up to the coarsest level. There they are diffused, with
-//! the known directions held fixed, and then pushed down to the finest level. Where the paper is silent or slow, this
-//! implementation differs:
+//! the known directions held fixed, and then pushed down to the finest level. The following differs from the paper, or
+//! is not specified in it:
 //!
 //! * every pulled vector has a weight, as in the Lumigraph. A coarse site is known if its weight is at least 0.01. On
 //!   the way down each level mixes in the known vectors by their weights, so that a site with a direction gets exactly
 //!   that direction;
-//! * the diffusion on the coarsest level is initialized breadth first and then solved by conjugate gradients. Repeating
-//!   the averages until they converge takes as many steps as the square of the number of sites across the surface;
+//! * the diffusion on the coarsest level is initialized breadth first and then solved by conjugate gradients. Repeated
+//! averaging would take as many iterations as the square of the number of sites across the surface;
 //! * on every finer level a few sweeps of equation 4 remove the facets of interpolation;
 //! * a connected component of the surface without any given direction is oriented along a fixed axis.
 //!
-//! Fields with a [`Symmetry`] of two or four have equivalent directions at each site. On the coarsest level they form
-//! the smoothest field (`smooth.rs`). One direction per site is stored, chosen to agree with most neighbors
-//! (`comb.rs`). On the way down, each vector is rotated to the equivalent direction nearest to the others before
-//! averaging.
+//! Fields with a [`Symmetry`] of two or four have equivalent directions at each site. On the coarsest level the
+//! smoothest field is computed (`smooth.rs`). One direction per site is stored, chosen to agree with most neighbors
+//! (`comb.rs`). On the way down, each vector is rotated to the equivalent direction nearest to the others before a mean
+//! is computed.
 //!
 //! Positions are in units of the mesh; the resulting vectors have unit length.
 
@@ -39,20 +39,20 @@ use crate::{Hierarchy, SynthError, SynthErrorKind, columns};
 use glam::DVec3;
 
 /// Minimum squared length of the tangential part of a unit vector. Vectors within a thousandth of a radian of the
-/// normal count as having no direction in the tangent plane.
+/// normal have no usable direction in the tangent plane.
 const LEAST_TANGENT_SQ: f64 = 1e-6;
 
-/// A texture direction that the user gives at a position.
+/// A texture direction near a position, specified by the user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Direction {
-    /// Position in space, in units of the mesh. The nearest site gets the direction.
+    /// Position in space, in units of the mesh. The direction applies to the nearest site.
     pub at: DVec3,
     /// Vector of any length. The direction of its projection to the tangent plane is used.
     pub vector: DVec3,
 }
 
-/// Orientation field: a unit tangent vector O at every site, the "down" of the texture.
+/// Orientation field: a unit tangent vector O at every site, which is the "down" direction of the texture.
 ///
 /// # Examples
 ///
@@ -76,7 +76,7 @@ pub struct Orientation {
 }
 
 impl Orientation {
-    /// Default axis for connected components without a given direction. It points down if the mesh has y up.
+    /// Axis for connected components without a direction: down, in files with y up.
     pub const AXIS: DVec3 = DVec3::NEG_Y;
 
     /// Interpolates `directions` over the surface. Connected components without any direction are oriented along
@@ -96,12 +96,12 @@ impl Orientation {
     /// Interpolates `directions` over the surface. Connected components without any direction are oriented along
     /// `axis`.
     ///
-    /// The axis is projected to the tangent planes. Where it is normal to the surface, a vector perpendicular to it is
-    /// used instead.
+    /// The axis is projected onto the tangent planes. Where it is normal to the surface, a vector perpendicular to it
+    /// is used instead.
     ///
     /// # Errors
     ///
-    /// Same as [`new`](Self::new), and [`SynthErrorKind::Range`] if `axis` is zero or not finite.
+    /// Same as [`new`](Self::new), or [`SynthErrorKind::Range`] if the axis is zero or not finite.
     pub fn with_axis(
         hierarchy: &Hierarchy,
         directions: &[Direction],
@@ -118,8 +118,8 @@ impl Orientation {
         })
     }
 
-    /// Computes the smoothest field with the given symmetry. At each given direction, the field has that direction or
-    /// an equivalent one. With [`Symmetry::One`] the result is the same as from [`with_axis`](Self::with_axis).
+    /// Computes the smoothest field with the given symmetry that matches the directions up to the rotations of the
+    /// symmetry. With [`Symmetry::One`] this is the field of [`with_axis`](Self::with_axis).
     ///
     /// The field has few singularities, and they are where the surface is most curved. Around a singularity, a field of
     /// one direction rotates by full turns. A field of two or four directions can rotate by half or quarter turns, and
@@ -147,8 +147,7 @@ impl Orientation {
         })
     }
 
-    /// Builds a field from a function. `field` gets the position and the unit normal of each site, and its result is
-    /// projected to the tangent plane.
+    /// Evaluates a function of position and unit normal at each site, and projects the result onto the tangent plane.
     ///
     /// Where the result is zero, not finite or normal to the surface, [`AXIS`](Self::AXIS) is used instead.
     pub fn from_fn(hierarchy: &Hierarchy, field: impl Fn(DVec3, DVec3) -> DVec3 + Sync) -> Self {
@@ -163,22 +162,21 @@ impl Orientation {
         }
     }
 
-    /// Returns the symmetry of the field, which is the number of equivalent directions at each site. One of them is
-    /// stored.
+    /// Returns the symmetry of the field: the number of equivalent directions at each site, of which one is stored.
     #[must_use]
     pub fn symmetry(&self) -> Symmetry {
         self.symmetry
     }
 
-    /// Returns the equivalent direction of `site` that is nearest to `vector`.
+    /// Returns the one of a site's equivalent directions that is nearest to a vector.
     #[inline]
     pub(crate) fn nearest(&self, normals: &[DVec3], site: usize, vector: DVec3) -> DVec3 {
         self.symmetry
             .nearest(self.vectors[site], normals[site], vector)
     }
 
-    /// Returns the number of quarter turns that bring the direction of `site` nearest to the direction of `other`
-    /// rotated by `quarters`.
+    /// Returns the number of quarter turns by which the direction of `site` must be rotated to be nearest to the
+    /// direction of `other`, which is itself rotated by `quarters`.
     #[inline]
     pub(crate) fn quarters_toward(
         &self,
@@ -195,7 +193,7 @@ impl Orientation {
             .quarters_toward(self.vectors[site], normals[site], other)
     }
 
-    /// Returns the unit vectors at the sites, in the order of [`SiteIdx`](crate::SiteIdx). The sites of a coarser level
+    /// Returns the unit vectors at the sites, in the order of [`SiteIdx`](crate::SiteIdx). The sites of coarser levels
     /// come first.
     #[must_use]
     pub fn vectors(&self) -> &[DVec3] {
@@ -203,7 +201,7 @@ impl Orientation {
     }
 }
 
-/// Returns the unit vector along `axis`, or an error if `axis` is zero or not finite.
+/// Returns the unit vector along an axis, or an error if the axis is zero or not finite.
 fn checked(axis: DVec3) -> Result<DVec3, SynthError> {
     unit(axis).ok_or_else(|| {
         SynthError::new(SynthErrorKind::Range {
@@ -214,21 +212,21 @@ fn checked(axis: DVec3) -> Result<DVec3, SynthError> {
     })
 }
 
-/// Returns the component of `vector` in the plane with the unit normal `normal`.
+/// Returns the component of a vector in the plane with the given unit normal.
 #[inline]
 fn flat_part(vector: DVec3, normal: DVec3) -> DVec3 {
     vector - normal * vector.dot(normal)
 }
 
-/// Projects `vector` to the plane with the unit normal `normal`, and normalizes the result. `None` if `vector` is
-/// normal to the plane, zero or not finite.
+/// Returns the unit vector along the projection of a vector onto the plane with the given unit normal. `None` if the
+/// vector is normal to the plane, zero or not finite.
 fn tangent(vector: DVec3, normal: DVec3) -> Option<DVec3> {
     let part = flat_part(unit(vector)?, normal);
     (part.length_squared() > LEAST_TANGENT_SQ).then(|| part.normalize())
 }
 
-/// Returns the unit tangent along the unit vector `axis`. If `axis` is normal to the plane, the tangent along a
-/// perpendicular axis is returned, so this never fails.
+/// Returns the unit tangent along a unit axis, or along a perpendicular axis if the first one is normal to the plane.
+/// Never fails.
 fn axis_tangent(axis: DVec3, normal: DVec3) -> DVec3 {
     let across = axis.any_orthonormal_vector();
     tangent(axis, normal)
@@ -236,7 +234,7 @@ fn axis_tangent(axis: DVec3, normal: DVec3) -> DVec3 {
         .unwrap_or(across)
 }
 
-/// Normalizes `vector` without overflow. `None` if it is zero or not finite.
+/// Returns the unit vector along a vector, computed without overflow. `None` if the vector is zero or not finite.
 fn unit(vector: DVec3) -> Option<DVec3> {
     let most = vector.abs().max_element();
     (vector.is_finite() && most > 0.0).then(|| (vector / most).normalize())

@@ -1,15 +1,16 @@
-//! Upsampling along the graph: the coarser sites from which a finer site interpolates its value.
+//! Upsampling along the graph: finds the coarser sites from which a finer site interpolates its value.
 //!
 //! Input: a hierarchy, a level and a site. Output: coarser sites with weights (equation 1 of Turk's paper).
 //!
-//! The paper interpolates between the coarser sites within a radius in space (section 3.2). Here they are also at most
-//! two edges of the finer graph away, which covers the radius on evenly spaced sites. This prevents values from jumping
-//! over gaps, to other components and to other sheets, where sweep distances are unrelated. It also needs no search.
+//! The paper interpolates between the coarser sites within a radius in space (section 3.2). Here they must also be at
+//! most two edges away in the finer graph, which covers the radius if sites are evenly spaced. This prevents values
+//! from jumping over gaps, to other components and to other sheets, where sweep distances are unrelated. It also needs
+//! no spatial search.
 
 use crate::sites::weight;
 use crate::{Hierarchy, INTERPOLATION_RADIUS, SiteIdx};
 
-/// Maximum number of parent sites; evenly spaced sites have about five in range.
+/// Maximum number of parent sites; evenly spaced sites have about five within range.
 const MOST: usize = 16;
 
 /// Coarser sites near a site, and their weights.
@@ -51,7 +52,7 @@ impl Parents {
         parents
     }
 
-    /// Sites and their weights, which are not negative and not all zero.
+    /// Returns the indices of the parents with their weights, which are not negative and not all zero.
     #[inline]
     pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, f64)> + Clone {
         let sites = self.sites[..self.count].iter().map(|site| site.index());

@@ -1,12 +1,12 @@
 //! Subpixel sources: positions in the exemplar, between its pixels, from which sites take their color.
 //!
-//! A matched site takes a whole pixel, but lies at an arbitrary offset from the sites whose piece it continues. So its
+//! A matched site takes a whole pixel, but is at an arbitrary offset from the sites whose piece it continues. So its
 //! source is off by up to half a pixel, and edges in the texture jump from site to site. Here the source of a site is
-//! moved, a few times, to the mean of itself and the predictions of its neighbors. A neighbor predicts its own source
-//! plus the offset of the site from it, in the frame of the texture. A neighbor that continues another piece of the
-//! exemplar predicts a distant position, and is ignored.
+//! repeatedly moved to the mean of itself and the predictions of its neighbors. A neighbor predicts its own source plus
+//! the offset from the neighbor to the site, in the frame of the texture. A neighbor that continues another piece of
+//! the exemplar predicts a distant position, and is ignored.
 //!
-//! References: the averaging is our own. That neighbors predict sources is from Michael Ashikhmin, "Synthesizing
+//! References: the averaging is our own. Prediction of sources by neighbors is from Michael Ashikhmin, "Synthesizing
 //! Natural Textures", I3D 2001, DOI 10.1145/364338.364405.
 //!
 //! Units: positions are in pixels of the exemplar; the center of the first pixel is at 0, x points right and y down.
@@ -16,11 +16,11 @@ use crate::orientation::turned;
 use crate::{Edges, Exemplar, Hierarchy, SiteIdx, Symmetry, Synthesizer};
 use glam::{DVec2, Vec2, Vec3};
 
-/// Maximum distance of two predictions of the same source, in pixels.
+/// Maximum distance between two predictions of the same source, in pixels of the exemplar.
 pub(crate) const AGREEMENT: f32 = 1.5;
 
-/// Minimum cosine of the angle between the directions of two neighbors that belong to one piece: 45°, half of a quarter
-/// turn.
+/// Minimum cosine of the angle between the directions of two neighbors that belong to the same piece: 45°, which is
+/// half of a quarter turn.
 const SAME_TURN: f32 = 0.707;
 
 /// Number of averaging steps.
@@ -31,17 +31,18 @@ pub(crate) trait Sourced: Sync {
     /// A position in the exemplar.
     type Place: Copy + Send + Sync;
 
-    /// Source of a site.
+    /// Returns the source of a site.
     fn of_site(&self, site: usize) -> Self::Place;
 
-    /// Shortest offset from one position to another, in pixels; infinite if there is no path between them.
+    /// Returns the shortest offset to the position `to` from the position `from`, in pixels; infinite if no path
+    /// connects them.
     fn difference(&self, to: Self::Place, from: Self::Place) -> Vec2;
 
-    /// Position at an offset from another one.
+    /// Returns the position at offset `by` from another position.
     fn moved(&self, place: Self::Place, by: Vec2) -> Self::Place;
 }
 
-/// Subpixel sources of the finest sites, in an image.
+/// Subpixel sources of the finest sites in an image.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Places {
     pub(crate) of_site: Vec<Vec2>,
@@ -49,12 +50,12 @@ pub(crate) struct Places {
     pub(crate) edges: Edges,
 }
 
-/// Frame of the texture at a site: directions on the surface, in pixels of the exemplar per unit length.
+/// Frame of the texture at a site: its directions on the surface, in pixels of the exemplar per unit length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     pub(crate) right: Vec3,
     pub(crate) down: Vec3,
-    /// Size of a pixel of the exemplar, in spacings.
+    /// Size of a pixel of the exemplar, in multiples of the spacing.
     pub(crate) scale: f32,
 }
 
@@ -62,12 +63,12 @@ pub(crate) struct Frame {
 #[derive(Clone, Debug)]
 pub(crate) struct Frames {
     pub(crate) of_site: Vec<Frame>,
-    /// Symmetry of the orientation field, by which frames of neighbors may differ.
+    /// Symmetry of the orientation field: frames of neighbors may differ by its rotations.
     symmetry: Symmetry,
 }
 
 impl Places {
-    /// Computes the sources of sites, given the pixels that they took.
+    /// Computes the subpixel sources of sites from the pixels that were matched.
     pub(crate) fn new(
         hierarchy: &Hierarchy,
         frames: &Frames,
@@ -115,7 +116,7 @@ impl Sourced for Places {
     }
 }
 
-/// Returns the mean of a site's source and the predictions of its neighbors that agree with it.
+/// Returns the mean of a site's source and those predictions of its neighbors that agree with it.
 pub(crate) fn averaged<P: Sourced>(
     places: &P,
     hierarchy: &Hierarchy,
@@ -132,7 +133,7 @@ pub(crate) fn averaged<P: Sourced>(
         if frames.differ(frame.down, other) {
             continue;
         }
-        // The frame changes along the way; average the offsets in the frames of both ends.
+        // The frame changes along the offset; average the offsets in the frames of both ends.
         let way = 0.5 * (frame.flat(way) + other.flat(way));
         // Add the prediction if it agrees.
         let predicted = places.moved(places.of_site(neighbor.index()), way);
@@ -146,7 +147,7 @@ pub(crate) fn averaged<P: Sourced>(
 }
 
 impl Frame {
-    /// Converts an offset in space to one in the exemplar.
+    /// Converts an offset in space to an offset in the exemplar.
     #[inline]
     pub(crate) fn flat(&self, way: Vec3) -> Vec2 {
         Vec2::new(way.dot(self.right), way.dot(self.down))
@@ -154,8 +155,8 @@ impl Frame {
 }
 
 impl Frames {
-    /// Computes the frames of sites. `quarters` is the rotation of the exemplar at each site in quarter turns; if
-    /// it is empty, all rotations are 0.
+    /// Computes the frames of sites. `quarters` is the rotation of the exemplar at each site, in quarter turns; if it
+    /// is empty, all rotations are 0.
     pub(crate) fn new(synthesizer: &Synthesizer, quarters: &[u8]) -> Self {
         let (hierarchy, orientation) = (synthesizer.hierarchy(), synthesizer.orientation());
         let spacing = hierarchy.levels()[0].spacing();
@@ -178,13 +179,13 @@ impl Frames {
         }
     }
 
-    /// Area of the surface in pixels of the exemplar.
+    /// Returns the area of the surface, in pixels of the exemplar.
     pub(crate) fn n_pixels(&self) -> f64 {
         let scales = self.of_site.iter().map(|frame| f64::from(frame.scale));
         scales.map(|scale| 1.0 / (scale * scale)).sum()
     }
 
-    /// Relative rotation of the exemplar between two sites, in quarter turns.
+    /// Returns the relative rotation of the exemplar between two sites, in quarter turns.
     #[inline]
     pub(crate) fn quarters_between(&self, from: usize, to: usize) -> u8 {
         let (own, other) = (&self.of_site[from], self.of_site[to].down);
@@ -193,7 +194,7 @@ impl Frames {
             .quarters_to(DVec2::new(along(own.down), along(own.right)))
     }
 
-    /// Returns whether the exemplar is rotated at a site, relative to a direction `down` of any length.
+    /// Returns whether the exemplar is rotated in the frame `other`, relative to a direction `down` of any length.
     #[inline]
     pub(crate) fn differ(&self, down: Vec3, other: &Frame) -> bool {
         let lengths = down.length_squared() * other.down.length_squared();

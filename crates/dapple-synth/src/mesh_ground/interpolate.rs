@@ -1,10 +1,10 @@
-//! Interpolation of the colors of all samples of a square, vectorized (equation 1 of Turk's paper).
+//! Interpolates the colors of all samples of a square, vectorized (equation 1 of Turk's paper).
 //!
-//! Input: positions and normals of the samples, and the sites within reach. Output: for each sample the weighted mean
+//! Input: positions and normals of the samples, and the sites within reach. Output: for each sample, the weighted mean
 //! of the colors of the sites around it, and the site with the largest weight.
 //!
 //! The lanes of a register are samples of a row. For each row, sites are added in the order of [`Around`], so the order
-//! of additions is the same at every SIMD level. Sites out of reach would add zeros, and are skipped.
+//! of additions is the same at every SIMD level. Sites out of reach would only add zeros, and are skipped.
 
 use super::lattice::{Lattice, Row};
 use super::nearby::{Around, Record};
@@ -15,42 +15,43 @@ use core::ops::Range;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, f32x8, prelude::*, u32x8};
 
-/// Minimum sum of weights; below it, the nearest site alone counts.
+/// Minimum sum of weights; below it, only the nearest site is used.
 const WEIGHT_MIN: f32 = 1e-4;
-/// Two unit vectors whose dot products with a third are at least this value are at most a right angle apart. It is cos
-/// 45° plus a margin for rounding.
+/// Minimum dot product for the same sheet: two unit vectors whose dot products with a third are at least this value are
+/// at most a right angle apart. It is cos 45° plus a margin for rounding.
 const SAME_SHEET: f32 = 0.7072;
-/// Relative margin of the reach of a site when rows are excluded; far more than rounding.
+/// Relative margin added to the reach of a site when rows are excluded; much larger than the rounding error.
 const MARGIN: f32 = 1e-3;
 /// Number of channels that are accumulated at once.
 const CHANNELS: usize = 4;
 /// Number of samples in a register.
 const LANES: usize = 8;
-/// Number of rows that most sites reach at most: rows are a spacing apart, and a site reaches 1.1 spacings to both
-/// sides.
+/// Number of rows that most sites reach at most: rows are a spacing apart, and a site reaches 1.1 spacings in both
+/// directions.
 const USUAL_ROWS: usize = 3;
 
-/// Scratch memory of interpolation, reusable from square to square.
+/// Scratch memory for interpolation, reusable for any number of squares.
 #[derive(Debug, Default)]
 pub(crate) struct Interpolation {
     /// Sites that reach at least one row, and their colors.
     reaching: Vec<Record>,
     colors: Vec<[f32; CHANNELS]>,
     bounds: Vec<Bounds>,
-    /// For each row, the indices in `reaching` of the sites that reach it, and their number.
+    /// For each row, the indices in `reaching` of the sites that reach it (`lists`), and the number of these sites
+    /// (`lengths`).
     lists: Vec<u32>,
     lengths: Vec<[usize; LANES]>,
 }
 
-/// Bounds of eight rows: how far down (index 0) and how far right (index 1) of the center a site may be to reach each
-/// row.
+/// Bounds of eight rows: the range of positions down (index 0) and right (index 1) of the center within which a site
+/// reaches each row.
 #[derive(Clone, Copy, Debug)]
 struct Bounds {
     least: [[f32; LANES]; 2],
     most: [[f32; LANES]; 2],
 }
 
-/// Input of the sums of a square.
+/// Input for the sums over a square.
 struct Terms<'a> {
     lattice: &'a Lattice,
     around: Around<'a>,
@@ -136,7 +137,7 @@ fn list<S: Simd>(simd: S, terms: &Terms<'_>, memory: &mut Interpolation) {
     memory.reaching.truncate(n_reaching);
 }
 
-/// Computes the range along two axes of the sites that reach each row.
+/// Computes, along two axes, the range of positions within which a site reaches each row.
 #[inline(always)]
 fn bound<S: Simd>(simd: S, terms: &Terms<'_>, axes: [[f32; 3]; 2], bounds: &mut Vec<Bounds>) {
     let reach = terms.radius * (1.0 + MARGIN);
@@ -165,7 +166,7 @@ fn bound<S: Simd>(simd: S, terms: &Terms<'_>, axes: [[f32; 3]; 2], bounds: &mut 
     }
 }
 
-/// Interpolates some channels of all samples.
+/// Interpolates up to [`CHANNELS`] channels of all samples.
 #[inline(always)]
 fn add_up<S: Simd>(
     simd: S,
@@ -186,7 +187,7 @@ fn add_up<S: Simd>(
         for lane in 0..row.n_lanes {
             let sample = row.at * side + row.first_column + lane;
             let to = &mut samples.values[sample * n_channels..][channels.clone()];
-            // Divide by the sum of weights; without weights, take the nearest site.
+            // Divide by the sum of weights. If there is almost none, take the nearest site.
             if sums.weights[lane] > WEIGHT_MIN {
                 samples.nearest[sample] = memory.reaching[sums.nearest[lane] as usize].site;
                 for (channel, value) in to.iter_mut().enumerate() {
@@ -201,10 +202,10 @@ fn add_up<S: Simd>(
     }
 }
 
-/// Sums of a row.
+/// Weights, weighted colors and nearest sites of a row.
 struct Sums {
     weights: [f32; LANES],
-    /// Index of the site with the largest weight; of equal weights the first.
+    /// Index of the site with the largest weight; of equal weights, the first.
     nearest: [u32; LANES],
     values: [[f32; LANES]; CHANNELS],
 }
@@ -263,7 +264,7 @@ fn add_up_row<S: Simd>(
     sums
 }
 
-/// Returns true if the normals of all sites and samples are certainly at most a right angle apart.
+/// Returns true if the normals of all sites and samples are guaranteed to be at most a right angle apart.
 fn is_one_sheet(lattice: &Lattice, reaching: &[Record]) -> bool {
     let Some(middle) = reaching.first().map(|record| record.normal) else {
         return true;
@@ -275,8 +276,8 @@ fn is_one_sheet(lattice: &Lattice, reaching: &[Record]) -> bool {
         })
 }
 
-/// Returns the site nearest to a sample among those whose normals are not opposed, or the nearest of all if there are
-/// none.
+/// Returns the site nearest to a sample among those whose normals are not opposed to the sample's. If there are none,
+/// returns the nearest of all sites.
 #[cold]
 fn nearest(row: &Row, around: Around<'_>, lane: usize) -> u32 {
     let sample: [f32; 3] = array::from_fn(|part| row.lanes[part][lane]);

@@ -1,7 +1,7 @@
-//! Positions of the samples of a square on a surface.
+//! Positions of the samples of a square that is laid out on a surface.
 //!
 //! Input: the center on the surface, the direction O there, the rates at which the field rotates, and the spacing.
-//! Output: position and normal of each sample, relative to the center.
+//! Output: position and normal of each sample. Positions are relative to the center.
 
 use super::turning::Turning;
 use crate::ground::Square;
@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3, Vec3};
 /// Number of samples in a register.
 const LANES: usize = 8;
 
-/// Samples on a surface, in rows of at most eight.
+/// Samples of a square on a surface, stored in rows of at most eight.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Lattice {
     /// Number of samples along a side.
@@ -20,7 +20,7 @@ pub(crate) struct Lattice {
     pub(crate) down: DVec3,
     pub(crate) right: DVec3,
     pub(crate) rows: Vec<Row>,
-    /// Rotation of the directions per half step.
+    /// Rotation of the directions O and P during half of a walking step.
     turning: Turning,
 }
 
@@ -30,18 +30,17 @@ pub(crate) struct Row {
     /// Index of the row in the square, from the top.
     pub(crate) at: usize,
     pub(crate) first_column: usize,
-    /// Number of lanes in use.
+    /// Number of used lanes.
     pub(crate) n_lanes: usize,
-    /// Position relative to the center (x, y, z), and normal (x, y, z).
+    /// Position relative to the center (x, y, z) and normal (x, y, z) of each sample.
     pub(crate) lanes: [[f32; LANES]; 6],
 }
 
-/// Coordinate of unused samples: no site is in reach, and its square is finite.
+/// Coordinate of unused samples. It is out of reach of all sites, and its square is finite.
 const NOWHERE: f32 = 1e18;
 
 impl Lattice {
-    /// Walks to all samples of a square around a point. Directions are transported along the walk, and rotate on the
-    /// way.
+    /// Walks to all samples of a square around a point. Directions are transported along the walk and rotate during it.
     pub(crate) fn lay(
         &mut self,
         surface: &Surface,
@@ -68,7 +67,7 @@ impl Lattice {
         let around = (center, spacing);
         // Walk along the column through the center.
         self.lay_column(surface, &start, half as usize, square, around);
-        // Walk to the right and to the left; at each step, walk along the column there.
+        // Walk to the right and to the left; after each step, walk along the column there.
         for way in [1.0, -1.0] {
             let turn = turning.right.toward(way);
             let mut walk = Walk {
@@ -76,7 +75,7 @@ impl Lattice {
                 ..start
             };
             for step in 1..=half {
-                // Rotate by half before the step and by half after it: the second-order midpoint rule.
+                // Rotate by half before the step and by half after it (second-order midpoint rule).
                 walk = surface.walk(walk.point, turn.of(walk.direction), spacing);
                 walk.direction = turn.of(walk.direction);
                 let column = Walk {
@@ -89,10 +88,10 @@ impl Lattice {
         }
     }
 
-    /// Arranges given points eight to a row, relative to `center`. The direction across the rows is from the first
-    /// point to the last.
+    /// Arranges the given points in rows of eight, relative to `center`. The direction across the rows points from the
+    /// first point to the last.
     pub(crate) fn line_up(&mut self, surface: &Surface, points: &[SurfacePoint], center: DVec3) {
-        // Point the axis across the rows from the first to the last point.
+        // Point the axis across the rows from the first point to the last.
         self.side = points.len();
         self.down = match points {
             [first, .., last] => surface.position(*last) - surface.position(*first),
@@ -111,8 +110,8 @@ impl Lattice {
         }
     }
 
-    /// Returns whether adjacent samples of all columns, and of the middle row (or the last, if there are fewer), are at
-    /// least `least` apart.
+    /// Returns whether adjacent samples are at least `least` apart, in all columns and in the middle row (or in the
+    /// last row, if there is no middle one).
     pub(crate) fn is_spread(&self, least: f32) -> bool {
         let blocks = self.side.div_ceil(LANES).max(1);
         let n_rows = self.rows.len() / blocks;
@@ -129,7 +128,7 @@ impl Lattice {
                 .all(|column| is_apart(place(middle, column - 1), place(middle, column)))
     }
 
-    /// Allocates the rows that the square needs; unused lanes are at [`NOWHERE`].
+    /// Allocates the rows that the square needs. Unused lanes are at [`NOWHERE`].
     fn make_room(&mut self, square: &Square) {
         let side = square.side();
         let n_rows = square.range().count();
@@ -150,7 +149,7 @@ impl Lattice {
             .collect();
     }
 
-    /// Walks up and down from the middle of a column. O is the direction of `start`.
+    /// Walks up and down from the middle of a column. The direction of `start` is O.
     fn lay_column(
         &mut self,
         surface: &Surface,

@@ -1,6 +1,6 @@
-//! Sites within reach of a site, in arrays of coordinates that are read sequentially.
+//! Sites within reach of a site, stored in arrays of coordinates that are read sequentially.
 //!
-//! Input: the sites of a level. Output: for a site, the sites in a ball around it, in a fixed order.
+//! Input: the sites of a level. Output: for any site, the sites in a ball around it, in a fixed order.
 //!
 //! Sites are sorted by cells. Positions are `f32`, relative to the center of the bounding box of all sites: rounding is
 //! below 1e-4 of a spacing for a billion sites.
@@ -11,19 +11,19 @@ use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, f32x8, prelude::*};
 use glam::{DVec3, Vec3};
 
-/// Side of a cell in spacings.
+/// Side of a cell, in multiples of the spacing.
 const CELL: f64 = 3.0;
 /// Number of sites in a register.
 const LANES: usize = 8;
 
-/// The sites near each site of a level.
+/// For each site of a level, the sites near it.
 #[derive(Clone, Debug)]
 pub(crate) struct Neighborhoods {
     cells: Cells,
     /// Index of the first record of each cell.
     first: Vec<u32>,
-    /// Sites that are read, sorted by cell; `columns` holds their positions by coordinate, padded by a register at the
-    /// end.
+    /// Sites that are read, sorted by cell; `columns` holds their positions, one array per coordinate, with one
+    /// register of padding at the end.
     records: Vec<Record>,
     columns: [Vec<f32>; 3],
     /// Positions of the sites at the centers of neighborhoods.
@@ -39,27 +39,27 @@ pub(crate) struct Record {
     pub(crate) site: u32,
 }
 
-/// Scratch memory: the sites near a position, in the order in which their colors are added.
+/// Scratch memory: the sites near a position, in the order in which their colors are added up.
 #[derive(Debug, Default)]
 pub(crate) struct Nearby {
     numbers: Vec<u32>,
-    /// Sites of [`Self::collect_ball`], which are not in a [`Neighborhoods`].
+    /// Sites found by [`Self::collect_ball`], which are not part of a [`Neighborhoods`].
     records: Vec<Record>,
 }
 
-/// Sites near a position: a selection of records.
+/// Sites near a position, as a selection of records.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Around<'a> {
     records: &'a [Record],
     /// Indices of the selected records.
     numbers: &'a [u32],
-    /// Position that the others are relative to.
+    /// Center; the positions of the sites are relative to it.
     center: [f32; 3],
 }
 
 impl Neighborhoods {
-    /// Builds the neighborhoods of the first `n_sites` sites among the first `n_reads` sites. The latter are `spacing`
-    /// apart.
+    /// Builds the neighborhoods of the first `n_sites` sites, which consist of some of the first `n_reads` sites. These
+    /// are `spacing` apart.
     pub(crate) fn new(
         sites: &Sites,
         [n_sites, n_reads]: [usize; 2],
@@ -75,7 +75,7 @@ impl Neighborhoods {
         ]
         .map(|(start, pick)| positions.iter().copied().fold(start, pick));
         let middle = low * 0.5 + high * 0.5;
-        // Count the sites of each cell, and sum up.
+        // Count the sites of each cell, and compute prefix sums.
         let mut first = vec![0_u32; cells.n_cells() + 1];
         for site in 0..n_reads as u32 {
             first[cells.of_site(site) + 1] += 1;
@@ -114,13 +114,13 @@ impl Neighborhoods {
         }
     }
 
-    /// Cells, the unit of dependencies between sites.
+    /// Returns the cells, the unit of dependencies between sites.
     pub(crate) fn cells(&self) -> &Cells {
         &self.cells
     }
 
-    /// Selects the sites in the ball around a site. If it is empty, selects the nearest site of all: a small piece of
-    /// the surface may have no site of a coarse level.
+    /// Selects the sites in the ball around a site. If the ball is empty, selects the nearest of all sites, because a
+    /// small piece of the surface may have no site on a coarse level.
     #[inline]
     pub(crate) fn collect<'a>(
         &'a self,
@@ -142,7 +142,7 @@ impl Neighborhoods {
         }
     }
 
-    /// Lists the sites in a ball around a center in a cell.
+    /// Lists the sites in a ball around `center`, which is in the given cell.
     #[inline(always)]
     fn collect_ball<S: Simd>(
         &self,
@@ -156,7 +156,7 @@ impl Neighborhoods {
         for cells in self.cells.near(cell) {
             let [from, until] =
                 [cells.start, cells.end].map(|cell| self.first[cell as usize] as usize);
-            // Reserve memory for all sites and a full last register.
+            // Reserve memory for all sites, plus a full last register.
             if numbers.len() < length + until - from + LANES {
                 numbers.resize(length + until - from + LANES, 0);
             }
@@ -170,7 +170,7 @@ impl Neighborhoods {
                 let near = (x * x + y * y + z * z).simd_lt(self.reach_sq).to_bitmask();
                 // The last register of a run of cells also holds sites of the next run.
                 let near = near & ((1 << (until - first).min(LANES)) - 1);
-                // Avoid branches on the lanes that are near, which would be mispredicted.
+                // Compact without branches, because the lanes that are near are unpredictable.
                 let room: &mut [u32] = &mut numbers[length..length + LANES];
                 let mut n_near = 0;
                 for lane in 0..LANES {
@@ -183,7 +183,7 @@ impl Neighborhoods {
         numbers.truncate(length);
     }
 
-    /// Returns the index of the record nearest to a position; of equally near ones the site with the lowest index.
+    /// Returns the index of the record nearest to a position; of equally near ones, the site with the lowest index.
     #[cold]
     fn nearest(&self, center: [f32; 3]) -> Option<u32> {
         let far = |record: &Record| length_sq(difference(record.position, center));
@@ -205,13 +205,13 @@ fn difference(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
 }
 
 impl<'a> Around<'a> {
-    /// Number of sites.
+    /// Returns the number of sites.
     #[inline(always)]
     pub(crate) fn len(&self) -> usize {
         self.numbers.len()
     }
 
-    /// Selected sites, with positions relative to the center.
+    /// Returns the selected sites, with positions relative to the center.
     #[inline(always)]
     pub(crate) fn sites(self) -> impl Iterator<Item = Record> + 'a {
         self.numbers.iter().map(move |&number| {
@@ -225,7 +225,7 @@ impl<'a> Around<'a> {
 }
 
 impl Nearby {
-    /// Selects the sites of a level in a ball. If it is empty, doubles its radius until it is not.
+    /// Selects the sites of a level within a ball. If there are none, doubles the radius of the ball until there are.
     pub(crate) fn collect_ball(
         &mut self,
         hierarchy: &Hierarchy,

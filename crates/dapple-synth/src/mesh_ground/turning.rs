@@ -1,19 +1,19 @@
-//! Rotation of the orientation field around a site, to first order.
+//! Rotation of the orientation field near a site, to first order.
 //!
 //! If a square is laid out with the directions at its center alone, features of a curved field cross it at an angle.
-//! The paper's first pass reads only the rows above: there the features seem to come from one side, and are continued
-//! straight where they should bend. All later passes keep that error. So the directions rotate during the walk to a
-//! sample as the field does. There are two rates, one along P and one along O, fitted to the field at the neighbors of
-//! the site by least squares.
+//! The paper's first pass reads only the rows above. There the features appear to come from one side, and are continued
+//! straight where they should bend. All later passes retain that error. So during the walk to a sample, the directions
+//! rotate as the field does. There are two rates, one along P and one along O, fitted by least squares to the field at
+//! the neighbors of the site.
 
 use crate::{Hierarchy, Orientation, SiteIdx};
 use glam::DVec2;
 
 /// Maximum rotation from the center of a square to its edge, in radians. Close to a singularity of the field no rate is
-/// useful, and sites out of reach of the square do not count.
+/// useful. Sites out of reach of the square have no influence.
 const MOST: f64 = 0.5;
 
-/// Rotations per half step along P and per half step along O.
+/// Rotations during half of a walking step, along P and along O.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Turning {
     pub(crate) right: Turn,
@@ -45,8 +45,8 @@ impl Turning {
     }
 }
 
-/// Returns the rates of rotation of the field from O to P, along P and along O, in radians per unit length. They are a
-/// least-squares fit to the neighbors of a site. `None` if the neighbors lie on one line.
+/// Returns the rates at which the field rotates from O toward P, along P and along O, in radians per unit length. They
+/// are a least-squares fit to the neighbors of a site. `None` if the neighbors are collinear.
 pub(crate) fn turn_rates(
     hierarchy: &Hierarchy,
     orientation: &Orientation,
@@ -75,7 +75,7 @@ pub(crate) fn turn_rates(
     }
     // Solve the equations.
     let determinant = xx * yy - xy * xy;
-    // Neighbors on one line determine only one rate. The comparison is false for NaN as well.
+    // Collinear neighbors determine only one rate. The comparison is false for NaN as well.
     let is_plane = determinant > 1e-6 * (xx + yy) * (xx + yy);
     is_plane.then(|| {
         [
@@ -86,14 +86,14 @@ pub(crate) fn turn_rates(
 }
 
 impl Default for Turn {
-    /// No rotation.
+    /// Returns the identity.
     fn default() -> Self {
         Self(DVec2::X)
     }
 }
 
 impl Turn {
-    /// Creates a rotation from O to P by a small angle in radians. The exact angle is 2 atan(angle / 2).
+    /// Creates a rotation from O toward P by a small angle, in radians. The exact angle is 2 atan(angle / 2).
     fn by(angle: f64) -> Self {
         let tangent = angle / 2.0;
         let square = tangent * tangent;
