@@ -1,16 +1,16 @@
-//! Synthesis on a plane or on a torus: the passes of surface synthesis, with pixels as sites.
+//! Synthesis on a plane or a torus: the passes of surface synthesis, with pixels as sites.
 //!
 //! References: Li-Yi Wei and Marc Levoy, "Fast Texture Synthesis using Tree-structured Vector Quantization", SIGGRAPH
 //! 2000, DOI 10.1145/344779.345009, for the plane; Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI
 //! 10.1145/383259.383297, for the passes.
 //!
 //! Every pixel of the texture is a site. Neighborhoods are read directly from the pixel grid. Only values of the
-//! coarser level are interpolated, at half pixels. A level has half the pixels of the next finer one along each
-//! axis, rounded up.
+//! coarser level are interpolated, at half pixels. A level has half as many pixels along each axis as the next finer
+//! one, rounded up.
 //!
-//! The sweep visits sites in scanline order. Along rows that wrap, this order is a single chain around the torus: each
-//! pixel waits for the one before it. On such rows the coarsest level keeps the scanline order. Finer levels, where
-//! every pixel has a color before the sweep refines it, use slanted wavefronts instead. These run on all cores and
+//! The sweep visits sites in scanline order. If rows wrap, this order is a single chain around the torus, because each
+//! pixel depends on the one before it. On such rows the coarsest level keeps the scanline order. Finer levels, where
+//! every pixel has a color before the sweep refines it, use slanted wavefronts instead. These run on all cores, and
 //! change the texture no more than another seed does.
 
 mod enlarge;
@@ -32,13 +32,13 @@ use dapple_raster::{Raster, Wrap};
 
 pub use tile::tile_plane;
 
-/// Maximum number of pixels of a texture. Synthesis takes about 200 bytes per pixel.
+/// Maximum number of pixels of a texture. Synthesis needs about 200 bytes per pixel.
 const MAX_PIXELS: u64 = 1 << 26;
 
-/// Slant of a wavefront, in columns to the left per row: one more than a 7 × 7 neighborhood reaches.
+/// Slant of a wavefront, in columns to the left per row: one more than the reach of a 7 × 7 neighborhood.
 const SLANT: u32 = 4;
 
-/// A texture in the plane: the source pixel in the exemplar for every pixel.
+/// A texture in the plane: the source pixel in the exemplar of every pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaneTexture {
     sources: Raster<[u32; 2]>,
@@ -49,14 +49,15 @@ pub struct PlaneTexture {
 
 /// Synthesizes a texture of `size` pixels, at most 2^26 in total, that looks like an exemplar.
 ///
-/// `edges` sets the boundary of columns and of rows: [`Edges::Wrap`] makes the texture tile along that axis.
+/// `edges` sets the boundary handling of columns and rows: [`Edges::Wrap`] makes the texture tile seamlessly along that
+/// axis.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/synthesize-plane.md"))]
 ///
 /// # Errors
 ///
-/// Typed errors for an exemplar that is too small, for options out of range, for zero or too many pixels, and for a
-/// wrapping side that is not divisible by 2^(number of levels - 1).
+/// If the exemplar is too small, options are out of range, there are zero or too many pixels, or a wrapping side is not
+/// divisible by 2^(number of levels - 1).
 ///
 /// # Examples
 ///
@@ -89,8 +90,8 @@ pub fn synthesize_plane(
 ///
 /// # Errors
 ///
-/// The errors of [`synthesize_plane`], and [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled) if the
-/// callback breaks.
+/// Same as [`synthesize_plane`], or [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled) if the callback
+/// breaks.
 pub fn synthesize_plane_with(
     exemplar: &Exemplar,
     size: [u32; 2],
@@ -104,17 +105,16 @@ pub fn synthesize_plane_with(
 }
 
 /// Synthesizes a texture like [`synthesize_plane_with`], controlled by guides: planes that match parts of the texture
-/// with parts of the exemplar. Their number must equal that of the exemplar's [guides](Exemplar::with_guides). The
-/// texture has the size of the planes.
+/// with parts of the exemplar. There must be as many as the exemplar has [guides](Exemplar::with_guides). The texture
+/// is the same size as the planes.
 ///
 /// [`Options::evenness`] has no effect.
 ///
 /// # Errors
 ///
-/// The errors of [`synthesize_plane_with`]; [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) if there are no
-/// guides or their number differs from the exemplar's; [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for
-/// guides of different sizes; and [`SynthErrorKind::NotFinite`](crate::SynthErrorKind::NotFinite) for a value that is
-/// not finite.
+/// Same as [`synthesize_plane_with`]; [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) if there are no guides or
+/// not as many as the exemplar has; [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) if guides have different
+/// sizes; and [`SynthErrorKind::NotFinite`](crate::SynthErrorKind::NotFinite) if a value is not finite.
 ///
 /// # Examples
 ///
@@ -163,7 +163,7 @@ pub fn synthesize_plane_guided(
 }
 
 impl PlaneTexture {
-    /// Runs the passes of a synthesis.
+    /// Runs the passes of a synthesis and returns the texture.
     fn grown(
         ground: &PlaneGround,
         pyramid: &Pyramid,
@@ -185,15 +185,15 @@ impl PlaneTexture {
         })
     }
 
-    /// Creates a texture from the [`sources`](Self::sources) of an earlier synthesis, for example to transfer other
+    /// Creates a texture from the [`sources`](Self::sources) of an earlier synthesis, for example to transfer further
     /// maps.
     ///
-    /// `exemplar_size` is in pixels. `edges` and `exemplar_edges` are the boundaries of the texture and of the
+    /// `exemplar_size` is in pixels. `edges` and `exemplar_edges` set the boundary handling of the texture and of the
     /// exemplar.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Source`](crate::SynthErrorKind::Source) for a source outside of the exemplar.
+    /// [`SynthErrorKind::Source`](crate::SynthErrorKind::Source) if a source is outside the exemplar.
     pub fn from_sources(
         sources: Raster<[u32; 2]>,
         edges: [Edges; 2],
@@ -215,24 +215,24 @@ impl PlaneTexture {
         }
     }
 
-    /// The source of each pixel: column and row in the exemplar.
+    /// Returns the source of each pixel: column and row in the exemplar.
     #[must_use]
     pub fn sources(&self) -> &Raster<[u32; 2]> {
         &self.sources
     }
 
     /// Transfers a map of the exemplar to the texture: every pixel gets the map's value at its source. The exemplar's
-    /// image gives the texture's colors; maps of height, normals or roughness follow the same sources.
+    /// image yields the texture's colors; maps of height, normals or roughness follow the same sources.
     ///
-    /// The map may be an integer multiple of the exemplar's size, such as the photograph that the exemplar was reduced
-    /// from. The result is then larger than the texture by the same factor. It has all detail of the map without
-    /// further synthesis. Each of its pixels is a pixel of the map: neighbors from one contiguous piece of the exemplar
-    /// are copied as a whole, and the border between two pieces is smooth.
+    /// The map's size may be an integer multiple of the exemplar's, such as the photograph that the exemplar was
+    /// downsampled from. The result is then larger than the texture by the same factor, and has all the detail of the
+    /// map without further synthesis. Each of its pixels is a pixel of the map: neighbors from one contiguous piece of
+    /// the exemplar are copied as a whole, and the border between two pieces is smooth.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Detail`](crate::SynthErrorKind::Detail) for a map whose size is not a multiple of the
-    /// exemplar's, [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) if the result would be too large.
+    /// [`SynthErrorKind::Detail`](crate::SynthErrorKind::Detail) if the map's size is not a multiple of the exemplar's,
+    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) if the result would be too large.
     pub fn transfer<T: Copy + Send + Sync>(
         &self,
         map: &Raster<T>,
@@ -258,22 +258,23 @@ impl PlaneTexture {
     }
 }
 
-/// Returns an error for a size of zero pixels or more than [`MAX_PIXELS`].
+/// Fails if a size has zero pixels or more than [`MAX_PIXELS`].
 pub(crate) fn check_pixels(size: [u32; 2]) -> Result<(), SynthError> {
     let n_pixels = u64::from(size[0]) * u64::from(size[1]);
     let holds = (1..=MAX_PIXELS).contains(&n_pixels);
     SynthError::check(holds, "number of pixels", n_pixels as f64, "from 1 to 2^26")
 }
 
-/// The pixels of the texture on all levels.
+/// Pixels of the texture on all levels, as sites for the engine.
 #[derive(Clone, Debug)]
 struct PlaneGround {
-    /// The sizes of the levels, the finest first.
+    /// Sizes of the levels in pixels, the finest first.
     sizes: Vec<[u32; 2]>,
     edges: [Edges; 2],
     wrap: [Wrap; 2],
     center: CoarserCenter,
-    /// Initial pixels of the sites of each level, for repairs; empty for random pixels.
+    /// Initial pixels of the sites of each level, for repairs; empty for other syntheses, which start from random
+    /// pixels.
     starts: Vec<Start>,
     targets: Option<Targets>,
 }
@@ -299,7 +300,7 @@ impl PlaneGround {
         })
     }
 
-    /// The index of the site at a column and row, wrapped where the edge wraps; `None` past an edge that is cut.
+    /// Returns the index of the site at a column and row, wrapped where the edge wraps; `None` past a cut edge.
     fn index(&self, level: usize, place: [i64; 2]) -> Option<usize> {
         let size = self.sizes[level];
         let mut at = [0; 2];
@@ -314,7 +315,7 @@ impl PlaneGround {
         Some((at[1] * i64::from(size[0]) + at[0]) as usize)
     }
 
-    /// Marks the sites of a square that lie past a cut edge as [`UNKNOWN`].
+    /// Marks the sites of a square that are past a cut edge as [`UNKNOWN`].
     fn leave_out_mirrored(&self, halves: [i64; 2], square: &Square, nearest: &mut [u32]) {
         let side = square.side();
         let [first_x, first_y] = halves.map(|at| at.div_euclid(2) - i64::from(square.half));
@@ -327,7 +328,7 @@ impl PlaneGround {
         }
     }
 
-    /// The column and row of a site.
+    /// Returns the column and row of a site.
     fn pixel(&self, level: usize, site: u32) -> [u32; 2] {
         let width = self.sizes[level][0];
         [site % width, site / width]
@@ -335,7 +336,7 @@ impl PlaneGround {
 }
 
 impl Ground for PlaneGround {
-    /// Half the side of neighborhoods on the level itself.
+    /// Half-side length of neighborhoods on the level itself, in pixels.
     type Prepared = i32;
     type Memory = ();
 
@@ -369,7 +370,7 @@ impl Ground for PlaneGround {
         if self.wrap[0] != Wrap::Repeat || level + 1 == self.sizes.len() {
             return (0..n_sites).collect();
         }
-        // Slanted wavefronts: sites on one line do not read each other.
+        // Slanted wavefronts: sites on the same line do not read each other.
         let line = |site| {
             let [column, row] = self.pixel(level, site);
             u64::from(column) + u64::from(SLANT) * u64::from(row)
@@ -421,7 +422,7 @@ impl Ground for PlaneGround {
         let wrap = self.wrap;
         let grid = Grid { colors, size, wrap };
         grid.read(at, square.half, square.range(), &mut samples.values);
-        // Record the site of each sample.
+        // Record the site at each sample.
         let [columns, rows] = grid::square(at, square.half, size, wrap);
         for (row, nearest) in rows
             .iter()

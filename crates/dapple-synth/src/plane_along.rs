@@ -1,12 +1,12 @@
-//! Synthesis in the plane along a direction field, with features whose size varies from place to place.
+//! Synthesis in the plane along a direction field, with features of varying size.
 //!
 //! The plane is a rectangle. Sites are scattered over it as over any surface, the caller supplies the direction field,
 //! and the texture is baked to an image of the plane's pixels. Neighborhoods rotate and scale with the field, and
-//! sources lie between the pixels of the exemplar. (Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH
-//! 2001, <https://doi.org/10.1145/383259.383297>.)
+//! sources are positions between the pixels of the exemplar. (Reference: Greg Turk, "Texture Synthesis on Surfaces",
+//! SIGGRAPH 2001, <https://doi.org/10.1145/383259.383297>.)
 //!
-//! The rectangle lies in the plane of x and y. A pixel has a side of 1. The image begins at the origin, and its rows go
-//! down to -y.
+//! The rectangle is in the x-y plane, and pixels have unit side length. The top left corner of the image is at the
+//! origin, and its rows extend down toward -y.
 
 use crate::engine::Progress;
 use crate::plane::check_pixels;
@@ -19,38 +19,39 @@ use dapple_mesh::{Mesh, Surface};
 use dapple_raster::{Raster, Wrap};
 use glam::{DVec2, DVec3};
 
-/// A texture in the plane along a direction field. [`bake_colors`](crate::bake_colors) and similar functions render
-/// images.
+/// A texture in the plane along a direction field. Use [`bake_colors`](crate::bake_colors) and similar functions to
+/// render images of it.
 #[derive(Clone, Debug)]
 pub struct PlaneAlong {
-    /// The sites on the rectangle.
+    /// Synthesizer with the sites on the rectangle.
     pub synthesizer: Synthesizer,
-    /// The sources of the sites.
+    /// Synthesized texture: the sources of the sites.
     pub texture: SurfaceTexture,
-    /// The atlas that maps the rectangle to its image.
+    /// Atlas that maps the rectangle to its image.
     pub atlas: Atlas,
 }
 
-/// Size of an exemplar pixel, in pixels of the texture, from 1/8 to 8. Sizes below 1 lose detail.
+/// Size of an exemplar pixel, in texture pixels, from 1/8 to 8. Sizes below 1 lose detail.
 #[derive(Clone, Copy, Debug)]
 pub enum PlaneScales<'a> {
-    /// The size at every pixel: a plane with the size of the texture.
+    /// Size at every pixel: a plane of the same size as the texture.
     Plane(&'a Raster<f32>),
-    /// Sizes that follow from the directions, clamped to these bounds: see [`Synthesizer::with_conformal_scales`].
+    /// Sizes computed from the directions, clamped to the given minimum and maximum: see
+    /// [`Synthesizer::with_conformal_scales`].
     Conformal([f32; 2]),
 }
 
-/// Synthesizes a texture like an exemplar along `directions`, a plane with the size of the texture, with exemplar
-/// pixels scaled by `scales`.
+/// Synthesizes a texture that looks like an exemplar and follows `directions`. This plane is the same size as the
+/// texture. The exemplar's pixels are scaled by `scales`.
 ///
-/// A direction is an angle in radians. At 0 the exemplar's down axis points down; at π / 2, a quarter turn, it points
-/// to the right.
+/// Directions are angles in radians. At 0 the exemplar's down axis points down in the texture; at π / 2, a quarter
+/// turn, it points right.
 ///
 /// # Errors
 ///
-/// The errors of [`Synthesizer::synthesize_with`], [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for planes
-/// of different sizes, and [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) for too many pixels, for an angle
-/// that is not finite, and for a scale out of its range.
+/// Same as [`Synthesizer::synthesize_with`], or [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) if the planes
+/// have different sizes, or [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if there are too many pixels, an
+/// angle is not finite, or a scale is out of range.
 ///
 /// # Examples
 ///
@@ -109,7 +110,7 @@ pub fn synthesize_plane_along(
         }
         PlaneScales::Conformal(bounds) => synthesizer.with_conformal_scales(bounds)?,
     };
-    // Synthesize, and lay the image's pixels over the rectangle.
+    // Synthesize, and map the image's pixels to the rectangle.
     let texture = synthesizer.synthesize_with(exemplar, options, callback)?;
     let atlas = Atlas::from_uvs(synthesizer.surface(), &uvs(size, &synthesizer), size, 0)?;
     Ok(PlaneAlong {
@@ -119,9 +120,9 @@ pub fn synthesize_plane_along(
     })
 }
 
-/// The options of the sites on a plane, with a spacing of one pixel.
+/// Returns options for sites on a plane, with a spacing of one pixel.
 fn sites(size: [u32; 2], options: &Options) -> HierarchyOptions {
-    // A site of a hexagonal lattice with a spacing of 1 has the area sqrt(3/4).
+    // In a hexagonal lattice with unit spacing, each site has the area sqrt(3/4).
     let n_sites = f64::from(size[0]) * f64::from(size[1]) * (4.0_f64 / 3.0).sqrt();
     HierarchyOptions {
         n_sites: n_sites.round() as usize,
@@ -131,7 +132,7 @@ fn sites(size: [u32; 2], options: &Options) -> HierarchyOptions {
     }
 }
 
-/// The surface of an image of `size` pixels: a rectangle of two triangles.
+/// Returns the surface of an image of `size` pixels: a rectangle of two triangles.
 fn rectangle(size: [u32; 2]) -> Result<Surface, SynthError> {
     let [x, y] = size.map(f64::from);
     let corners = [[0.0, 0.0], [0.0, -y], [x, -y], [x, 0.0]];
@@ -140,7 +141,7 @@ fn rectangle(size: [u32; 2]) -> Result<Surface, SynthError> {
     Ok(Surface::new(mesh)?)
 }
 
-/// The texture coordinates of the rectangle's faces in its image, from 0 to 1.
+/// Returns the texture coordinates of the rectangle's faces in its image, from 0 to 1.
 fn uvs(size: [u32; 2], synthesizer: &Synthesizer) -> Vec<[DVec2; 3]> {
     let [width, height] = size.map(f64::from);
     let mesh = synthesizer.surface().mesh();
@@ -150,7 +151,7 @@ fn uvs(size: [u32; 2], synthesizer: &Synthesizer) -> Vec<[DVec2; 3]> {
     corners.collect()
 }
 
-/// The value of a plane at a position; past the edges, the value of the nearest pixel.
+/// Returns the value of a plane at a position; past the edges, the value of the nearest pixel.
 fn pixel(plane: &Raster<f32>, at: DVec3) -> &f32 {
     let [column, row] = [at.x, -at.y].map(|at| at.floor() as i64);
     plane.at(column, row, [Wrap::Clamp; 2])

@@ -1,12 +1,13 @@
-//! Regularity of an exemplar: how well the surroundings of a pixel are found elsewhere in it.
+//! Regularity of an exemplar: how well the surroundings of a pixel are matched elsewhere in it.
 //!
-//! The neighborhoods of a sample of pixels, each minus its mean, are compared with all neighborhoods that lie apart
-//! from them. The mean of the least squared distances, divided by the mean of all, is near 0 if an exemplar is drawn by
-//! a rule, as hooks, bricks and checkers are. It is about 0.5 for grass and sand, where no detail occurs twice.
-//! Regularity is 1 minus this ratio. Means are subtracted because clouds would pass for regular: their smooth parts are
-//! similar, but their details are not.
+//! The neighborhoods of a sample of pixels, each minus its mean, are compared with all neighborhoods at a sufficient
+//! distance from them. The ratio of the mean smallest squared distance to the mean of all squared distances is near 0
+//! if an exemplar follows a rule, as hooks, bricks and checkers do. It is about 0.5 for grass and sand, where no detail
+//! occurs twice. Regularity is 1 minus this ratio. Means are subtracted because clouds would otherwise count as
+//! regular: their smooth parts are similar, but their details are not.
 //!
-//! A peak of the autocorrelation says less: photographs that were made to tile have one, and wiggly checkers have none.
+//! A peak in the autocorrelation is less informative: photographs that were made tileable have one, and wiggly checkers
+//! do not.
 //!
 //! Reference: our own.
 
@@ -18,25 +19,27 @@ use dapple_raster::simd::dispatch;
 use fearless_simd::prelude::*;
 
 /// Side of the central part of the exemplar that is compared, in pixels. A side of 128 ranks the available exemplars in
-/// the same order, and takes four times as long.
+/// the same order, but takes four times as long.
 const WINDOW: u32 = 64;
 
 /// Side of a neighborhood in pixels, as in the passes of the finest level.
 const SIDE: u32 = 7;
 
-/// Minimum distance of two pixels along at least one axis. Their neighborhoods then overlap in less than half.
+/// Minimum distance between two pixels along at least one axis, in pixels. Their neighborhoods then overlap by less
+/// than half.
 const APART: u32 = 5;
 
 /// Approximate number of neighborhoods that are compared with all others.
 const N_QUERIES: u32 = 128;
 
 impl Exemplar {
-    /// Measures how well the surroundings of a pixel are found elsewhere in the exemplar, from 0 (not at all) to 1
+    /// Measures how well the surroundings of a pixel are matched elsewhere in the exemplar, from 0 (not at all) to 1
     /// (exactly).
     ///
-    /// It is 1 minus the ratio of two mean squared distances of neighborhoods of 7 × 7 pixels, each minus its mean: to
-    /// the nearest neighborhood that lies apart, and to any that lies apart. Only the central 64 × 64 pixels are
-    /// compared. Returns 0 for an exemplar that is too small to have two neighborhoods apart from each other.
+    /// Compares neighborhoods of 7 × 7 pixels, each minus its mean, with others that are at least 5 pixels away along
+    /// an axis. The result is 1 minus the mean squared distance to the most similar neighborhood, divided by the mean
+    /// squared distance to all of them. Only the central 64 × 64 pixels are compared. Returns 0 if the exemplar is too
+    /// small to have two neighborhoods this far apart.
     ///
     /// # Examples
     ///
@@ -57,7 +60,7 @@ impl Exemplar {
         let n_rows = details.pixels.len() as u32;
         // Use an odd step: with a power of two, some columns or rows would never be sampled.
         let step = (n_rows / N_QUERIES) | 1;
-        // Compare each sampled neighborhood with all that lie apart.
+        // Compare each sampled neighborhood with all that are far enough apart.
         let mut nearest = Mean::default();
         let mut any = Mean::default();
         for query in (0..n_rows).step_by(step as usize) {
@@ -143,8 +146,8 @@ impl Details {
         })
     }
 
-    /// Returns the least squared distance to a neighborhood that lies apart; infinity if there is no such neighborhood.
-    /// All distances are added to `mean`.
+    /// Returns the smallest squared distance to a neighborhood that is far enough apart, or infinity if there is none.
+    /// Adds all distances to `mean`.
     #[inline(always)]
     fn least_from<S: Simd>(&self, simd: S, query: u32, mean: &mut Mean) -> f32 {
         let from = self.pixels[query as usize];

@@ -1,4 +1,4 @@
-//! Meshes and sites for tests.
+//! Meshes, surfaces and sites for tests.
 
 use crate::{
     Edges, Exemplar, Hierarchy, HierarchyOptions, Orientation, Sites, SurfaceTexture, Synthesizer,
@@ -10,8 +10,9 @@ use dapple_raster::Raster;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// A rectangular grid of `n` squares, each split into two triangles, with vertices placed by `at` from u and v, 0 to 1.
-/// Seen from outside, u points right and v points up. For each axis, `open` is false if the grid closes up on itself.
+/// Returns a rectangular grid of `n` squares, each split into two triangles. `at` places the vertices, given u and v
+/// from 0 to 1. Seen from outside, u points right and v points up. For each axis, `open` is false if the grid closes on
+/// itself.
 pub(crate) fn sheet(n: [u32; 2], open: [bool; 2], at: impl Fn(f64, f64) -> DVec3) -> Mesh {
     let [columns, rows] = [0, 1].map(|axis| n[axis] + u32::from(open[axis]));
     let mut positions = Vec::new();
@@ -33,7 +34,7 @@ pub(crate) fn sheet(n: [u32; 2], open: [bool; 2], at: impl Fn(f64, f64) -> DVec3
     Mesh::new(positions, &faces).unwrap()
 }
 
-/// One mesh with the faces of several.
+/// Joins several meshes into one with the faces of all.
 fn joined(meshes: &[Mesh]) -> Mesh {
     let (mut positions, mut faces) = (Vec::new(), Vec::new());
     for mesh in meshes {
@@ -48,7 +49,7 @@ fn joined(meshes: &[Mesh]) -> Mesh {
     Mesh::new(positions, &faces).unwrap()
 }
 
-/// Triangles with random corners in the unit cube.
+/// Returns `n` triangles with random corners in the unit cube.
 pub(crate) fn tangle(n: u32) -> Mesh {
     let part = |corner: u32, axis: i64| unit_f64(hash2(Seed(3), [corner.into(), axis], 0));
     let corner = |corner: u32| DVec3::from([0, 1, 2].map(|axis| part(corner, axis)));
@@ -56,25 +57,25 @@ pub(crate) fn tangle(n: u32) -> Mesh {
     Mesh::new((0..3 * n).map(corner).collect(), &faces).unwrap()
 }
 
-/// The unit square in the plane z = 0.
+/// Returns the unit square in the plane z = 0.
 pub(crate) fn square() -> Mesh {
     sheet([4; 2], [true; 2], |u, v| DVec3::new(u, v, 0.0))
 }
 
-/// The unit square, and a square of a quarter of its area far above it.
+/// Returns the unit square, and a square of a quarter of its area far above it.
 pub(crate) fn two_squares() -> Mesh {
     let upper = sheet([2; 2], [true; 2], |u, v| DVec3::new(0.5 * u, 0.5 * v, 3.0));
     joined(&[square(), upper])
 }
 
-/// A patch of the unit sphere around the point [0, 0, 1]: the unit square at z = 1, projected onto the sphere.
+/// Returns a patch of the unit sphere around the point [0, 0, 1]: the unit square at z = 1, projected onto the sphere.
 pub(crate) fn cap() -> Mesh {
     sheet([8; 2], [true; 2], |u, v| {
         DVec3::new(u - 0.5, v - 0.5, 1.0).normalize()
     })
 }
 
-/// The unit sphere: the sides of a cube, welded and projected onto the sphere.
+/// Returns the unit sphere: the faces of a cube, welded and projected onto the sphere.
 pub(crate) fn sphere() -> Mesh {
     let n = 8;
     let mut positions: Vec<DVec3> = Vec::new();
@@ -110,7 +111,7 @@ pub(crate) fn sphere() -> Mesh {
     Mesh::new(positions, &faces).unwrap()
 }
 
-/// An open tube of radius 1 and length 4 along z.
+/// Returns an open tube of radius 1 and length 4 along z.
 pub(crate) fn tube() -> Mesh {
     sheet([48, 24], [false, true], |u, v| {
         let angle = u * core::f64::consts::TAU;
@@ -118,12 +119,12 @@ pub(crate) fn tube() -> Mesh {
     })
 }
 
-/// The unit square in the plane z = 0, of 5 by 5 squares.
+/// Returns the unit square in the plane z = 0, consisting of 5 × 5 squares.
 pub(crate) fn plane() -> Surface {
     Surface::new(sheet([5; 2], [true; 2], |u, v| DVec3::new(u, v, 0.0))).unwrap()
 }
 
-/// The unit square at several heights. The squares with odd indices face down.
+/// Returns copies of the unit square at several heights. The copies with odd indices face down.
 pub(crate) fn sheets(heights: &[f64]) -> Surface {
     let sheets = heights.iter().enumerate().map(|(place, &z)| {
         let up = sheet([4; 2], [true; 2], |u, v| DVec3::new(u, v, z));
@@ -137,7 +138,7 @@ pub(crate) fn sheets(heights: &[f64]) -> Surface {
     Surface::new(joined(&sheets.collect::<Vec<_>>())).unwrap()
 }
 
-/// A torus around the z axis with the radii 1 and 0.4.
+/// Returns a torus around the z axis with radii of 1 and 0.4.
 pub(crate) fn torus(columns: u32, rows: u32) -> Surface {
     let torus = |u: f64, v: f64| {
         let [u, v] = [u, v].map(|part| part * core::f64::consts::TAU);
@@ -151,7 +152,7 @@ pub(crate) fn torus(columns: u32, rows: u32) -> Surface {
     Surface::new(sheet([columns, rows], [false; 2], torus)).unwrap()
 }
 
-/// A sphere of radius 1: an octahedron whose faces are split into four, `cuts` times.
+/// Returns a sphere of radius 1: an octahedron whose faces are split into four, `cuts` times.
 pub(crate) fn geodesic_sphere(cuts: u32) -> Surface {
     let mut positions: Vec<DVec3> = DVec3::AXES.iter().flat_map(|&axis| [axis, -axis]).collect();
     let mut faces = Vec::new();
@@ -184,7 +185,7 @@ pub(crate) fn geodesic_sphere(cuts: u32) -> Surface {
     Surface::new(Mesh::new(positions, &faces).unwrap()).unwrap()
 }
 
-/// A row of triangles without shared vertices, each with half the side of the one before.
+/// Returns a row of triangles without shared vertices, each with half the side length of the previous one.
 pub(crate) fn scraps(n: u32) -> Surface {
     let mut positions = Vec::new();
     let mut faces = Vec::new();
@@ -198,7 +199,8 @@ pub(crate) fn scraps(n: u32) -> Surface {
     Surface::new(Mesh::new(positions, &faces).unwrap()).unwrap()
 }
 
-/// The real model of this name in `shared/`, next to the workspace; `None`, with a message, if it does not exist.
+/// Returns the real model called `name` in `shared/`, next to the workspace. If it does not exist, prints a message and
+/// returns `None`.
 pub(crate) fn real(name: &str) -> Option<Mesh> {
     let path = format!(
         "{}/../../../shared/data/meshes/{name}",
@@ -211,7 +213,7 @@ pub(crate) fn real(name: &str) -> Option<Mesh> {
     Some(dapple_mesh_io::read_model(path).unwrap().mesh)
 }
 
-/// A mesh with its positions mapped by `change`.
+/// Returns a mesh with its positions mapped by `change`.
 pub(crate) fn moved(mesh: &Mesh, change: impl Fn(DVec3) -> DVec3) -> Mesh {
     let positions = mesh
         .positions()
@@ -226,7 +228,7 @@ pub(crate) fn moved(mesh: &Mesh, change: impl Fn(DVec3) -> DVec3) -> Mesh {
     Mesh::new(positions, &faces).unwrap()
 }
 
-/// A hierarchy on a mesh.
+/// Builds a hierarchy of sites on a mesh.
 pub(crate) fn sites_on(mesh: Mesh, n_sites: usize, n_levels: usize) -> Hierarchy {
     let options = HierarchyOptions {
         n_sites,
@@ -237,12 +239,12 @@ pub(crate) fn sites_on(mesh: Mesh, n_sites: usize, n_levels: usize) -> Hierarchy
     Hierarchy::new(&Surface::new(mesh).unwrap(), &options).unwrap()
 }
 
-/// The spacing of a hexagonal lattice of `n_sites` sites on a surface.
+/// Returns the spacing of a hexagonal lattice of `n_sites` sites on a surface.
 pub(crate) fn spacing(surface: &Surface, n_sites: usize) -> f64 {
     hexagonal_spacing(surface.area(), n_sites)
 }
 
-/// A random point of a surface.
+/// Returns a random point on a surface.
 fn random(surface: &Surface, seed: Seed, number: i64) -> SurfacePoint {
     let n_faces = surface.mesh().faces().len() as u32;
     let largest = (0..n_faces)
@@ -263,14 +265,14 @@ fn random(surface: &Surface, seed: Seed, number: i64) -> SurfacePoint {
     }
 }
 
-/// `n_sites` random sites.
+/// Returns `n_sites` random sites.
 pub(crate) fn random_sites(surface: &Surface, n_sites: usize, seed: u64) -> Sites {
     let seed = Seed(seed);
     let points = (0..n_sites as i64).map(|number| random(surface, seed, number));
     Sites::new(surface, points.collect())
 }
 
-/// About `n_sites` sites with a minimum distance of 0.75 spacings between sites whose normals agree.
+/// Returns about `n_sites` sites. Sites whose normals agree are at least 0.75 spacings apart.
 pub(crate) fn even_sites(surface: &Surface, n_sites: usize, seed: u64) -> Sites {
     let seed = Seed(seed);
     let least = 0.75 * spacing(surface, n_sites);
@@ -288,7 +290,7 @@ pub(crate) fn even_sites(surface: &Surface, n_sites: usize, seed: u64) -> Sites 
     Sites::new(surface, kept.into_iter().map(|(point, ..)| point).collect())
 }
 
-/// A synthesizer with sites on a mesh, oriented by a function of position and normal.
+/// Returns a synthesizer with sites on a mesh, oriented by a function of position and normal.
 pub(crate) fn synthesizer(
     mesh: Mesh,
     n_sites: usize,
@@ -300,7 +302,7 @@ pub(crate) fn synthesizer(
     Synthesizer::from_parts(surface, hierarchy, orientation, None).unwrap()
 }
 
-/// The results of `work` on 1, 2 and 7 threads.
+/// Returns the results of `work` on 1, 2 and 7 threads.
 #[cfg(feature = "rayon")]
 pub(crate) fn on_threads<T: Send>(work: impl Fn() -> T + Sync) -> [T; 3] {
     [1, 2, 7].map(|n_threads| {
@@ -311,8 +313,8 @@ pub(crate) fn on_threads<T: Send>(work: impl Fn() -> T + Sync) -> [T; 3] {
     })
 }
 
-/// A texture in which each site's source is the pixel with the site's index in a map of one row. Any column can then be
-/// a map.
+/// Returns a texture in which each site's source is the pixel whose column is the site's index, in a map of one row.
+/// Any column of values can then serve as a map.
 pub(crate) fn pixel_per_site(n_sites: usize) -> SurfaceTexture {
     let row = Raster::filled([n_sites as u32, 1], 0.0).unwrap();
     let exemplar = Exemplar::from_planes(&[(&row, 1.0)], Edges::Cut).unwrap();
@@ -320,7 +322,7 @@ pub(crate) fn pixel_per_site(n_sites: usize) -> SurfaceTexture {
     SurfaceTexture::new(&exemplar.pyramid(1).unwrap(), sources, None)
 }
 
-/// A map with one row, for [`pixel_per_site`].
+/// Converts a column of values to a map of one row, for [`pixel_per_site`].
 pub(crate) fn row<T: Clone>(column: &[T]) -> Raster<T> {
     Raster::from_vec([column.len() as u32, 1], column.to_vec()).unwrap()
 }

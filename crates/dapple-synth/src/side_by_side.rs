@@ -1,4 +1,4 @@
-//! Layouts that place several images in one, for synthesis from several examples.
+//! Layouts that place several images side by side in one, for synthesis from several examples.
 
 use crate::exemplar::Area;
 use crate::turned::{Turn, Turned};
@@ -6,13 +6,12 @@ use crate::{SynthError, SynthErrorKind};
 use dapple_color::Normal;
 use dapple_raster::Raster;
 
-/// The layout of several images in one: adjacent, separated by one empty column each. Every image can also appear
-/// [rotated and mirrored](Self::with_turned).
+/// A layout that places several images side by side in one, separated by one empty column each. Every image can also
+/// appear [rotated and mirrored](Self::with_turned).
 ///
-/// Joined images and their joined maps make one exemplar, in which each image has [its own
-/// edges](crate::Exemplar::with_layout). Textures use no pixels between images. With the
-/// [`membership`](Self::membership) of each image as a [guide](crate::Exemplar::with_guides), the caller controls where
-/// in a texture each image is used.
+/// The joined images and their joined maps form one exemplar, in which each image has [its own
+/// edges](crate::Exemplar::with_layout). Textures use no pixels between images. To control where in a texture each
+/// image is used, pass its [`membership`](Self::membership) as a [guide](crate::Exemplar::with_guides).
 ///
 /// # Examples
 ///
@@ -33,35 +32,35 @@ use dapple_raster::Raster;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SideBySide {
-    /// The sizes of the images, in pixels.
+    /// Sizes of the images, in pixels.
     images: Vec<[u32; 2]>,
     parts: Vec<Part>,
     size: [u32; 2],
 }
 
-/// An image with one of its rotations and reflections.
+/// An image in one of its rotations and reflections.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Part {
     image: usize,
     turn: Turn,
-    /// The first column in the joined image.
+    /// First column in the joined image.
     first: u32,
     size: [u32; 2],
 }
 
 impl SideBySide {
-    /// Creates the layout of images of the given sizes, from left to right.
+    /// Creates a layout of images of the given sizes, from left to right.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] for zero images, and [`SynthErrorKind::Range`] if the total width is not from 1 to
-    /// 2^31.
+    /// [`SynthErrorKind::Count`] if there are no images, and [`SynthErrorKind::Range`] if the total width is not from 1
+    /// to 2^31.
     pub fn new(sizes: &[[u32; 2]]) -> Result<Self, SynthError> {
         Self::laid_out(sizes, Turned::None)
     }
 
-    /// Creates the layout of the same images with the given rotations and reflections. All versions of the first image
-    /// come first, and each image's unchanged version is the first of its versions.
+    /// Creates a layout of the same images with the given rotations and reflections. All versions of an image are
+    /// adjacent, with the unchanged one first; images retain their order.
     ///
     /// # Errors
     ///
@@ -78,7 +77,7 @@ impl SideBySide {
                 needed: "at least 1",
             }));
         }
-        // Every image in every version.
+        // List every image in every version.
         let ways = turned.ways();
         let of_image = |image: usize| ways.iter().map(move |&turn| (image, turn));
         let ways = (0..images.len()).flat_map(of_image);
@@ -110,13 +109,13 @@ impl SideBySide {
         })
     }
 
-    /// The size of the joined image, in pixels.
+    /// Returns the size of the joined image, in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// The size of an image by its index, from 0.
+    /// Returns the size of an image, in pixels. `image` is its index, from 0.
     ///
     /// # Panics
     ///
@@ -126,13 +125,13 @@ impl SideBySide {
         self.images[image]
     }
 
-    /// The index of the image at a pixel, from 0; `None` between images and below the shorter ones.
+    /// Returns the index (from 0) of the image at a pixel; `None` between images and below the shorter ones.
     #[must_use]
     pub fn image_at(&self, place: [u32; 2]) -> Option<usize> {
         self.part_at(place).map(|part| part.image)
     }
 
-    /// The part at a pixel.
+    /// Returns the part at a pixel.
     fn part_at(&self, [column, row]: [u32; 2]) -> Option<&Part> {
         let is_within = |part: &&Part| {
             (part.first..part.first + part.size[0]).contains(&column) && row < part.size[1]
@@ -140,7 +139,7 @@ impl SideBySide {
         self.parts.iter().find(is_within)
     }
 
-    /// The rectangles of all parts: each image in all its rotations and reflections.
+    /// Returns the rectangles of all parts: each image in all its rotations and reflections.
     pub(crate) fn areas(&self) -> Vec<Area> {
         let area = |part: &Part| Area {
             first: [part.first, 0],
@@ -153,8 +152,8 @@ impl SideBySide {
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] if the number of images differs from the layout's, [`SynthErrorKind::Raster`] for
-    /// images whose sizes differ from the layout's, and if the joined image is too large.
+    /// [`SynthErrorKind::Count`] if the number of images differs from the layout's, or [`SynthErrorKind::Raster`] if an
+    /// image's size differs from the layout's or the joined image is too large.
     pub fn join<T: Copy + Send + Sync>(
         &self,
         images: &[&Raster<T>],
@@ -180,15 +179,15 @@ impl SideBySide {
         })?)
     }
 
-    /// Joins all normal maps into one, with green up. Normals are rotated and mirrored with their images; pixels
+    /// Joins all normal maps into one. Normals have green up, and are rotated and mirrored with their images; pixels
     /// without an image are flat.
     ///
-    /// Where images are rotated or mirrored, codes adjacent to the middle count as 0 (see [`Normal::centered`]), so
-    /// that flat regions have a single color.
+    /// If images are rotated or mirrored, codes adjacent to the middle count as 0 (see [`Normal::centered`]), so that
+    /// flat regions have a single color.
     ///
     /// # Errors
     ///
-    /// The errors of [`join`](Self::join).
+    /// Same as [`join`](Self::join).
     pub fn join_normals(&self, images: &[&Raster<Normal>]) -> Result<Raster<Normal>, SynthError> {
         let joined = self.join(images, Normal::FLAT)?;
         let is_turned = self.parts.iter().any(|part| part.turn != Turn::default());
@@ -200,7 +199,7 @@ impl SideBySide {
         })?)
     }
 
-    /// The mask of the layout: true at pixels of an image.
+    /// Returns the layout's mask: true at pixels that belong to an image.
     ///
     /// # Errors
     ///
@@ -211,7 +210,7 @@ impl SideBySide {
         })?)
     }
 
-    /// The membership mask of an image by its index, from 0: 1 at its pixels and 0 at all others.
+    /// Returns the membership mask of an image: 1 at its pixels and 0 at all others. `image` is its index, from 0.
     ///
     /// # Errors
     ///

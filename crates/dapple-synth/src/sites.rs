@@ -1,5 +1,5 @@
 //! Sites on a surface: evenly spaced sample points on several levels, their neighbor graphs, and operations on columns
-//! of values per site. Sites play the role that pixels play in an image.
+//! of per-site values. Sites correspond to the pixels of an image.
 //!
 //! [`scatter`] draws random points of uniform density, and [`repel`] makes them push each other apart.
 //! [`nested_points`] does both for sets of n, 4n, 16n … points, where each set contains the coarser ones. A

@@ -1,5 +1,5 @@
-//! Conjugate gradients for the fixed points of the averages in equations 4 and 5. Repeating the equations instead takes
-//! as many sweeps as the square of the number of edges across the surface.
+//! Solves for the fixed points of the averages in equations 4 and 5 by conjugate gradients. Repeating the equations
+//! instead takes as many sweeps as the square of the number of edges across the surface.
 //!
 //! Reference: M. R. Hestenes, E. Stiefel, "Methods of Conjugate Gradients for Solving Linear Systems", Journal of
 //! Research of the National Bureau of Standards 49 (6), 1952, <https://doi.org/10.6028/jres.049.044>. The
@@ -9,9 +9,9 @@
 use crate::{Blend, columns};
 use glam::{DVec2, DVec3};
 
-/// Value type of the unknowns.
+/// Type of the unknowns.
 pub(crate) trait Unknown: Blend + Send + Sync {
-    /// Dot product of two values.
+    /// Returns the dot product of two values.
     fn dot(self, other: Self) -> f64;
 }
 
@@ -36,18 +36,18 @@ impl Unknown for DVec3 {
     }
 }
 
-/// A symmetric positive semidefinite system A x = b, by rows.
+/// A symmetric positive semidefinite linear system A x = b, accessed row by row.
 pub(crate) trait System<T>: Sync {
-    /// Row `row` of A x, for x in `column`.
+    /// Returns element `row` of A x, where `column` is x.
     fn row(&self, column: &[T], row: usize) -> T;
 
-    /// Right-hand side b of a row.
+    /// Returns the right-hand side b of a row.
     fn right(&self, row: usize) -> T;
 
-    /// Diagonal element of a row of A; 0 if the whole row is zero.
+    /// Returns the diagonal element of a row of A; 0 if the whole row is zero.
     fn diagonal(&self, row: usize) -> f64;
 
-    /// Whether a value has converged, if averaging once more would change it by `change`.
+    /// Returns whether a value has converged, where `change` is its change in one more averaging step.
     fn is_near(&self, value: T, change: T) -> bool;
 }
 
@@ -63,7 +63,7 @@ pub(crate) fn conjugate_gradients<T: Unknown>(
         system.right(row).add_scaled(system.row(x, row), -1.0)
     });
     let change = |residual: &[T], row: usize| {
-        // Preconditioned residual: the change by one more averaging step.
+        // Preconditioned residual: the change in one more averaging step.
         let diagonal = system.diagonal(row);
         if diagonal > 0.0 {
             T::ZERO.add_scaled(residual[row], 1.0 / diagonal)
@@ -79,7 +79,7 @@ pub(crate) fn conjugate_gradients<T: Unknown>(
         }
         let image: Vec<T> = columns::column(n_rows, |row| system.row(&direction, row));
         let curvature = columns::sum(n_rows, |row| direction[row].dot(image[row]));
-        // By rounding, the direction can lie in the null space of A. This also stops at NaN.
+        // Due to rounding, the direction can be in the null space of A. This also stops at NaN.
         if !(curvature > 0.0 && energy > 0.0) {
             return step;
         }

@@ -1,4 +1,4 @@
-//! The result of a synthesis on a surface.
+//! Result of a synthesis on a surface.
 
 use crate::ground::Colors as _;
 use crate::lift::LiftedPlaces;
@@ -6,16 +6,16 @@ use crate::places::Places;
 use crate::{Pyramid, SynthError, SynthErrorKind};
 use dapple_raster::Raster;
 
-/// The result of a synthesis on a surface: colors of the sites of a hierarchy, and their sources in the exemplar.
+/// Result of a synthesis on a surface: the colors of a hierarchy's sites, and their sources in the exemplar.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceTexture {
     levels: Vec<Level>,
     n_channels: usize,
-    /// The sources of the finest sites if they are places on another surface.
+    /// Sources of the finest sites if they are positions on another surface.
     pub(crate) lifted: Option<LiftedPlaces>,
-    /// The sources of the finest sites if they are places between pixels.
+    /// Sources of the finest sites if they are positions between pixels.
     pub(crate) places: Option<Places>,
-    /// Rotation of the exemplar at each finest site, in quarter turns; empty if the directions have no symmetry.
+    /// Rotation of the exemplar at each finest site, in quarter turns; empty if the orientation field has no symmetry.
     pub(crate) quarters: Vec<u8>,
 }
 
@@ -23,14 +23,15 @@ pub struct SurfaceTexture {
 #[derive(Clone, Debug, PartialEq)]
 struct Level {
     values: Vec<f32>,
-    /// The source pixel of each site, as `row * width + column`.
+    /// Source pixel of each site, as `row * width + column`.
     sources: Vec<u32>,
-    /// The size of the exemplar on this level, in pixels.
+    /// Size of the exemplar on this level, in pixels.
     size: [u32; 2],
 }
 
 impl SurfaceTexture {
-    /// Creates a texture from the source pixels of the sites on each level of a pyramid.
+    /// Creates a texture from the source pixels of the sites on each level of a pyramid. `places` are the subpixel
+    /// sources of the finest sites, if there are any.
     pub(crate) fn new(pyramid: &Pyramid, sources: Vec<Vec<u32>>, places: Option<Places>) -> Self {
         let exemplars = pyramid.levels();
         let levels = exemplars.iter().zip(sources).map(|(exemplar, sources)| {
@@ -51,24 +52,25 @@ impl SurfaceTexture {
         }
     }
 
-    /// The places on another surface at which texels sample its maps; `None` if texels interpolate the values of sites.
+    /// Returns the positions on another surface at which texels sample its maps; `None` if the texture is not lifted or
+    /// if texels interpolate the values of sites.
     pub(crate) fn lifted_between(&self) -> Option<&LiftedPlaces> {
         self.lifted.as_ref().filter(|places| !places.is_mixed)
     }
 
-    /// The number of finest sites.
+    /// Returns the number of finest sites.
     pub(crate) fn n_sites(&self) -> usize {
         self.levels.first().map_or(0, |level| level.sources.len())
     }
 
-    /// The number of values per site, equal to the exemplar's number of channels.
+    /// Returns the number of values per site, which equals the exemplar's number of channels.
     #[must_use]
     pub fn n_channels(&self) -> usize {
         self.n_channels
     }
 
-    /// The values of the sites of a level, `n_channels` per site, in the units of the exemplar. Level 0 is the finest.
-    /// Empty for a level that no pass visited.
+    /// Returns the values of the sites of a level, `n_channels` per site, in the exemplar's units. Level 0 is the
+    /// finest. Empty for a level that no pass visited.
     ///
     /// # Panics
     ///
@@ -78,7 +80,7 @@ impl SurfaceTexture {
         &self.levels[level].values
     }
 
-    /// The source of each site of a level: column and row in that level of the exemplar's pyramid.
+    /// Returns the source of each site of a level: column and row in the same level of the exemplar's pyramid.
     ///
     /// # Panics
     ///
@@ -92,14 +94,14 @@ impl SurfaceTexture {
             .map(move |pixel| [pixel % width, pixel / width])
     }
 
-    /// Transfers a map of the exemplar's size: returns its values at the sources of the finest sites. Colors, heights,
-    /// normals and roughness follow the same sources. For a [lifted](crate::Synthesizer::lift) texture, the map may
-    /// have any size and is read at the exemplar's texture coordinates.
+    /// Returns the values of a map at the sources of the finest sites. The map must be the same size as the exemplar.
+    /// Colors, heights, normals and roughness follow the same sources. For a [lifted](crate::Synthesizer::lift)
+    /// texture, the map may have any size and is read at the exemplar's texture coordinates.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Raster`] for a map of a different size, [`SynthErrorKind::Count`] if no pass visited the
-    /// finest level.
+    /// [`SynthErrorKind::Raster`] if the map is not the same size as the exemplar, or [`SynthErrorKind::Count`] if no
+    /// pass visited the finest level.
     pub fn transfer<T: Copy>(&self, map: &Raster<T>) -> Result<Vec<T>, SynthError> {
         let Level { size, sources, .. } = &self.levels[0];
         if self.lifted.is_none() {

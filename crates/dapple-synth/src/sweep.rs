@@ -1,25 +1,25 @@
-//! Sweep distance: the distance of every site along the orientation field. It defines the order in which sites are
-//! assigned colors.
+//! Sweep distance: the position of every site along the orientation field. It defines the order in which sites get
+//! colors.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, section 4.2,
 //! <https://doi.org/10.1145/383259.383297>.
 //!
 //! Starting at an anchor, each site gets the distance along the field that its assigned neighbors predict (equation 5).
 //! The coarsest level comes first; every finer level starts from interpolated values. The consensus orientation of two
-//! sites lies in the plane of their mean normal, so that both predict the same difference. Where the paper is silent or
-//! slow, this implementation differs:
+//! sites is in the plane of their mean normal, so that both predict the same difference. The following differs from the
+//! paper, or is not specified in it:
 //!
 //! * the coarsest level is initialized breadth first and then solved by conjugate gradients. Repeating equation 5 until
-//!   it converges takes as many sweeps as the square of the number of sites across the surface;
+//! convergence takes as many sweeps as the square of the number of sites across the surface;
 //! * interpolation adds the distance along the field from each coarser site to the new one. Then 20 sweeps of equation
 //!   5 follow, with 0.2 for α and 0.8 for the sum of the β;
-//! * where the field circles a point or a tube, no distance can increase along the field everywhere. In a least-squares
-//!   solution it would not increase there at all. So predictions that are off by about a spacing or more get less
-//!   weight (Cauchy's weights). The error then gathers in a tear, a line across which the order jumps, and the distance
-//!   increases everywhere else;
-//! * edges that cross a cut of a field with a symmetry, where neighbors have different rotations, have weight 0. Cuts
-//!   join singularities, so nearly all of a component is still reached;
-//! * every connected component of a level has its own anchor, and the order lists one component after the other.
+//! * where the field circles around a point or a tube, no distance can increase along it everywhere. In a least-squares
+//! solution it would not increase there at all. So predictions that are off by about a spacing or more get less weight
+//! (Cauchy's weights). The error is then concentrated in a tear, a line across which the order jumps, and the distance
+//! increases everywhere else;
+//! * in a field with a symmetry, edges between neighbors with different rotations cross a cut and have weight 0. Cuts
+//! connect singularities, so nearly all of a component is still reached;
+//! * every connected component of a level has its own anchor, and components are swept one after another.
 //!
 //! Distances are in units of the mesh.
 
@@ -32,10 +32,10 @@ use crate::{Hierarchy, Orientation, SiteIdx, SynthError, SynthErrorKind};
 use dapple_raster::parallel;
 use level::LevelSweep;
 
-/// Sweep distance s at every site, for every level.
+/// Sweep distance s of every site, for every level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
-    /// Distances of each level, finest first.
+    /// Distances by level, the finest first.
     levels: Vec<Distances>,
 }
 
@@ -49,15 +49,15 @@ struct Distances {
 }
 
 impl Sweep {
-    /// Computes sweep distances. In the component of `anchor` they start at `anchor`, and in every other component at
-    /// the site with the lowest index.
+    /// Computes sweep distances. Each connected component is measured from the given anchor if it contains it, and from
+    /// its lowest site otherwise.
     ///
     /// Sites are scattered at random, so the lowest site is as suitable as any other. The anchor mainly determines
     /// where the distance is zero.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Range`] if `anchor` is not a site, and [`SynthErrorKind::Count`] if `orientation` does not
+    /// [`SynthErrorKind::Range`] if the anchor is not a site, and [`SynthErrorKind::Count`] if the orientation does not
     /// have one vector for each site of the hierarchy.
     pub fn new(
         hierarchy: &Hierarchy,
@@ -96,7 +96,7 @@ impl Sweep {
         Ok(sweep)
     }
 
-    /// Returns the sweep distances of the sites of `level`, in units of the mesh; 0 at the anchor.
+    /// Returns the sweep distances of a level's sites, in units of the mesh; 0 at the anchor.
     ///
     /// Distances in different components are not comparable.
     ///
@@ -108,8 +108,8 @@ impl Sweep {
         &self.levels[level].distances
     }
 
-    /// Returns the sites of `level` in sweep order: by component, then by distance, then by index. Components are in
-    /// the order of their lowest sites.
+    /// Returns the sites of a level in the order of the sweep: by component, then by distance, then by index.
+    /// Components are in the order of their lowest sites.
     ///
     /// # Panics
     ///
@@ -137,7 +137,7 @@ impl Sweep {
             return;
         };
         let mut zeros: Vec<f64> = Vec::new();
-        // Distance at the anchor of each component of the finest level; the lowest site by default.
+        // Find the distance at the anchor of each component of the finest level; the lowest site by default.
         for (&component, &distance) in finest.components.iter().zip(&finest.distances) {
             if component as usize == zeros.len() {
                 zeros.push(distance);
@@ -148,8 +148,7 @@ impl Sweep {
         }
         let of_finest = finest.components.clone();
         for level in &mut self.levels {
-            // Each component of a level is shifted like the component of the finest level that contains its lowest
-            // site.
+            // Each component of a level has one shift: that of the finest component that contains its lowest site.
             let mut shifts: Vec<f64> = Vec::new();
             for (site, &component) in level.components.iter().enumerate() {
                 if component as usize == shifts.len() {
@@ -161,8 +160,8 @@ impl Sweep {
     }
 }
 
-/// Returns the anchor on a coarser level: the first site of that level that a breadth-first search from the finest
-/// anchor reaches.
+/// Returns the anchor on a coarser level: the first site of that level in a breadth-first search from the anchor on the
+/// finest level.
 fn coarse_anchor(hierarchy: &Hierarchy, level: usize, anchor: Option<SiteIdx>) -> Option<SiteIdx> {
     let n_sites = hierarchy.levels()[level].n_sites();
     let graph = hierarchy.levels()[0].graph();
@@ -185,7 +184,7 @@ fn coarse_anchor(hierarchy: &Hierarchy, level: usize, anchor: Option<SiteIdx>) -
     None
 }
 
-/// Maps a distance to an integer with the same sort order. Both zeros map to the same integer.
+/// Maps a distance to an integer with the same order; both zeros map to the same integer.
 fn rising(distance: f64) -> u64 {
     let bits = (distance + 0.0).to_bits();
     if bits >> 63 == 1 {

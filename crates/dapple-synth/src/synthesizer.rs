@@ -1,4 +1,4 @@
-//! Entry points of synthesis on surfaces: a one-call function, and a reusable solver.
+//! Entry points for synthesis on surfaces: a one-call function, and a reusable solver.
 
 use crate::appearance::Appearance;
 use crate::engine::{self, Callback, Progress};
@@ -13,22 +13,23 @@ use crate::{
 use core::ops::ControlFlow;
 use dapple_mesh::{Mesh, Surface};
 
-/// A surface with its sites, orientation field and sweep distances: everything that does not depend on the exemplar.
+/// A surface with its sites, orientation field and sweep distances, that is, everything that does not depend on the
+/// exemplar.
 #[derive(Clone, Debug)]
 pub struct Synthesizer {
     surface: Surface,
     hierarchy: Hierarchy,
     orientation: Orientation,
     sweep: Sweep,
-    /// Size of an exemplar pixel at each site, in spacings; empty if all are 1.
+    /// Size of an exemplar pixel at each site, in multiples of the spacing; empty if all are 1.
     scales: Vec<f32>,
 }
 
-/// Covers a mesh with a texture that looks like an exemplar. `directions` orient the exemplar's "down" on the surface.
+/// Covers a mesh with a texture that looks like an exemplar. `directions` specify the exemplar's "down" on the surface.
 ///
 /// # Errors
 ///
-/// Returns the errors of [`Synthesizer::new`] and [`Synthesizer::synthesize`].
+/// Same as [`Synthesizer::new`] and [`Synthesizer::synthesize`].
 pub fn synthesize(
     mesh: Mesh,
     exemplar: &Exemplar,
@@ -46,7 +47,7 @@ impl Synthesizer {
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`Hierarchy::new`], [`Orientation::new`] and [`Sweep::new`].
+    /// Same as [`Hierarchy::new`], [`Orientation::new`] and [`Sweep::new`].
     pub fn new(
         surface: Surface,
         directions: &[Direction],
@@ -57,12 +58,12 @@ impl Synthesizer {
         Self::from_parts(surface, hierarchy, orientation, None)
     }
 
-    /// Uses sites and an orientation field that the caller made for this surface, and optionally an anchor of the
-    /// sweep.
+    /// Creates a synthesizer from sites and an orientation field that the caller computed for this surface. `anchor` is
+    /// the start of the sweep; see [`Sweep::new`].
     ///
     /// # Errors
     ///
-    /// Returns [`SynthErrorKind::Count`] if the orientation does not have one vector per site, and the errors of
+    /// [`SynthErrorKind::Count`] if the orientation does not have one vector per site. Otherwise same as
     /// [`Sweep::new`].
     pub fn from_parts(
         surface: Surface,
@@ -88,14 +89,16 @@ impl Synthesizer {
         })
     }
 
-    /// Sets the size of an exemplar pixel at each site, in spacings, from 1/8 to 8. Without scales all are 1.
+    /// Sets the size of an exemplar pixel at each site, in multiples of the spacing, from 1/8 to 8. By default all are
+    /// 1.
     ///
-    /// Above 1 the texture is smoother than the sites could show. Below 1 it loses detail that more sites would show.
+    /// Above 1, the texture is smoother than the sites could represent. Below 1, it loses detail that more sites could
+    /// represent.
     ///
     /// # Errors
     ///
-    /// Returns [`SynthErrorKind::Count`] unless there is one scale for every site of [`hierarchy`](Self::hierarchy),
-    /// and [`SynthErrorKind::Range`] for a scale out of range.
+    /// [`SynthErrorKind::Count`] unless there is one scale for every site of [`hierarchy`](Self::hierarchy), and
+    /// [`SynthErrorKind::Range`] if a scale is out of range.
     pub fn with_scales(self, scales: Vec<f32>) -> Result<Self, SynthError> {
         if scales.len() != self.hierarchy.sites().len() {
             return Err(SynthError::new(SynthErrorKind::Count {
@@ -110,17 +113,17 @@ impl Synthesizer {
         Ok(Self { scales, ..self })
     }
 
-    /// Scales the exemplar's pixels to fit the orientation field, within bounds in spacings: larger where directions
-    /// diverge, and smaller where they converge. Rows of features then continue instead of starting and ending there
-    /// (Ray et al. 2006).
+    /// Scales the exemplar's pixels to fit the orientation field: larger where directions diverge, and smaller where
+    /// they converge. Rows of features then continue instead of starting and ending there (Ray et al. 2006). `bounds`
+    /// are the minimum and maximum size of a pixel, in multiples of the spacing.
     ///
     /// In each connected component of the surface, as many sites as possible are within the bounds. Around
     /// singularities of the field, where the size would be unbounded, it is clamped to a bound, and rows of features
-    /// still meet.
+    /// still merge.
     ///
     /// # Errors
     ///
-    /// Returns [`SynthErrorKind::Range`] for a bound outside of 1/8 to 8, and for a lower bound above the upper one.
+    /// [`SynthErrorKind::Range`] if a bound is outside 1/8 to 8, or if the lower bound is above the upper one.
     ///
     /// # Examples
     ///
@@ -146,12 +149,12 @@ impl Synthesizer {
         self.with_scales(scales)
     }
 
-    /// Synthesizes a texture: assigns every site a color.
+    /// Synthesizes a texture by assigning every site a color.
     ///
     /// # Errors
     ///
-    /// Returns an error for an exemplar that is too small, for options out of range, and for more levels than the
-    /// hierarchy of sites has.
+    /// If the exemplar is too small, if options are out of range, or if the options have more levels than the hierarchy
+    /// of sites.
     pub fn synthesize(
         &self,
         exemplar: &Exemplar,
@@ -165,8 +168,7 @@ impl Synthesizer {
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`synthesize`](Self::synthesize), and [`SynthErrorKind::Cancelled`] if the callback
-    /// breaks.
+    /// Same as [`synthesize`](Self::synthesize), or [`SynthErrorKind::Cancelled`] if the callback breaks.
     pub fn synthesize_with(
         &self,
         exemplar: &Exemplar,
@@ -177,16 +179,16 @@ impl Synthesizer {
     }
 
     /// Synthesizes a texture like [`synthesize_with`](Self::synthesize_with), with guides that control which part of
-    /// the exemplar appears where on the surface. There are as many columns as the exemplar has
+    /// the exemplar appears where on the surface. There must be as many columns as the exemplar has
     /// [guides](Exemplar::with_guides), each with one value for every site of [`hierarchy`](Self::hierarchy).
     ///
     /// With guides, [`Options::evenness`] has no effect.
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`synthesize_with`](Self::synthesize_with). Returns [`SynthErrorKind::Count`] if the
-    /// number of guides differs from the exemplar's or a column does not have one value for each site, and
-    /// [`SynthErrorKind::Range`] for a value that is not finite.
+    /// Same as [`synthesize_with`](Self::synthesize_with); [`SynthErrorKind::Count`] if the number of guides differs
+    /// from the exemplar's or a column does not have one value for each site; and [`SynthErrorKind::Range`] if a value
+    /// is not finite.
     pub fn synthesize_guided(
         &self,
         exemplar: &Exemplar,
@@ -236,7 +238,7 @@ impl Synthesizer {
         Ok(texture)
     }
 
-    /// Returns an error if the options have more levels than the sites.
+    /// Fails if the options have more levels than the hierarchy of sites.
     pub(crate) fn check_levels(&self, options: &Options) -> Result<(), SynthError> {
         if options.n_levels <= self.hierarchy.levels().len() {
             return Ok(());
@@ -284,7 +286,7 @@ impl Synthesizer {
         Ok((pixels, appearance.quarters))
     }
 
-    /// Bundles the surface, its sites and their orientation for the engine.
+    /// Combines the surface, its sites and their orientation into a ground for the engine.
     pub(crate) fn ground(&self, axes: Axes, is_blurred: bool) -> MeshGround<'_> {
         MeshGround {
             surface: &self.surface,
@@ -307,37 +309,37 @@ impl Synthesizer {
         }
     }
 
-    /// Size of an exemplar pixel at a site, in spacings.
+    /// Returns the size of an exemplar pixel at a site, in multiples of the spacing.
     pub(crate) fn scale(&self, site: usize) -> f32 {
         self.scales.get(site).copied().unwrap_or(1.0)
     }
 
-    /// Surface that the texture covers.
+    /// Returns the surface that the texture covers.
     #[must_use]
     pub fn surface(&self) -> &Surface {
         &self.surface
     }
 
-    /// Sites and their levels.
+    /// Returns the sites and their levels.
     #[must_use]
     pub fn hierarchy(&self) -> &Hierarchy {
         &self.hierarchy
     }
 
-    /// Orientation field: direction of the texture's "down" at every site.
+    /// Returns the orientation field: the direction of the texture's "down" at every site.
     #[must_use]
     pub fn orientation(&self) -> &Orientation {
         &self.orientation
     }
 
-    /// Sweep distances of the sites.
+    /// Returns the sweep distances of the sites.
     #[must_use]
     pub fn sweep(&self) -> &Sweep {
         &self.sweep
     }
 }
 
-/// Returns an error for a pixel size outside of 1/8 to 8.
+/// Fails if a pixel size is outside 1/8 to 8.
 fn check_scale(what: &'static str, scale: f32) -> Result<(), SynthError> {
     let holds = (0.125..=8.0).contains(&scale);
     SynthError::check(holds, what, scale.into(), "from 1/8 to 8")

@@ -1,6 +1,6 @@
-//! Tables of numbers with named columns (CSV), for directions and control points.
+//! Parses tables of numbers with named columns (CSV), for directions and control points.
 //!
-//! Numbers have a decimal point, and columns are separated by commas. With a header, the columns may be in any order.
+//! Numbers use a decimal point, and columns are separated by commas. With a header, the columns may be in any order.
 
 use crate::{SynthError, SynthErrorKind};
 use dapple_raster::text::decode;
@@ -11,22 +11,21 @@ use dapple_raster::text::decode;
 pub struct TableRow {
     /// Line number in the text, from 1.
     pub line: usize,
-    /// The numbers, in the order of the names of the form.
+    /// The numbers, in the order of the form's column names.
     pub numbers: Vec<f64>,
 }
 
-/// Parses rows of numbers separated by commas. Each row has the columns of one of the `forms`, which are lists of
-/// column names.
+/// Parses rows of numbers separated by commas. Each row must match one of the `forms`, which are lists of column names.
 ///
 /// A byte order mark, blank lines, and lines that begin with `#` are ignored. If no field of the first remaining line
 /// is a number, that line is a header. It must have the names of one form, in any order and in upper or lower case, and
-/// determines the order of the columns. Without a header, or with a header in the order of its form, each row may have
-/// the columns of any form.
+/// determines the order of the columns. Without a header, or if the header is in the order of its form, each row may
+/// have the columns of any form.
 ///
 /// # Errors
 ///
-/// [`SynthErrorKind::Text`] with the line number of an invalid header or of a row without finite numbers. The reason
-/// points out semicolons, tabs, quotes and decimal commas.
+/// [`SynthErrorKind::Text`], with the line number, if a header is invalid or a row does not consist of finite numbers.
+/// The reason points out semicolons, tabs, quotes and decimal commas.
 ///
 /// # Examples
 ///
@@ -47,7 +46,7 @@ pub fn parse_table(text: &str, forms: &[&[&str]]) -> Result<Vec<TableRow>, Synth
     };
     if fields(first).all(|field| field.parse::<f64>().is_err()) {
         let columns = header(first, forms).map_err(|why| refused(line, why))?;
-        // A header in the order of its form is not needed: rows may then have the columns of another form.
+        // A header in the order of its form has no effect; rows may then have the columns of another form.
         order = (!columns.is_sorted()).then_some(columns);
     } else {
         let numbers = numbers(first, None, forms).map_err(|why| refused(line, why))?;
@@ -80,7 +79,7 @@ fn header(row: &str, forms: &[&[&str]]) -> Result<Vec<usize>, String> {
     })
 }
 
-/// The numbers of a row, reordered by the header if there is one.
+/// Returns the numbers of a row, reordered according to the header if there is one.
 fn numbers(row: &str, order: Option<&[usize]>, forms: &[&[&str]]) -> Result<Vec<f64>, String> {
     let mut numbers = Vec::new();
     for field in fields(row) {
@@ -120,7 +119,7 @@ fn numbers(row: &str, order: Option<&[usize]>, forms: &[&[&str]]) -> Result<Vec<
     })
 }
 
-/// The reason that a line is not separated by commas, if it contains another separator or quotes.
+/// Returns the reason that a line is not separated by commas, if it contains another separator or quotes.
 fn odd_separator(row: &str) -> Option<String> {
     let found = match row.chars().find(|c| ";\t\"'|".contains(*c))? {
         ';' => "semicolons",
@@ -138,7 +137,7 @@ fn odd_separator(row: &str) -> Option<String> {
     ))
 }
 
-/// The columns of all forms, written as headers.
+/// Returns a list of the columns of all forms, formatted as headers.
 fn list(forms: &[&[&str]]) -> String {
     let forms: Vec<_> = forms.iter().map(|form| form.join(",")).collect();
     forms.join(" or ")

@@ -19,8 +19,7 @@ dapple_raster::named! {
     }
 }
 
-/// A symmetry of the pixel grid: an optional reflection, left for right, followed by a clockwise rotation in quarter
-/// turns.
+/// A symmetry of the pixel grid: an optional left-right reflection, followed by a clockwise rotation in quarter turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Turn {
     is_mirrored: bool,
@@ -28,7 +27,7 @@ pub(crate) struct Turn {
 }
 
 impl Turned {
-    /// The symmetries of this choice, the identity first.
+    /// Returns the symmetries of this choice, the identity first.
     pub(crate) fn ways(self) -> Vec<Turn> {
         let (is_mirrored, quarters): (&[bool], _) = match self {
             Self::None => (&[false], 0..1),
@@ -47,7 +46,7 @@ impl Turned {
 }
 
 impl Turn {
-    /// The size of a rotated image, from its original size.
+    /// Returns the size of a rotated image, given its original size.
     pub(crate) fn size(self, [width, height]: [u32; 2]) -> [u32; 2] {
         match self.quarters % 2 {
             0 => [width, height],
@@ -55,8 +54,8 @@ impl Turn {
         }
     }
 
-    /// The pixel of the original image that is shown at a place of the rotated one. `[width, height]` is the original's
-    /// size.
+    /// Returns the pixel of the original image that is shown at a pixel of the rotated one. `[width, height]` is the
+    /// size of the original.
     pub(crate) fn pixel(self, [x, y]: [u32; 2], [width, height]: [u32; 2]) -> [u32; 2] {
         let [column, row] = match self.quarters {
             0 => [x, y],
@@ -70,7 +69,7 @@ impl Turn {
         }
     }
 
-    /// Rotates and mirrors a normal with green up.
+    /// Rotates and mirrors a normal. Green points up.
     pub(crate) fn normal(self, Normal { x, y, z }: Normal) -> Normal {
         let x = if self.is_mirrored { -x } else { x };
         let [x, y] = match self.quarters {

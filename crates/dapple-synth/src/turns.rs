@@ -1,11 +1,12 @@
 //! Wavefront schedule: the order in which threads visit the sites of a pass.
 //!
 //! A site runs after every earlier site of the sweep that it may read, and before every later site that may read it.
-//! Independent sites run in parallel. The texture thus has the bits of a sequential sweep on any number of threads.
+//! Independent sites run in parallel. So the texture has the same bits as in a sequential sweep, with any number of
+//! threads.
 //!
 //! Sites that wait for no other come first, then sites that wait only for these, and so on. Each position in this order
-//! is a turn. Threads take turns in order, and each turn states how many of the first turns must be over before it
-//! runs. Threads rarely have to wait.
+//! is a turn. Threads take turns in order, and each turn specifies how many turns at the start of the schedule must be
+//! finished before it runs. Threads rarely have to wait.
 
 use crate::cells::Cells;
 use core::hint::spin_loop;
@@ -20,7 +21,7 @@ const LOOKS: u32 = 64;
 pub(crate) struct Turns {
     /// Site of each turn.
     sites: Vec<u32>,
-    /// For each turn, the number of first turns that must be over before it.
+    /// For each turn, the number of turns at the start of the schedule that must be finished before it runs.
     waits: Vec<u32>,
 }
 
@@ -35,8 +36,8 @@ impl Turns {
 
     /// Schedules the sites of `order` with as little waiting as possible.
     ///
-    /// Every site has one of `n_places` places, and may read sites at nearby places. `latest` returns the largest mark
-    /// at the places near a site, its own place included. Nearness must be symmetric.
+    /// Every site is at one of `n_places` positions, and may read sites at nearby positions. `latest` returns the
+    /// largest mark at the positions near a site, including its own. Nearness must be symmetric.
     pub(crate) fn new(
         order: &[u32],
         n_places: usize,
@@ -68,7 +69,7 @@ impl Turns {
         Self { sites, waits }
     }
 
-    /// Schedule in which a site waits for earlier sites in the same cell and in nearby cells.
+    /// Builds a schedule in which a site waits for earlier sites in the same cell and in nearby cells.
     pub(crate) fn by_cells(order: &[u32], cells: &Cells) -> Self {
         let latest = |site, marks: &[u32]| {
             let near = cells.near(cells.of_site(site)).iter();
@@ -78,12 +79,13 @@ impl Turns {
         Self::new(order, cells.n_cells(), |site| cells.of_site(site), latest)
     }
 
-    /// Number of turns.
+    /// Returns the number of turns.
     pub(crate) fn len(&self) -> usize {
         self.sites.len()
     }
 
-    /// Site of a turn, and the number of first turns that must be over before it.
+    /// Returns the site of a turn, and the number of turns at the start of the schedule that must be finished before it
+    /// runs.
     pub(crate) fn turn(&self, turn: usize) -> (u32, usize) {
         (self.sites[turn], self.waits[turn] as usize)
     }
@@ -113,13 +115,15 @@ fn by_generation(order: &[u32], generations: &[u32]) -> Vec<u32> {
     sites
 }
 
-/// Shared state of a run: which thread has which turn of a range. All turns before the range are over.
+/// Shared state of a run: the turn that each thread has, within a range of turns. All turns before the range are
+/// finished.
 #[derive(Debug)]
 pub(crate) struct Board {
     /// First turn that no thread has taken.
     next: AtomicUsize,
     end: usize,
-    /// Current turn of each thread; all earlier turns of the thread are over. `usize::MAX` for a thread without a turn.
+    /// Current turn of each thread; all earlier turns of the thread are finished. `usize::MAX` for a thread without a
+    /// turn.
     ///
     /// All accesses are sequentially consistent. Before a thread without a turn takes one, it publishes a lower bound
     /// of it. A thread that took its turn earlier and did not see the bound therefore waits only for still earlier
@@ -138,7 +142,7 @@ impl Board {
         }
     }
 
-    /// Ends the turn of a thread and takes the next one. `None` if no turn is left.
+    /// Ends a thread's turn and takes the next one. Returns `None` if no turn is left.
     pub(crate) fn take(&self, thread: usize) -> Option<usize> {
         let shown = &self.turns[thread];
         // Publish a lower bound before taking a turn.
@@ -149,7 +153,7 @@ impl Board {
         (turn < usize::MAX).then_some(turn)
     }
 
-    /// Waits until the turns before `until` are over.
+    /// Waits until all turns before `until` are finished.
     pub(crate) fn wait(&self, until: usize) {
         for shown in &self.turns {
             let mut looks = 0;
@@ -170,7 +174,7 @@ mod tests {
     use super::{Board, Turns};
     use std::sync::Mutex;
 
-    /// Places on a line; two places are near if they are at most two apart.
+    /// Returns a schedule for positions on a line, where two positions are near if they are at most two apart.
     fn on_a_line(order: &[u32]) -> Turns {
         let latest = |site: u32, marks: &[u32]| {
             let last = marks.len().min(site as usize + 3);
@@ -185,7 +189,8 @@ mod tests {
     #[test]
     fn sites_wait_for_the_latest_near_one() {
         let turns = on_a_line(&[0, 4, 1, 8, 5, 2, 3, 6, 7]);
-        // Sites 0, 4 and 8 wait for no other; 1 waits for 0, 5 for 4; 2 for 4, 0 and 1; 3 for all of these; and so on.
+        // Sites 0, 4 and 8 wait for no other; 1 waits for 0, and 5 for 4; 2 for 4, 0 and 1; 3 for all of these; and so
+        // on.
         let sites: Vec<(u32, usize)> = (0..turns.len()).map(|turn| turns.turn(turn)).collect();
         let expected = [
             (0, 0),

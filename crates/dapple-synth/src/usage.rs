@@ -1,4 +1,4 @@
-//! Penalty on pixels of the exemplar that were used often.
+//! Penalizes pixels of the exemplar that were used often.
 //!
 //! If distance alone decides, a few pixels that are moderately similar to everything are used again and
 //! again, and rare colors of the exemplar vanish. So usage is penalized, as Kaspar, Neubert, Lischinski, Pauly and Kopf
@@ -6,12 +6,11 @@
 //! for its squared distances: 1 plus a cost per use, which [`Options::evenness`](crate::Options::evenness) determines.
 //!
 //! A use counts for all pixels within [`REACH`] pixels along each axis. If it counted for the pixel alone, its
-//! neighbors would cost less, and the texture would break off in the middle of a brick instead of continuing with a
+//! neighbors would cost less. The texture would then break off in the middle of a brick instead of continuing with a
 //! pixel that was used once more than others.
 //!
 //! Usage depends on all earlier sites, so a pass that counts it is sequential. Only passes that do not read a coarser
-//! level count usage; in the paper's schedule these are the passes of the coarsest level, which the finer levels
-//! follow.
+//! level count usage. In the paper's schedule this is the pass over the coarsest level, which the finer levels follow.
 
 use crate::Candidates;
 
@@ -21,10 +20,10 @@ const REACH: i32 = 1;
 /// Number of pixels for which a use counts.
 const N_PIXELS: i32 = (2 * REACH + 1) * (2 * REACH + 1);
 
-/// Number of uses near the pixel of each row, and the factor of the row.
+/// Number of uses near each row's pixel, and the row's factor.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Usage {
-    /// Increment of a factor per use in reach.
+    /// Increment of a factor per use within reach.
     cost: f64,
     counts: Vec<u32>,
     /// Factor of each row, at least 1; empty if usage is not counted.
@@ -32,7 +31,8 @@ pub(crate) struct Usage {
 }
 
 impl Usage {
-    /// Starts without any use. `evenness` is the cost of a pixel if `n_sites` sites use all pixels equally often.
+    /// Creates the state before any use. `evenness` is the cost of a pixel if `n_sites` sites use all pixels equally
+    /// often.
     pub(crate) fn new(evenness: f32, n_rows: usize, n_sites: usize) -> Self {
         if evenness == 0.0 {
             return Self::default();
@@ -45,12 +45,12 @@ impl Usage {
         }
     }
 
-    /// Factors of the squared distances of the rows, at least 1; `None` if usage is not counted.
+    /// Returns the factors on the squared distances of the rows, at least 1; `None` if usage is not counted.
     pub(crate) fn factors(&self) -> Option<&[f32]> {
         (!self.factors.is_empty()).then_some(&self.factors)
     }
 
-    /// Counts a use of a row for all pixels within reach of its pixel. Values that are not the index of a row are
+    /// Counts a use of a row for all pixels within reach of the row's pixel. A value that is not the index of a row is
     /// ignored.
     pub(crate) fn add(&mut self, row: u32, candidates: &Candidates) {
         if row as usize >= self.counts.len() {
@@ -75,7 +75,7 @@ mod tests {
     use crate::{Candidates, CoarserCenter, Edges, Exemplar, Schedule};
     use dapple_raster::Raster;
 
-    /// The candidates of the first pass, for an image of 8 × 8 pixels.
+    /// Returns the candidates of the first pass, for an image of 8 × 8 pixels.
     fn candidates(edges: Edges) -> Candidates {
         let plane = Raster::filled([8, 8], 0.5).unwrap();
         let exemplar = Exemplar::from_planes(&[(&plane, 1.0)], edges).unwrap();

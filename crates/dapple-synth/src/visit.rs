@@ -1,4 +1,4 @@
-//! One pass of neighborhood matching: visits all sites of a level and assigns each the best candidate.
+//! Runs one pass of neighborhood matching: visits all sites of a level and assigns each the best candidate.
 //!
 //! Steps for a site (Turk 2001, section 5):
 //!
@@ -24,10 +24,10 @@ use crate::orientation::offset_before;
 use crate::{Candidates, Exemplar, Matcher, MatcherMemory, Options, Pyramid, Symmetry};
 use core::sync::atomic::Ordering;
 
-/// In place of a row: no candidate was chosen.
+/// Marks a missing row: no candidate was chosen.
 const NOWHERE: u32 = u32::MAX;
 
-/// A pass with its tables: candidates, matcher and sampling tables of the ground.
+/// A pass with its tables: candidates, matcher, and sampling tables of the ground.
 pub(crate) struct Visit<'a, G: Ground> {
     ground: &'a G,
     prepared: G::Prepared,
@@ -37,24 +37,26 @@ pub(crate) struct Visit<'a, G: Ground> {
     pyramid: &'a [Exemplar],
     candidates: Candidates,
     matcher: Matcher,
-    /// Whether a site keeps its pixel where its whole neighborhood continues one piece of the exemplar.
+    /// Whether the pass is part of a repair. If so, a site keeps its pixel if its whole neighborhood continues one
+    /// piece of the exemplar.
     is_repair: bool,
     /// Preference for coherent rows: one wins if its squared distance is at most `1 + coherence` times the minimum.
     coherence: f32,
     /// [`Options::evenness`]; 0 in passes that do not count usage.
     evenness: f32,
-    /// Factor of the guide values in a query.
+    /// Factor on the guide values in a query.
     guide_scale: f32,
-    /// The pixels of a neighborhood, in the order of the values of a query.
+    /// Pixels of a neighborhood, in the order of a query's values.
     terms: Vec<Term>,
     /// Symmetry of the orientation field; [`Symmetry::One`] if a part is not a full square, which cannot be rotated.
     symmetry: Symmetry,
-    /// Squares that are sampled on the level itself and on the next coarser one.
+    /// Squares sampled on the level itself (`same`) and on the next coarser one (`coarser`); `None` if the pass does
+    /// not read that level.
     same: Option<Half>,
     coarser: Option<Half>,
 }
 
-/// Extent of a square of samples: from `-half` to `half`, and which rows are needed.
+/// Extent of a square of samples, from `-half` to `half`, and the rows of it that are needed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Half {
     pub(crate) half: i32,
@@ -65,7 +67,7 @@ pub(crate) struct Half {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Term {
     pub(crate) reads: Reads,
-    /// Index of its sample in the square, for each rotation of the exemplar (0 to 3 quarter turns).
+    /// Index in the square of the pixel's sample, for each rotation of the exemplar (0 to 3 quarter turns).
     pub(crate) samples: [usize; 4],
     offset: [i32; 2],
     root_weight: f32,
@@ -83,18 +85,18 @@ struct Worker<M> {
     ground: M,
 }
 
-/// Shared input of all threads. The sources of `here` are also written.
+/// Shared input of all threads. The sources in `here` are also written.
 #[derive(Clone, Copy)]
 struct State<'a> {
     here: Painted<'a>,
     coarser: Option<Painted<'a>>,
     kept: &'a Kept,
-    /// Factor of the squared distance of each row; see [`Query::factors`].
+    /// Factor on the squared distance of each row; see [`Query::factors`].
     factors: Option<&'a [f32]>,
 }
 
 impl<'a, G: Ground> Visit<'a, G> {
-    /// Prepares a pass: sampling tables, candidates' index, and the terms of a query.
+    /// Sets up a pass: sampling tables, the candidates' index, and the terms of a query.
     pub(crate) fn new(
         ground: &'a G,
         pyramid: &'a Pyramid,
@@ -105,7 +107,7 @@ impl<'a, G: Ground> Visit<'a, G> {
     ) -> Self {
         let exemplar = &pyramid.levels()[pass.level];
         let same = half_of(pass, Reads::Same);
-        // Read all rows of the coarser square: the sample in its middle determines the coherent rows.
+        // Read all rows of the coarser square, because its middle sample determines the coherent rows.
         let coarser = half_of(pass, Reads::Coarser).map(|half| Half {
             rows: Rows::All,
             ..half
@@ -115,7 +117,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             [same, coarser].map(|half| half.map_or(0, |half| half.half)),
         );
         let (coherence, evenness) = match coarser {
-            // Guides determine which pixels are used, so usage cannot be even.
+            // Guides determine which pixels are used, so usage cannot be evened out.
             None if exemplar.n_guides() > 0 => (coherence.initial, 0.0),
             None => (coherence.initial, options.evenness),
             Some(_) => (coherence.finer, 0.0),
@@ -143,7 +145,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             is_repair: ground.start(pass.level).is_some(),
             symmetry: match pass.parts.iter().all(|part| part.shape == Shape::Full) {
                 true => ground.symmetry(),
-                // The rows above the center are not those visited earlier once the square is rotated.
+                // If the square is rotated, the rows above the center do not contain the sites visited earlier.
                 false => Symmetry::One,
             },
             coherence,
@@ -155,7 +157,7 @@ impl<'a, G: Ground> Visit<'a, G> {
         }
     }
 
-    /// Assigns a site the pixel of the best row, and returns this row.
+    /// Assigns a site the pixel of the best row, and returns the row's index.
     fn visit(&self, site: u32, worker: &mut Worker<G::Memory>, state: &State<'_>) -> u32 {
         self.read(site, worker, state);
         let sources = state.here.sources;
@@ -174,9 +176,9 @@ impl<'a, G: Ground> Visit<'a, G> {
             sources.quarters[site as usize].store(quarters, Ordering::Relaxed);
             best.row
         };
-        // No row is found only for values that are not finite. The site then keeps its pixel.
+        // The row is missing only if values are not finite. The site then keeps its pixel.
         if let Some(&pixel) = self.candidates.pixels.get(row as usize) {
-            // Relaxed is enough: the schedule orders this write before reads of other threads.
+            // Relaxed ordering suffices: the schedule orders this write before reads by other threads.
             sources.pixels[site as usize].store(pixel, Ordering::Relaxed);
         }
         row
@@ -204,8 +206,8 @@ impl<'a, G: Ground> Visit<'a, G> {
         best
     }
 
-    /// Returns which rotations (in quarter turns) occur at the eight neighbors of a site and at the middle of its
-    /// coarser square.
+    /// Returns which rotations (in quarter turns) occur at a site's eight neighbors and in the middle of its coarser
+    /// square.
     fn quarters_around(
         &self,
         site: u32,
@@ -227,21 +229,21 @@ impl<'a, G: Ground> Visit<'a, G> {
         for term in self.terms.iter().filter(|term| term.is_beside()) {
             add(&state.here, worker.same.nearest[term.samples[0]]);
         }
-        // No neighbor but the site itself: use its own rotation.
+        // There is no neighbor but the site itself: use its own rotation.
         if found == [false; 4] {
             found[usize::from(state.here.quarters(site as usize))] = true;
         }
         found
     }
 
-    /// Rotation of the exemplar at `site`, in quarter turns, if it continues the rotation at `other`.
+    /// Returns the rotation of the exemplar at `site`, in quarter turns, if it continues the rotation at `other`.
     #[inline]
     fn quarters_of(&self, site: u32, other: u32, painted: &Painted<'_>) -> u8 {
         let quarters = painted.quarters(other as usize);
         self.ground.quarters_toward(site, other, quarters)
     }
 
-    /// Returns the pixel of a site if its whole neighborhood continues one piece of the exemplar: no candidate fits
+    /// Returns the pixel of a site if its whole neighborhood continues one piece of the exemplar. No candidate fits
     /// better.
     fn pixel_of_piece(
         &self,
@@ -271,7 +273,7 @@ impl<'a, G: Ground> Visit<'a, G> {
                 return None;
             }
         }
-        // On its own level the site must have this pixel already; else take the child of the coarser pixel.
+        // On its own level, the site must already have this pixel; otherwise take the child of the coarser pixel.
         let piece = piece? as u32;
         if reads == Reads::Same {
             return (painted.source(site as usize) == piece).then_some(piece);
@@ -281,7 +283,7 @@ impl<'a, G: Ground> Visit<'a, G> {
         Some(self.pyramid[self.level].pixel_at(pixel)? as u32)
     }
 
-    /// Samples the neighborhood of a site on both levels; coarser samples kept from the previous pass are reused.
+    /// Samples the neighborhood of a site on both levels. Coarser samples that the previous pass retained are reused.
     fn read(&self, site: u32, worker: &mut Worker<G::Memory>, state: &State<'_>) {
         let Worker {
             same,
@@ -314,7 +316,8 @@ impl<'a, G: Ground> Visit<'a, G> {
         }
     }
 
-    /// Forms the query from the samples, and the coherent rows, which continue the sources of the neighbors.
+    /// Assembles the query from the samples, and collects the coherent rows, which continue the sources of the
+    /// neighbors.
     fn gather(&self, site: u32, worker: &mut Worker<G::Memory>, state: &State<'_>) {
         let Worker {
             quarters,
@@ -353,7 +356,7 @@ impl<'a, G: Ground> Visit<'a, G> {
     }
 
     /// Adds the coherent rows of the level itself. Each of the eight neighboring samples predicts its source pixel plus
-    /// the offset of this site from it.
+    /// the offset from the sample to this site.
     fn continue_same(
         &self,
         center: Center,
@@ -435,23 +438,23 @@ impl<'a, G: Ground> Visit<'a, G> {
     }
 }
 
-/// The best row of a query.
+/// Best row for a query.
 #[derive(Clone, Copy, Debug)]
 struct Best {
     row: u32,
-    /// Squared distance of the row. For a coherent row it is divided by `1 + coherence`.
+    /// Squared distance of the row, divided by `1 + coherence` if the row is coherent.
     distance_sq: f32,
 }
 
 impl Best {
-    /// No row was found.
+    /// State before any row is found.
     const NONE: Self = Self {
         row: NOWHERE,
         distance_sq: f32::INFINITY,
     };
 }
 
-/// The center of a neighborhood: its site, and the rotation of the exemplar there in quarter turns.
+/// Center of a neighborhood: its site, and the rotation of the exemplar at the site, in quarter turns.
 #[derive(Clone, Copy, Debug)]
 struct Center {
     site: u32,
@@ -479,7 +482,7 @@ impl<M: Default> Default for Worker<M> {
     }
 }
 
-/// Adds a row unless it is `None` or present.
+/// Adds a row unless it is `None` or already present.
 fn add_coherent(row: Option<u32>, coherent: &mut Vec<u32>) {
     if let Some(row) = row
         && !coherent.contains(&row)
@@ -488,8 +491,8 @@ fn add_coherent(row: Option<u32>, coherent: &mut Vec<u32>) {
     }
 }
 
-/// Appends the values of a neighborhood to `target`, each times the root of its weight. `squares` are the samples of
-/// the level itself and of the coarser one; `quarters` is the rotation of the exemplar in quarter turns.
+/// Appends the values of a neighborhood to `target`, each multiplied by the square root of its weight. `squares` are
+/// the samples on the level itself and on the coarser one; `quarters` is the rotation of the exemplar in quarter turns.
 pub(crate) fn push_terms(
     terms: &[Term],
     squares: [&Samples; 2],
@@ -504,7 +507,8 @@ pub(crate) fn push_terms(
     }
 }
 
-/// Returns the smallest square that contains all parts of a pass that read a level, or `None` if no part reads it.
+/// Returns the smallest square that contains all parts of a pass that read the level `reads`, or `None` if no part
+/// reads it.
 pub(crate) fn half_of(pass: &Pass, reads: Reads) -> Option<Half> {
     let parts = || pass.parts.iter().filter(|part| part.reads == reads);
     let side = parts().map(|part| part.side).max()?;
@@ -519,7 +523,7 @@ pub(crate) fn half_of(pass: &Pass, reads: Reads) -> Option<Half> {
     })
 }
 
-/// Returns the pixels of a neighborhood in the order of a candidate's values. `halves` are the half sides of the
+/// Returns the pixels of a neighborhood in the order of a candidate's values. `halves` are the half-side lengths of the
 /// squares on the level itself and on the coarser one.
 pub(crate) fn terms_of(pass: &Pass, halves: [i32; 2]) -> Vec<Term> {
     let mut terms = Vec::new();

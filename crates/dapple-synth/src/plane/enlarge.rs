@@ -1,30 +1,30 @@
-//! Enlarging a texture in the plane from a larger version of its exemplar, by an integer factor.
+//! Enlarges a texture in the plane by an integer factor, from a larger version of its exemplar.
 //!
 //! Each texture pixel near an output pixel predicts a pixel of the larger exemplar: its own source plus the offset to
-//! the output pixel. The prediction with the largest sum of weights is taken, where nearer pixels weigh more. So the
-//! borders between pieces are smooth, and no values are mixed.
+//! the output pixel. Predictions are weighted by the nearness of the texture pixel, and the one with the largest sum of
+//! weights is taken. So the borders between pieces are smooth, and no values are mixed.
 
 use crate::Edges;
 use crate::sites::weight;
 use dapple_raster::{Raster, Wrap};
 
-/// Radius of the weights, in texture pixels: large enough that corners are round, and small enough that a single pixel
+/// Radius of the weights, in texture pixels: large enough for round corners, and small enough that a single pixel
 /// between others is not outvoted.
 const RADIUS: f64 = 1.25;
 
-/// A texture with the factor of its enlargement.
+/// A texture with the factor by which it is enlarged.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Enlarged<'a> {
     pub(super) sources: &'a Raster<[u32; 2]>,
     pub(super) wrap: [Wrap; 2],
-    /// Columns and rows of the exemplar.
+    /// Columns and rows of the exemplar before enlargement.
     pub(super) size: [i64; 2],
     pub(super) edges: Edges,
     pub(super) factor: i64,
 }
 
 impl Enlarged<'_> {
-    /// The column and row in the larger exemplar for a pixel of the larger texture.
+    /// Returns the pixel (column and row) of the larger exemplar that appears at a pixel of the larger texture.
     pub(super) fn source(&self, place: [u32; 2]) -> [u32; 2] {
         let place = place.map(i64::from);
         let own = place.map(|at| at / self.factor);
@@ -66,7 +66,7 @@ impl Enlarged<'_> {
                 }
             }
         }
-        // Take the prediction of the largest weight; of equal ones, the first.
+        // Take the prediction with the largest weight; of equal ones, the first.
         let mut best = votes[0];
         for &vote in &votes[1..n_votes] {
             if vote.1 > best.1 {
@@ -76,7 +76,8 @@ impl Enlarged<'_> {
         best.0.map(|at| at as u32)
     }
 
-    /// The pixel that a site predicts at a place; `None` past a cut edge of the texture or of the exemplar.
+    /// Returns the larger exemplar's pixel that `site` predicts at `place`; `None` past a cut edge of the texture or of
+    /// the exemplar.
     fn predicted(&self, site: [i64; 2], place: [i64; 2]) -> Option<[i64; 2]> {
         let mut at = [0; 2];
         for axis in 0..2 {

@@ -1,24 +1,23 @@
-//! The pieces that a texture in the plane consists of, and how well they fit together.
+//! Finds the pieces that a texture in the plane consists of, and measures how well they fit together.
 
 use super::PlaneTexture;
 use crate::{Edges, Exemplar, SynthError};
 use dapple_raster::Raster;
 
-/// Half the side of the window in which texture and exemplar are compared, in pixels.
+/// Half-side length of the window in which texture and exemplar are compared, in pixels.
 const HALF: i64 = 2;
 
-/// Marks a pixel that is not assigned to a piece yet.
+/// Marks a pixel that has not been assigned to a piece yet.
 const NONE: u32 = u32::MAX;
 
 impl PlaneTexture {
-    /// Labels the pieces of the texture: for each pixel, the index of its piece. Adjacent pixels belong to one piece if
-    /// their sources are adjacent in the same direction. Indices start at 0, in row order of the first pixel of each
-    /// piece.
+    /// Labels the pieces of the texture: returns the index of each pixel's piece. Adjacent pixels belong to the same
+    /// piece if their sources are adjacent in the same direction. Indices start at 0, in row-major order of each
+    /// piece's first pixel.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for a texture without pixels, which cannot be
-    /// constructed.
+    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for a texture without pixels, which cannot be constructed.
     pub fn pieces(&self) -> Result<Raster<u32>, SynthError> {
         let [width, height] = self.sources.size();
         let index = |[column, row]: [u32; 2]| row as usize * width as usize + column as usize;
@@ -47,17 +46,17 @@ impl PlaneTexture {
         Ok(Raster::from_vec([width, height], pieces)?)
     }
 
-    /// Measures how well pieces fit: the root mean squared difference, at least 0, between the texture in a window of
-    /// two pixels around each pixel and the exemplar in the window around its source.
+    /// Measures how well pieces fit together. For each pixel, returns the root mean squared difference, at least 0,
+    /// between a window of the texture and the window around the pixel's source in the exemplar. The windows extend two
+    /// pixels in each direction.
     ///
     /// A difference of 0 means that the texture continues the exemplar. Near a border between pieces it is larger; the
-    /// more visible the border, the larger the value. Differences are of the exemplar's values times the square roots
-    /// of their weights; for colors these values are sRGB codes from 0 to 1.
+    /// more visible the border, the larger the value. The values that are compared are the exemplar's, multiplied by
+    /// the square roots of their weights; for colors, these are sRGB codes from 0 to 1.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for an exemplar with a different size than the
-    /// texture's exemplar.
+    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) if the exemplar is not the same size as the texture's.
     pub fn differences(&self, exemplar: &Exemplar) -> Result<Raster<f32>, SynthError> {
         Raster::filled(self.exemplar_size, ())?.check_same_size(exemplar.size)?;
         let size = self.sources.size();
@@ -66,7 +65,7 @@ impl PlaneTexture {
         })?)
     }
 
-    /// The root mean squared difference at a pixel.
+    /// Returns the root mean squared difference at a pixel.
     fn difference(&self, exemplar: &Exemplar, place: [u32; 2]) -> f32 {
         let n = exemplar.n_channels;
         let source = self.source(place);
@@ -90,7 +89,7 @@ impl PlaneTexture {
         (sum / n_values.max(1) as f32).sqrt()
     }
 
-    /// The pixel at an offset from another one, if its source has the same offset from the other's source.
+    /// Returns the pixel at an offset from another one, if the sources of the two pixels have the same offset.
     fn goes_on(&self, place: [u32; 2], step: [i64; 2]) -> Option<[u32; 2]> {
         let beside = self.beside(place, step)?;
         let [from, to] = [place, beside].map(|place| self.source(place));
@@ -105,7 +104,7 @@ impl PlaneTexture {
         is_next.then_some(beside)
     }
 
-    /// The pixel at an offset from another one; `None` past a cut edge.
+    /// Returns the pixel at an offset from another one; `None` past a cut edge.
     fn beside(&self, place: [u32; 2], step: [i64; 2]) -> Option<[u32; 2]> {
         let mut beside = [0; 2];
         for axis in 0..2 {
@@ -120,7 +119,7 @@ impl PlaneTexture {
         Some(beside)
     }
 
-    /// The source of a pixel.
+    /// Returns the source of a pixel: column and row in the exemplar.
     fn source(&self, [column, row]: [u32; 2]) -> [i64; 2] {
         self.sources.row(row)[column as usize].map(i64::from)
     }

@@ -1,13 +1,13 @@
-//! Repair: synthesizing part of a texture again while everything around it stays as it is.
+//! Repair: re-synthesizes part of a texture and leaves everything around it unchanged.
 //!
 //! Reference: Sylvain Lefebvre and Hugues Hoppe, "Parallel Controllable Texture Synthesis", SIGGRAPH 2005, DOI
 //! 10.1145/1073204.1073261, for correction passes that visit distant pixels in parallel, and repeat.
 //!
-//! A sweep would know only one side of a hole. In a repair every pixel of a level, inside the hole too, has a color
-//! before any is visited, and each compares its full neighborhood.
+//! A sweep would know only one side of a hole. In a repair, every pixel of a level has a color before any is visited,
+//! including pixels inside the hole, and each compares its full neighborhood.
 //!
-//! On the coarsest level a hole starts as the piece of the exemplar that fits its surroundings best. Where no piece is
-//! as large as the hole, it starts with random pixels. On finer levels a pixel starts with the continuation of its
+//! On the coarsest level, a hole starts as the piece of the exemplar that fits its surroundings best. If no piece is as
+//! large as the hole, it starts with random pixels. On finer levels, a pixel starts with the continuation of its
 //! parent's source, as in the paper of 2005.
 
 use super::{PlaneGround, PlaneTexture};
@@ -18,28 +18,28 @@ use crate::{Exemplar, Options, Pyramid, Schedule, SynthError};
 use core::ops::ControlFlow;
 use dapple_raster::Raster;
 
-/// Side of the square tiles that define the visiting order, in pixels: more than a 7 × 7 neighborhood reaches, so that
-/// consecutive sites, one per tile, do not wait for each other.
+/// Side of the square tiles that define the visiting order, in pixels. It is larger than the reach of a 7 × 7
+/// neighborhood, so that consecutive sites, one per tile, do not wait for each other.
 const STRIDE: u32 = 4;
 
-/// Rank in the visiting order of each site of a tile. Sites of consecutive ranks are far apart.
+/// Rank in the visiting order of each site within a tile. Sites of consecutive ranks are far apart.
 const DITHER: [[u8; STRIDE as usize]; STRIDE as usize] =
     [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
 
-/// Width of the ring around a hole that is compared with the exemplar, in pixels: as far as a neighborhood reaches.
+/// Width of the ring around a hole that is compared with the exemplar, in pixels; equal to the reach of a neighborhood.
 const RING: i64 = 3;
 
-/// Penalty factor on the squared differences of a piece that lacks part of its ring. Such a piece wins only at less
-/// than half the deviation of a complete one: by chance, part of a ring is rarely that much more similar than the
-/// whole.
+/// Penalty factor on the squared differences of a piece that lacks part of its ring. Such a piece wins only if its
+/// deviation is less than half that of a complete one. By chance, part of a ring is rarely that much more similar than
+/// the whole.
 const PARTIAL: f64 = 4.0;
 
 impl PlaneTexture {
-    /// Creates the texture that equals the exemplar: every pixel is its own source.
+    /// Creates a texture identical to the exemplar: every pixel is its own source.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for an exemplar without pixels.
+    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) if the exemplar has no pixels.
     pub fn identity(exemplar: &Exemplar) -> Result<Self, SynthError> {
         Ok(Self {
             sources: Raster::from_fn(exemplar.size, |column, row| [column, row])?,
@@ -49,20 +49,20 @@ impl PlaneTexture {
         })
     }
 
-    /// Synthesizes the pixels at which a mask is true again. All others keep their sources.
+    /// Re-synthesizes the pixels at which a mask is true. All others keep their sources.
     ///
-    /// This removes scratches and objects that do not belong to a texture. For that, use the photograph as the
-    /// exemplar, [without the defects](Exemplar::with_mask), and its [`identity`](Self::identity) as the texture.
+    /// Use this to remove scratches, or objects that do not belong to a texture: take the photograph [without the
+    /// defects](Exemplar::with_mask) as the exemplar, and its [`identity`](Self::identity) as the texture.
     ///
     /// If the options have no schedule, [`Schedule::repair`] is used. Sites are visited in an order in which
-    /// consecutive ones are far apart. [`Options::evenness`] has no effect: a small part need not use all of the
-    /// exemplar.
+    /// consecutive ones are far apart. [`Options::evenness`] has no effect, because a small region need not use the
+    /// whole exemplar.
     ///
     /// # Errors
     ///
-    /// The errors of [`synthesize_plane_with`](crate::synthesize_plane_with), and
+    /// Same as [`synthesize_plane_with`](crate::synthesize_plane_with), or
     /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) if the mask and the texture have different sizes, or
-    /// if the exemplar does not have the size of the texture's exemplar.
+    /// if the exemplar is not the same size as the texture's.
     ///
     /// # Examples
     ///
@@ -108,7 +108,7 @@ impl PlaneTexture {
         Self::grown(&ground, &pyramid, &options, &mut callback)
     }
 
-    /// The initial pixels of the sites of each level.
+    /// Computes the initial pixels of the sites on each level.
     fn starts(
         &self,
         mask: &Raster<bool>,
@@ -118,7 +118,7 @@ impl PlaneTexture {
         let mut starts = Vec::new();
         let mut sources = self.sources.clone();
         let mut is_kept = mask.map(|&is_made| !is_made);
-        // Kept sites start with their source, others with it only if it is usable.
+        // Kept sites start with their sources. Other sites start with theirs only if the pixel is usable.
         for exemplar in pyramid.levels() {
             if !starts.is_empty() {
                 (sources, is_kept) = coarser(&sources, &is_kept, ground)?;
@@ -145,8 +145,8 @@ impl PlaneTexture {
     }
 }
 
-/// The sources and the mask of kept sites on the next coarser level. A site is kept if all pixels that it averages are
-/// kept.
+/// Computes the sources and the mask of kept sites on the next coarser level. A coarser site is kept if all finer
+/// pixels that it averages are kept.
 fn coarser(
     sources: &Raster<[u32; 2]>,
     is_kept: &Raster<bool>,
@@ -168,12 +168,12 @@ fn coarser(
 
 /// A connected group of sites without an initial pixel, and the ring of sites around it.
 struct Hole {
-    /// Columns and rows of the sites. Across a wrapping edge they continue past the size of the texture.
+    /// Columns and rows of the sites. If the hole crosses a wrapping edge, they continue past the size of the texture.
     sites: Vec<[i64; 2]>,
     ring: Vec<[i64; 2]>,
 }
 
-/// Finds the holes of a level.
+/// Returns the holes of a level.
 fn holes(start: &Start, ground: &PlaneGround, level: usize) -> Vec<Hole> {
     let [width, height] = ground.sizes[level].map(i64::from);
     let mut found = vec![false; start.pixels.len()];
@@ -215,25 +215,26 @@ fn holes(start: &Start, ground: &PlaneGround, level: usize) -> Vec<Hole> {
     holes
 }
 
-/// The places at most `reach` columns and rows away, with the place itself.
+/// Returns the pixels at most `reach` columns and rows from a pixel, which is included.
 fn square([column, row]: [i64; 2], reach: i64) -> impl Iterator<Item = [i64; 2]> {
     let rows = row - reach..=row + reach;
     rows.flat_map(move |row| (column - reach..=column + reach).map(move |column| [column, row]))
 }
 
 impl Hole {
-    /// Fills the sites with the piece of the exemplar whose ring is most similar to the ring of the hole; of several,
-    /// the first in row order. If no piece is as large as the hole, the sites stay unknown.
+    /// Fills the sites with the piece of the exemplar whose ring is most similar to the ring of the hole; of equally
+    /// similar pieces, with the first in row-major order. If no piece is as large as the hole, the sites remain
+    /// unknown.
     ///
-    /// On the coarsest level of a small image, a piece may lack part of its ring, which reaches past a side or into the
-    /// hole. Pieces with at least half of their ring are compared by that part, but their differences are multiplied by
-    /// [`PARTIAL`].
+    /// On the coarsest level of a small image, a piece may lack part of its ring, which reaches past an edge or into
+    /// the hole. Pieces with at least half of their ring are compared by that part, but their squared differences are
+    /// multiplied by [`PARTIAL`].
     fn fill(&self, start: &mut Start, ground: &PlaneGround, level: usize, exemplar: &Exemplar) {
         let pixel_of = |place: [i64; 2]| {
             let pixel = exemplar.pixel_at(place);
             pixel.filter(|&pixel| exemplar.is_usable(pixel))
         };
-        // Where the exemplar consists of several images, a piece lies within one of them.
+        // If the exemplar consists of several images, a piece is within one of them.
         let areas = exemplar.areas();
         let width = exemplar.size[0] as usize;
         let area_of = |pixel: usize| {
@@ -286,12 +287,12 @@ impl Hole {
             // Scale the sum to the whole ring, with the penalty.
             if n_there < painted.len() {
                 sum *= PARTIAL * painted.len() as f64 / n_there as f64;
-                // Where nothing differs, a piece with its whole ring wins.
+                // If nothing differs, a piece with its whole ring wins.
                 sum += f64::MIN_POSITIVE;
             }
             (sum < limit).then_some(sum)
         };
-        // Compare every offset of the hole within the exemplar.
+        // Compare the piece at every offset from the hole within the exemplar.
         let mut best = (f64::INFINITY, None);
         for offset in (0..height).flat_map(|y| (0..width).map(move |x| [x - column, y - row])) {
             if let Some(sum) = difference(offset, best.0) {
@@ -309,8 +310,8 @@ impl Hole {
     }
 }
 
-/// The sites to synthesize in visiting order: one site of each tile of [`STRIDE`] columns and rows, then the next of
-/// each.
+/// Returns the sites to synthesize in visiting order: one site of each tile of [`STRIDE`] columns and rows, then the
+/// next site of each tile, and so on.
 pub(super) fn order(start: &Start, width: u32) -> Vec<u32> {
     let in_square = |site: u32| {
         let [column, row] = [site % width, site / width].map(|at| (at % STRIDE) as usize);

@@ -1,8 +1,8 @@
-//! Tiles from an exemplar that does not repeat: its largest part that nearly repeats, with a synthesized seam.
+//! Makes tiles from an exemplar that does not repeat: its largest part that nearly repeats, with a synthesized seam.
 //!
-//! No cut closes the seam of bricks whose courses do not meet. This method chooses the side of the tile as the shift at
-//! which the image is most similar to itself, so that courses meet where possible. Then it synthesizes a strip along
-//! the seam again, which bends the remaining mismatch to fit.
+//! No cut hides the seam of bricks whose courses do not line up. This method chooses the side of the tile as the shift
+//! at which the image is most similar to itself, so that courses line up where possible. Then it re-synthesizes a strip
+//! along the seam, which bends the remaining mismatch to fit.
 
 use super::PlaneTexture;
 use crate::engine::Progress;
@@ -10,16 +10,18 @@ use crate::{Edges, Exemplar, Options, SynthError};
 use core::ops::ControlFlow;
 use dapple_raster::{Raster, parallel};
 
-/// Makes a tile of an exemplar that repeats along the given axes. Only a strip along the seams is synthesized.
+/// Makes a tile from an exemplar; the tile repeats seamlessly along the given axes. Only a strip along the seams is
+/// synthesized.
 ///
-/// `width` is the width of the strip in pixels. Along each repeating axis the side of the tile is at least half that of
-/// the exemplar, at most the exemplar's side minus half of `width`, and a multiple of 2^(number of levels - 1). Along
-/// other axes the tile has the size of the exemplar.
+/// `width` is the width of the strip in pixels. Along each repeating axis, the side of the tile is a multiple of
+/// 2^(number of levels - 1), from half the exemplar's side to the exemplar's side minus half of `width`. Along other
+/// axes the tile is as long as the exemplar.
 ///
 /// # Errors
 ///
-/// The errors of [`PlaneTexture::repair`], and [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) for an exemplar
-/// with a side below 4 · 2^(number of levels - 1), and for a strip that is not from 2 pixels to half of the side wide.
+/// Same as [`PlaneTexture::repair`], or [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if a side of the
+/// exemplar is below 4 · 2^(number of levels - 1), or if the width of the strip is not from 2 pixels to half of the
+/// side.
 pub fn tile_plane(
     exemplar: &Exemplar,
     axes: [bool; 2],
@@ -45,19 +47,20 @@ pub fn tile_plane(
     texture.repair(exemplar, &mask, options, callback)
 }
 
-/// The part of the exemplar that a tile covers along one axis, and its seam.
+/// Extent of a tile along one axis of the exemplar, and its seam.
 struct Strip {
-    /// The side of the tile.
+    /// Side of the tile, in pixels.
     side: u32,
-    /// Position of the seam. Pixels before it are taken from one side length further on, all others from their own
-    /// position.
+    /// Position of the seam, in pixels. Pixels before the seam come from one tile side further along the exemplar; all
+    /// others come from their own position.
     seam: u32,
-    /// Half the width of the strip around the seam that is synthesized.
+    /// Half the width of the strip around the seam that is synthesized, in pixels.
     half: u32,
 }
 
 impl Strip {
-    /// The whole side of the exemplar, without a seam.
+    /// Returns a strip for an axis along which the tile does not repeat: the whole side of the exemplar, without a
+    /// seam.
     fn none(side: u32) -> Self {
         Self {
             side,
@@ -66,8 +69,8 @@ impl Strip {
         }
     }
 
-    /// Chooses the side as the shift at which the exemplar is most similar to itself. The seam is in the middle of the
-    /// overlap.
+    /// Chooses the tile's side as the shift at which the exemplar is most similar to itself. The seam is in the middle
+    /// of the overlap.
     fn new(
         exemplar: &Exemplar,
         axis: usize,
@@ -87,11 +90,11 @@ impl Strip {
         let sides = (whole / 2).div_ceil(step)..(whole - half) / step + 1;
         let costs = parallel::map(sides.len(), |at| {
             let side = (sides.start + at as u32) * step;
-            // Prefer the largest of equally good sides, as in a texture without a period.
+            // Prefer larger sides: without a period, all are equally similar.
             let lost = f64::from(whole - side) / f64::from(whole);
             difference(exemplar, axis, side) * (1.0 + lost)
         });
-        // Take the lowest cost; of equal ones, the largest side.
+        // Take the side with the lowest cost; of equal ones, the largest.
         let mut best = (f64::INFINITY, sides.end - 1);
         for (side, cost) in sides.zip(costs).rev() {
             if cost < best.0 {
@@ -106,20 +109,20 @@ impl Strip {
         })
     }
 
-    /// The column or row of the exemplar for one of the tile.
+    /// Returns the column or row of the exemplar that a column or row of the tile is taken from.
     fn source(&self, at: u32) -> u32 {
         if at < self.seam { at + self.side } else { at }
     }
 
-    /// Whether a column or row is in the strip that is synthesized.
+    /// Returns whether a column or row is in the strip that is synthesized.
     fn is_made(&self, at: u32) -> bool {
         let past = (at + self.side - self.seam) % self.side;
         past < self.half || past >= self.side - self.half
     }
 }
 
-/// The mean squared difference between an exemplar and its copy shifted by `by` pixels along an axis, over their
-/// overlap.
+/// Returns the mean squared difference between an exemplar and its copy shifted by `by` pixels along an axis, over
+/// their overlap.
 fn difference(exemplar: &Exemplar, axis: usize, by: u32) -> f64 {
     let [width, height] = exemplar.size.map(|side| side as usize);
     let n = exemplar.n_channels;

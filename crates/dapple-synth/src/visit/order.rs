@@ -1,10 +1,10 @@
-//! Order of the sites of a pass, and their distribution over threads.
+//! Determines the order of the sites of a pass, and distributes them over threads.
 //!
 //! There are three cases:
 //!
 //! - A pass that reads only the coarser level visits sites in any order, on all threads ([`Visit::visit_freely`]).
 //! - A pass that reads its own level follows the sweep in a wavefront schedule ([`Turns`]): a site runs after every
-//!   earlier site that it reads. The result is that of a sequential sweep.
+//!   earlier site that it reads. The result is the same as that of a sequential sweep.
 //! - A pass that counts usage ([`Usage`]) is sequential, because each site depends on all earlier ones.
 
 use super::{State, Visit, Worker};
@@ -19,7 +19,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// Maximum number of sites between two progress callbacks.
 const STRETCH: usize = 1 << 14;
-/// Number of independent sites that a thread takes at once.
+/// Number of independent sites that a thread takes at a time.
 const PIECE: usize = 64;
 
 impl<G: Ground> Visit<'_, G> {
@@ -42,7 +42,7 @@ impl<G: Ground> Visit<'_, G> {
             kept,
             factors: None,
         };
-        // Choose the order by what the pass reads.
+        // Choose the order by the levels that the pass reads.
         let mut workers = Vec::new();
         workers.resize_with(parallel::n_threads(), Worker::default);
         if self.same.is_none() {
@@ -56,7 +56,7 @@ impl<G: Ground> Visit<'_, G> {
         Ok(Kept::default())
     }
 
-    /// Visits sites sequentially and counts the usage of the pixels.
+    /// Visits sites sequentially and counts how often pixels are used.
     fn visit_and_count(
         &self,
         state: State<'_>,
@@ -91,7 +91,7 @@ impl<G: Ground> Visit<'_, G> {
         } else {
             self.ground.turns(self.level, &self.prepared)
         };
-        // Run the schedule in stretches; report progress after each.
+        // Run the schedule in stretches, with a progress report after each.
         for first in (0..turns.len()).step_by(STRETCH) {
             let end = turns.len().min(first + STRETCH);
             let board = Board::new(first..end, workers.len());
@@ -118,7 +118,7 @@ impl<G: Ground> Visit<'_, G> {
         let n_sites = self.ground.n_sites(self.level);
         let mut kept = Kept::new(n_sites, keep, self.n_channels);
         let side = self.coarser.map_or(0, |half| 2 * half.half as usize + 1);
-        // Pair each site with the memory for its kept square, if squares are kept.
+        // Pair each site with the memory for its retained square, if squares are retained.
         let rooms = kept.sites().map(Some).chain(repeat_with(|| None));
         let start = self.ground.start(self.level);
         let is_visited = |site: u32| start.is_none_or(|start| !start.is_kept[site as usize]);
@@ -135,7 +135,7 @@ impl<G: Ground> Visit<'_, G> {
                     if piece.is_empty() {
                         return;
                     }
-                    // Visit them, and keep their coarser squares.
+                    // Visit them, and store their coarser squares.
                     for (site, room) in piece.into_iter().filter(|(site, _)| is_visited(*site)) {
                         self.visit(site, worker, state);
                         if let Some(mut room) = room {
