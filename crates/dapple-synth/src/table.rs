@@ -63,7 +63,7 @@ fn fields(row: &str) -> impl Iterator<Item = &str> {
     row.split(',').map(str::trim)
 }
 
-/// For each name of the matching form, its column in the header.
+/// Returns, for each name of the matching form, its column in the header.
 fn header(row: &str, forms: &[&[&str]]) -> Result<Vec<usize>, String> {
     let names: Vec<_> = fields(row).collect();
     let place = |name: &&str| {

@@ -1,4 +1,4 @@
-//! Tests of correction in appearance space on surfaces.
+//! Tests for correction in appearance space on surfaces.
 
 use super::links::Links;
 use super::{Appearance, Choice, around, choose, distance_sq, middle, pixel, quarters};
@@ -49,7 +49,7 @@ fn sources(texture: &SurfaceTexture) -> Vec<[u32; 2]> {
     texture.sources(0).collect()
 }
 
-/// Rotates an offset by quarter turns; each takes right to up.
+/// Rotates an offset by quarter turns; each turns right into up.
 fn before([mut x, mut y]: [f32; 2], quarters: u8) -> Vec2 {
     for _ in 0..quarters {
         (x, y) = (y, -x);
@@ -57,7 +57,7 @@ fn before([mut x, mut y]: [f32; 2], quarters: u8) -> Vec2 {
     Vec2::new(x, y)
 }
 
-/// Relative rotation of the exemplar between two sites, in quarter turns, found by comparing all rotations.
+/// Returns the relative rotation of the exemplar between two sites, in quarter turns, found by comparing all rotations.
 fn turn(frames: &[Frame], symmetry: Symmetry, [from, to]: [usize; 2]) -> u8 {
     let Frame { right, down, .. } = frames[from];
     let alike = |&quarters: &u8| match quarters {
@@ -70,7 +70,7 @@ fn turn(frames: &[Frame], symmetry: Symmetry, [from, to]: [usize; 2]) -> u8 {
     turns.max_by(|a, b| alike(a).total_cmp(&alike(b))).unwrap()
 }
 
-/// Offset from one site to another one, in pixels.
+/// Returns the offset from one site to another, in pixels.
 fn way(ball: &Synthesizer, frames: &[Frame], [from, to]: [usize; 2]) -> Vec2 {
     let positions = ball.hierarchy().sites().positions();
     let way = (positions[to] - positions[from]).as_vec3();
@@ -146,7 +146,7 @@ fn sites_take_the_place_that_comparing_with_all_they_may_take_finds() {
     }
 }
 
-/// Assigns the rotations of a symmetry to the coarsest sites in turn; empty without a symmetry.
+/// Assigns the rotations of a symmetry to the coarsest sites in turn. Returns an empty list without a symmetry.
 fn all_quarters(ball: &Synthesizer) -> Vec<u8> {
     let turns = match ball.orientation().symmetry() {
         Symmetry::One => &[],
@@ -156,7 +156,7 @@ fn all_quarters(ball: &Synthesizer) -> Vec<u8> {
     turns.take(ball.hierarchy().levels()[1].n_sites()).collect()
 }
 
-/// Position at an offset from another one. Positions are in eighths of a pixel, offsets in pixels.
+/// Returns the position at an offset from another one. Positions are in eighths of a pixel, offsets in pixels.
 fn from([x, y]: [u32; 2], way: Vec2) -> [i64; 2] {
     let way = (8.0 * way).round();
     [i64::from(x) + way.x as i64, i64::from(y) + way.y as i64]
@@ -171,13 +171,13 @@ fn usable_at(stage: &Stage, place: [i64; 2]) -> Option<[i64; 2]> {
     Some([0, 1].map(|axis| 8 * pixel[axis] + place[axis].rem_euclid(8)))
 }
 
-/// Usable positions half a pixel from a position.
+/// Returns the usable positions half a pixel from a position.
 fn aside(stage: &Stage, [x, y]: [i64; 2]) -> Vec<[i64; 2]> {
     let aside = [[x + 4, y], [x - 4, y], [x, y + 4], [x, y - 4]].into_iter();
     aside.filter_map(|place| usable_at(stage, place)).collect()
 }
 
-/// A position and others; of several in one pixel only the first.
+/// Returns a position followed by others, keeping only the first of several in the same pixel.
 fn first_in_pixels(own: [i64; 2], others: impl Iterator<Item = [i64; 2]>) -> Vec<[i64; 2]> {
     let mut places = vec![own];
     for place in others {
@@ -253,7 +253,7 @@ fn takes_the_place_that_comparing_with_all_finds(ball: &Synthesizer) {
         let least = all.fold(f32::INFINITY, f32::min);
         let wanted = targets.of(0, site as u32);
         let Choice { distance_sq, .. } = choose(stage, &links, site, &places, wanted);
-        // The sums have another order than in the code.
+        // The terms are summed in a different order than in the code.
         assert!(
             (distance_sq - least).abs() <= 1e-4 * least,
             "{symmetry}, {site}: {distance_sq}, {least}"
@@ -301,7 +301,7 @@ fn sites_whose_guides_are_off_search_all_of_the_exemplar() {
         };
         let all = (0..20).flat_map(|row| (0..24).map(move |column| off([column, row])));
         let least = all.fold(f32::INFINITY, f32::min);
-        // The sums have another order than in the code.
+        // The terms are summed in a different order than in the code.
         assert!(
             off(pixel(place)) <= least * 1.0001,
             "{site}: {} {least}",
@@ -311,7 +311,7 @@ fn sites_whose_guides_are_off_search_all_of_the_exemplar() {
     assert!(n_exact > 400, "{n_exact} of 500");
 }
 
-/// Squared distance between features on the diagonals of a site and those on the diagonals of a pixel.
+/// Returns the squared distance between the features on the diagonals of a site and those on the diagonals of a pixel.
 fn unlike(stage: &Stage, around: &[[f32; 8]], [x, y]: [i64; 2]) -> f32 {
     let corners = around.iter().zip(DIAGONALS);
     let squares = corners.flat_map(|(own, [i, j])| {
@@ -384,7 +384,7 @@ fn exemplars_lie_turned_as_at_the_neighbors_but_along_seams() {
                 .filter(|&&near| agrees(&texture.quarters, site, near))
                 .count();
         }
-        // Seams connect singularities, and there are few of these.
+        // Seams connect singularities, and there are only a few.
         assert!(same * 100 > 93 * all, "{symmetry}: {same} of {all}");
 
         // Every finer site takes its rotation from one of the coarser sites among its neighbors.
@@ -460,7 +460,7 @@ fn links_reach_as_far_as_pixels_do() {
         let flat = flat.with_scales(vec![scale; 3000]).unwrap();
         let links = Links::new(flat.hierarchy(), &Frames::new(&flat, &[]), 0);
         let n_read = flat.hierarchy().levels()[levels].n_sites();
-        // The distance of features is a pixel, or a spacing if that is larger. It is at most three spacings of the
+        // The distance between features is a pixel, or a spacing if that is larger. It is at most three spacings of the
         // coarsest level.
         let unit = scale.clamp(1.0, 6.0) / scale;
         for (site, &at) in flat.hierarchy().sites().positions().iter().enumerate() {
@@ -512,7 +512,7 @@ fn strands_go_on_from_one_side_to_the_other() {
 }
 
 /// Returns the number of connected components of more than 8 sites with values above 0.5, and how many of them do not
-/// reach from x = 0 to 1 although they are away from the edges along y.
+/// extend from x = 0 to 1 although they are away from the edges along y.
 fn pieces(flat: &Synthesizer, values: &[f32]) -> (usize, usize) {
     let graph = flat.hierarchy().levels()[0].graph();
     let positions = flat.hierarchy().sites().positions();

@@ -1,4 +1,4 @@
-//! Tests of endless textures.
+//! Tests for endless textures.
 
 use super::evenness::Costs;
 use super::stage::{DIAGONALS, N_FEATURES, Stage};
@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-/// Image of spots with two channels that wraps.
+/// Returns an image of spots with two channels; it wraps.
 fn spots(size: [u32; 2], edges: Edges) -> Exemplar {
     let noise = |x: u32, y: u32, channel: u64| {
         let cell = [x % size[0] / 3, y % size[1] / 2].map(i64::from);
@@ -37,7 +37,7 @@ fn window(texture: &Endless, first: [i64; 2], size: [u32; 2]) -> PlaneTexture {
     texture.window(first, size, go_on).unwrap()
 }
 
-/// Reference for the source of a pixel after a number of subpasses, computed recursively pixel by pixel.
+/// Reference for the source of a pixel after a number of subpasses, computed recursively for each pixel.
 struct Naive<'a> {
     texture: &'a Endless,
     known: BTreeMap<(usize, usize, [i64; 2]), [i64; 2]>,
@@ -207,7 +207,7 @@ fn pixels_that_are_alike_are_those_that_comparing_with_all_finds() {
                 let least = grid.iter().filter(is_apart).map(|&other| distance(other));
                 let least = least.fold(f32::INFINITY, f32::min);
                 let found = stage.similar(place).map_or(f32::INFINITY, distance);
-                // The sums have another order than in the code.
+                // The terms are summed in a different order than in the code.
                 assert!(
                     (found - least).abs() <= 1e-5 * least,
                     "{place:?}: {found}, {least}"
@@ -217,7 +217,7 @@ fn pixels_that_are_alike_are_those_that_comparing_with_all_finds() {
     }
 }
 
-/// Features on the diagonals of a pixel.
+/// Returns the features on the diagonals of a pixel.
 fn around(stage: &Stage, [column, row]: [i64; 2]) -> [[f32; N_FEATURES]; 4] {
     let h = stage.spacing;
     DIAGONALS.map(|[x, y]| *stage.features([column + x * h, row + y * h]))
@@ -360,7 +360,7 @@ fn textures_have_nothing_that_a_mask_leaves_out() {
     let mask = Raster::from_fn([40, 32], is_clean).unwrap();
     let texture = endless(&exemplar.clone().with_mask(&mask).unwrap(), 3, [None; 2]);
     for &[x, y] in window(&texture, [0, 0], [80, 80]).sources().pixels() {
-        // Features of the finest level depend on two more pixels to each side.
+        // Features of the finest level depend on two more pixels in each direction.
         assert!(
             x.abs_diff(12) > 5 || y.abs_diff(9) > 7,
             "column {x}, row {y}"
@@ -442,7 +442,7 @@ fn value_stability_endless() {
     );
 }
 
-/// Textures of a cut and of a wrapping exemplar, with one to four levels.
+/// Textures of an exemplar that is cut and of one that wraps, with one to four levels.
 static TEXTURES: LazyLock<[[Endless; 4]; 2]> = LazyLock::new(|| {
     [Edges::Cut, Edges::Wrap].map(|edges| {
         [1, 2, 3, 4].map(|n_levels| endless(&spots([19, 26], edges), n_levels, [None, Some(48)]))
@@ -455,7 +455,7 @@ proptest! {
     #[test]
     fn windows_are_crops_of_larger_ones(
         first in prop::array::uniform2(-200_i64..200),
-        // More than twice the distance of the pixels of the coarsest level, which is eight.
+        // More than twice the distance between the pixels of the coarsest level, which is eight.
         size in prop::array::uniform2(1_u32..20),
         before in prop::array::uniform2(0_u32..17),
         after in prop::array::uniform2(0_u32..17),
@@ -491,7 +491,7 @@ fn preparation_can_be_cancelled_at_every_call_and_is_asked_often() {
     );
     let same = window(&made.unwrap(), [3, 5], [70, 40]);
     assert_eq!(same.sources(), alone.sources());
-    // The preparation takes half a second of work.
+    // Setup takes half a second of work.
     assert!(n_calls > 100, "{n_calls} calls");
     for last in (0..n_calls).step_by(n_calls / 12) {
         let (made, n_calls) = prepare(last);

@@ -1,4 +1,4 @@
-//! Tests of the engine against the paper's pseudocode, which compares every neighborhood with every candidate.
+//! Tests the engine against the paper's pseudocode, which compares every neighborhood with every candidate.
 
 mod turned;
 
@@ -16,7 +16,7 @@ use dapple_hash::{Seed, hash2, unit_f32};
 use dapple_mesh::Surface;
 use dapple_raster::Raster;
 
-/// Stripes and noise, 16 pixels square.
+/// Returns stripes and noise, 16 pixels square.
 fn pyramid(edges: Edges, n_levels: usize) -> Pyramid {
     let image = Raster::from_fn([16, 16], |x, y| {
         let noise = unit_f32(hash2(Seed(2), [x.into(), y.into()], 0) as u32);
@@ -26,7 +26,7 @@ fn pyramid(edges: Edges, n_levels: usize) -> Pyramid {
     exemplar.pyramid(n_levels).unwrap()
 }
 
-/// A sphere with sites on two levels.
+/// Returns a sphere with sites on two levels.
 fn sphere(n_sites: usize) -> Synthesizer {
     let options = HierarchyOptions {
         n_sites,
@@ -38,7 +38,7 @@ fn sphere(n_sites: usize) -> Synthesizer {
     Synthesizer::new(surface, &[], &options).unwrap()
 }
 
-/// The neighborhood colors N(v) of the paper.
+/// Returns the neighborhood colors N(v) of the paper.
 fn neighborhood(
     ground: &MeshGround<'_>,
     pass: &Pass,
@@ -85,7 +85,7 @@ fn neighborhood(
     query
 }
 
-/// The passes as in the paper's pseudocode. The initial pixels are `started`.
+/// Runs the passes as in the paper's pseudocode. The initial pixels are `started`.
 fn pseudo_code(
     ground: &MeshGround<'_>,
     pyramid: &Pyramid,
@@ -233,7 +233,7 @@ fn coherent_texture_has_more_neighbors_that_continue_each_other() {
     assert!(coherent > plain, "{coherent} beside {plain} edges");
 }
 
-/// For each pixel of the coarser level, the number of sites that use it, in a texture with this evenness.
+/// Returns, for each pixel of the coarser level, the number of sites that use it in a texture with the given evenness.
 fn uses(evenness: f32) -> Vec<usize> {
     let case = sphere(4000);
     let options = Options {

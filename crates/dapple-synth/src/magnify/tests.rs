@@ -1,4 +1,4 @@
-//! Magnification on the unit square, where the place in the exemplar is known for each texel.
+//! Tests magnification on the unit square, where the position in the exemplar is known for each texel.
 
 use super::*;
 use crate::detail::Detail;
@@ -14,12 +14,12 @@ const N: usize = 1500;
 /// Side of exemplars, in pixels.
 const SIDE: u32 = 48;
 
-/// The square with sites whose down is the down of the map.
+/// Returns the unit square with sites whose down direction is the map's.
 fn plane(n_sites: usize) -> Synthesizer {
     synthesizer(square(), n_sites, |_, _| DVec3::NEG_Y)
 }
 
-/// The layout of the square as one map.
+/// Returns the atlas of the square as a single chart.
 fn atlas(plane: &Synthesizer, side: u32) -> Atlas {
     let mesh = plane.surface().mesh();
     let uv = |at: DVec3| DVec2::new(at.x, 1.0 - at.y);
@@ -30,7 +30,7 @@ fn atlas(plane: &Synthesizer, side: u32) -> Atlas {
     Atlas::from_uvs(plane.surface(), &uvs, [side; 2], 0).unwrap()
 }
 
-/// The place in an exemplar at a position of the square, whose upper left corner is at the place (2, 2).
+/// Returns the position in an exemplar for a position on the square, whose upper left corner is at (2, 2).
 fn place(plane: &Synthesizer, at: DVec3) -> Vec2 {
     let spacing = plane.hierarchy().levels()[0].spacing();
     Vec2::new(
@@ -39,7 +39,7 @@ fn place(plane: &Synthesizer, at: DVec3) -> Vec2 {
     )
 }
 
-/// A texture whose sites have as sources the pixels at the places that `source` returns for their own places.
+/// Returns a texture whose sources are the pixels at the positions that `source` returns for the sites' own positions.
 fn texture(plane: &Synthesizer, edges: Edges, source: impl Fn(Vec2) -> Vec2) -> SurfaceTexture {
     let image = Raster::filled([SIDE; 2], 0.0).unwrap();
     let exemplar = Exemplar::from_planes(&[(&image, 1.0)], edges).unwrap();
@@ -55,7 +55,7 @@ fn texture(plane: &Synthesizer, edges: Edges, source: impl Fn(Vec2) -> Vec2) -> 
     SurfaceTexture::new(&exemplar.pyramid(1).unwrap(), vec![sources], Some(places))
 }
 
-/// The texture with whole pixels as sources.
+/// Returns the same texture with whole pixels as sources.
 fn with_pixels(texture: &SurfaceTexture) -> SurfaceTexture {
     let mut texture = texture.clone();
     texture.places = None;
@@ -76,7 +76,7 @@ fn deviation(values: &[f32]) -> f64 {
 fn averaged_sources_are_where_the_sites_are() {
     let plane = plane(N);
     for edges in [Edges::Cut, Edges::Wrap] {
-        // Places past the lower right corner of an exemplar that wraps.
+        // Positions past the lower right corner of an exemplar that wraps.
         let shift = if edges == Edges::Wrap { 30.0 } else { 0.0 };
         let texture = texture(&plane, edges, |place| place + shift);
         let places = texture.places.unwrap();
@@ -86,7 +86,7 @@ fn averaged_sources_are_where_the_sites_are() {
             f64::from(off.length_squared())
         });
         let off = (off.sum::<f64>() / N as f64).sqrt();
-        // Whole pixels would be off by the root of a sixth, 0.41.
+        // Whole pixels would be off by the square root of a sixth, 0.41.
         assert!(off < 0.15, "{edges:?}: {off}");
     }
 }
@@ -171,7 +171,7 @@ fn texels_larger_than_pixels_show_means() {
     );
 }
 
-/// Noise with features of a few pixels.
+/// Returns noise with features of a few pixels.
 fn noise(side: u32) -> Raster<f32> {
     let at = |x: u32, y: u32| unit_f32((hash2(Seed(5), [x.into(), y.into()], 0) >> 32) as u32);
     let image = Raster::from_fn([side; 2], at).unwrap();
@@ -185,7 +185,7 @@ fn noise(side: u32) -> Raster<f32> {
     .unwrap()
 }
 
-/// The gradient lengths that half, a tenth and a hundredth of the pixels exceed.
+/// Returns the gradient lengths that half, a tenth and a hundredth of the pixels exceed.
 fn gradients(image: &Raster<f32>) -> [f32; 3] {
     let [width, height] = image.size();
     let mut lengths: Vec<f32> = (1..height - 1)

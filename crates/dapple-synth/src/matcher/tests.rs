@@ -1,4 +1,4 @@
-//! Tests of the search against a comparison with all rows.
+//! Tests the search against a comparison with all rows.
 
 mod parts;
 
@@ -54,12 +54,12 @@ fn check(matcher: &Matcher, rows: &[f32], query: &[f32], memory: &mut MatcherMem
     }
 }
 
-/// Random number from 0 to 1 for a pair of integers.
+/// Returns a random number from 0 to 1 for a pair of integers.
 fn random(i: usize, j: usize) -> f32 {
     unit_f32((hash2(Seed(5), [i as i64, j as i64], 0) >> 32) as u32)
 }
 
-/// Color of a brick texture with smooth noise, at any position.
+/// Returns the color of a brick texture with smooth noise, at any position.
 fn texture(x: f32, y: f32) -> [f32; 3] {
     let noise = |x: f32, y: f32| {
         let (i, j) = (x.floor(), y.floor());
@@ -84,7 +84,7 @@ fn texture(x: f32, y: f32) -> [f32; 3] {
     base.map(|value| value + rough)
 }
 
-/// The 48 neighbors of a position, on a grid rotated and scaled by a vector (cosine and sine times a factor).
+/// Returns the 48 neighbors of a position, on a grid rotated and scaled by a vector (cosine and sine times a factor).
 fn neighborhood(x: f32, y: f32, [cos, sin]: [f32; 2]) -> Vec<f32> {
     let mut values = Vec::new();
     for j in -3_i8..=3 {
@@ -98,7 +98,7 @@ fn neighborhood(x: f32, y: f32, [cos, sin]: [f32; 2]) -> Vec<f32> {
     values
 }
 
-/// Neighborhoods of a texture, and queries as in a synthesis: between pixels, rotated, mixed and perturbed.
+/// Returns the neighborhoods of a texture, and queries as in a synthesis: between pixels, rotated, mixed and perturbed.
 fn exemplar(side: usize, n_queries: usize) -> (usize, Vec<f32>, Vec<Vec<f32>>) {
     let place = |i: usize| (4 + i) as f32;
     let rows: Vec<f32> = (0..side * side)

@@ -1,4 +1,4 @@
-//! Tests of sampling on surfaces against samples found by separate walks and interpolated from all sites.
+//! Tests sampling on surfaces against samples that are found by separate walks and interpolated from all sites.
 
 use super::{MeshGround, MeshMemory, interpolate};
 use crate::ground::{Ground, Plain, Rows, Samples, Square};
@@ -8,7 +8,7 @@ use dapple_mesh::{Mesh, Surface};
 use dapple_raster::simd::{self, for_every_level};
 use glam::{DVec2, DVec3};
 
-/// Torus as a grid of triangles, or a part of it with two borders.
+/// Returns a torus as a grid of triangles, or a part of it with two borders.
 fn torus(n_around: u32, is_open: bool) -> Surface {
     let n_tube = 12;
     let place = |around: u32, tube: u32| {
@@ -86,7 +86,7 @@ impl Case {
         (position, self.0.surface().face_normal(point.face))
     }
 
-    /// Equation 1 in `f64`, from all sites of the level.
+    /// Evaluates equation 1 in `f64`, over all sites of the level.
     fn mix(&self, level: usize, position: DVec3, normal: DVec3, column: &[f32]) -> Option<f64> {
         let radius = self.0.hierarchy().levels()[level].spacing() * INTERPOLATION_RADIUS;
         let (mut sum, mut weights) = (0.0, 0.0);
@@ -115,7 +115,7 @@ fn square(site: u32, reads: usize, half: i32) -> Square {
     }
 }
 
-/// Values that differ between nearby sites.
+/// Returns values that differ between nearby sites.
 fn column(n: usize) -> Vec<f32> {
     (0..n).map(|at| (at * 7919 % 101) as f32 / 101.0).collect()
 }

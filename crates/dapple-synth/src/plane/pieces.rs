@@ -17,7 +17,8 @@ impl PlaneTexture {
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for a texture without pixels, which cannot be constructed.
+    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for a texture without pixels, which cannot be
+    /// constructed.
     pub fn pieces(&self) -> Result<Raster<u32>, SynthError> {
         let [width, height] = self.sources.size();
         let index = |[column, row]: [u32; 2]| row as usize * width as usize + column as usize;

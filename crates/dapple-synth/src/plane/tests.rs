@@ -1,4 +1,4 @@
-//! Synthesis in the plane, compared with the paper's pseudo-code.
+//! Tests synthesis in the plane against the paper's pseudocode.
 
 use super::{MAX_PIXELS, PlaneGround, PlaneTexture, synthesize_plane, synthesize_plane_with};
 use crate::ground::Ground;
@@ -15,7 +15,7 @@ use proptest::prelude::*;
 mod guides;
 mod naive;
 
-/// An exemplar of periodic smooth noise with two channels.
+/// Returns an exemplar of periodic smooth noise with two channels.
 fn exemplar(size: [u32; 2], edges: Edges) -> Exemplar {
     let noise = |x: u32, y: u32, channel: u64| {
         let cell = [x % size[0] / 3, y % size[1] / 2].map(i64::from);
@@ -33,7 +33,7 @@ fn paper(n_levels: usize, center: CoarserCenter) -> Options {
     }
 }
 
-/// The sources of a texture as pixel indices.
+/// Returns the sources of a texture as pixel indices.
 fn made(exemplar: &Exemplar, size: [u32; 2], edges: [Edges; 2], options: &Options) -> Vec<u32> {
     let texture = synthesize_plane(exemplar, size, edges, options).unwrap();
     let pixel = |&[column, row]: &[u32; 2]| row * exemplar.size()[0] + column;
@@ -175,7 +175,7 @@ fn turns_keep_the_order_of_sites_that_read_each_other() {
     }
 }
 
-/// The sites that a site reads, without those past a cut edge.
+/// Returns the sites that a site reads, without those past a cut edge.
 fn near(ground: &PlaneGround, level: usize, site: u32, half: i32) -> Vec<u32> {
     let size = ground.sizes[level];
     let [x, y] = ground.pixel(level, site).map(i64::from);
@@ -211,13 +211,14 @@ fn slanted_lines_of_a_torus_wait_only_for_earlier_lines() {
     assert_eq!(n_lines, 512 + 4 * 255, "lines of 512 x 256 pixels");
 }
 
-/// Smooth waves with a period of 8 pixels in both directions.
+/// Returns smooth waves with a period of 8 pixels in both directions.
 fn waves() -> Raster<f32> {
     let wave = |at: u32| ((at % 8) as f32 - 3.5).abs() / 4.0;
     Raster::from_fn([32, 32], |x, y| wave(x) + 0.5 * wave(y)).unwrap()
 }
 
-/// The mean absolute difference between neighbors within rows, and between the last and the first pixel of a row.
+/// Returns the mean absolute difference between neighbors within rows, and between the last and the first pixel of a
+/// row.
 fn jumps(made: &Raster<f32>) -> [f64; 2] {
     let [width, height] = made.size();
     let (mut sums, mut counts) = ([0.0; 2], [0; 2]);
@@ -305,7 +306,7 @@ fn maps_follow_the_sources() {
     );
 }
 
-/// The kind of the error of a synthesis.
+/// Returns the kind of a synthesis's error.
 fn kind(size: [u32; 2], edges: Edges, options: &Options) -> SynthErrorKind {
     let exemplar = exemplar([24, 20], Edges::Wrap);
     let result = synthesize_plane(&exemplar, size, [edges; 2], options);
@@ -455,7 +456,7 @@ proptest! {
     }
 }
 
-/// A texture of a single piece of an exemplar with 12 × 9 pixels.
+/// Returns a texture that consists of a single piece of an exemplar with 12 × 9 pixels.
 fn one_piece() -> PlaneTexture {
     PlaneTexture {
         sources: Raster::from_fn([24, 18], |x, y| [(x + 5) % 12, (y + 7) % 9]).unwrap(),

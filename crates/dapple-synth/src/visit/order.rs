@@ -23,8 +23,8 @@ const STRETCH: usize = 1 << 14;
 const PIECE: usize = 64;
 
 impl<G: Ground> Visit<'_, G> {
-    /// Visits all sites of the level; `levels` holds their sources. `kept` are the coarser squares kept by the previous
-    /// pass. Returns the coarser squares that this pass keeps for the next one, `keep` samples wide.
+    /// Visits all sites of the level. `levels` holds their sources, `kept` the coarser squares retained by the previous
+    /// pass. Returns the coarser squares that this pass retains for the next one, `keep` samples wide.
     pub(crate) fn run(
         &self,
         levels: &[Sources],

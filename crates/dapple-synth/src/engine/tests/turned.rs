@@ -1,5 +1,5 @@
-//! Tests of passes with an orientation field of two or four directions, against code that rotates every square and
-//! compares with every candidate.
+//! Tests passes with an orientation field of two or four directions against code that rotates every square and compares
+//! with every candidate.
 
 use super::*;
 use crate::engine::run_turned;
@@ -21,10 +21,10 @@ fn sphere_along(symmetry: Symmetry, n_sites: usize) -> Synthesizer {
     Synthesizer::from_parts(surface, hierarchy, orientation, None).unwrap()
 }
 
-/// Pixel and rotation in quarter turns of each site, on two levels.
+/// Pixel and rotation (in quarter turns) of each site, on two levels.
 type Levels = [Vec<(u32, u8)>; 2];
 
-/// Samples of a part of a neighborhood, and their nearest sites.
+/// Returns the samples of a part of a neighborhood, and their nearest sites.
 fn read(
     ground: &MeshGround<'_>,
     pass: &Pass,
@@ -65,16 +65,16 @@ fn read(
     samples
 }
 
-/// Index of the sample at an offset in a square that is rotated by quarter turns.
+/// Returns the index of the sample at an offset in a square that is rotated by quarter turns.
 fn sample_at([mut i, mut j]: [i32; 2], half: i32, quarters: u8) -> usize {
     for _ in 0..quarters {
-        // The right of the rotated square is up, and its down is right.
+        // The rotated square's right is up, and its down is right.
         (i, j) = (j, -i);
     }
     ((j + half) * (2 * half + 1) + i + half) as usize
 }
 
-/// Rotation of the exemplar at `site` nearest to that of another site, in quarter turns.
+/// Returns the rotation of the exemplar at `site` nearest to that of another site, in quarter turns.
 fn lies(case: &Synthesizer, site: u32, other: u32, quarters: u8) -> u8 {
     let direction = |site: u32, quarters| {
         let at = site as usize;
@@ -87,7 +87,7 @@ fn lies(case: &Synthesizer, site: u32, other: u32, quarters: u8) -> u8 {
     all.max_by(|a, b| near(a).total_cmp(&near(b))).unwrap()
 }
 
-/// Rotations that a site may take: those of its neighbors.
+/// Returns the rotations that a site may take: those of its neighbors.
 fn wanted(
     case: &Synthesizer,
     pass: &Pass,

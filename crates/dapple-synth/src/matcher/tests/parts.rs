@@ -1,4 +1,4 @@
-//! Tests of the parts of the search: quantization, bounds, eigenvectors and directions.
+//! Tests for the parts of the search: quantization, bounds, eigenvectors and directions.
 
 use super::*;
 use dapple_raster::simd::dispatch;
@@ -11,7 +11,7 @@ fn sums_of_squares_never_exceed_the_threshold() {
         for value in rows.iter_mut().chain(queries.iter_mut().flatten()) {
             *value *= scale;
         }
-        // One row and one query lie far outside of the ball.
+        // One row and one query are far outside the ball.
         rows[..dims].fill(30.0 * scale);
         queries[0].fill(-50.0 * scale);
         let index =
@@ -72,7 +72,7 @@ fn jacobi_gives_eigenvectors() {
     for (value, vector) in values.iter().zip(vectors.chunks_exact(n)) {
         for (line, own) in matrix.chunks_exact(n).zip(vector) {
             let image: f64 = line.iter().zip(vector).map(|(a, b)| a * b).sum();
-            // The sweeps end when the elements off the diagonal are 1e-12 of the diagonal.
+            // The sweeps end when the off-diagonal elements are 1e-12 of the diagonal.
             assert!(
                 (image - value * own).abs() < 1e-11,
                 "{image} is not {value} times {own}"

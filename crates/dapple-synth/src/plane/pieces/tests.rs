@@ -1,4 +1,4 @@
-//! Pieces and differences of textures in the plane.
+//! Tests for pieces and differences of textures in the plane.
 
 use crate::{Edges, Exemplar, PlaneTexture, SynthErrorKind};
 use dapple_hash::{Seed, hash2, unit_f32};
@@ -6,7 +6,7 @@ use dapple_raster::Raster;
 
 const SIZE: [u32; 2] = [13, 11];
 
-/// Noise, different for each channel.
+/// Returns noise that is different for each channel.
 fn noise(channel: u64) -> Raster<f32> {
     let value = |x: u32, y: u32| {
         let place = [x, y].map(i64::from);
@@ -19,7 +19,7 @@ fn exemplar(edges: Edges) -> Exemplar {
     Exemplar::from_planes(&[(&noise(0), 1.0), (&noise(1), 0.25)], edges).unwrap()
 }
 
-/// A texture with the sources that a function returns.
+/// Returns a texture with the sources that a function returns.
 fn texture(
     edges: [Edges; 2],
     exemplar_edges: Edges,
@@ -29,7 +29,8 @@ fn texture(
     PlaneTexture::from_sources(sources, edges, SIZE, exemplar_edges).unwrap()
 }
 
-/// The sources of blocks of 4 × 3 pixels, each from another place. Some reach past the edges of an exemplar that wraps.
+/// Returns sources in blocks of 4 × 3 pixels, each from a different position. Some reach past the edges of an exemplar
+/// that wraps.
 fn blocks(x: u32, y: u32) -> [u32; 2] {
     let shift = (hash2(Seed(3), [x / 4, y / 3].map(i64::from), 0) >> 40) as u32;
     [(x + shift) % SIZE[0], (y + shift / 7) % SIZE[1]]
@@ -47,7 +48,7 @@ fn copies_are_one_piece_and_random_pixels_one_each() {
             .iter()
             .all(|&piece| piece == 0)
     );
-    // Where the exemplar's edges are cut, sources that wrap around split the texture into pieces.
+    // If the exemplar's edges are cut, sources that wrap around split the texture into pieces.
     let cut = texture([Edges::Cut; 2], Edges::Cut, |x, y| {
         [(x + 5) % 13, (y + 9) % 11]
     });
@@ -69,7 +70,7 @@ fn pieces_are_those_that_joining_pairs_of_pixels_finds() {
         for exemplar_edges in [Edges::Cut, Edges::Wrap] {
             let texture = texture(edges, exemplar_edges, blocks);
             let mut expected: Vec<u32> = (0..16 * 12).collect();
-            // Both pixels of each pair take the smaller label, until nothing changes.
+            // Both pixels of each pair take the smaller label, until no label changes.
             let mut last = Vec::new();
             while last != expected {
                 last.clone_from(&expected);

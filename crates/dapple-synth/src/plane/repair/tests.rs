@@ -1,4 +1,4 @@
-//! Repairs compared with an exhaustive search, and tiles.
+//! Tests repairs against an exhaustive search, and tiles.
 
 use crate::{
     Candidates, CoarserCenter, Coherence, Edges, Exemplar, Options, Pass, PlaneTexture, Pyramid,
@@ -8,7 +8,7 @@ use core::ops::ControlFlow;
 use dapple_hash::{Seed, hash2, unit_f32};
 use dapple_raster::{Raster, Wrap};
 
-/// Smooth noise with a period of `period` pixels.
+/// Returns smooth noise with a period of `period` pixels.
 fn noise(size: [u32; 2], period: u32) -> Raster<f32> {
     let value = |x: u32, y: u32| {
         let cell = [x % period / 2, y % period / 3].map(i64::from);
@@ -17,7 +17,7 @@ fn noise(size: [u32; 2], period: u32) -> Raster<f32> {
     Raster::from_fn(size, value).unwrap()
 }
 
-/// The exemplar of a plane with wrong values in its hole, which a mask excludes.
+/// Returns the exemplar of a plane with wrong values in its hole, which a mask excludes.
 fn damaged(size: [u32; 2], edges: Edges, hole: &Raster<bool>) -> Exemplar {
     let plane = noise(size, 64);
     let plane = plane.zip_map(hole, |&value, &is_off| if is_off { 9.0 } else { value });
@@ -26,7 +26,7 @@ fn damaged(size: [u32; 2], edges: Edges, hole: &Raster<bool>) -> Exemplar {
     exemplar.with_mask(&mask).unwrap()
 }
 
-/// Options under which the smallest distance always wins.
+/// Returns options with which the smallest distance always wins.
 fn least(n_levels: usize) -> Options {
     Options {
         n_levels,
@@ -41,7 +41,7 @@ fn repaired(exemplar: &Exemplar, hole: &Raster<bool>, options: &Options) -> Plan
     whole.repair(exemplar, hole, options, keep_on).unwrap()
 }
 
-/// The sources of a level in the oracle, and which of them are synthesized.
+/// Sources of a level in the oracle, and which of them are synthesized.
 struct NaiveLevel {
     size: [u32; 2],
     sources: Vec<[i64; 2]>,
@@ -72,7 +72,7 @@ impl Naive<'_> {
         0.25 * ((at([0, 0]) + at([1, 0])) + (at([0, 1]) + at([1, 1])))
     }
 
-    /// The source that all sites around a site predict for it; on its own level the site itself is included.
+    /// Returns the source that all sites around a site predict for it; on its own level the site itself is included.
     fn piece(&self, pass: &Pass, site: [u32; 2]) -> Option<[i64; 2]> {
         let part = &pass.parts[0];
         let level = pass.level + usize::from(part.reads == Reads::Coarser);
@@ -167,7 +167,7 @@ impl Naive<'_> {
     }
 }
 
-/// The oracle's sources of a repair whose hole is one rectangle on the coarsest level.
+/// Returns the oracle's sources of a repair whose hole is a single rectangle on the coarsest level.
 fn naive(exemplar: &Exemplar, hole: &Raster<bool>, n_levels: usize) -> Vec<[u32; 2]> {
     let pyramid = exemplar.pyramid(n_levels).unwrap();
     let wrap = match exemplar.edges() {
@@ -211,7 +211,7 @@ fn naive(exemplar: &Exemplar, hole: &Raster<bool>, n_levels: usize) -> Vec<[u32;
     sources.map(|source| source.map(|at| at as u32)).collect()
 }
 
-/// Fills a hole inside of a level with the piece whose surroundings are most similar.
+/// Fills a hole within a level with the piece whose surroundings are most similar.
 fn fit(level: &mut NaiveLevel, exemplar: &Exemplar) {
     let [width, height] = level.size.map(i64::from);
     let at = |x: i64, y: i64| (y * width + x) as usize;
@@ -311,7 +311,7 @@ fn repairs_do_not_depend_on_threads() {
 
 #[test]
 fn what_is_larger_than_all_else_begins_with_random_pixels() {
-    // The hole is larger than the rest of the image: no piece is as large.
+    // The hole is larger than the rest of the image, so no piece is as large.
     let hole = Raster::from_fn([64, 64], |x, _| x >= 24).unwrap();
     let exemplar = damaged([64, 64], Edges::Cut, &hole);
     let options = least(1);
@@ -398,8 +398,8 @@ fn tiles_of_what_repeats_repeat_it() {
     assert_eq!(both.sources().size(), [72, 48], "the largest that repeats");
     let across = tile(&plane, [true, false], 12);
     assert_eq!(across.sources().size(), [72, 60], "one axis");
-    // Where an axis does not repeat, neighborhoods near its edges include mirrored rows: 3 on the coarsest level, times
-    // the finest rows per row of that level.
+    // If an axis does not repeat, neighborhoods near its edges include mirrored rows: 3 on the coarsest level, times
+    // the number of finest rows per row of that level.
     for (texture, edge) in [(both, 0), (across, 16)] {
         let made = texture.transfer(&plane).unwrap();
         for row in edge..made.height() - edge {
@@ -469,8 +469,8 @@ fn strips_that_are_too_wide_or_too_narrow_are_refused() {
 }
 
 /// Repairs holes across the border of an image that is 1 inside and 0 outside. The border is `margin` pixels from the
-/// right side; the test rotates the image to each side. `half` is half of the width and height of the holes, which end
-/// at least two pixels before the side. Returns the number of wrong pixels for each side.
+/// right side; the test rotates the image to each side. Holes extend `half` pixels in each direction, and end at least
+/// two pixels before the side. Returns the number of wrong pixels for each side.
 fn wrong_at_borders(
     side: u32,
     margin: u32,

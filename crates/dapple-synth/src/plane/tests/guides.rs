@@ -1,4 +1,4 @@
-//! Textures in the plane with guides.
+//! Tests for textures in the plane with guides.
 
 use super::naive::naive_guided;
 use super::{exemplar, paper};
@@ -9,14 +9,14 @@ use crate::{
 use core::ops::ControlFlow;
 use dapple_raster::Raster;
 
-/// Guides whose values, also on coarser levels, are exact in `f32`.
+/// Returns guides whose values are exact in `f32`, on coarser levels too.
 fn guides(size: [u32; 2]) -> [Raster<f32>; 2] {
     let left = Raster::from_fn(size, |x, _| f32::from(x < size[0] / 2)).unwrap();
     let rows = Raster::from_fn(size, |_, y| f32::from(y as u8 / 4 % 4) / 4.0).unwrap();
     [left, rows]
 }
 
-/// An exemplar with [`guides`], each with the weight 1.
+/// Returns an exemplar with [`guides`], each with weight 1.
 fn guided_exemplar(size: [u32; 2], edges: Edges) -> Exemplar {
     let [left, rows] = guides(size);
     let guides = [(&left, 1.0), (&rows, 1.0)];
@@ -51,7 +51,7 @@ fn guided_textures_equal_the_pseudo_code() {
 #[test]
 fn guides_say_where_parts_of_the_exemplar_go() {
     let exemplar = guided_exemplar([64, 64], Edges::Wrap);
-    // Guides with left and right exchanged, and rows unchanged.
+    // Guides with left and right swapped, and rows unchanged.
     let [left, rows] = guides([64, 64]);
     let right = left.map(|left| 1.0 - left);
     let made = synthesize_plane_guided(
@@ -71,7 +71,7 @@ fn guides_say_where_parts_of_the_exemplar_go() {
         obeyed[0] += u32::from(value(&left, source) == value(&right, [x, y]));
         obeyed[1] += u32::from(value(&rows, source) == value(&rows, [x, y]));
     }
-    // Sites next to the borders of guides may differ, where a piece continues across.
+    // Sites next to the borders of guides may differ if a piece continues across the border.
     assert!(obeyed[0] > 64 * 60, "sides: {obeyed:?}");
     assert!(obeyed[1] > 64 * 50, "rows: {obeyed:?}");
 }

@@ -1,4 +1,4 @@
-//! The paper's pseudo-code, implemented literally.
+//! The paper's pseudocode, implemented literally.
 
 use crate::plane::SLANT;
 use crate::{
@@ -8,18 +8,19 @@ use crate::{
 use dapple_hash::hash1;
 use dapple_raster::{Raster, Wrap};
 
-/// The colors and sources of a level in the oracle.
+/// Colors and sources of a level in the oracle.
 struct NaiveLevel {
     size: [u32; 2],
     wrap: [Wrap; 2],
     colors: Vec<Vec<f32>>,
     sources: Vec<u32>,
-    /// The values of all guides at each site.
+    /// Values of all guides at each site.
     guides: Vec<Vec<f32>>,
 }
 
 impl NaiveLevel {
-    /// The color at a place in half pixels: a pixel, or the mean of the two or four pixels around it.
+    /// Returns the color at a position in half pixels: a pixel, or the mean of the two or four pixels around the
+    /// position.
     fn color(&self, halves: [i64; 2], channel: usize) -> f32 {
         let at = |step: [i64; 2]| {
             let [x, y] = [0, 1].map(|axis| {
@@ -33,7 +34,7 @@ impl NaiveLevel {
     }
 }
 
-/// The next coarser level of a guide: means with the products of the weights 1-4-6-4-1.
+/// Returns the next coarser level of a guide: means with the products of the weights 1-4-6-4-1.
 fn coarser_guide(guide: &Raster<f32>, wrap: [Wrap; 2]) -> Raster<f32> {
     let weights = [1.0, 4.0, 6.0, 4.0, 1.0];
     let mean = |x: u32, y: u32| {
@@ -49,7 +50,7 @@ fn coarser_guide(guide: &Raster<f32>, wrap: [Wrap; 2]) -> Raster<f32> {
     Raster::from_fn(guide.size().map(|side| side.div_ceil(2)), mean).unwrap()
 }
 
-/// The paper's pseudo-code for any schedule: every site compares with all candidates, in the order of the sweep.
+/// Runs the paper's pseudocode for any schedule: every site compares with all candidates, in the order of the sweep.
 pub(super) fn naive(
     exemplar: &Exemplar,
     size: [u32; 2],
@@ -59,7 +60,7 @@ pub(super) fn naive(
     naive_guided(exemplar, &[], size, edges, options)
 }
 
-/// The pseudo-code for a texture with guides of weight 1.
+/// Runs the pseudocode for a texture with guides of weight 1.
 pub(super) fn naive_guided(
     exemplar: &Exemplar,
     guides: &[&Raster<f32>],
