@@ -32,7 +32,7 @@
 //! - Parts of the exemplar that the texture uses too often cost more from pass to pass, as in endless textures.
 //!
 //! If the orientation field has a symmetry, the first pass determines the rotation of the exemplar at the coarsest
-//! sites, and finer sites take the rotation of the nearest coarsest site. A site continues only neighbors with the same
+//! sites, and finer sites take the rotation of the nearest coarser site. A site continues only neighbors with the same
 //! rotation; at the others it reads the features of the rotated exemplar.
 //!
 //! Guides are compared along with the features. The position predicted by the coarser level may have guides far from

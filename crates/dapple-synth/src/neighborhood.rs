@@ -165,8 +165,8 @@ impl Schedule {
         Self { passes }
     }
 
-    /// Returns the schedule of a [repair](crate::PlaneTexture::repair): F(7, 0) eight times on the coarsest level, F(7,
-    /// 0) + F(3, 1) four times on each finer level except the finest, and F(5, 0) + F(3, 1) twice on the finest.
+    /// Returns the schedule of a [repair](crate::PlaneTexture::repair): F(7, 0) eight times on the coarsest level,
+    /// F(7, 0) + F(3, 1) four times on each finer level except the finest, and F(5, 0) + F(3, 1) twice on the finest.
     ///
     /// Measured on 33 photographs of 128 × 128 pixels with three holes of 39 × 39 each. Windows of 7 × 7 pixels in and
     /// near a hole, compared with those of the photograph, have a distance that is 3 % less than with the schedule for

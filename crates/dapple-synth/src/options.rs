@@ -81,14 +81,14 @@ pub enum Coherence {
 /// Permitted excess squared distance of coherent matches, relative to the smallest; at least 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CoherenceFactors {
-    /// Excess in passes that read no coarser level.
+    /// Permitted excess in passes that read no coarser level.
     pub(crate) initial: f32,
-    /// Excess in passes that read a coarser level.
+    /// Permitted excess in passes that read a coarser level.
     pub(crate) finer: f32,
 }
 
 impl Coherence {
-    /// Returns the factors to use with an exemplar.
+    /// Returns the excess permitted for an exemplar, in passes without and with a coarser level.
     pub(crate) fn factors(self, exemplar: &Exemplar) -> CoherenceFactors {
         let (factor, is_least) = match self {
             Self::Auto => (2.0, exemplar.regularity() > REGULAR),
@@ -210,8 +210,8 @@ impl Options {
     ///
     /// # Errors
     ///
-    /// If the number of levels is not from 1 to 16, the coherence is negative or not finite, or the evenness is not
-    /// from 0 to 1000. Also the same as [`Schedule::check`].
+    /// If the number of levels is not from 1 to 16, if the coherence is negative or not finite, or if the evenness is
+    /// not from 0 to 1000. Otherwise same as [`Schedule::check`].
     pub(crate) fn passes(&self) -> Result<Schedule, SynthError> {
         if !(1..=16).contains(&self.n_levels) {
             return Err(SynthError::new(SynthErrorKind::Count {

@@ -12,7 +12,7 @@
 //!   the way down each level mixes in the known vectors by their weights, so that a site with a direction gets exactly
 //!   that direction;
 //! * the diffusion on the coarsest level is initialized breadth first and then solved by conjugate gradients. Repeated
-//! averaging would take as many iterations as the square of the number of sites across the surface;
+//!   averaging would take as many iterations as the square of the number of sites across the surface;
 //! * on every finer level a few sweeps of equation 4 remove the facets of interpolation;
 //! * a connected component of the surface without any given direction is oriented along a fixed axis.
 //!
@@ -48,7 +48,7 @@ const LEAST_TANGENT_SQ: f64 = 1e-6;
 pub struct Direction {
     /// Position in space, in units of the mesh. The direction applies to the nearest site.
     pub at: DVec3,
-    /// Vector of any length. The direction of its projection to the tangent plane is used.
+    /// Vector of any length. The direction of its projection onto the tangent plane is used.
     pub vector: DVec3,
 }
 
@@ -82,7 +82,7 @@ impl Orientation {
     /// Interpolates `directions` over the surface. Connected components without any direction are oriented along
     /// [`AXIS`](Self::AXIS).
     ///
-    /// Each direction is projected to the tangent plane of its nearest site. Several directions at one site are
+    /// Each direction is projected onto the tangent plane of its nearest site. Several directions at one site are
     /// averaged; if they cancel, the site counts as having none.
     ///
     /// # Errors
@@ -168,7 +168,7 @@ impl Orientation {
         self.symmetry
     }
 
-    /// Returns the one of a site's equivalent directions that is nearest to a vector.
+    /// Returns the direction nearest to a vector, among a site's equivalent directions.
     #[inline]
     pub(crate) fn nearest(&self, normals: &[DVec3], site: usize, vector: DVec3) -> DVec3 {
         self.symmetry

@@ -26,7 +26,7 @@ pub(crate) struct Turns {
 }
 
 impl Turns {
-    /// Sequential schedule: every turn waits for all turns before it.
+    /// Builds a sequential schedule, in which every turn waits for all turns before it.
     pub(crate) fn in_order(order: Vec<u32>) -> Self {
         Self {
             waits: (0..order.len() as u32).collect(),

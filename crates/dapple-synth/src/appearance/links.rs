@@ -23,8 +23,8 @@ const CORNER: f32 = 1.6;
 const REACH: f32 = 1.1;
 
 /// Maximum distance between features, in multiples of the spacing of the sites that are read. Only on the coarsest
-/// level are pixels of the exemplar larger; there, reading twelve rings of sites around each site would take most of
-/// the time.
+/// level are the exemplar's pixels larger than this. There, reading twelve rings of sites around each site would take
+/// most of the time.
 const MAX_SPACINGS: f32 = 3.0;
 
 /// Number of sites that a task processes.
@@ -82,7 +82,7 @@ impl Link {
         (self.turned_site & ((1 << SITE_BITS) - 1)) as usize
     }
 
-    /// Rotation of the exemplar at the linked site relative to this site, in quarter turns.
+    /// Returns the rotation of the exemplar at the linked site relative to this site, in quarter turns.
     #[inline]
     pub(super) fn quarters(&self) -> u8 {
         (self.turned_site >> SITE_BITS) as u8

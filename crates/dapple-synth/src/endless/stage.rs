@@ -411,7 +411,7 @@ impl Stage {
         self.usable(beside).unwrap_or(parent)
     }
 
-    /// Returns a pixel moved into the exemplar if the exemplar wraps, or `None` if the pixel is not usable.
+    /// Returns the pixel at `place`, wrapped if the exemplar wraps, or `None` if the pixel is not usable.
     #[inline(always)]
     pub(crate) fn usable(&self, mut place: [i64; 2]) -> Option<[i64; 2]> {
         for (at, side) in place.iter_mut().zip(self.size) {

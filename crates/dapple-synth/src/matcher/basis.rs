@@ -32,7 +32,7 @@ struct Effort {
 }
 
 impl Effort {
-    /// Stride of the sample in rows, at least 1.
+    /// Returns the stride of the sample in rows, at least 1.
     fn step(&self, dims: usize, rows: &[f32]) -> usize {
         (rows.len() / dims).div_ceil(self.sample).max(1)
     }
@@ -350,7 +350,7 @@ fn orthonormalize(dims: usize, directions: &mut [f64]) {
     }
 }
 
-/// Dot product with eight partial sums.
+/// Returns the dot product, computed with eight partial sums.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 8];
     let (a_8, a) = a.as_chunks::<8>();

@@ -7,12 +7,12 @@ use dapple_hash::{Seed, hash2, unit_f32};
 use dapple_raster::simd::for_every_level;
 use proptest::prelude::*;
 
-/// Reference: compares with all rows.
+/// Finds the nearest row by comparing with all rows (reference).
 fn brute_force(dims: usize, rows: &[f32], query: &[f32], below: f32) -> Option<Match> {
     brute_force_times(dims, rows, query, below, |_| 1.0)
 }
 
-/// Reference with a factor for each row.
+/// Finds the nearest row like [`brute_force`], with a factor for each row (reference).
 fn brute_force_times(
     dims: usize,
     rows: &[f32],

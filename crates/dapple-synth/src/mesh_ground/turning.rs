@@ -131,7 +131,8 @@ mod tests {
         Orientation::from_fn(hierarchy, |at, normal| normal.cross(at - center))
     }
 
-    /// Maximum distance of the samples above and below the center of a square from the circle through it, in spacings.
+    /// Returns the maximum distance of the samples above and below the center of a square from the circle of the field
+    /// through that center, in multiples of the spacing.
     fn off_circle(hierarchy: &Hierarchy, site: SiteIdx, turning: Turning) -> f64 {
         let surface = Surface::new(square()).unwrap();
         let orientation = circles(hierarchy, CENTER);
