@@ -38,7 +38,7 @@ const MAX_PIXELS: u64 = 1 << 26;
 /// Slant of a wavefront, in columns to the left per row: one more than the reach of a 7 × 7 neighborhood.
 const SLANT: u32 = 4;
 
-/// A texture in the plane: the source pixel in the exemplar of every pixel.
+/// A texture in the plane, stored as the source pixel in the exemplar for every texture pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaneTexture {
     sources: Raster<[u32; 2]>,

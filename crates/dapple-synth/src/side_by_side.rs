@@ -179,7 +179,7 @@ impl SideBySide {
         })?)
     }
 
-    /// Joins all normal maps into one. Normals have green up, and are rotated and mirrored with their images; pixels
+    /// Joins all normal maps into one. Green points up. Normals are rotated and mirrored with their images; pixels
     /// without an image are flat.
     ///
     /// If images are rotated or mirrored, codes adjacent to the middle count as 0 (see [`Normal::centered`]), so that

@@ -14,9 +14,9 @@
 //! * interpolation adds the distance along the field from each coarser site to the new one. Then 20 sweeps of equation
 //!   5 follow, with 0.2 for α and 0.8 for the sum of the β;
 //! * where the field circles around a point or a tube, no distance can increase along it everywhere. In a least-squares
-//!   solution it would not increase there at all. So predictions that are off by about a spacing or more get less weight
-//!   (Cauchy's weights). The error is then concentrated in a tear, a line across which the order jumps, and the distance
-//!   increases everywhere else;
+//!   solution it would not increase there at all. So predictions that are off by about a spacing or more get less
+//!   weight (Cauchy's weights). The error is then concentrated in a tear, a line across which the order jumps, and the
+//!   distance increases everywhere else;
 //! * in a field with a symmetry, edges between neighbors with different rotations cross a cut and have weight 0. Cuts
 //!   connect singularities, so nearly all of a component is still reached;
 //! * every connected component of a level has its own anchor, and components are swept one after another.
