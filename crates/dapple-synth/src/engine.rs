@@ -83,8 +83,8 @@ impl<'a> Wanted<'a> {
     }
 }
 
-/// Runs the passes of the options. Returns, for each level from the finest, the exemplar pixel of each site, as `row *
-/// width + column` in that level of the pyramid. A level that no pass visited has an empty list.
+/// Runs the passes of the options. Returns, for each level from the finest, the exemplar pixel of each site, as
+/// `row * width + column` in that level of the pyramid. A level that no pass visited has an empty list.
 pub(crate) fn run<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,

@@ -89,8 +89,8 @@ impl Synthesizer {
         })
     }
 
-    /// Sets the size of an exemplar pixel at each site, in multiples of the spacing, from 1/8 to 8. By default all are
-    /// 1.
+    /// Sets the size of an exemplar pixel at each site, in multiples of the spacing, from 1/8 to 8. By default, all
+    /// are 1.
     ///
     /// Above 1, the texture is smoother than the sites could represent. Below 1, it loses detail that more sites could
     /// represent.

@@ -96,7 +96,7 @@ struct State<'a> {
 }
 
 impl<'a, G: Ground> Visit<'a, G> {
-    /// Sets up a pass: sampling tables, the candidates' index, and the terms of a query.
+    /// Sets up a pass: builds the sampling tables, the search index over the candidates, and the terms of a query.
     pub(crate) fn new(
         ground: &'a G,
         pyramid: &'a Pyramid,
