@@ -1,12 +1,12 @@
-//! Attributes of control points, by small functions that can be combined.
+//! Functions that compute attributes of control points. They can be combined.
 //!
 //! Reference: Jack Caron and David Mould, "Partition of Unity Parametrics for Texture Synthesis", Graphics Interface
 //! 2013, section 3: control points get their attributes "randomly, according to spatial location or graph connectivity,
 //! or according to a reference image".
 //!
-//! Every function returns a column: one value, label or vector for each control point, in order. Random attributes
-//! depend only on the seed and the index of the point, so a point that keeps its index keeps its attribute. Use a
-//! separate seed for each column: [`Seed::child`](dapple_hash::Seed::child).
+//! Every function returns one value, label or vector for each control point, in the order of the points. Random
+//! attributes depend only on the seed and the point's index, so a point that retains its index retains its attribute.
+//! Use a separate seed for each attribute: [`Seed::child`](dapple_hash::Seed::child).
 
 mod groups;
 mod labels;

@@ -1,31 +1,31 @@
-//! A grid of bins that lists the control points that can have a weight in each bin.
+//! A grid of bins. Each bin lists the control points that can have a weight in it.
 //!
-//! Every bin lists the instances whose supports intersect it, in the order of summation. So the time for a position
-//! does not depend on the number of points. The grid covers the domain. On an axis that does not wrap, the bins at the
-//! border extend to the limits of the evaluated positions.
+//! Every bin lists the instances whose supports intersect it, in the order of summation. So the time to evaluate a
+//! position does not depend on the number of points. The grid covers the domain. On an axis that does not wrap, the
+//! border bins extend to the limits of the evaluated positions.
 //!
-//! With many points, evaluation waits for memory, so the data is compact and local. A bin has 16 bytes. Its numbers
-//! refer to records, which are sorted by strips of bins and by column. So the candidates of a position are near each
-//! other in memory, whatever the order of the points.
+//! With many points, evaluation is limited by memory latency, so the data is compact and local. A bin takes 16 bytes.
+//! Its numbers refer to records, which are sorted by strips of bins and by column. So the candidates of a position are
+//! near each other in memory, whatever the order of the points.
 
 use crate::net::{AxisBlock, BLOCK, Instance, Net};
 use glam::DVec2;
 
-/// Number of bins for each instance. More bins mean fewer candidates in each, and more memory. With 3, a position has
-/// about 7 candidates, 4 of them with a weight, and mostly no more than fit into a bin.
+/// Number of bins for each instance. More bins mean fewer candidates in each, but more memory. With 3, a position has
+/// about 7 candidates, of which 4 have a nonzero weight. Most bins then hold all their candidates.
 const BINS_PER_INSTANCE: f64 = 3.0;
 
 /// Maximum number of bins along one axis.
 const BINS_LIMIT: f64 = 16_384.0;
 
-/// Number of rows of bins in a strip.
+/// Height of a strip, in bins.
 const STRIP: usize = 4;
 
 /// Number of candidates that are evaluated together.
 pub(crate) const GROUP: usize = 8;
 
-/// Up to eight candidates, in order, as the indices of their records relative to the strip's base; or the index of a
-/// list elsewhere.
+/// Up to eight candidates, in order, as indices of their records relative to the strip's base. If they do not fit, the
+/// index of a list in [`Bins::crowded`].
 #[derive(Clone, Copy, Debug)]
 #[repr(align(16))]
 struct Bin([u16; GROUP]);
@@ -37,7 +37,7 @@ impl Bin {
     /// more than eight, or a record is too far from the base. The next two elements are the halves of the list's index.
     const ELSEWHERE: u16 = Self::NONE - 1;
 
-    /// Packs candidates into a bin, with records counted from `base`; `None` if they do not fit.
+    /// Packs candidates into a bin, with record indices relative to `base`. Returns `None` if they do not fit.
     fn of(candidates: &[u32], base: u32) -> Option<Self> {
         let mut bin = Self([Self::NONE; GROUP]);
         for (index, &candidate) in candidates.iter().enumerate() {
@@ -50,27 +50,28 @@ impl Bin {
 
     fn elsewhere(start: u32) -> Self {
         let mut bin = Self([Self::NONE; GROUP]);
-        // Split the index into its halves.
+        // Split the index into two halves.
         bin.0[..3].copy_from_slice(&[Self::ELSEWHERE, start as u16, (start >> 16) as u16]);
         bin
     }
 }
 
-/// Bit that marks a candidate with more axes than a block holds. Fewer than 2^30 instances fit into memory.
+/// Flags a candidate with more axes than a block holds. Indices do not need this bit, since fewer than 2^30 instances
+/// fit into memory.
 const LONG: u32 = 1 << 30;
 
 /// Marks the end of a crowded bin's candidates.
 const END: u32 = u32::MAX;
 
-/// Up to eight candidates, ready for evaluation.
+/// Up to eight candidates, unpacked for evaluation.
 pub(crate) struct Candidates {
-    /// Their records; 0 in unused slots.
+    /// The candidates' record indices; 0 in unused slots.
     pub(crate) records: [u32; GROUP],
     /// 1 for a candidate, 0 for an unused slot.
     pub(crate) ones: [f32; GROUP],
-    /// A bit for each candidate with more axes than a block holds.
+    /// Bit mask of the candidates with more axes than a block holds.
     pub(crate) long: u32,
-    /// Index in `crowded` of the next candidates, if there are more.
+    /// Index in `crowded` of the next candidates; `None` if there are no more.
     pub(crate) next: Option<u32>,
 }
 
@@ -80,26 +81,26 @@ pub(crate) struct Bins {
     /// Numbers of columns and rows of bins.
     size: [usize; 2],
     origin: DVec2,
-    /// Bins per unit of length, along each axis.
+    /// Number of bins per unit of length, along each axis.
     per_unit: DVec2,
     bins: Vec<Bin>,
-    /// For each strip of bins, the record from which its bins count.
+    /// For each strip of bins, the record index that the strip's bins are relative to.
     bases: Vec<u32>,
-    /// Candidates of bins that are listed outside of them, each list followed by [`END`].
+    /// Candidate lists of bins that cannot hold their candidates. Each list ends with [`END`].
     crowded: Vec<u32>,
-    /// First block of axes of each record.
+    /// First block of axes for each record.
     pub(crate) axes: Vec<AxisBlock>,
     pub(crate) centers: Vec<DVec2>,
-    /// Indices of the records' instances.
+    /// Instance index for each record.
     pub(crate) instances: Vec<u32>,
-    /// Control points of the records.
+    /// Control point index for each record.
     pub(crate) points: Vec<u32>,
 }
 
 impl Bins {
     pub(crate) fn new(net: &Net) -> Self {
         let size = net.domain.size;
-        // Choose the side of square bins by the wanted number of bins.
+        // Choose the side length of square bins for the target number of bins.
         let side = (size.x * size.y / (net.instances.len() as f64 * BINS_PER_INSTANCE)).sqrt();
         let count = |axis: usize| (size[axis] / side).ceil().clamp(1.0, BINS_LIMIT);
         let counts = DVec2::new(count(0), count(1));
@@ -121,7 +122,7 @@ impl Bins {
         bins
     }
 
-    /// The first candidates at a position in the range of [`Net::local`].
+    /// Returns the first candidates at a position, which must be in the range of [`Net::local`].
     #[inline(always)]
     pub(crate) fn first_candidates(&self, position: DVec2) -> Candidates {
         let row = self.bin(1, position.y);
@@ -145,7 +146,7 @@ impl Bins {
         }
     }
 
-    /// The next candidates of a crowded bin, from an index in `crowded` on.
+    /// Returns the next candidates of a crowded bin, starting at index `start` of `crowded`.
     pub(crate) fn next_candidates(&self, start: u32) -> Candidates {
         let mut candidates = Candidates {
             records: [0; GROUP],
@@ -168,7 +169,7 @@ impl Bins {
         candidates
     }
 
-    /// The bin of a coordinate along an axis; positions outside belong to the bins at the border.
+    /// Returns the bin index of a coordinate along an axis. Coordinates outside of the grid belong to the border bins.
     #[inline(always)]
     fn bin(&self, axis: usize, coordinate: f64) -> usize {
         // The conversion turns negative numbers into zero.
@@ -219,7 +220,7 @@ impl Bins {
                 }
             }
         }
-        // Counting sort: accumulate the counts, and place the candidates.
+        // Counting sort: accumulate the counts, and store the candidates.
         for bin in 1..offsets.len() {
             offsets[bin] += offsets[bin - 1];
         }
@@ -255,7 +256,8 @@ impl Bins {
         }
     }
 
-    /// Whether the support of an instance may intersect a bin: no axis has `u <= 0` at all four corners.
+    /// Returns whether an instance's support may intersect a bin. It cannot if some axis has `u <= 0` at all four
+    /// corners.
     fn touches(&self, net: &Net, instance: &Instance, bin: [usize; 2]) -> bool {
         let [x, y] = [0, 1].map(|axis| {
             self.ends(net, axis, bin[axis])
@@ -274,7 +276,7 @@ impl Bins {
             .all(|block| (0..BLOCK).all(|slot| can_weigh(block, slot)))
     }
 
-    /// Bounds of a bin along an axis, with a margin for rounding.
+    /// Returns the bounds of a bin along an axis, with a margin for rounding.
     fn ends(&self, net: &Net, axis: usize, bin: usize) -> [f64; 2] {
         let (origin, size) = (net.domain.origin[axis], net.domain.size[axis]);
         let side = 1.0 / self.per_unit[axis];

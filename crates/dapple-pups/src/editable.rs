@@ -1,8 +1,8 @@
 //! A texture whose control points can be inserted, moved, removed and changed one by one, as in an editor.
 //!
 //! An edit changes the weights of the point, and of all points that it is or was connected to, within their supports.
-//! So an edit returns the rectangles in which it changed the texture. The net of a window is built from the points
-//! whose supports intersect it, in order, which gives the bits of the whole net.
+//! So an edit returns the rectangles in which it changed the texture. To render a window, a net is built only from the
+//! points whose supports intersect the window, in order, which gives the same bits as the whole net.
 
 use crate::net::Net;
 use crate::support::padded_box;
@@ -17,14 +17,14 @@ use dapple_raster::{RasterViewMut, Window};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
-/// Maximum number of copies of a rectangle in an image that get separate windows.
+/// Maximum number of periodic copies of a rectangle that get separate windows of an image.
 const COPIES_LIMIT: f64 = 64.0;
 
-/// A texture of control points that can be edited. It always equals [`control_points`](crate::control_points) of the
-/// same points, bit for bit.
+/// An editable texture of control points. It always equals, bit for bit, the texture that
+/// [`control_points`](crate::control_points) builds from the same points.
 ///
-/// An index is a position in [`points`](Self::points). A new point is appended. When a point is removed, the indices
-/// after it decrease by one, as in a list.
+/// A point's index is its position in [`points`](Self::points). A new point is appended. When a point is removed, the
+/// indices after it decrease by one, as in a list.
 ///
 /// The time for an edit of a few points, and for rendering the changed windows, does not depend on the number of
 /// points, if the domain wraps along both axes. Along an axis that does not wrap, supports of points at the border are
@@ -53,36 +53,35 @@ pub struct EditablePups {
     /// Current points, each with its own orientation if there are orientations.
     options: ControlPoints,
     graph: EditableDelaunay,
-    /// Maximum extent of the supports from their points, along each axis.
+    /// Maximum distance that a support extends from its point, along each axis.
     reach: DVec2,
 }
 
-/// A rectangle of the plane that contains all changes of an edit.
+/// A rectangle of the plane in which an edit may change the texture.
 ///
-/// Along an axis that wraps, it starts in the domain, and the part past the domain's end continues at its start. It is
-/// infinite where the supports of points at a border that does not wrap are unbounded.
+/// Along an axis that wraps, the rectangle starts in the domain, and any part beyond the domain's end continues at its
+/// start. The rectangle is infinite where the supports of points at a non-wrapping border are unbounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Changed {
-    /// The corner with the smallest coordinates.
+    /// Corner with the smallest coordinates.
     pub min: DVec2,
-    /// The corner with the largest coordinates.
+    /// Corner with the largest coordinates.
     pub max: DVec2,
 }
 
 impl EditablePups {
-    /// Creates an editable texture. Orientations of the options are assigned to the points.
+    /// Creates an editable texture. Orientations in the options are assigned to the points.
     ///
     /// # Errors
     ///
-    /// The errors of [`control_points`](crate::control_points), and [`Conflict`](PupsErrorKind::Conflict) for points
-    /// that move.
+    /// Same as [`control_points`](crate::control_points), and [`Conflict`](PupsErrorKind::Conflict) if points move.
     pub fn new(mut options: ControlPoints, seed: Seed) -> Result<Self, PupsError> {
         if options.net.motion.is_some() {
             let rule = "points with a `motion` cannot be edited; edit them without it";
             return Err(PupsError::new(PupsErrorKind::Conflict { rule }));
         }
         let points = options.point_set()?;
-        // Check everything that a texture checks.
+        // Make the same checks as for a texture that is not editable.
         let field = crate::control_points(&options, seed)?;
         let nets = field.nets();
         let orientations = nets[0].orientations();
@@ -102,25 +101,25 @@ impl EditablePups {
         Ok(editable)
     }
 
-    /// The points, in the order of their indices.
+    /// Returns the points, in the order of their indices.
     #[must_use]
     pub fn points(&self) -> &[ControlPoint] {
         &self.options.points
     }
 
-    /// The options that make an equal texture.
+    /// Returns the options from which [`control_points`](crate::control_points) builds the same texture.
     #[must_use]
     pub fn options(&self) -> &ControlPoints {
         &self.options
     }
 
-    /// The Delaunay graph of the points.
+    /// Returns the Delaunay graph of the points.
     #[must_use]
     pub fn graph(&self) -> Graph {
         self.graph.to_graph()
     }
 
-    /// Appends a point.
+    /// Appends a point. Returns the changed rectangles.
     ///
     /// # Errors
     ///
@@ -145,7 +144,8 @@ impl EditablePups {
         Ok(self.changed(&stars, [at; 2]))
     }
 
-    /// Moves a point. Along wrapped axes, the position may be past the end of the domain.
+    /// Moves a point. Along wrapped axes, the position may be beyond the end of the domain. Returns the changed
+    /// rectangles.
     ///
     /// # Errors
     ///
@@ -164,7 +164,7 @@ impl EditablePups {
         Ok(self.changed(&stars, [former, position]))
     }
 
-    /// Removes a point; the indices after it decrease by one.
+    /// Removes a point, which decreases the indices after it by one. Returns the changed rectangles.
     ///
     /// # Errors
     ///
@@ -181,12 +181,13 @@ impl EditablePups {
         Ok(self.changed(&stars, [at; 2]))
     }
 
-    /// Sets the value of a point, which replaces its previous value or label, and its orientation.
+    /// Sets a point's value and orientation. The value replaces the point's previous value or label. Returns the
+    /// changed rectangles.
     ///
     /// # Errors
     ///
-    /// [`Graph`](PupsErrorKind::Graph) for an invalid index, and the errors of [`insert`](Self::insert) for a value and
-    /// an orientation. The texture is unchanged after an error.
+    /// [`Graph`](PupsErrorKind::Graph) for an invalid index. If the value or the orientation is invalid, same as
+    /// [`insert`](Self::insert). The texture is unchanged after an error.
     pub fn set(
         &mut self,
         point: PointIdx,
@@ -206,7 +207,7 @@ impl EditablePups {
         Ok(self.changed(&[star], [at; 2]))
     }
 
-    /// Windows of an image's pixels that contain the changed rectangles. They may overlap.
+    /// Returns the windows of the image `picture` that contain the changed rectangles. Windows may overlap.
     #[must_use]
     pub fn windows(&self, changed: &[Changed], picture: &Window) -> Vec<Window> {
         let mut windows = Vec::new();
@@ -215,7 +216,7 @@ impl EditablePups {
             for &(row, n_rows) in &rows {
                 for &(column, n_columns) in &columns {
                     let first = [i64::from(column), i64::from(row)];
-                    // A crop of a window is a window.
+                    // Crop the image to the changed pixels.
                     windows.extend(picture.crop(first, [n_columns, n_rows]));
                 }
             }
@@ -223,7 +224,7 @@ impl EditablePups {
         windows
     }
 
-    /// Renders the values of the texture in a window.
+    /// Renders the texture's values in a window.
     ///
     /// # Errors
     ///
@@ -232,7 +233,7 @@ impl EditablePups {
         Ok(self.field(window)?.render(window, out)?)
     }
 
-    /// The texture of the points whose supports intersect a window.
+    /// Builds the texture of the points whose supports intersect a window.
     fn field(&self, window: &Window) -> Result<Arc<dyn NetField>, PupsError> {
         let [width, height] = window.size;
         let corners = [[0, 0], [width.max(1) - 1, height.max(1) - 1]];
@@ -261,7 +262,7 @@ impl EditablePups {
             .texture(Pups::of_net(net, points), values)
     }
 
-    /// Checks the value and the orientation of a point.
+    /// Checks a point's value and orientation.
     fn check(&self, point: &ControlPoint) -> Result<(), PupsError> {
         for value in self.options.numbers([point])? {
             let (finite, value) = (value.is_finite(), f64::from(value));
@@ -278,7 +279,7 @@ impl EditablePups {
         self.options.net.pups_options(orientation).check(1)
     }
 
-    /// Checks that no axis of the stars is too short, and extends the reach by their supports.
+    /// Checks that no axis of the stars is too short, and extends `reach` to cover their supports.
     fn check_stars(&mut self, point: PointIdx, stars: &[Star]) -> Result<(), PupsError> {
         let options = self.options.net.pups_options(None);
         let mut net = Net::empty(*self.graph.domain(), options, 0)?;
@@ -300,7 +301,8 @@ impl EditablePups {
         }
     }
 
-    /// The bounds of the supports of stars near the two positions of an edit; a single rectangle if they overlap.
+    /// Returns the bounds of the stars' supports near the two positions of an edit. If the two rectangles overlap,
+    /// returns a single one.
     fn changed(&self, stars: &[Star], places: [DVec2; 2]) -> Vec<Changed> {
         let domain = self.graph.domain();
         let [here, there] = places.map(|place| domain.wrap(place));
@@ -328,7 +330,8 @@ impl EditablePups {
         found.map(|changed| changed.begun_in(domain)).collect()
     }
 
-    /// For each image of a rectangle, the first pixel and the number of pixels of `picture` along an axis.
+    /// For each periodic image of a rectangle, returns the first pixel and the number of pixels of `picture` along an
+    /// axis.
     fn pixels(&self, changed: &Changed, picture: &Window, axis: usize) -> Vec<(u32, u32)> {
         let domain = self.graph.domain();
         let n_pixels = picture.size[axis];
@@ -368,7 +371,7 @@ impl EditablePups {
 }
 
 impl Changed {
-    /// The bounds of both rectangles.
+    /// Returns the bounds of both rectangles.
     fn joined(&self, other: &Self) -> Self {
         Self {
             min: self.min.min(other.min),
@@ -376,7 +379,8 @@ impl Changed {
         }
     }
 
-    /// The rectangle shifted to start in the domain; the whole axis if it wraps and the rectangle is at least as long.
+    /// Shifts the rectangle to start in the domain. Along a wrapping axis that is no longer than the rectangle, the
+    /// whole axis is returned.
     fn begun_in(mut self, domain: &Domain) -> Self {
         for axis in (0..2).filter(|&axis| domain.wrap[axis]) {
             let (origin, size) = (domain.origin[axis], domain.size[axis]);

@@ -12,7 +12,7 @@ dapple_raster::error! {
     PupsErrorKind with Range {
         /// No control points, so there is nothing to interpolate.
         NoPoints => "there is no control point";
-        /// A graph or a column of attributes for another number of points.
+        /// The number of elements in a graph or list does not match the number of points.
         Count {
             /// The kind of elements.
             what: &'static str,
@@ -21,7 +21,7 @@ dapple_raster::error! {
             /// Number of elements needed.
             needed: usize,
         } => "there are {count} {what}, but {needed} are needed";
-        /// An axis too short to divide by its length in single precision.
+        /// An axis is too short to divide by its length in single precision.
         ShortAxis {
             /// Index of the axis's control point.
             point: u32,
@@ -30,14 +30,14 @@ dapple_raster::error! {
             /// Minimum length in this domain.
             limit: f64,
         } => "an axis of point {point} has length {length}, but the limit is {limit}";
-        /// An axis of the domain that must wrap, but does not.
+        /// An axis of the domain must wrap, but does not.
         NotWrapped {
             /// Index of the axis: 0 for x, 1 for y.
             axis: usize,
         } => "axis {axis} of the domain must wrap around, but does not";
-        /// A spacing of points that varies, but must be constant.
+        /// The spacing of points varies, but must be constant.
         SpacingVaries => "the spacing of nested points must be the same everywhere";
-        /// Two options that exclude each other, or an option without another one that it needs.
+        /// Two options exclude each other, or an option lacks another one that it requires.
         Conflict {
             /// The violated rule, as a sentence without a period.
             rule: &'static str,
@@ -46,11 +46,11 @@ dapple_raster::error! {
         Cancelled => "the callback asked to stop";
     }
     from {
-        /// An error of making the points.
+        /// Generating the points failed.
         Points(PointsError),
-        /// An error of making the graph.
+        /// Building the graph failed.
         Graph(GraphError),
-        /// An error of the raster or the window.
+        /// The raster or the window is invalid.
         Raster(RasterError),
     }
 }
@@ -64,7 +64,7 @@ impl PupsError {
         }
     }
 
-    /// Converts an error of making points or a graph; cancellation becomes [`PupsErrorKind::Cancelled`].
+    /// Converts an error from generating points or building a graph. Cancellation becomes [`PupsErrorKind::Cancelled`].
     pub(crate) fn of_part(error: impl Into<Self>) -> Self {
         let error = error.into();
         let is_cancelled = match error.kind() {
@@ -78,12 +78,12 @@ impl PupsError {
         }
     }
 
-    /// Checks that a number is in a range.
+    /// Returns an error if `value` is not in `range`.
     pub(crate) fn check_in(range: Range, what: &'static str, value: f64) -> Result<(), Self> {
         Self::check(range.holds(value), what, value, range.text)
     }
 
-    /// Checks the number of elements of a column.
+    /// Returns an error if `count` differs from `needed`.
     pub(crate) fn check_count(what: &'static str, count: usize, needed: usize) -> Result<(), Self> {
         if count == needed {
             Ok(())

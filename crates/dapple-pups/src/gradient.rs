@@ -1,11 +1,11 @@
-//! The gradient of a texture, in closed form.
+//! Computes the gradient of a texture in closed form.
 //!
 //! With `W = Π A(u_r)`, the gradient of a weight is `∇W = Σ_r A'(u_r) ∇u_r Π_{s≠r} A(u_s)`. Here `∇u_r = −a_r` inside
 //! `[0, 1]`, and zero where the projection is clamped (`A'` is zero there anyway). With an orientation, `w' = w^e`, so
 //! `∇w' = e w^(e−1) ∇w + w' ln w ∇e`. For an axis that fades, `∇A^e = e A^(e−1) ∇A`. For equation 3,
 //! `∇T = Σ (T_i − T) ∇W_i / Σ W_i`.
 //!
-//! It is computed in double precision, for one position at a time.
+//! The gradient is computed in double precision, for one position at a time.
 
 use crate::net::{AxisBlock, BLOCK, Instance, Net};
 use crate::pups::LEAST_TOTAL;
@@ -14,10 +14,10 @@ use dapple_raster::{FieldExt as _, Raster, RasterError, Window};
 use glam::DVec2;
 
 impl Texture {
-    /// The gradient of the value at a position, per unit of x and of y.
+    /// Returns the gradient of the value at `position`, per unit of x and of y.
     ///
-    /// At the border of a support, with orientations of strength ½ or more, the texture is not differentiable. The
-    /// gradient there equals the gradient on the side without a weight. At a position that is not finite, both
+    /// With orientations of strength ½ or more, the texture is not differentiable at the border of a support. There the
+    /// result is the gradient of the side on which the weight is zero. At a position that is not finite, both
     /// components are NaN.
     ///
     /// # Examples
@@ -56,7 +56,7 @@ impl Texture {
         }
     }
 
-    /// The gradients at the pixel centers of a window, for example for normal maps.
+    /// Renders the gradients at the pixel centers of a window, for example for normal maps.
     ///
     /// # Errors
     ///
@@ -69,7 +69,7 @@ impl Texture {
     }
 }
 
-/// The weight of an instance and its gradient.
+/// Returns an instance's weight and the gradient of that weight.
 fn weight_and_gradient(net: &Net, instance: &Instance, position: DVec2) -> (f64, DVec2) {
     let offset = position - instance.center;
     let mut weight = 1.0;
@@ -92,14 +92,14 @@ fn weight_and_gradient(net: &Net, instance: &Instance, position: DVec2) -> (f64,
     }
 }
 
-/// An axial weight and its gradient.
+/// Returns an axial weight and its gradient.
 fn axial(weight: AxialWeight, block: &AxisBlock, slot: usize, offset: DVec2) -> (f64, DVec2) {
     let axis = DVec2::new(f64::from(block.x[slot]), f64::from(block.y[slot]));
     let u = (1.0 - axis.dot(offset)).clamp(0.0, 1.0);
     (weight.value(u), axis * -weight.slope(u))
 }
 
-/// The axial weight and its gradient for an axis that fades, from those without fading.
+/// Converts an axial weight and its gradient to those of a fading axis.
 fn faded((value, slope): (f64, DVec2), exponent: f64) -> (f64, DVec2) {
     if value <= 0.0 {
         return (0.0, DVec2::ZERO);
@@ -108,7 +108,7 @@ fn faded((value, slope): (f64, DVec2), exponent: f64) -> (f64, DVec2) {
     (faded, slope * (exponent * faded / value))
 }
 
-/// The weight after equation 4, and its gradient.
+/// Applies equation 4 to a weight and its gradient.
 fn shifted(weight: f64, gradient: DVec2, shift: DVec2, offset: DVec2) -> (f64, DVec2) {
     let distance = offset.length();
     if distance == 0.0 || weight <= 0.0 {

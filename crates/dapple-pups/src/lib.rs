@@ -32,9 +32,9 @@
 //! | animal coats | [`cow`], [`space_giraffe`] |
 //! | a progression from left to right | [`cow_progression`], [`giraffe_progression`], [`label_ramp`] |
 //! | cells after a reference image | [`reference_texture`], [`iterated_reference`] |
-//! | from control points of yours | [`control_points`] |
+//! | from your own control points | [`control_points`] |
 //! | a texture of your own | [`Pups::delaunay`], then [`Pups::texture`]; attributes by [`random_values`], [`biased_labels`], [`grouped_labels`], [`random_orientations`] and others |
-//! | a loop in time | [`NetOptions::motion`], without jumps with [`NetOptions::fade`] |
+//! | looping animation | [`NetOptions::motion`], without jumps with [`NetOptions::fade`] |
 //!
 //! | positions | call | cost with 700 points |
 //! |---|---|---|
@@ -56,15 +56,15 @@
 //!
 //! * Textures are in the plane. They repeat exactly along each axis on which their domain wraps.
 //! * The progressions do not repeat from left to right.
-//! * The distance of control points is at least 1e-9 of the domain's larger side. The size of a domain is from 1e-18 to
-//!   1e18.
+//! * Control points are at least 1e-9 of the domain's larger side apart. The sides of a domain are from 1e-18 to 1e18
+//!   long.
 //! * Positions are `f64`, values `f32`.
 //! * The bits are the same on every machine, at every SIMD level and with any number of threads.
 //!
 //! # Without std
 //!
-//! Not supported. Parts of a net that are computed on demand are in a `OnceLock` of std, `floor` and `sqrt` of `f64`
-//! are methods of std, and `dapple-graph`, `dapple-points` and `dapple-raster` need std.
+//! Not supported. Parts of a net that are computed on demand are stored in std's `OnceLock`, `floor` and `sqrt` of
+//! `f64` are std methods, and `dapple-graph`, `dapple-points` and `dapple-raster` need std.
 //!
 //! # Reference
 //!

@@ -1,11 +1,11 @@
-//! Coordinates of columns or rows: monotonic runs, and the coordinates that an interval touches.
+//! Pixel coordinates along one axis: monotonic runs, and the coordinates inside an interval.
 
 use core::ops::Range;
 
 /// Evenly spaced coordinates.
 pub(crate) struct Line {
     first: f64,
-    /// Coordinates per unit of length, negative if they descend; `None` if they are not evenly spaced.
+    /// Number of coordinates per unit of length, negative if they descend; `None` if they are not evenly spaced.
     per_unit: Option<f64>,
     count: usize,
     /// Maximum offset of a coordinate from its evenly spaced position, in pixels.
@@ -16,7 +16,7 @@ impl Line {
     pub(crate) fn new(coordinates: &[f64]) -> Self {
         let (first, count) = (coordinates[0], coordinates.len());
         let last = coordinates[count - 1];
-        // Coordinates out of range were clamped to the same position, at either end.
+        // Coordinates out of range were clamped to the same value, at either end.
         let goes = |index: usize| coordinates[index] != coordinates[index - 1];
         let even = count > 1 && goes(1) && goes(count - 1);
         let per_unit = even.then(|| (count - 1) as f64 / (last - first));
@@ -30,7 +30,8 @@ impl Line {
         }
     }
 
-    /// Indices of the coordinates that an interval touches; may include a neighbor on either side.
+    /// Returns the indices of the coordinates in the interval from `min` to `max`. May include a neighbor on either
+    /// side.
     #[inline(always)]
     pub(crate) fn touched(&self, min: f64, max: f64) -> Range<usize> {
         let Some(per_unit) = self.per_unit else {
@@ -44,8 +45,8 @@ impl Line {
     }
 }
 
-/// Divides coordinates into maximal monotonic runs, which end where a period ends. A coordinate that is not finite is a
-/// run of its own.
+/// Divides coordinates into maximal monotonic runs, which end where a period ends. A coordinate that is not finite
+/// forms a run of its own.
 ///
 /// All runs ascend or all descend, whichever gives fewer runs.
 pub(crate) fn runs(coordinates: &[f64]) -> Vec<Range<usize>> {

@@ -1,4 +1,4 @@
-//! The control net: control points and their scaled axes, prepared for evaluation.
+//! The control net: control points with their scaled axes, in a form that is fast to evaluate.
 //!
 //! Reference: Jack Caron and David Mould, "Partition of Unity Parametrics for Texture Synthesis", Graphics Interface
 //! 2013, section 2.
@@ -19,20 +19,21 @@ use fearless_simd::{f32x8, prelude::*};
 use glam::DVec2;
 use std::sync::OnceLock;
 
-/// Number of points that are added to a net between two checks for cancellation.
+/// Number of points added to a net between two checks for cancellation.
 const POINTS: u32 = 1 << 13;
 
 /// Number of axes that are evaluated together.
 pub(crate) const BLOCK: usize = 8;
 
-/// Maximum distance of evaluated positions from the origin of an axis that does not wrap, in domain sizes. Positions
-/// farther out are clamped to it: there, the texture is constant along every ray that single precision distinguishes.
+/// Maximum distance of evaluated positions from the domain, in domain sizes, along an axis that does not wrap.
+/// Positions farther away are clamped. Beyond this distance, the texture is constant along every ray that single
+/// precision can distinguish.
 const FAR: f64 = 1_048_576.0;
 
-/// Maximum distance that a support extends, in periods.
+/// Maximum distance that a support extends from its control point, in periods.
 const IMAGES_LIMIT: f64 = 64.0;
 
-/// Eight axes in registers. Unused slots are zero: they project every position to 0 and have the weight 1.
+/// Eight axes, stored as registers. Unused slots are zero, which projects every position to 0 and gives the weight 1.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
 pub(crate) struct AxisBlock {
@@ -41,7 +42,7 @@ pub(crate) struct AxisBlock {
 }
 
 impl AxisBlock {
-    /// A bit for each slot that holds an axis.
+    /// Returns a bit mask of the slots that hold an axis.
     #[inline(always)]
     pub(crate) fn slots<S: Simd>(&self, simd: S) -> u32 {
         let (x, y) = (
@@ -54,7 +55,7 @@ impl AxisBlock {
     }
 }
 
-/// Exponents of the axial weights of a block. They are below 1 for axes that fade, which come first in their block.
+/// Exponents of a block's axial weights. They are below 1 for fading axes, which come first in their block.
 pub(crate) type Exponents = [f32; BLOCK];
 
 /// A control point or one of its periodic images; fills one cache line.
@@ -63,7 +64,7 @@ pub(crate) type Exponents = [f32; BLOCK];
 pub(crate) struct Instance {
     /// Position of the control point or image.
     pub(crate) center: DVec2,
-    /// Bounds of its support; infinite where the support is unbounded.
+    /// Bounds of its support. A side is infinite where the support is unbounded.
     pub(crate) min: DVec2,
     pub(crate) max: DVec2,
     /// Index of the control point.
@@ -76,26 +77,27 @@ pub(crate) struct Instance {
 /// The kind of graph that a net is built from.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum GraphKind {
-    /// The Delaunay graph of the points, so there are no axes to add where a support is open.
+    /// The Delaunay graph of the points. No axes need to be added where a support is open.
     Delaunay,
     /// Any graph.
     Any,
 }
 
-/// All data that weights depend on.
+/// All data that the weights depend on.
 #[derive(Debug)]
 pub(crate) struct Net {
     pub(crate) domain: Domain,
     pub(crate) options: PupsOptions,
     /// Control points and their images in the order of summation: by point, then by image.
     pub(crate) instances: Vec<Instance>,
-    /// Axes of all points, point by point: first the axes that do not fade, then those that do, in separate blocks.
+    /// Axes of all points, in the order of the points: first the axes that do not fade, then the fading ones, in
+    /// separate blocks.
     blocks: Vec<AxisBlock>,
-    /// Exponents of the axial weights of each block; empty if no axis fades.
+    /// Exponents of each block's axial weights; empty if no axis fades.
     exponents: Vec<Exponents>,
-    /// ε times the orientation in the plane, for each point; empty without orientations.
+    /// ε times each point's orientation in the plane; empty without orientations.
     pub(crate) shifts: Vec<[f32; 2]>,
-    /// Bins for evaluating single positions; computed on first use.
+    /// Bins for evaluating single positions, built on first use.
     bins: OnceLock<Bins>,
 }
 
@@ -172,19 +174,19 @@ impl Net {
         Ok(())
     }
 
-    /// Bins with the control points that can have a weight in them.
+    /// Returns the bins that list the control points for each part of the domain. Builds them on first use.
     #[inline]
     pub(crate) fn bins(&self) -> &Bins {
         self.bins.get_or_init(|| Bins::new(self))
     }
 
-    /// The axes of an instance.
+    /// Returns the blocks of an instance's axes.
     #[inline(always)]
     pub(crate) fn blocks(&self, instance: &Instance) -> &[AxisBlock] {
         &self.blocks[instance.first_block as usize..][..instance.n_blocks as usize]
     }
 
-    /// The exponents of an instance's blocks; empty if no axis of the net fades.
+    /// Returns the exponents of an instance's blocks; empty if no axis of the net fades.
     #[inline(always)]
     pub(crate) fn exponents(&self, instance: &Instance) -> &[Exponents] {
         if self.exponents.is_empty() {
@@ -193,8 +195,8 @@ impl Net {
         &self.exponents[instance.first_block as usize..][..instance.n_blocks as usize]
     }
 
-    /// A coordinate in the range of the evaluation: wrapped into the domain on an axis that wraps, else clamped. NaN if
-    /// it is not finite.
+    /// Moves a coordinate into the range of the evaluation: wraps it into the domain if the axis wraps, else clamps it.
+    /// Returns NaN if it is not finite.
     #[inline]
     pub(crate) fn local(&self, axis: usize, coordinate: f64) -> f64 {
         if !coordinate.is_finite() {
@@ -238,7 +240,7 @@ impl Net {
 
     /// Adds blocks of scaled axes for the next point; one empty block if there are no axes.
     fn push_blocks(&mut self, point: PointIdx, axes: &[DVec2]) -> Result<(), PupsError> {
-        // With this limit, products of axes and positions are in the range of single precision.
+        // With this limit, products of axes and positions stay in the range of single precision.
         let limit = self.domain.size.max_element() * 1e-9;
         for chunk in axes.chunks(BLOCK) {
             let mut block = AxisBlock::default();
@@ -265,7 +267,7 @@ impl Net {
         Ok(())
     }
 
-    /// Adds the images of the next point whose supports intersect the domain.
+    /// Adds the periodic images of the next point whose supports intersect the domain.
     fn push_instances(
         &mut self,
         point: PointIdx,
@@ -294,7 +296,7 @@ impl Net {
         }
     }
 
-    /// Offsets, in periods, at which a support intersects the domain.
+    /// Returns the offsets, in periods, at which a support intersects the domain.
     fn image_range(
         &self,
         axis: usize,
@@ -315,7 +317,7 @@ impl Net {
     }
 }
 
-/// Adds the Delaunay axes of a point whose own axes leave its support open.
+/// Adds Delaunay axes to a point whose own axes leave its support open.
 ///
 /// On the hull of points that do not wrap, the support remains open: the point has a weight on an unbounded part of the
 /// plane.

@@ -22,7 +22,7 @@ use glam::DVec3;
     serde(default, deny_unknown_fields)
 )]
 pub struct PupsOptions {
-    /// Length of every axis as a multiple of its edge: above ½, at most 16; 1 by default, 2 in figure 4b.
+    /// Length of every axis as a multiple of its edge: above ½, at most 16. The default is 1; figure 4b uses 2.
     ///
     /// Up to 1 the texture interpolates the values of its control points; above 1 it approximates them. The support of
     /// a control point is its Voronoi cell scaled by twice this number, so on average `4 · axis_scale²` control points
@@ -31,29 +31,30 @@ pub struct PupsOptions {
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/axis-scale.md"))]
     pub axis_scale: f64,
-    /// Falloff of the weight along an axis; equation 1 by default.
+    /// Falloff of the weight along an axis. The default is equation 1.
     pub weight: AxialWeight,
-    /// Orientations, which shift weights by equation 4; none by default.
+    /// Orientations, which shift weights by equation 4. The default is none.
     pub orientation: Option<Orientation>,
-    /// Ratio of border to edge below which an axis fades, from 0 to 1; 0 by default, which disables fading. For points
-    /// that move it is 0.25. The border of an axis is its side of the Voronoi cell of its control point.
+    /// Ratio of border length to edge length below which an axis fades, from 0 to 1. The default is 0, which disables
+    /// fading; moving points use 0.25. The border of an axis is the side of its control point's Voronoi cell that
+    /// crosses the axis.
     ///
     /// When points move, edges of the Delaunay triangulation appear and disappear, and their axes with them. An edge
     /// does so while the length of its border is zero. With `fade`, the axial weight has the exponent
     /// `min(1, border / (fade · edge))`. It removes the influence of the axis before the edge disappears, so the
     /// texture changes as little as its points move. Fading never gives a pixel a weight where it had none; it
-    /// increases weights elsewhere, and the weights of a position still sum to 1. At a short border a weight ends
-    /// steeply, but between other axes, where it is almost zero: at 0.25, a position that is a thousandth of its axis
-    /// inside has a share below 1e-4, at 1 a share of up to 2 %. With a graph that is not the Delaunay graph, the cell
-    /// is the polygon around the point that its own axes bound at half their length.
+    /// increases weights elsewhere, and the weights at a position still sum to 1. At a short border a weight ends
+    /// steeply, but only between other axes, where it is almost zero. At 0.25, a position inside the border by a
+    /// thousandth of its axis has a share below 1e-4; at 1, a share of up to 2 %. With a graph that is not the Delaunay
+    /// graph, the cell is the polygon around the point that its own axes bound at half their length.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "is_never"))]
     pub fade: f64,
 }
 
-/// The [`fade`](PupsOptions::fade) for moving points, at which textures have no visible jumps.
+/// Value of [`fade`](PupsOptions::fade) for moving points, at which textures have no visible jumps.
 pub(crate) const MOVING_FADE: f64 = 0.25;
 
-/// Whether fading is disabled.
+/// Returns whether fading is disabled.
 #[cfg(feature = "serde")]
 #[expect(
     clippy::trivially_copy_pass_by_ref,
@@ -63,7 +64,7 @@ pub(crate) fn is_never(fade: &f64) -> bool {
     *fade == 0.0
 }
 
-/// Orientations of the control points, and the strength of their shift of the weights (equation 4).
+/// Orientations of the control points, and how strongly they shift the weights (equation 4).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Orientation {
@@ -77,7 +78,7 @@ pub struct Orientation {
     #[cfg_attr(doc, doc = include_str!("../docs/strength.md"))]
     pub strength: f64,
     /// One vector for each control point, or a single one for all. They are normalized. Components x and y are in the
-    /// plane of the texture; z reduces the strength without adding a direction.
+    /// texture's plane. A z component reduces the strength without adding a direction.
     pub vectors: Vec<DVec3>,
 }
 
@@ -109,9 +110,9 @@ impl Orientation {
     }
 }
 
-/// Range of [`PupsOptions::axis_scale`]. At ½ and below, supports would not cover the plane.
+/// Range of [`PupsOptions::axis_scale`]. At ½ or less, supports would not cover the plane.
 pub(crate) const AXIS_SCALE: Range = range!(above 0.5 to 16);
-/// Range of ε in equation 4.
+/// Range of the strength ε in equation 4.
 pub(crate) const STRENGTH: Range = range!(from 0 below 1);
 /// Range of [`PupsOptions::fade`].
 pub(crate) const FADE: Range = range!(from 0 to 1);
@@ -163,10 +164,10 @@ impl PupsOptions {
 }
 
 impl Orientation {
-    /// Maximum length of a shift. With it, no exponent of equation 4 divides by zero, even after rounding.
+    /// Maximum length of a shift. It ensures that no exponent of equation 4 divides by zero, even after rounding.
     const LONGEST_SHIFT: f64 = 1.0 - 1e-6;
 
-    /// ε times the component of the orientation in the plane, for point `index`.
+    /// Returns ε times the orientation in the plane of control point `index`.
     pub(crate) fn shift(&self, index: usize) -> [f32; 2] {
         let vector = self.vectors[if self.vectors.len() == 1 { 0 } else { index }];
         let shift = vector.truncate() * (self.strength / vector.length());

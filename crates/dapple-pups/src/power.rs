@@ -1,4 +1,4 @@
-//! Powers of numbers in `[0, 1]`, with the same bits at every SIMD level.
+//! Computes powers of numbers in `[0, 1]`, with the same bits at every SIMD level.
 //!
 //! `w^e = 2^(e · log₂ w)`, with two polynomials whose coefficients minimize the maximum error (fitted in double
 //! precision; their comments state the errors). Only sums, products and integer operations are used. The relative error
@@ -19,7 +19,7 @@ const LOG2: [f32; 6] = [
 /// `2^f = 1 + f · P(f)` for `f` from −½ to ½, with an error up to 2.7e-6.
 const EXP2: [f32; 4] = [0.693_121_55, 0.240_220_22, 0.055_919_46, 0.009_681_896];
 
-/// Binary exponents below this are clamped to it; the result is then negligible.
+/// Minimum binary exponent. Smaller ones are clamped to it; the result is then negligible.
 const LEAST_EXPONENT: f32 = -126.0;
 
 /// Raises `bases` in `[0, 1]` to the powers `exponents`, at least 0. Zero and one are fixed points.
@@ -31,12 +31,12 @@ pub(crate) fn powers<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
     bases: &[V; N],
     exponents: &[V; N],
 ) -> [V; N] {
-    /// Bits of √½, where the range of mantissas begins.
+    /// Bits of √½, the start of the range of mantissas.
     const SQRT_HALF: u32 = 0x3F35_04F3;
     const ONE: u32 = 0x3F80_0000;
-    /// Added to an integer below 2^23, it gives the bits of the float 2^23 plus that integer.
+    /// Bits of the float 2^23. Adding an integer below 2^23 gives the bits of 2^23 plus that integer.
     const WHOLE: u32 = 0x4B00_0000;
-    /// Added to a float, it leaves the nearest integer in the lowest bits.
+    /// Rounding constant. Adding it to a float leaves the nearest integer in the lowest bits.
     const ROUND: f32 = 12_582_912.0;
 
     let mut x = *bases;
@@ -67,7 +67,7 @@ pub(crate) fn powers<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
     x
 }
 
-/// Horner's scheme; the constant is first in `coefficients`.
+/// Evaluates polynomials by Horner's scheme. The constant term is the first of `coefficients`.
 #[inline(always)]
 fn polynomials<S: Simd, V: SimdFloat<S, Element = f32>, const DEGREE: usize, const N: usize>(
     simd: S,

@@ -1,4 +1,4 @@
-//! Products of the axial weights of a control point.
+//! Computes products of a control point's axial weights.
 
 use crate::net::BLOCK;
 use crate::weight::{AxialWeight, Lane};
@@ -15,17 +15,17 @@ pub(crate) trait Profile: Copy + Send + Sync {
     /// Multiplies by the weight of another axis.
     fn step<V: Lane>(self, q: V, t: V, minus_u: V) -> (V, V);
 
-    /// The product of `n` axes, at least one.
+    /// Returns the product of `n` axial weights; `n` is at least 1.
     fn finish<V: Lane>(self, q: V, t: V, n: usize) -> V;
 
-    /// The weight of one axis.
+    /// Returns the axial weight of one axis.
     #[inline(always)]
     fn single<V: Lane>(self, minus_u: V) -> V {
         let (q, t) = self.first(minus_u);
         self.finish(q, t, 1)
     }
 
-    /// The product of all axes of a block; unused slots have the weight 1.
+    /// Returns the product of a block's axial weights. Unused slots have the weight 1.
     #[inline(always)]
     fn product<V: Lane>(self, minus_u: [V; BLOCK]) -> V {
         let (mut q, mut t) = self.first(minus_u[0]);
@@ -36,8 +36,8 @@ pub(crate) trait Profile: Copy + Send + Sync {
     }
 }
 
-/// `−u`, from `a_x d_x` and `1 − a_y d_y`: −1 at the control point and behind it, zero (of either sign) at the end of
-/// the axis and beyond.
+/// Computes `−u` from `a_x d_x` and `1 − a_y d_y`. It is −1 at and behind the control point, and zero (of either sign)
+/// at and beyond the end of the axis.
 #[inline(always)]
 pub(crate) fn minus_u<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, along: V, rest: V) -> V {
     let unbounded = along - rest;
@@ -45,14 +45,14 @@ pub(crate) fn minus_u<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, along: V
         let [least, most] = [-1.0, 0.0].map(|bound| V::splat(simd, bound));
         return unbounded.max(least).min(most);
     }
-    // Compare as integers, which more execution units of a processor can do. In this order, negative floats follow
-    // positive ones and increase with their distance from zero.
+    // Compare as integers, since more execution units of a processor support it. In this order, negative floats come
+    // after positive ones and increase with their distance from zero.
     let [zero, minus_one] = [-0.0_f32, -1.0].map(|bound| V::Bits::splat(simd, bound.to_bits()));
     V::from_bits(unbounded.to_bits().max(zero).min(minus_one))
 }
 
-/// The cubic of equation 1, `u² (3 − 2u)`, as two products: `q = Π −u` and `t = Π (3/2 − u)`. An axis takes three
-/// operations. `W = q² · t · 2^n`, where the power of two is exact.
+/// The cubic of equation 1, `u² (3 − 2u)`, computed as two products: `q = Π −u` and `t = Π (3/2 − u)`. An axis takes
+/// three operations. `W = q² · t · 2^n`, where the power of two is exact.
 #[derive(Clone, Copy)]
 pub(crate) struct Cubic;
 

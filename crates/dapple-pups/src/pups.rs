@@ -1,4 +1,4 @@
-//! The partition of unity over a control net: weights and labels.
+//! The partition of unity over a control net, with its weights and labels.
 
 use crate::net::{GraphKind, Net};
 use crate::render::render;
@@ -40,25 +40,25 @@ impl Pups {
     ///
     /// # Errors
     ///
-    /// The errors of [`delaunay_with`](Self::delaunay_with).
+    /// Same as [`delaunay_with`](Self::delaunay_with).
     pub fn delaunay(points: &PointSet) -> Result<Self, PupsError> {
         Self::delaunay_with(points, PupsOptions::default())
     }
 
-    /// Builds the net of the Delaunay triangulation of `points`.
+    /// Builds the net of the Delaunay triangulation of `points` with the given options.
     ///
     /// # Errors
     ///
-    /// The errors of [`new`](Self::new), and [`Graph`](crate::PupsErrorKind::Graph) if the triangulation fails.
+    /// Same as [`new`](Self::new), and [`Graph`](crate::PupsErrorKind::Graph) if the triangulation fails.
     pub fn delaunay_with(points: &PointSet, options: PupsOptions) -> Result<Self, PupsError> {
         Self::delaunay_cancellable(points, options, &|| false)
     }
 
-    /// Builds the net of [`delaunay_with`](Self::delaunay_with), unless `is_cancelled` returns true.
+    /// Builds the same net as [`delaunay_with`](Self::delaunay_with), unless `is_cancelled` returns true.
     ///
     /// # Errors
     ///
-    /// The errors of [`delaunay_with`](Self::delaunay_with), and [`Cancelled`](crate::PupsErrorKind::Cancelled).
+    /// Same as [`delaunay_with`](Self::delaunay_with), and [`Cancelled`](crate::PupsErrorKind::Cancelled).
     pub fn delaunay_cancellable(
         points: &PointSet,
         options: PupsOptions,
@@ -68,7 +68,7 @@ impl Pups {
         Self::of_delaunay(points, &graph, options, is_cancelled)
     }
 
-    /// Builds the net of a graph that is the Delaunay triangulation of `points`.
+    /// Builds the net of `graph`, which must be the Delaunay triangulation of `points`.
     pub(crate) fn of_delaunay(
         points: &PointSet,
         graph: &Graph,
@@ -93,18 +93,18 @@ impl Pups {
     /// # Errors
     ///
     /// [`NoPoints`](crate::PupsErrorKind::NoPoints) without points, [`Count`](crate::PupsErrorKind::Count) if the graph
-    /// has another number of points, [`ShortAxis`](crate::PupsErrorKind::ShortAxis) for points closer than 1e-9 of the
-    /// domain's larger side, [`Range`](crate::PupsErrorKind::Range) if the domain is smaller than 1e-18 or larger than
-    /// 1e18, and the errors of [`PupsOptions::check`].
+    /// has another number of points, [`ShortAxis`](crate::PupsErrorKind::ShortAxis) if points are closer than 1e-9 of
+    /// the domain's larger side, [`Range`](crate::PupsErrorKind::Range) if the domain is smaller than 1e-18 or larger
+    /// than 1e18. If the options are invalid, same as [`PupsOptions::check`].
     pub fn new(points: &PointSet, graph: &Graph, options: PupsOptions) -> Result<Self, PupsError> {
         Self::new_cancellable(points, graph, options, &|| false)
     }
 
-    /// Builds the net of [`new`](Self::new), unless `is_cancelled` returns true.
+    /// Builds the same net as [`new`](Self::new), unless `is_cancelled` returns true.
     ///
     /// # Errors
     ///
-    /// The errors of [`new`](Self::new), and [`Cancelled`](crate::PupsErrorKind::Cancelled).
+    /// Same as [`new`](Self::new), and [`Cancelled`](crate::PupsErrorKind::Cancelled).
     pub fn new_cancellable(
         points: &PointSet,
         graph: &Graph,
@@ -118,7 +118,7 @@ impl Pups {
         })
     }
 
-    /// Wraps a net that was built from `points`.
+    /// Combines a net with the `points` that it was built from.
     pub(crate) fn of_net(net: Net, points: PointSet) -> Self {
         Self {
             net: Arc::new(net),
@@ -126,31 +126,31 @@ impl Pups {
         }
     }
 
-    /// Number of control points.
+    /// Returns the number of control points.
     #[must_use]
     pub fn n_points(&self) -> usize {
         self.points.len()
     }
 
-    /// The control points.
+    /// Returns the control points.
     #[must_use]
     pub fn points(&self) -> &PointSet {
         &self.points
     }
 
-    /// The domain of the control points, which determines the period of the texture.
+    /// Returns the domain of the control points, which determines the texture's period.
     #[must_use]
     pub fn domain(&self) -> &Domain {
         &self.net.domain
     }
 
-    /// The options of the net.
+    /// Returns the net's options.
     #[must_use]
     pub fn options(&self) -> &PupsOptions {
         &self.net.options
     }
 
-    /// Makes a scalar texture from `values`, one for each control point.
+    /// Builds a scalar texture from `values`, one for each control point.
     ///
     /// # Errors
     ///
@@ -160,11 +160,11 @@ impl Pups {
         Texture::new(self.clone(), values)
     }
 
-    /// Makes a texture of vectors, such as colors, from `values`, one vector for each control point.
+    /// Builds a texture of vectors, such as colors, from `values`, one vector for each control point.
     ///
     /// # Errors
     ///
-    /// The errors of [`texture`](Self::texture).
+    /// Same as [`texture`](Self::texture).
     pub fn vector_texture<const N: usize>(
         &self,
         values: Vec<[f32; N]>,
@@ -172,11 +172,11 @@ impl Pups {
         VectorTexture::new(self.clone(), values)
     }
 
-    /// The weight of a control point at a position, by equation 2, or by equation 4 with orientations: 0 outside of its
-    /// support, 1 at the control point.
+    /// Returns a control point's weight at `position`, by equation 2, or by equation 4 with orientations. It is 1 at
+    /// the control point and 0 outside of its support.
     ///
-    /// Where supports of several periodic images of the control point contain the position, the largest of their
-    /// weights counts. The weight is NaN at a position that is not finite, and 0 for an index without a control point.
+    /// If the position is in the supports of several periodic images of the control point, the largest weight counts.
+    /// The weight is NaN at a position that is not finite, and 0 if the index has no control point.
     #[must_use]
     pub fn weight(&self, point: PointIdx, position: DVec2) -> f32 {
         let Some(position) = self.local(position) else {
@@ -193,7 +193,7 @@ impl Pups {
         self.net.fold_weights(position, 0.0, larger)
     }
 
-    /// The control points with a weight at a position, and their weights, which sum to 1.
+    /// Returns the control points that have a nonzero weight at `position`, with their weights, which sum to 1.
     ///
     /// They are ordered by index. On a small torus a control point may occur several times, once for each periodic
     /// image. The list is empty at a position that is not finite.
@@ -219,10 +219,10 @@ impl Pups {
         weights
     }
 
-    /// The control point with the largest weight at a position; the first if several are equal. It determines the label
-    /// of the position.
+    /// Returns the control point with the largest weight at `position`, which determines the label there. If several
+    /// weights are equal, the first point is returned.
     ///
-    /// `None` at a position that is not finite.
+    /// Returns `None` at a position that is not finite.
     #[must_use]
     pub fn strongest(&self, position: DVec2) -> Option<PointIdx> {
         let position = self.local(position)?;
@@ -256,12 +256,12 @@ impl Pups {
         Ok(())
     }
 
-    /// Renders the labels of the pixels of a window; `labels` has the label of each control point.
+    /// Renders the label at every pixel center of a window. `labels` holds the label of each control point.
     ///
     /// # Errors
     ///
     /// [`Count`](crate::PupsErrorKind::Count) if the number of labels is not the number of control points,
-    /// [`Raster`](crate::PupsErrorKind::Raster) for a window of invalid size or with positions that are not finite.
+    /// [`Raster`](crate::PupsErrorKind::Raster) if the window has an invalid size or positions that are not finite.
     pub fn label_raster<L: Copy>(
         &self,
         window: &Window,
@@ -288,7 +288,7 @@ impl Pups {
         Ok(strongest.map(|point| labels[point.index()]))
     }
 
-    /// The position in the range of the evaluation (see [`Net::local`]); `None` if it is not finite.
+    /// Moves a position into the range of the evaluation (see [`Net::local`]). Returns `None` if it is not finite.
     #[inline]
     pub(crate) fn local(&self, position: DVec2) -> Option<DVec2> {
         if self.net.domain.contains(position) {
@@ -299,11 +299,11 @@ impl Pups {
     }
 }
 
-/// Smallest sum of weights for interpolation. Below it, the value of the nearest control point is used alone: with
-/// orientations near full strength, the sum may underflow in single precision.
+/// Smallest sum of weights for which values are interpolated. With orientations near full strength, the sum may
+/// underflow in single precision. Below this limit, only the value of the nearest control point is used.
 pub(crate) const LEAST_TOTAL: f32 = 1e-30;
 
-/// Sink that keeps the largest weight and its control point, stored as the bits of an `f32`.
+/// Sink that tracks the largest weight and its control point, whose index is stored as the bits of an `f32`.
 struct Strongest;
 
 impl Sink for Strongest {

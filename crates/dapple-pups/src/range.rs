@@ -1,8 +1,8 @@
-//! Ranges of options, each defined once: for the check, the text of the error, and the schema of recipes.
+//! Valid ranges of options. Each range is defined once, for the check, the error message, and the recipe schema.
 
 use core::ops::{Bound, RangeBounds as _};
 
-/// The range of an option, which contains only finite numbers.
+/// The valid range of an option. It contains only finite numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// Lower bound.
@@ -14,15 +14,15 @@ pub struct Range {
 }
 
 impl Range {
-    /// Whether a number is in the range.
+    /// Returns whether a number is in the range.
     #[must_use]
     pub fn holds(&self, number: f64) -> bool {
         number.is_finite() && (self.least, self.most).contains(&number)
     }
 }
 
-/// Makes a [`Range`] with its text: `finite`, `above 0`, `above 0 to 1`, `at least 1`, `from 1 to 16` or
-/// `from 0 below 1`.
+/// Builds a [`Range`] and its text from one of these forms: `finite`, `above 0`, `above 0 to 1`, `at least 1`, `from 1
+/// to 16` or `from 0 below 1`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! range {

@@ -1,4 +1,4 @@
-//! The textures of section 3, each as one function.
+//! The textures of the paper's section 3, each built by one function.
 //!
 //! Reference: Jack Caron and David Mould, "Partition of Unity Parametrics for Texture Synthesis", Graphics Interface
 //! 2013, section 3.
@@ -61,34 +61,34 @@ use std::sync::Arc;
 /// The common interface of the options of all textures. `Image` is the input of the texture: nothing, or a
 /// [`ReferenceImage`](crate::ReferenceImage).
 pub trait PupsRecipe<Image = ()>: Clone + Default {
-    /// Whether the values are colors instead of numbers.
+    /// Whether the texture's values are colors instead of numbers.
     const IS_COLOR: bool = false;
 
-    /// The domain of the control points. If the default does not wrap along an axis, the texture changes along it, and
-    /// needs such a domain.
+    /// Returns the domain of the control points. If the default domain does not wrap along an axis, the texture changes
+    /// along that axis and needs a domain that does not wrap there.
     fn domain_mut(&mut self) -> &mut Domain;
 
-    /// Options for the weights and the motion of the control points.
+    /// Returns the options for the weights and the motion of the control points.
     fn net_mut(&mut self) -> &mut NetOptions;
 
-    /// Estimated number of control points, computed without placing them; rather too large than too small. It may be
-    /// infinite.
+    /// Estimates the number of control points without generating them. The estimate tends to be too large rather than
+    /// too small, and may be infinite.
     fn expected_points(&self) -> f64;
 
-    /// Makes the texture, with values from 0 to 1 if they are random.
+    /// Builds the texture. Random values are from 0 to 1.
     ///
     /// # Errors
     ///
-    /// The errors of the function that makes the texture.
+    /// Same as the function that builds the texture.
     fn build(&self, image: &Image, seed: Seed) -> Result<PupsField, PupsError>;
 }
 
 /// A texture of numbers or colors in the plane.
 #[derive(Clone)]
 pub enum PupsField {
-    /// A number at each position.
+    /// One number at each position.
     Numbers(Arc<dyn NetField>),
-    /// A color at each position.
+    /// One color at each position.
     Colors(Box<VectorTexture<3>>),
 }
 
@@ -107,8 +107,8 @@ impl core::fmt::Debug for PupsField {
     }
 }
 
-/// The table of all recipes, passed to another macro: the name as data, the name in Rust, and the options of each.
-/// Recipes that need an image are in `Referenced`, which the caller defines.
+/// Passes the table of all recipes to another macro. Each row has the recipe's name as data, its name in Rust, and its
+/// options type. Recipes that need an image are wrapped in `Referenced`, which the caller defines.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! recipes {

@@ -1,4 +1,4 @@
-//! Rendering of windows of the plane.
+//! Renders weights, values and labels for all pixels of a window.
 //!
 //! The window is cut at the ends of periods, so that coordinates are monotonic within a piece, and then into bands of
 //! rows. For every band, the control points whose supports intersect it are visited in order. Each adds its weights to
@@ -25,9 +25,9 @@ const BAND_NUMBERS: usize = 1 << 17;
 /// Maximum number of rows of a band. Bands are the units of work of threads.
 const BAND_ROWS: usize = 64;
 
-/// Renders the rows of a window, in parallel with the feature `rayon`.
+/// Renders the rows of a window. With the feature `rayon`, bands are rendered in parallel.
 ///
-/// Each row has [`Sink::per_pixel`] values for each pixel.
+/// Each row holds [`Sink::per_pixel`] values per pixel.
 pub(crate) fn render<K: Sink>(net: &Net, window: &Window, sink: &K, rows: &mut [&mut [K::Value]]) {
     let level = simd::level();
     // Compute the coordinates, and cut them where a period ends.
@@ -92,19 +92,19 @@ impl Lane {
     }
 }
 
-/// Some rows of the image, with the instances whose supports intersect them.
+/// A band of image rows, with the instances whose supports intersect it.
 struct Band<'a, 'rows, K: Sink> {
     net: &'a Net,
     sink: &'a K,
     columns: &'a [Lane],
-    /// Indices of instances, ascending.
+    /// Indices of the instances, in ascending order.
     members: Vec<u32>,
     ys: Lane,
     rows: &'a mut [&'rows mut [K::Value]],
 }
 
 impl<K: Sink> Band<'_, '_, K> {
-    /// Renders the rows; `planes` is scratch memory.
+    /// Renders the band's rows; `planes` is scratch memory.
     fn render(mut self, level: Level, planes: &mut Planes<K>) {
         for columns in self.columns {
             if !columns.is_finite() || !self.ys.is_finite() {
@@ -124,7 +124,7 @@ impl<K: Sink> Band<'_, '_, K> {
         }
     }
 
-    /// Adds up the weights of all instances of the band.
+    /// Adds up the weights of all the band's instances.
     #[inline(always)]
     fn splat<S: Simd, P: Profile>(
         &self,
@@ -167,7 +167,7 @@ impl<K: Sink> Band<'_, '_, K> {
         }
     }
 
-    /// Converts sums to values.
+    /// Converts the sums to pixel values.
     #[inline(always)]
     fn resolve<S: Simd>(&mut self, simd: S, columns: &Lane, planes: &mut Planes<K>) {
         let Range { start, end } = columns.range;
@@ -186,7 +186,7 @@ impl<K: Sink> Band<'_, '_, K> {
         }
     }
 
-    /// Writes the value for undefined pixels where positions are not finite.
+    /// Writes the sink's undefined value to pixels whose positions are not finite.
     fn leave_undefined(&mut self, columns: &Range<usize>) {
         let per_pixel = self.sink.per_pixel();
         for row in self.rows.iter_mut() {
@@ -196,7 +196,8 @@ impl<K: Sink> Band<'_, '_, K> {
     }
 }
 
-/// Indices of the instances whose supports intersect each band of `height` rows, ascending.
+/// Returns, for each band of `height` rows, the indices of the instances whose supports intersect it, in ascending
+/// order.
 fn band_members(net: &Net, ys: &[f64], height: usize) -> Vec<Vec<u32>> {
     let mut members = vec![Vec::new(); ys.len().div_ceil(height)];
     let line = Line::new(ys);

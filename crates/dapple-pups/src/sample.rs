@@ -1,4 +1,4 @@
-//! Weights at a single position.
+//! Computes weights at a single position.
 //!
 //! Candidates are evaluated in groups of eight. Their axes are projected, eight axes of one candidate at a time. The
 //! registers are then transposed so that each holds one axis of all candidates, and the products of all candidates are
@@ -50,7 +50,7 @@ impl Net {
         }
     }
 
-    /// The control point nearest to a position; the first if several are equal.
+    /// Returns the control point nearest to a position. If several are equally near, returns the first.
     pub(crate) fn nearest(&self, position: DVec2) -> u32 {
         let bins = self.bins();
         // The support of the nearest control point contains the position, so one is found; the initial index is unused.
@@ -90,7 +90,7 @@ impl Net {
         }
     }
 
-    /// Weights of a group of candidates; zero in unused lanes.
+    /// Computes the weights of a group of candidates. Unused lanes are zero.
     #[inline(always)]
     fn weights_of<S: Simd, P: Profile>(
         &self,
@@ -134,7 +134,7 @@ impl Net {
     }
 }
 
-/// `−u` along each axis of a block.
+/// Computes `−u` along each axis of a block.
 #[inline(always)]
 fn project<S: Simd>(simd: S, axes: &AxisBlock, [x, y]: [f32; 2]) -> f32x8<S> {
     let rest = f32x8::splat(simd, 1.0) - f32x8::from_slice(simd, &axes.y) * y;
@@ -161,7 +161,7 @@ fn go_on<S: Simd, P: Profile>(
     weight
 }
 
-/// Product of the axial weights of a block of fading axes.
+/// Returns the product of the axial weights of a block of fading axes.
 #[inline(always)]
 fn faded<S: Simd, P: Profile>(
     simd: S,

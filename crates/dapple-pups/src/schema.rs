@@ -1,4 +1,4 @@
-//! Schemas of options with several forms as data, and of foreign types.
+//! JSON schemas for options that have several serialized forms, and for types of other crates.
 
 use crate::{Range, Spacing};
 use core::ops::Bound;
@@ -6,7 +6,7 @@ use schemars::transform::Transform;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 
-/// Schema of a texture's domain, which recipes of materials take from their tile.
+/// Schema of a texture's domain. A material's recipe sets it from its tile.
 pub(crate) struct Tile;
 
 /// Schema of a number that may depend on the position.
@@ -26,7 +26,7 @@ impl JsonSchema for Tile {
     }
 }
 
-/// Schema of a vector in the plane or in space.
+/// Schema of a vector in 2-D or 3-D.
 pub(crate) struct Direction;
 
 impl JsonSchema for Direction {

@@ -1,13 +1,13 @@
-//! Weights shifted towards an orientation (equation 4).
+//! Shifts weights towards an orientation (equation 4).
 
 use crate::power::powers;
 use fearless_simd::prelude::*;
 
-/// Added to squared distances to keep them above zero; it changes no distance above 1e-15.
+/// Added to squared distances so that they are never zero. It changes no distance above 1e-15.
 const LEAST_SQUARE: f32 = f32::MIN_POSITIVE;
 
-/// Applies equation 4: `w^(1 − K)` where the position is on the side of the orientation, `w^(1 / (1 + K))` on the
-/// other.
+/// Applies equation 4. The weight becomes `w^(1 − K)` on the side that the orientation points to, and `w^(1 / (1 + K))`
+/// on the other.
 ///
 /// `shift` is ε times the orientation in the plane. `x` and `y` are the offsets of the positions from the control
 /// point, one register for each row. With `n = ε (x − c)·v` and `d = |x − c|`, both exponents are

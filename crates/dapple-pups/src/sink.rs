@@ -1,21 +1,21 @@
-//! Sinks for the weights of a band, and the memory for their sums.
+//! Sinks that accumulate the weights of a band, and the memory for their sums.
 
 use crate::splat::LANES;
 use core::marker::PhantomData;
 use fearless_simd::prelude::*;
 
-/// A sink that sums the weights of a band.
+/// Accumulates the weights of all control points in a band of pixels.
 ///
-/// Weights are added to planes of numbers that start at zero. After the weights of all control points are added, the
-/// planes are resolved to values.
+/// Weights are added to planes of numbers that start at zero. After the weights of all control points have been added,
+/// the planes are converted to pixel values.
 pub(crate) trait Sink: Sync {
-    /// The value of a pixel.
+    /// Type of a pixel's value.
     type Value: Copy + Send;
 
-    /// Number of planes.
+    /// Number of sums for each pixel.
     const PLANES: usize;
 
-    /// Number of values for each pixel.
+    /// Returns the number of output values for each pixel.
     fn per_pixel(&self) -> usize;
 
     /// Adds the weights of control point `point` in `N` rows of a tile. `sums` holds [`LANES`] numbers of every plane
@@ -39,7 +39,7 @@ pub(crate) trait Sink: Sync {
         nearest: impl Fn(usize) -> u32,
     );
 
-    /// Writes the value for pixels whose positions are not finite.
+    /// Writes the undefined value to pixels whose positions are not finite.
     fn leave_undefined(&self, values: &mut [Self::Value]);
 }
 
@@ -51,7 +51,7 @@ pub(crate) struct Planes<K> {
     numbers: Vec<f32>,
     /// Offset of the first cache line in `numbers`.
     origin: usize,
-    /// Number of rows of pixels.
+    /// Number of pixel rows.
     height: usize,
     sink: PhantomData<fn(&K)>,
 }
@@ -68,7 +68,7 @@ impl<K> Default for Planes<K> {
 }
 
 impl<K: Sink> Planes<K> {
-    /// Number of sums for a row of pixels.
+    /// Returns the number of sums for a row of pixels.
     pub(crate) fn per_row(width: usize) -> usize {
         width.next_multiple_of(LANES) * K::PLANES
     }
@@ -79,7 +79,7 @@ impl<K: Sink> Planes<K> {
         self.numbers.clear();
         self.numbers
             .resize(Self::per_row(width) * height + LANES, 0.0);
-        // If the memory cannot be aligned, it is only slower.
+        // If the memory cannot be aligned, the code is only slower.
         self.origin = self
             .numbers
             .as_ptr()
@@ -87,8 +87,8 @@ impl<K: Sink> Planes<K> {
             .min(LANES);
     }
 
-    /// The sums of `n_rows` rows in the column of [`LANES`] pixels that contains `column`, and the index of `column` in
-    /// it.
+    /// Returns the sums of `n_rows` rows in the column of [`LANES`] pixels that contains `column`, and the index of
+    /// `column` within it.
     #[inline(always)]
     pub(crate) fn rows(
         &mut self,

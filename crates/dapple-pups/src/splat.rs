@@ -13,16 +13,16 @@ use crate::sink::{Planes, Sink};
 use crate::tile::{Strip, Tile, Tiles};
 use fearless_simd::prelude::*;
 
-/// Maximum number of columns of a tile: a register at the widest level.
+/// Maximum number of columns in a tile. This is the number of lanes of a register at the widest SIMD level.
 pub(crate) const LANES: usize = 16;
 
-/// Maximum number of rows of a tile: with two numbers for each pixel, they fill half of 32 registers.
+/// Maximum number of rows in a tile. With two numbers for each pixel, a tile then fills half of 32 registers.
 pub(crate) const ROWS: usize = 8;
 
-/// Number of rows of a tile on processors with 16 registers, and for small supports.
+/// Number of rows in a tile on processors with 16 registers, and for small supports.
 const FEW_ROWS: usize = ROWS / 2;
 
-/// Maximum width of supports that use small tiles, in columns. Too much of a large tile would be outside of them.
+/// Maximum width of supports that use small tiles, in columns. Larger tiles would be mostly outside of such supports.
 const NARROW: u32 = 64;
 
 /// The pixels of a band, and the sink for their weights.
@@ -57,7 +57,7 @@ pub(crate) struct Footprint {
 }
 
 impl Footprint {
-    /// The first column of the first tile, for tiles of `width` columns.
+    /// Returns the first column of the first tile, for tiles of `width` columns.
     #[inline(always)]
     fn first_column(&self, width: usize) -> usize {
         self.column as usize / width * width
@@ -157,7 +157,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         self.sink.add(simd, point, &weights, sums, lane);
     }
 
-    /// Products of the axial weights of a block of fading axes, in `N` rows.
+    /// Computes the products of a block's fading axial weights, in `N` rows.
     #[inline(always)]
     fn faded<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
         &self,
@@ -187,7 +187,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         products
     }
 
-    /// Products of the axial weights of a block, in `N` rows. At least one axis must be `active`.
+    /// Computes the products of a block's axial weights, in `N` rows. At least one axis must be `active`.
     #[inline(always)]
     fn products<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
         &self,
@@ -221,7 +221,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
     }
 }
 
-/// Bits of all axes of a block.
+/// Bit mask of all axes of a block.
 const ALL_AXES: u32 = (1 << BLOCK) - 1;
 
 /// Removes the lowest bit, and returns its index.

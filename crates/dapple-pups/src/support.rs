@@ -1,4 +1,4 @@
-//! The support of a control point, and the borders of its axes.
+//! Computes the support of a control point, and the borders of its axes.
 //!
 //! The support of a point is the polygon of all offsets `d` from the point with `d·v < s |v|²`, for the vector `v` of
 //! every axis and the axis scale `s`. With Delaunay axes it is the Voronoi cell of the point, scaled by `2 s`. At
@@ -6,7 +6,7 @@
 
 use glam::DVec2;
 
-/// Whether two neighboring axes, in angular order, are 180° or more apart.
+/// Returns whether two neighboring axes, in angular order, are 180° or more apart.
 pub(crate) fn has_gap(axes: &[DVec2]) -> bool {
     let next = axes.iter().cycle().skip(1);
     axes.len() < 3
@@ -19,22 +19,22 @@ pub(crate) fn has_gap(axes: &[DVec2]) -> bool {
 /// Relative margin of the bounds of a support, so that rounding cannot produce a weight outside of them.
 const SLACK: f64 = 1e-5;
 
-/// Bounds of the support of a point, relative to the point, with a margin for rounding. A side is infinite where the
-/// support may be unbounded.
+/// Returns the bounds of a point's support, relative to the point, with a margin for rounding. A side is infinite where
+/// the support may be unbounded.
 pub(crate) fn padded_box(axes: &[DVec2], scale: f64) -> (DVec2, DVec2) {
     let (min, max) = support_box(axes, scale);
     let slack = (max - min) * SLACK;
     (min - slack, max + slack)
 }
 
-/// Bounds of the support of a point, relative to the point: the polygon of all `d` with `d·v < s |v|²` for every axis
-/// `v`. A side is infinite where the polygon is unbounded.
+/// Returns the bounds of a point's support, relative to the point. The support is the polygon of all `d` with `d·v < s
+/// |v|²` for every axis `v`. A side is infinite where the polygon is unbounded.
 fn support_box(axes: &[DVec2], scale: f64) -> (DVec2, DVec2) {
     walk_support(axes, scale).unwrap_or_else(|| clip_support(axes, scale))
 }
 
-/// The bounds if every axis contributes an edge, as Delaunay axes do. Corners are the intersections of neighboring
-/// axes' borders. `None` if an axis has no edge or the polygon is open.
+/// Returns the bounds if every axis contributes an edge, as Delaunay axes do. Corners are the intersections of
+/// neighboring axes' borders. Returns `None` if an axis has no edge or the polygon is open.
 fn walk_support(axes: &[DVec2], scale: f64) -> Option<(DVec2, DVec2)> {
     if has_gap(axes) {
         return None;
@@ -54,7 +54,7 @@ fn walk_support(axes: &[DVec2], scale: f64) -> Option<(DVec2, DVec2)> {
     Some((min, max))
 }
 
-/// The bounds of any support, by clipping a very large square.
+/// Returns the bounds of any support, by clipping a very large square.
 fn clip_support(axes: &[DVec2], scale: f64) -> (DVec2, DVec2) {
     let longest = axes.iter().map(|axis| axis.length()).fold(0.0, f64::max);
     let far = (longest * scale).max(f64::MIN_POSITIVE) * 1e12;
@@ -98,12 +98,12 @@ fn clip_support(axes: &[DVec2], scale: f64) -> (DVec2, DVec2) {
     )
 }
 
-/// The intersection of the borders of two axes, at an axis scale of 1.
+/// Returns the intersection of two axes' borders, at an axis scale of 1.
 fn corner(a: DVec2, b: DVec2) -> DVec2 {
     (b.perp() * a.length_squared() - a.perp() * b.length_squared()) / -a.perp_dot(b)
 }
 
-/// The exponents of the axes: below 1 where the border of an axis is shorter than `fade` times its edge, else 1.
+/// Returns the exponents of the axes: below 1 where an axis's border is shorter than `fade` times its edge, else 1.
 pub(crate) fn fading(axes: &[DVec2], fade: f64) -> Vec<f32> {
     let borders = walk_borders(axes).unwrap_or_else(|| clip_borders(axes));
     let exponent = |(axis, border): (&DVec2, f64)| {
@@ -113,7 +113,7 @@ pub(crate) fn fading(axes: &[DVec2], fade: f64) -> Vec<f32> {
     axes.iter().zip(borders).map(exponent).collect()
 }
 
-/// The lengths of the borders of a cell if every axis has one, as Delaunay axes do.
+/// Returns the border lengths of a cell if every axis has a border, as Delaunay axes do; otherwise `None`.
 fn walk_borders(axes: &[DVec2]) -> Option<Vec<f64>> {
     if has_gap(axes) {
         return None;
@@ -129,8 +129,8 @@ fn walk_borders(axes: &[DVec2]) -> Option<Vec<f64>> {
     (0..axes.len()).map(border).collect()
 }
 
-/// The lengths of the borders of any cell, each clipped by all other axes: infinite where the cell is open, and zero
-/// for an axis without a border.
+/// Returns the border lengths of any cell, each border clipped by all other axes. A length is infinite where the cell
+/// is open, and zero for an axis without a border.
 fn clip_borders(axes: &[DVec2]) -> Vec<f64> {
     let border = |(index, &axis): (usize, &DVec2)| {
         let along = axis.perp();

@@ -1,4 +1,4 @@
-//! Interpolation of values at the control points (equation 3).
+//! Textures that interpolate values of control points (equation 3).
 
 use crate::bins::Bins;
 use crate::pups::LEAST_TOTAL;
@@ -48,13 +48,13 @@ impl Texture {
         Ok(Self { values })
     }
 
-    /// The net of the control points.
+    /// Returns the net of the control points.
     #[must_use]
     pub fn pups(&self) -> &Pups {
         &self.values.pups
     }
 
-    /// The values of the control points.
+    /// Returns the values of the control points.
     #[must_use]
     pub fn values(&self) -> &[f32] {
         &self.values.by_point
@@ -88,19 +88,19 @@ impl<const N: usize> VectorTexture<N> {
         Ok(Self { values })
     }
 
-    /// The net of the control points.
+    /// Returns the net of the control points.
     #[must_use]
     pub fn pups(&self) -> &Pups {
         &self.values.pups
     }
 
-    /// The values of the control points.
+    /// Returns the vectors of the control points.
     #[must_use]
     pub fn values(&self) -> &[[f32; N]] {
         self.values.by_point.as_chunks().0
     }
 
-    /// The vector at a position.
+    /// Returns the interpolated vector at `position`.
     #[must_use]
     pub fn sample(&self, position: impl Into<[f64; 2]>) -> [f32; N] {
         let mut vector = [0.0; N];
@@ -139,14 +139,14 @@ impl<const N: usize> VectorTexture<N> {
 
 /// The values of the control points of a net, with `width` numbers each.
 ///
-/// The width is a field, not a parameter of the type, so that the code for values is compiled in this crate only, not
-/// in every crate that uses vectors.
+/// The width is a field, not a type parameter, so that the code for values is compiled in this crate only, not in every
+/// crate that uses vectors.
 #[derive(Clone, Debug)]
 struct Values {
     pups: Pups,
     width: usize,
     by_point: Vec<f32>,
-    /// Values in the order of the records of the [`Bins`]; computed on first use.
+    /// Values in the order of the records in [`Bins`], computed on first use.
     by_record: OnceLock<Vec<f32>>,
 }
 
@@ -179,7 +179,7 @@ impl Values {
         &self.by_point[point as usize * self.width..][..self.width]
     }
 
-    /// The weighted mean at one position, summed in the order of [`Mean`].
+    /// Computes the weighted mean at one position, summed in the same order as in [`Mean`].
     fn sample(&self, position: DVec2, mean: &mut [f32]) {
         let Some(position) = self.pups.local(position) else {
             mean.fill(f32::NAN);
@@ -248,7 +248,7 @@ impl<'a, const N: usize> Mean<'a, N> {
         }
     }
 
-    /// The `N` components of a control point's value.
+    /// Returns the `N` components of a control point's value.
     #[inline(always)]
     fn of_point(&self, point: u32) -> &[f32] {
         &self.values[point as usize * self.width + self.first..][..N]
@@ -323,7 +323,7 @@ impl<const N: usize> Sink for Mean<'_, N> {
     }
 }
 
-/// Adds a register to the numbers from index `at` on.
+/// Adds a register to the numbers starting at index `at`.
 #[inline(always)]
 fn add<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, sums: &mut [f32], at: usize, summand: V) {
     let sums = &mut sums[at..at + V::LEN];
@@ -341,7 +341,7 @@ fn divide<S: Simd>(simd: S, sums: &[f32], totals: &[f32], quotients: &mut [f32])
     }
 }
 
-/// Whether any number is below a limit.
+/// Returns whether any number is below a limit.
 #[inline(always)]
 fn is_any_below<S: Simd>(simd: S, numbers: &[f32], limit: f32) -> bool {
     let limit = S::f32s::splat(simd, limit);

@@ -1,4 +1,4 @@
-//! The tiles of a band relative to a control point, and the axes that matter in each tile.
+//! Pixel tiles of a band relative to a control point, and the axes that affect each tile.
 //!
 //! An axis whose `u` is 1 in a whole tile is left out, which does not change a bit. A control point with an axis whose
 //! `u` is 0 in a whole tile has no weight there. Both tests use the same numbers as the pixels: `u` is computed by
@@ -8,15 +8,15 @@
 //! sorted by their number of axes. The processor can then predict the end of the loop over axes, which it cannot if the
 //! numbers alternate at random. If there are few tiles, all axes count as relevant, for the same reason.
 //!
-//! In all of the evaluation, registers are processed by plain loops only. A closure in an iterator or in an array's
-//! `map` is compiled for the baseline processor if it is not inlined, and then costs more than the work that it does.
+//! All of the evaluation processes registers by plain loops only. A closure in an iterator or in an array's `map` is
+//! compiled for the baseline processor if it is not inlined, and then costs more than the work that it does.
 
 use crate::net::{AxisBlock, BLOCK};
 use crate::splat::{LANES, ROWS};
 use fearless_simd::{f32x8, f64x4, prelude::*};
 use glam::DVec2;
 
-/// Maximum number of tiles that are not worth sorting.
+/// Maximum number of tiles for which sorting does not pay off.
 const FEW: usize = 8;
 
 /// The tiles that the support of a control point can touch.
@@ -24,15 +24,15 @@ const FEW: usize = 8;
 pub(crate) struct Tiles {
     columns: Vec<Column>,
     n_columns: usize,
-    /// Rows of tiles, with one element for each block of axes.
+    /// Rows of tiles, with one element for each row and block of axes.
     strips: Vec<Strip>,
     n_strips: usize,
     n_blocks: usize,
-    /// A bit for each axis of the first block.
+    /// Bit mask of the axes of the first block.
     axes: u32,
-    /// Tiles sorted by their number of axes. Each number has a section that fits all tiles.
+    /// Tiles sorted by their number of axes. Each number of axes has a section large enough for all tiles.
     sorted: Vec<Tile>,
-    /// Number of tiles in each section.
+    /// Number of tiles stored in each section.
     lengths: [usize; STRETCHES],
 }
 
@@ -63,10 +63,10 @@ pub(crate) struct Strip {
 /// A tile in which the control point may have a weight.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Tile {
-    /// Column and row of the tile, in tiles.
+    /// Column and row of the tile, counted in tiles.
     pub(crate) column: u32,
     pub(crate) strip: u32,
-    /// Bits of the axes of the first block to multiply: all that matter, or none.
+    /// Bit mask of the first block's axes to multiply; either all relevant axes or none.
     pub(crate) active: u32,
 }
 
@@ -109,13 +109,13 @@ impl Tiles {
         }
     }
 
-    /// Whether there are too few tiles to be worth sorting.
+    /// Returns whether there are too few tiles to be worth sorting.
     #[inline(always)]
     fn are_few(&self) -> bool {
         self.n_columns * self.n_strips <= FEW
     }
 
-    /// Sorts the tiles by their number of axes that matter, if there are enough.
+    /// Sorts the tiles by their number of relevant axes, if there are enough tiles.
     #[inline(always)]
     pub(crate) fn sort<S: Simd>(&mut self, simd: S) {
         if self.are_few() {
@@ -148,8 +148,8 @@ impl Tiles {
         }
     }
 
-    /// The next tile with a weight, after sorting. The position of the iteration, initially zero, is a row and a column
-    /// of tiles if there are few, otherwise a section and an index in it.
+    /// Returns the next tile with a weight, after sorting. The second argument is the iteration's state, initially
+    /// zero. If there are few tiles, it is a row and a column of tiles; otherwise, a section and an index in it.
     #[inline(always)]
     pub(crate) fn next<S: Simd>(&self, simd: S, [outer, inner]: &mut [usize; 2]) -> Option<Tile> {
         if self.are_few() {
@@ -183,13 +183,13 @@ impl Tiles {
         None
     }
 
-    /// Offsets of the columns of a tile from the control point.
+    /// Returns the x offsets of a tile's columns from the control point.
     #[inline(always)]
     pub(crate) fn x(&self, tile: Tile) -> &[f32; LANES] {
         &self.columns[tile.column as usize].x
     }
 
-    /// The rows of a tile, for each block of axes.
+    /// Returns the row of tiles that contains a tile, with one strip for each block of axes.
     #[inline(always)]
     pub(crate) fn strips(&self, tile: Tile) -> &[Strip] {
         &self.strips[tile.strip as usize * self.n_blocks..][..self.n_blocks]
@@ -214,8 +214,8 @@ impl Column {
         left.max(right).store_slice(&mut self.most);
     }
 
-    /// Bits of the axes of the first block that matter in a tile of this column, and whether the control point has a
-    /// weight there. `rest` are the [ends](Strip::ends) of the tile's row.
+    /// Returns a bit mask of the first block's axes that are relevant in a tile of this column, and whether the control
+    /// point has a weight there. `rest` holds the [ends](Strip::ends) of the tile's row.
     #[inline(always)]
     fn active_axes<S: Simd>(&self, simd: S, rest: [f32x8<S>; 2]) -> (u32, bool) {
         let least = rest[0] - f32x8::from_slice(simd, &self.most);
@@ -253,7 +253,7 @@ impl Strip {
         }
     }
 
-    /// Minimum and maximum of `1 − a_y d_y`, for every axis.
+    /// Returns the minimum and maximum of `1 − a_y d_y` for every axis.
     #[inline(always)]
     fn ends<S: Simd>(&self, simd: S) -> [f32x8<S>; 2] {
         [
@@ -263,7 +263,7 @@ impl Strip {
     }
 }
 
-/// Offsets of eight coordinates from a control point.
+/// Returns the offsets of eight coordinates from a control point.
 #[inline(always)]
 fn offsets<S: Simd>(simd: S, coordinates: &[f64], center: f64) -> f32x8<S> {
     let low = f64x4::from_slice(simd, &coordinates[..4]) - center;

@@ -11,7 +11,7 @@
 //!   `u = 1 − 1/(2s)`, for an axis scale of `s`.
 //! * Their slope is zero at both ends. So clamping the projection causes no crease.
 //!
-//! The functions are generic over one number and a register of numbers.
+//! The functions are generic over a single number or a register of numbers.
 
 use core::ops::{Add, Mul, Sub};
 
@@ -54,13 +54,13 @@ pub enum AxialWeight {
 }
 
 impl AxialWeight {
-    /// The weight at projection `p`, which is clamped to `[0, 1]`.
+    /// Returns the weight at the projection `p`, which is clamped to `[0, 1]`.
     #[must_use]
     pub fn at(self, p: f32) -> f32 {
         self.of_complement((1.0 - p).clamp(0.0, 1.0))
     }
 
-    /// The weight at `u = 1 − p`, in `[0, 1]`.
+    /// Returns the weight at `u = 1 − p`, in `[0, 1]`.
     #[inline(always)]
     pub(crate) fn of_complement<V: Lane>(self, u: V) -> V {
         match self {
@@ -74,7 +74,7 @@ impl AxialWeight {
         }
     }
 
-    /// The weight at `u`, in `[0, 1]`, in double precision.
+    /// Returns the weight at `u` (in `[0, 1]`), in double precision.
     pub(crate) fn value(self, u: f64) -> f64 {
         let cubic = u * u * (3.0 - 2.0 * u);
         match self {
@@ -88,7 +88,7 @@ impl AxialWeight {
         }
     }
 
-    /// The derivative of the weight with respect to `u`, in `[0, 1]`.
+    /// Returns the derivative of the weight with respect to `u`, which is in `[0, 1]`.
     pub(crate) fn slope(self, u: f64) -> f64 {
         let cubic_slope = 6.0 * u * (1.0 - u);
         match self {
@@ -128,13 +128,13 @@ impl<V> Lane for V where
 {
 }
 
-/// `u² (3 − 2u)`, which is `(1 − p)² (1 + 2p)`.
+/// Computes `u² (3 − 2u)`, which is `(1 − p)² (1 + 2p)`.
 #[inline(always)]
 fn cubic<V: Lane>(u: V) -> V {
     u * u * (u * -2.0 + 3.0)
 }
 
-/// `T_n(x)` by its recurrence. The result is exact at the ends: 1 at 1, and ±1 at −1.
+/// Computes `T_n(x)` by its recurrence. The result is exact at the ends: 1 at 1, and ±1 at −1.
 #[inline(always)]
 fn chebyshev<V: Lane>(n: u32, x: V) -> V {
     let mut former = x * 0.0 + 1.0;
@@ -145,8 +145,8 @@ fn chebyshev<V: Lane>(n: u32, x: V) -> V {
     latter
 }
 
-/// `T_n(2u − 1)` and its derivative with respect to `u`: `2n` times the Chebyshev polynomial of the second kind of
-/// degree `n − 1`.
+/// Computes `T_n(2u − 1)` and its derivative with respect to `u`, which is `2n` times the Chebyshev polynomial of the
+/// second kind of degree `n − 1`.
 fn swing(n: u32, u: f64) -> (f64, f64) {
     let x = 2.0 * u - 1.0;
     let (mut former, mut latter) = ([1.0, 0.0], [x, 1.0]);

@@ -1,4 +1,4 @@
-//! Groups of points connected by the graph (figure 9b).
+//! Divides points into groups that are connected by the graph (figure 9b).
 //!
 //! The paper groups points "into clusters of three or four points" and does not say how. Here groups grow one after
 //! another. Each starts at the free point with the lowest number of free neighbors, and adds such points, so that few
@@ -14,20 +14,20 @@ use dapple_points::PointIdx;
 use divide::divide;
 use std::collections::BTreeSet;
 
-/// Range of the number of points of a group.
+/// Valid number of points in a group.
 pub(crate) const POINTS_PER_CELL: Range = range!(from 1 to 16);
 
-/// Returns the label of the group of every point; labels are consecutive numbers from 0.
+/// Returns a group label for every point. Labels are consecutive numbers from 0.
 ///
 /// Every point is in one group, and every group is connected by edges of the graph. A group has between `sizes[0]` and
 /// `sizes[1]` points; each number is equally probable while enough free points are adjacent. A smaller group remains
-/// only if no division of it and two groups around it has valid sizes. This occurs where the number of points in a
-/// connected part of the graph is not a sum of valid sizes (5 points in groups of three or four), or at a loose end of
-/// the graph.
+/// only if no division of it and two adjacent groups has valid sizes. This occurs where the number of points in a
+/// connected part of the graph is not a sum of valid sizes (such as 5 points in groups of three or four), or at a dead
+/// end of the graph.
 ///
 /// # Errors
 ///
-/// [`Range`](crate::PupsErrorKind::Range) if the sizes are not from 1 to 16, or are in descending order.
+/// [`Range`](crate::PupsErrorKind::Range) if a size is not from 1 to 16, or the sizes are in descending order.
 ///
 /// # Examples
 ///
@@ -56,7 +56,7 @@ pub fn grouped_labels(graph: &Graph, sizes: [u32; 2], seed: Seed) -> Result<Vec<
     Ok(labels(&groups, neighbors.len()))
 }
 
-/// The neighbors of each point over edges in either direction, without the point itself.
+/// Returns each point's neighbors over edges in either direction, without the point itself.
 fn neighbors(graph: &Graph) -> Vec<Vec<u32>> {
     let mut neighbors = vec![Vec::new(); graph.n_points()];
     for point in 0..graph.n_points() as u32 {
@@ -73,7 +73,7 @@ fn neighbors(graph: &Graph) -> Vec<Vec<u32>> {
     neighbors
 }
 
-/// The state of growing groups: the free points, which have no group yet.
+/// State of the growing groups. Free points are those without a group yet.
 struct Growth<'a> {
     neighbors: &'a [Vec<u32>],
     /// Number of free neighbors of each free point; `None` for points in a group.
@@ -104,7 +104,7 @@ impl<'a> Growth<'a> {
         Some((free, self.ranks[point as usize], point))
     }
 
-    /// Removes a point from the free points, and updates its neighbors.
+    /// Removes `point` from the free points, and updates its neighbors.
     fn take(&mut self, point: u32) {
         if let Some(key) = self.key(point) {
             self.queue.remove(&key);
@@ -149,7 +149,7 @@ impl<'a> Growth<'a> {
     }
 }
 
-/// Divides groups that are too small again, together with one or two groups around them.
+/// Divides each group that is too small again, together with one or two adjacent groups.
 fn mend(neighbors: &[Vec<u32>], groups: &mut Vec<Vec<u32>>, sizes: [u32; 2]) {
     let mut group_of = vec![0; neighbors.len()];
     for (index, group) in groups.iter().enumerate() {
@@ -168,7 +168,7 @@ fn mend(neighbors: &[Vec<u32>], groups: &mut Vec<Vec<u32>>, sizes: [u32; 2]) {
                 continue;
             };
             region.iter().for_each(|&group| groups[group].clear());
-            // Store the parts in the emptied groups, and append further parts.
+            // Store the new groups in the emptied slots, and append the remaining ones.
             let mut homes = region.into_iter();
             for part in parts {
                 let home = homes.next().unwrap_or(groups.len());
@@ -185,7 +185,7 @@ fn mend(neighbors: &[Vec<u32>], groups: &mut Vec<Vec<u32>>, sizes: [u32; 2]) {
     }
 }
 
-/// Regions of a group with one adjacent group, then with two.
+/// Returns unions of the group `small` with one adjacent group, then with two.
 fn regions(
     neighbors: &[Vec<u32>],
     groups: &[Vec<u32>],

@@ -1,4 +1,4 @@
-//! Labels: unique, random, or binary with a probability that depends on the position.
+//! Assigns labels to points: unique, random, or binary with a probability that depends on the position.
 
 use super::values::random_value;
 use crate::PupsError;
@@ -6,13 +6,13 @@ use dapple_hash::{Seed, hash1};
 use dapple_points::PointSet;
 use dapple_raster::Varying;
 
-/// A unique label for every point, so each is a cell.
+/// Returns a unique label for every point, which makes each point a cell of its own.
 #[must_use]
 pub fn own_labels(n_points: usize) -> Vec<u32> {
     (0..).take(n_points).collect()
 }
 
-/// Independent random labels, each of `0..n_labels` with the same probability (to within 2^-32).
+/// Returns independent random labels in `0..n_labels`, all equally probable (to within 2^-32).
 ///
 /// # Errors
 ///
@@ -28,9 +28,9 @@ pub fn random_labels(n_points: usize, n_labels: u32, seed: Seed) -> Result<Vec<u
     Ok((0..n_points as i64).map(label).collect())
 }
 
-/// Binary labels: 1 with the given probability at the position of a point, else 0.
+/// Returns binary labels: each point's label is 1 with the given probability at its position, else 0.
 ///
-/// This is the "logic that depends on spatial location" of figure 17. A probability of 0.5 gives the labels of the cow.
+/// This is the "logic that depends on spatial location" of figure 17. A probability of 0.5 gives the cow's labels.
 ///
 /// # Errors
 ///

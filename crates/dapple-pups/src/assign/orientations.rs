@@ -1,4 +1,4 @@
-//! Orientations: unit vectors in space that shift the weights of control points (equation 4).
+//! Orientations: unit vectors in 3-D that shift the weights of control points (equation 4).
 //!
 //! Random orientations are uniform on the sphere: by Archimedes' theorem, both the height in `[-1, 1]` and the azimuth
 //! are uniform. Sines and cosines are `libm`'s, so the bits are the same on every machine.
@@ -12,7 +12,7 @@ use dapple_raster::Varying;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
-/// Independent random unit vectors, uniform on the sphere.
+/// Returns independent random unit vectors, uniform on the sphere.
 #[must_use]
 pub fn random_orientations(n_points: usize, seed: Seed) -> Vec<DVec3> {
     let vector = |index: i64| {
@@ -24,9 +24,9 @@ pub fn random_orientations(n_points: usize, seed: Seed) -> Vec<DVec3> {
     (0..n_points as i64).map(vector).collect()
 }
 
-/// Unit vectors in the plane that point away from `center`, along the shortest path across wrapped axes.
+/// Returns unit vectors in the plane that point away from `center`, along the shortest path across wrapped axes.
 ///
-/// A point at the center gets the z axis, which has no direction in the plane.
+/// For a point at the center, the vector is the z axis, which has no direction in the plane.
 ///
 /// # Errors
 ///
@@ -47,7 +47,8 @@ pub fn outward_orientations(points: &PointSet, center: DVec2) -> Result<Vec<DVec
     Ok(points.positions().iter().map(vector).collect())
 }
 
-/// Unit vectors in the plane at an angle that depends on the position, in radians, from the x axis towards the y axis.
+/// Returns unit vectors in the plane at an angle that depends on the position. Angles are in radians, from the x axis
+/// towards the y axis.
 ///
 /// # Errors
 ///
@@ -66,7 +67,7 @@ pub fn angle_orientations(points: &PointSet, angle: &Varying) -> Result<Vec<DVec
     points.positions().iter().map(vector).collect()
 }
 
-/// The vectors of a function of the position, at the points. They may have any length but zero.
+/// Evaluates `field` at the points. Its vectors may have any length but zero.
 #[must_use]
 pub fn field_orientations(points: &PointSet, field: impl Fn(DVec2) -> DVec3) -> Vec<DVec3> {
     points.positions().iter().map(|&at| field(at)).collect()
@@ -111,7 +112,8 @@ pub enum Orientations {
 }
 
 impl Orientations {
-    /// The vectors for the points: one for each, a single one for all, or `None`.
+    /// Returns the orientations of `points`: one vector for each point, a single vector for all, or `None` if there are
+    /// no orientations.
     ///
     /// # Errors
     ///

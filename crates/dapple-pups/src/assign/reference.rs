@@ -1,7 +1,7 @@
-//! Labels and intensities from a reference image (figures 13 and 14).
+//! Computes labels from a reference image's intensities (figures 13 and 14).
 //!
-//! The paper takes "the intensity of the corresponding pixel": the pixel in which a control point lies, without
-//! interpolation. The image covers the domain of the points, its first row along the smallest y.
+//! The paper takes "the intensity of the corresponding pixel": the pixel that contains the control point, without
+//! interpolation. The image covers the points' domain, with its first row along the smallest y.
 
 use super::values::random_value;
 use crate::PupsError;
@@ -17,7 +17,7 @@ pub struct ReferenceImage {
 }
 
 impl ReferenceImage {
-    /// Creates a reference image, after checking every pixel.
+    /// Creates a reference image after checking that every intensity is from 0 to 1.
     ///
     /// # Errors
     ///
@@ -34,14 +34,14 @@ impl ReferenceImage {
         Ok(Self { intensities })
     }
 
-    /// The intensities.
+    /// Returns the raster of intensities, from 0 (black) to 1 (white).
     #[must_use]
     pub fn intensities(&self) -> &Raster<f32> {
         &self.intensities
     }
 
-    /// The intensity of the pixel at a position. The image covers `domain`. Beyond an edge it repeats if the domain
-    /// wraps, and otherwise its border pixels are extended.
+    /// Returns the intensity of the pixel at `position`. The image covers `domain`. Outside of the domain, the image
+    /// repeats along axes that wrap; along other axes, its border pixels are extended.
     #[must_use]
     pub fn intensity(&self, domain: &Domain, position: DVec2) -> f32 {
         let uv = (domain.wrap(position) - domain.origin) / domain.size;
@@ -54,8 +54,8 @@ impl ReferenceImage {
     }
 }
 
-/// Binary labels from a reference image that covers the domain: 1 (white) where a random number is below the intensity
-/// at the point, else 0 (black).
+/// Returns binary labels from a reference image that covers the points' domain. A point's label is 1 (white) if a
+/// random number is below the intensity at the point, else 0 (black).
 #[must_use]
 pub fn reference_labels(points: &PointSet, image: &ReferenceImage, seed: Seed) -> Vec<u32> {
     let label = |(index, &position)| {

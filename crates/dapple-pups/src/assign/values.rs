@@ -1,11 +1,11 @@
-//! Values: random, or given by a function of the position, a field or a palette.
+//! Assigns values to points: random, or from a function of the position, a field or a palette.
 
 use crate::PupsError;
 use dapple_hash::{Seed, hash1, unit_f32};
 use dapple_points::PointSet;
 use dapple_raster::{Field, FieldExt as _, Varying};
 
-/// Independent random values, uniform in `[0, 1)`, as in the paper's noise.
+/// Returns independent random values, uniform in `[0, 1)`, as in the paper's noise.
 ///
 /// # Examples
 ///
@@ -23,12 +23,12 @@ pub fn random_values(n_points: usize, seed: Seed) -> Vec<f32> {
         .collect()
 }
 
-/// A random number in `[0, 1)` for the index of a point, a cell or a label.
+/// Returns a random number in `[0, 1)` for the index of a point, a cell or a label.
 pub(crate) fn random_value(seed: Seed, index: i64) -> f32 {
     unit_f32((hash1(seed, [index], 0) >> 32) as u32)
 }
 
-/// The values of a function of the position, at the points.
+/// Evaluates `value` at the points.
 ///
 /// # Errors
 ///
@@ -42,7 +42,7 @@ pub fn varying_values(points: &PointSet, value: &Varying) -> Result<Vec<f32>, Pu
     check_finite(values)
 }
 
-/// The values of a field at the points. Any texture can be the field.
+/// Samples a field, such as another texture, at the points.
 ///
 /// # Errors
 ///
@@ -53,7 +53,7 @@ pub fn field_values(points: &PointSet, field: &dyn Field) -> Result<Vec<f32>, Pu
     check_finite(values)
 }
 
-/// The vectors of a palette, such as colors, for the labels; labels past its end wrap around.
+/// Returns the palette's vector (such as a color) for each label. Labels beyond the end of the palette wrap around.
 ///
 /// # Errors
 ///

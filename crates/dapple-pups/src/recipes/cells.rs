@@ -1,4 +1,4 @@
-//! Cells (section 3.2): of one control point each (figure 9a), or of a few connected control points (figure 9b).
+//! Cells (section 3.2). A cell belongs to one control point (figure 9a) or to a few connected ones (figure 9b).
 
 use crate::{
     LabelTexture, NetOptions, PupsError, PupsField, PupsRecipe, Spacing, grouped_labels,
@@ -40,7 +40,7 @@ impl Default for CellsOptions {
 }
 
 impl CellsOptions {
-    /// Options for cells of three or four points each, as in figure 9b; otherwise the defaults.
+    /// Returns the default options, but with cells of three or four points each, as in figure 9b.
     #[must_use]
     pub fn of_three_or_four() -> Self {
         Self {
@@ -50,14 +50,15 @@ impl CellsOptions {
     }
 }
 
-/// Makes cells, each with a label (starting at 0) and a random value in `[0, 1)`.
+/// Builds cells. Each has a label (starting at 0) and a random value in `[0, 1)`.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/cells.md"))]
 ///
 /// # Errors
 ///
 /// [`Points`](crate::PupsErrorKind::Points) if points cannot be placed, [`Range`](crate::PupsErrorKind::Range) if a
-/// number of points per cell is out of its range, and the errors of [`PupsOptions::check`](crate::PupsOptions::check).
+/// number of points per cell is out of its range. If net options are invalid, same as
+/// [`PupsOptions::check`](crate::PupsOptions::check).
 ///
 /// # Examples
 ///

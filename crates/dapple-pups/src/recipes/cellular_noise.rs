@@ -57,13 +57,13 @@ impl Default for CellularNoiseOptions {
     }
 }
 
-/// Makes layers of [`cells`]; as a field, their sum, which is between 0 and 1.875 by default.
+/// Builds layers of [`cells`]. As a field, the result is their sum, which is between 0 and 1.875 by default.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/cellular-noise.md"))]
 ///
 /// # Errors
 ///
-/// The errors of [`cells`]; [`Range`](crate::PupsErrorKind::Range) if an option is out of its range.
+/// Same as [`cells`], and [`Range`](crate::PupsErrorKind::Range) if an option is out of its range.
 ///
 /// # Examples
 ///

@@ -1,5 +1,5 @@
-//! Colors of a palette at the control points, interpolated. This goes beyond the paper, which calls color "a more
-//! challenging problem" and does not pursue it, although its values may be "a vector color value".
+//! Color noise: palette colors at the control points, interpolated. This goes beyond the paper, which calls color "a
+//! more challenging problem" and does not pursue it, although its values may be "a vector color value".
 //!
 //! Colors are interpolated as given, so use linear RGB, or any other three numbers that can be averaged.
 
@@ -47,14 +47,16 @@ impl Default for ColorNoiseOptions {
     }
 }
 
-/// Makes a texture of random palette colors. Every channel is between its smallest and largest value in the palette.
+/// Builds a texture that interpolates random palette colors. Every channel is between its smallest and largest value in
+/// the palette.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/color-noise.md"))]
 ///
 /// # Errors
 ///
-/// [`Points`](crate::PupsErrorKind::Points) if points cannot be placed, [`Range`](crate::PupsErrorKind::Range) for an
-/// empty palette or a color that is not finite, and the errors of [`PupsOptions::check`](crate::PupsOptions::check).
+/// [`Points`](crate::PupsErrorKind::Points) if points cannot be placed, [`Range`](crate::PupsErrorKind::Range) if the
+/// palette is empty or a color is not finite. If net options are invalid, same as
+/// [`PupsOptions::check`](crate::PupsOptions::check).
 ///
 /// # Examples
 ///

@@ -1,5 +1,5 @@
-//! The control points of a texture as data, for editors: their positions, values and connections. Also the conversion
-//! of a texture to individual control points, which gives the same image.
+//! Exposes a texture's control points to editors: their positions, values and connections. Also converts a texture to
+//! individual control points, which give the same image.
 
 use super::Octave;
 use crate::{
@@ -39,7 +39,7 @@ pub enum NetValues {
 
 /// A texture of numbers with accessible control points.
 pub trait NetField: Field {
-    /// The nets of its layers, the coarsest first; a single net for a texture without layers.
+    /// Returns the nets of the texture's layers, the coarsest first. A texture without layers has a single net.
     fn nets(&self) -> Vec<ControlNet>;
 
     /// Converts the texture to individual control points; see [`PupsField::to_points`].
@@ -50,16 +50,17 @@ pub trait NetField: Field {
 }
 
 impl ControlNet {
-    /// The Delaunay graph of the points, whose edges are the axes of the texture.
+    /// Returns the Delaunay graph of the points, whose edges are the texture's axes.
     ///
     /// # Errors
     ///
-    /// [`Graph`](crate::PupsErrorKind::Graph) if there is no triangulation. Textures of recipes have one.
+    /// [`Graph`](crate::PupsErrorKind::Graph) if the triangulation fails, which does not happen for a recipe's
+    /// textures.
     pub fn graph(&self) -> Result<Graph, PupsError> {
         Ok(delaunay(self.pups.points())?)
     }
 
-    /// Orientation of each point, if there are orientations.
+    /// Returns the orientation of each point; `None` without orientations.
     #[must_use]
     pub fn orientations(&self) -> Option<Vec<DVec3>> {
         let vectors = &self.pups.options().orientation.as_ref()?.vectors;
@@ -67,7 +68,7 @@ impl ControlNet {
         Some((0..self.pups.n_points()).map(of_point).collect())
     }
 
-    /// Value of each point, or of its label; `None` for colors.
+    /// Returns the value of each point (for labeled points, the label's value); `None` for colors.
     #[must_use]
     pub fn numbers(&self) -> Option<Vec<f32>> {
         match &self.values {
@@ -80,7 +81,8 @@ impl ControlNet {
         }
     }
 
-    /// Label of each point and value of each label; `None` without labels, or if every point has its own label.
+    /// Returns the label of each point and the value of each label. `None` without labels, or if every point has a
+    /// label of its own.
     #[must_use]
     pub fn shared_labels(&self) -> Option<(&[u32], &[f32])> {
         match &self.values {
@@ -93,7 +95,7 @@ impl ControlNet {
     }
 
     /// Converts the net to options of [`control_points`](crate::control_points) with the domain `tile`. Returns `None`
-    /// for colors, and if the period of the texture is not that of the tile.
+    /// for colors, and if the texture's period differs from the tile's.
     fn to_points(&self, tile: Domain) -> Option<ControlPoints> {
         let (domain, numbers) = (self.pups.domain(), self.numbers()?);
         let wraps_within = |axis: usize| !domain.wrap[axis] || tile.wrap[axis];
@@ -130,7 +132,7 @@ impl ControlNet {
     }
 }
 
-/// The options of a net whose points have their own orientations.
+/// Returns the options of a net whose points have their own orientations.
 fn net_options(options: &PupsOptions) -> NetOptions {
     let usual = NetOptions::default();
     NetOptions {
@@ -147,7 +149,7 @@ fn net_options(options: &PupsOptions) -> NetOptions {
 }
 
 impl PupsField {
-    /// The control points of the texture, by layer, the coarsest layer first.
+    /// Returns the texture's control points by layer, the coarsest layer first.
     #[must_use]
     pub fn nets(&self) -> Vec<ControlNet> {
         match self {
@@ -156,10 +158,10 @@ impl PupsField {
         }
     }
 
-    /// Converts the texture to individual control points on the domain `tile`. Their image is the same, bit for bit.
-    /// Moving points keep their current positions.
+    /// Converts the texture to individual control points on the domain `tile`, which give the same image, bit for bit.
+    /// Moving points retain their current positions.
     ///
-    /// Returns `None` for a texture of several layers (octaves, turbulence, cellular noise) and for colors, which
+    /// Returns `None` for a texture with several layers (octaves, turbulence, cellular noise) and for colors, which
     /// [`control_points`](crate::control_points) does not support.
     ///
     /// # Examples
@@ -233,7 +235,7 @@ impl NetField for LabelTexture {
 }
 
 impl NetField for Layers<Octave> {
-    /// The nets of the octaves; a single net for rescaled octaves.
+    /// Returns the nets of the octaves. Rescaled octaves share a single net.
     fn nets(&self) -> Vec<ControlNet> {
         let octaves = self.layers().iter().filter(|octave| octave.scale() == 1.0);
         octaves.map(|octave| octave.texture().into()).collect()

@@ -1,4 +1,4 @@
-//! Textures of individual control points.
+//! Builds textures from individual control points.
 
 use crate::{
     LabelTexture, NetField, NetOptions, Orientation, Orientations, Pups, PupsError, PupsErrorKind,
@@ -51,7 +51,7 @@ pub struct ControlPoints {
     pub margin: [f64; 2],
 }
 
-/// Range of the distance from the domain to points outside of it.
+/// Valid width of the margin around the domain that may contain points.
 const MARGIN: Range = range!(at least 0);
 
 #[cfg(feature = "serde")]
@@ -127,7 +127,7 @@ pub struct ControlPoint {
     pub orientation: Option<DVec3>,
 }
 
-/// Deserializes a number. `null` is an error, since JSON writes it for a number that is not finite.
+/// Deserializes a number. `null` is an error, since JSON represents numbers that are not finite by `null`.
 #[cfg(feature = "serde")]
 fn number<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Option<f32>, D::Error> {
     <f32 as serde::Deserialize>::deserialize(deserializer).map(Some)
@@ -147,7 +147,7 @@ impl Default for ControlPoints {
     }
 }
 
-/// Makes a texture of individual control points, interpolated or as cells.
+/// Builds a texture from individual control points, either interpolated or as cells.
 ///
 /// # Errors
 ///
@@ -156,7 +156,7 @@ impl Default for ControlPoints {
 /// * [`Conflict`](PupsErrorKind::Conflict) if only some points have an orientation, if the options have orientations,
 ///   too, or if a point does not have exactly one of value and label
 /// * [`Count`](PupsErrorKind::Count) for a label without a value
-/// * the errors of [`PupsOptions::check`](crate::PupsOptions::check)
+/// * same as [`PupsOptions::check`](crate::PupsOptions::check) if the net options are invalid
 pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, PupsError> {
     let points = options.point_set()?;
     let net = &options.net;
@@ -180,7 +180,7 @@ pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, 
 }
 
 impl Cells {
-    /// Makes the texture for the values at the points of a net.
+    /// Builds the texture of a net whose points have the given values.
     pub(crate) fn texture(
         self,
         pups: Pups,
@@ -197,14 +197,14 @@ impl Cells {
 }
 
 impl ControlPoints {
-    /// The positions of the points, in order.
+    /// Returns the points' positions, in order.
     pub(crate) fn point_set(&self) -> Result<PointSet, PupsError> {
         let positions = self.points.iter().map(|point| DVec2::new(point.x, point.y));
         Ok(PointSet::new(self.points_domain()?, positions.collect())?)
     }
 
-    /// The domain of the points: the domain of the options with its margin, and the axes along which the texture
-    /// repeats.
+    /// Returns the domain of the points: the options' domain, extended by the margin. It wraps along the axes on which
+    /// the texture repeats.
     fn points_domain(&self) -> Result<Domain, PupsError> {
         for margin in self.margin {
             PupsError::check_in(MARGIN, "margin of the control points", margin)?;
@@ -217,7 +217,7 @@ impl ControlPoints {
         Ok(domain.grown(self.margin.into()))
     }
 
-    /// Value of each point, or of its label.
+    /// Returns the value of each point (for labeled points, the label's value).
     pub(crate) fn numbers<'a>(
         &self,
         points: impl IntoIterator<Item = &'a ControlPoint>,
@@ -241,7 +241,7 @@ impl ControlPoints {
         points.into_iter().map(number).collect()
     }
 
-    /// Orientations of the points; `None` if no point has one.
+    /// Returns the points' orientations; `None` if no point has one.
     pub(crate) fn orientations(&self) -> Result<Option<Vec<DVec3>>, PupsError> {
         let given: Vec<_> = self.points.iter().filter_map(|p| p.orientation).collect();
         let conflict = |rule| Err(PupsError::new(PupsErrorKind::Conflict { rule }));
@@ -258,7 +258,7 @@ impl ControlPoints {
     }
 }
 
-/// Orientations as data: two or three numbers.
+/// Serializes orientations as two or three numbers.
 #[cfg(feature = "serde")]
 mod orientation {
     use glam::DVec3;

@@ -42,14 +42,15 @@ impl Default for CowOptions {
     }
 }
 
-/// Makes patches of two values, like those of a cow.
+/// Builds patches of two values, like a cow's coat.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/cow.md"))]
 ///
 /// # Errors
 ///
-/// [`Points`](crate::PupsErrorKind::Points) if points cannot be placed, [`Range`](crate::PupsErrorKind::Range) for a
-/// probability outside of `[0, 1]`, and the errors of [`PupsOptions::check`](crate::PupsOptions::check).
+/// [`Points`](crate::PupsErrorKind::Points) if points cannot be placed, [`Range`](crate::PupsErrorKind::Range) if a
+/// probability is outside of `[0, 1]`. If net options are invalid, same as
+/// [`PupsOptions::check`](crate::PupsOptions::check).
 ///
 /// # Examples
 ///

@@ -6,8 +6,8 @@
 //! choice is random in every iteration, at ever smaller scales.
 //!
 //! The paper does not say whether the points of an iteration contain the previous ones; both are available. Points that
-//! are kept retain their label, since the value of a texture at a control point is that point's value (for an axis
-//! scale of at most 1).
+//! remain retain their label, since the value of a texture at a control point is that point's value (for an axis scale
+//! of at most 1).
 
 use super::octaves::{COUNT, expected_in_series};
 use crate::{
@@ -71,15 +71,15 @@ impl Default for IteratedOptions {
     }
 }
 
-/// Makes the textures of all iterations. Values are in `[0, 1]` up to rounding, and mostly 0 or 1.
+/// Builds the textures of all iterations. Values are in `[0, 1]` up to rounding, and mostly 0 or 1.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/iterated-reference.md"))]
 ///
 /// # Errors
 ///
 /// [`Points`](PupsErrorKind::Points) if points cannot be placed, [`Range`](PupsErrorKind::Range) if the number of
-/// iterations is out of its range, [`SpacingVaries`](PupsErrorKind::SpacingVaries) for nested points with a varying
-/// spacing, and the errors of [`PupsOptions::check`](crate::PupsOptions::check).
+/// iterations is out of its range, [`SpacingVaries`](PupsErrorKind::SpacingVaries) if nested points have a varying
+/// spacing. If net options are invalid, same as [`PupsOptions::check`](crate::PupsOptions::check).
 ///
 /// # Examples
 ///
@@ -103,7 +103,7 @@ pub fn iterated_reference(
         ..options.net.clone()
     };
     let mut textures: Vec<Texture> = Vec::new();
-    // The input of the next iteration. If points move, their values come from the texture without motion.
+    // Texture of the previous iteration, the input of the next one. If points move, this is the texture without motion.
     let mut former: Option<Texture> = None;
     for (iteration, points) in (0..).zip(options.point_sets(seed)?) {
         let seed = seed.child("iteration", iteration);
@@ -130,7 +130,8 @@ fn first_intensities(image: &ReferenceImage, points: &PointSet) -> Vec<f32> {
 }
 
 impl IteratedOptions {
-    /// The points of each iteration: twice as many as before, at distances divided by the square root of two.
+    /// Generates the points of each iteration: twice as many as before, with distances divided by the square root of
+    /// two.
     fn point_sets(&self, seed: Seed) -> Result<Vec<PointSet>, PupsError> {
         let factors = core::iter::successors(Some(1.0), |factor| Some(factor * SQRT_2));
         let factors = factors.take(self.iterations as usize);

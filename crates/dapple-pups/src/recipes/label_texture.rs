@@ -8,9 +8,9 @@ use dapple_points::PointIdx;
 use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
 use glam::DVec2;
 
-/// A texture with the value of the strongest control point's label, at every position.
+/// A texture that gives every position the value of its strongest control point's label.
 ///
-/// It has only the values of its labels, and NaN at a position that is not finite.
+/// No other values occur, except NaN at a position that is not finite.
 ///
 /// # Examples
 ///
@@ -34,8 +34,8 @@ pub struct LabelTexture {
     values: Vec<f32>,
 }
 
-/// A texture with the vector, such as a color, of the strongest control point's label: a [`LabelTexture`] with `N`
-/// components.
+/// A texture that gives every position the vector, such as a color, of its strongest control point's label. It is a
+/// [`LabelTexture`] with `N` components.
 #[derive(Clone, Debug)]
 pub struct VectorLabelTexture<const N: usize> {
     pups: Pups,
@@ -56,7 +56,7 @@ fn check(pups: &Pups, labels: &[u32], n_values: usize, numbers: &[f32]) -> Resul
     Ok(())
 }
 
-/// Renders `value` of the strongest control point of each pixel of a window into `out`.
+/// Renders, for each pixel of a window, `value` of its strongest control point into `out`.
 fn render_labels<T: Copy>(
     pups: &Pups,
     window: &Window,
@@ -75,7 +75,7 @@ fn render_labels<T: Copy>(
 }
 
 impl LabelTexture {
-    /// Creates a texture of `values[label]`; `labels` has the label of each control point.
+    /// Creates a texture of `values[label]`. `labels` holds the label of each control point.
     ///
     /// # Errors
     ///
@@ -90,32 +90,32 @@ impl LabelTexture {
         })
     }
 
-    /// The net of the control points.
+    /// Returns the net of the control points.
     #[must_use]
     pub fn pups(&self) -> &Pups {
         &self.pups
     }
 
-    /// The labels of the control points.
+    /// Returns the label of each control point.
     #[must_use]
     pub fn labels(&self) -> &[u32] {
         &self.labels
     }
 
-    /// The values of the labels.
+    /// Returns the value of each label.
     #[must_use]
     pub fn values(&self) -> &[f32] {
         &self.values
     }
 
-    /// The label at a position; `None` if it is not finite.
+    /// Returns the label at `position`; `None` if the position is not finite.
     #[must_use]
     pub fn label(&self, position: DVec2) -> Option<u32> {
         let point = self.pups.strongest(position)?;
         Some(self.labels[point.index()])
     }
 
-    /// Renders the labels at the pixel centers of a window; `u32::MAX` at a position that is not finite.
+    /// Renders the labels at the pixel centers of a window. The label is `u32::MAX` where a position is not finite.
     ///
     /// # Errors
     ///
@@ -134,7 +134,7 @@ impl LabelTexture {
     ///
     /// # Errors
     ///
-    /// The errors of [`new`](Self::new).
+    /// Same as [`new`](Self::new).
     pub fn with_values(self, values: Vec<f32>) -> Result<Self, PupsError> {
         Self::new(self.pups, self.labels, values)
     }
@@ -143,7 +143,7 @@ impl LabelTexture {
     ///
     /// # Errors
     ///
-    /// The errors of [`new`](Self::new).
+    /// Same as [`new`](Self::new).
     pub fn with_vectors<const N: usize>(
         self,
         values: Vec<[f32; N]>,
@@ -151,7 +151,7 @@ impl LabelTexture {
         VectorLabelTexture::new(self.pups, self.labels, values)
     }
 
-    /// The value of a point's label; NaN without a point.
+    /// Returns the value of a point's label; NaN if `point` is `None`.
     fn of_point(&self, point: Option<PointIdx>) -> f32 {
         let label = point.and_then(|point| self.labels.get(point.index()));
         label.map_or(f32::NAN, |&label| self.values[label as usize])
@@ -173,11 +173,11 @@ impl Field for LabelTexture {
 }
 
 impl<const N: usize> VectorLabelTexture<N> {
-    /// Creates a texture of `values[label]`; `labels` has the label of each control point.
+    /// Creates a texture of `values[label]`. `labels` holds the label of each control point.
     ///
     /// # Errors
     ///
-    /// The errors of [`LabelTexture::new`].
+    /// Same as [`LabelTexture::new`].
     pub fn new(pups: Pups, labels: Vec<u32>, values: Vec<[f32; N]>) -> Result<Self, PupsError> {
         check(&pups, &labels, values.len(), values.as_flattened())?;
         Ok(Self {
@@ -187,7 +187,7 @@ impl<const N: usize> VectorLabelTexture<N> {
         })
     }
 
-    /// The vector at a position; NaN if it is not finite.
+    /// Returns the vector at `position`; NaN if the position is not finite.
     #[must_use]
     pub fn sample(&self, position: impl Into<[f64; 2]>) -> [f32; N] {
         self.of_point(self.pups.strongest(position.into().into()))

@@ -1,4 +1,4 @@
-//! Weighted sums of layers: octaves of noise (equation 5) and cells of several sizes (figure 10).
+//! Weighted sums of layers, such as octaves of noise (equation 5) or cells of several sizes (figure 10).
 
 use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window, common_period};
 
@@ -33,19 +33,19 @@ impl<F> Layers<F> {
         }
     }
 
-    /// The layers, from the coarsest to the finest.
+    /// Returns the layers, from the coarsest to the finest.
     #[must_use]
     pub fn layers(&self) -> &[F] {
         &self.layers
     }
 
-    /// Amplitude of each layer.
+    /// Returns the amplitude of each layer.
     #[must_use]
     pub fn amplitudes(&self) -> &[f32] {
         &self.amplitudes
     }
 
-    /// Sum of the amplitudes, which no value exceeds.
+    /// Returns the sum of the amplitudes, which no value exceeds.
     #[must_use]
     pub fn maximum(&self) -> f32 {
         self.maximum
@@ -72,7 +72,7 @@ impl<F> Layers<F> {
         }
     }
 
-    /// Clamps a sum that exceeds the maximum by rounding. NaN is unchanged.
+    /// Clamps a sum that rounding made larger than the maximum. NaN is unchanged.
     fn finish(&self, sum: f32) -> f32 {
         if sum > self.maximum {
             self.maximum
@@ -82,7 +82,7 @@ impl<F> Layers<F> {
     }
 }
 
-/// The value of a layer, clamped to 0 to 1 because of rounding, times its amplitude.
+/// Returns a layer's value, clamped to `[0, 1]` because of rounding, times its amplitude.
 fn part(value: f32, amplitude: f32) -> f32 {
     value.clamp(0.0, 1.0) * amplitude
 }

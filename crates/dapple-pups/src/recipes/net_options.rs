@@ -1,4 +1,4 @@
-//! Options of the recipes for the weights of their control points.
+//! Options for the control points' weights, shared by all recipes.
 
 use super::Orbits;
 use crate::options::MOVING_FADE;
@@ -77,7 +77,7 @@ impl Default for NetOptions {
 }
 
 impl NetOptions {
-    /// Options with random orientations and otherwise the defaults, for the cells of figure 9.
+    /// Returns the default options, but with random orientations, for the cells of figure 9.
     #[must_use]
     pub fn randomly_oriented() -> Self {
         Self {
@@ -90,20 +90,20 @@ impl NetOptions {
     ///
     /// # Errors
     ///
-    /// The errors of [`with_graph`](Self::with_graph), and [`Graph`](crate::PupsErrorKind::Graph) if there is no
-    /// triangulation.
+    /// Same as [`with_graph`](Self::with_graph), and [`Graph`](crate::PupsErrorKind::Graph) if the triangulation fails.
     pub fn pups(&self, points: &PointSet, seed: Seed) -> Result<Pups, PupsError> {
         let graph = self.delaunay(points)?;
         self.of_delaunay(points, &graph, self.orientation(points, seed)?, seed)
     }
 
-    /// Builds the net of any graph over `points`; if they move, of the Delaunay triangulation of their positions after
-    /// motion. Orientations come from `seed.child("orientation", 0)`, orbits from `seed.child("orbit", 0)`.
+    /// Builds the net of `graph`. If the points move, builds the net of the Delaunay triangulation of their positions
+    /// after motion instead. Orientations come from `seed.child("orientation", 0)`, orbits from `seed.child("orbit",
+    /// 0)`.
     ///
     /// # Errors
     ///
-    /// The errors of [`Pups::new`], and [`Range`](crate::PupsErrorKind::Range) for orientations that are not finite and
-    /// orbits out of their range.
+    /// Same as [`Pups::new`], and [`Range`](crate::PupsErrorKind::Range) if an orientation is not finite or an orbit is
+    /// out of its range.
     pub fn with_graph(
         &self,
         points: &PointSet,
@@ -135,7 +135,7 @@ impl NetOptions {
         }
     }
 
-    /// Places points with a spacing in a domain, or takes equal points from `parts`.
+    /// Places points with the given spacing in a domain, or takes equal points from the cache `parts`.
     pub(crate) fn points(
         &self,
         spacing: &Spacing,
@@ -159,12 +159,12 @@ impl NetOptions {
         Ok(scattered.points.clone())
     }
 
-    /// The cancellation callback of the caller.
+    /// Returns the caller's cancellation callback.
     pub(crate) fn is_cancelled(&self) -> impl Fn() -> bool + Sync {
         || self.cancel.is_cancelled()
     }
 
-    /// The Delaunay graph of points, or an equal one from `parts`.
+    /// Returns the Delaunay graph of points, or takes an equal one from the cache `parts`.
     pub(crate) fn delaunay(&self, points: &PointSet) -> Result<Arc<Graph>, PupsError> {
         let triangulated = self.parts.get_or_make(
             |other: &Triangulated| is_same(&other.points, points),
@@ -178,7 +178,7 @@ impl NetOptions {
         Ok(triangulated.graph.clone())
     }
 
-    /// Builds the net of the Delaunay graph of points after motion, or takes an equal one from `parts`.
+    /// Builds the net of the Delaunay graph of points after motion, or takes an equal one from the cache `parts`.
     fn net(
         &self,
         points: &PointSet,
@@ -195,7 +195,7 @@ impl NetOptions {
         Ok(Pups::clone(&pups))
     }
 
-    /// The orientations for points, with the strength of the options.
+    /// Returns the points' orientations, with the strength from the options.
     pub(crate) fn orientation(
         &self,
         points: &PointSet,
@@ -209,7 +209,7 @@ impl NetOptions {
         }))
     }
 
-    /// The positions of the points after motion, given their Delaunay graph; `None` if they do not move.
+    /// Returns the points' positions after motion, given their Delaunay graph; `None` if they do not move.
     pub(crate) fn moved(
         &self,
         points: &PointSet,
@@ -220,7 +220,7 @@ impl NetOptions {
         self.motion.map(moved).transpose()
     }
 
-    /// The options of a net with the given orientations.
+    /// Returns the options of a net with the given orientations.
     pub(crate) fn pups_options(&self, orientation: Option<Orientation>) -> PupsOptions {
         PupsOptions {
             axis_scale: self.axis_scale,
@@ -233,7 +233,7 @@ impl NetOptions {
         }
     }
 
-    /// The options for points that have already been moved. Axes fade as for moving points.
+    /// Returns the options for points that have already been moved. Axes fade as for moving points.
     pub(crate) fn after_motion(&self) -> Self {
         let PupsOptions { fade, .. } = self.pups_options(None);
         Self {
@@ -244,19 +244,19 @@ impl NetOptions {
     }
 }
 
-/// Points, with a text that identifies their inputs.
+/// Cached points, with a text that identifies their inputs.
 struct Scattered {
     text: String,
     points: Arc<PointSet>,
 }
 
-/// The Delaunay graph of points.
+/// Cached points with their Delaunay graph.
 struct Triangulated {
     points: PointSet,
     graph: Arc<Graph>,
 }
 
-/// Whether the coordinates of two point sets have the same bits.
+/// Returns whether the coordinates of two point sets have the same bits.
 fn is_same(a: &PointSet, b: &PointSet) -> bool {
     let pairs = a.positions().iter().zip(b.positions());
     a == b
@@ -265,12 +265,13 @@ fn is_same(a: &PointSet, b: &PointSet) -> bool {
             .all(|(a, b)| a.map(f64::to_bits) == b.map(f64::to_bits))
 }
 
-/// Whether nets of equal points have the same bits with both options. The sign of a zero matters only in orientations.
+/// Returns whether nets of equal points have the same bits with both options. The sign of a zero matters only in
+/// orientations.
 fn is_same_options(a: &PupsOptions, b: &PupsOptions) -> bool {
     a == b && orientation_bits(a).eq(orientation_bits(b))
 }
 
-/// The bits of the orientations and their strength; empty without orientations.
+/// Iterates over the bits of the orientations and their strength; empty without orientations.
 fn orientation_bits(options: &PupsOptions) -> impl Iterator<Item = u64> {
     let orientation = options.orientation.iter();
     let numbers = orientation.flat_map(|orientation| {
@@ -355,7 +356,7 @@ mod tests {
                 let (stopped, _, parts) = make(last);
                 let error = stopped.unwrap_err();
                 assert_eq!(*error.kind(), PupsErrorKind::Cancelled, "at call {last}");
-                // Parts that were kept before the cancellation are complete.
+                // Cache entries from before the cancellation are complete.
                 let options = OctavesOptions {
                     domain,
                     net: NetOptions {

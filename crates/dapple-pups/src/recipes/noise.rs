@@ -32,13 +32,13 @@ impl Default for NoiseOptions {
     }
 }
 
-/// Makes one octave of noise: a smooth field with values in `[0, 1]`, up to rounding in single precision.
+/// Builds one octave of noise: a smooth field with values in `[0, 1]`, up to rounding in single precision.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/noise.md"))]
 ///
 /// # Errors
 ///
-/// [`Points`](crate::PupsErrorKind::Points) if points cannot be placed, and the errors of
+/// [`Points`](crate::PupsErrorKind::Points) if points cannot be placed. If net options are invalid, same as
 /// [`PupsOptions::check`](crate::PupsOptions::check).
 ///
 /// # Examples

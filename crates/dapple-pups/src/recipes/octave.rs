@@ -1,4 +1,4 @@
-//! One octave of a sum: rescaled and optionally folded noise.
+//! One octave of a sum of noises, rescaled and optionally folded.
 
 use crate::Texture;
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
@@ -17,10 +17,10 @@ pub struct Octave {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Folding {
-    /// The interpolated values.
+    /// The interpolated values, unchanged.
     #[default]
     Plain,
-    /// T' = 2 · |T − ½|.
+    /// Folded values: T' = 2 · |T − ½|.
     Folded,
 }
 
@@ -39,20 +39,20 @@ impl Octave {
         Self { folding, ..self }
     }
 
-    /// The texture of the octave, before rescaling and folding.
+    /// Returns the octave's texture, before rescaling and folding.
     #[must_use]
     pub fn texture(&self) -> &Texture {
         &self.texture
     }
 
-    /// Factor on positions: 1, or a power of two if octaves are rescaled.
+    /// Returns the factor by which positions are multiplied: 1, or a power of two if octaves are rescaled.
     #[must_use]
     pub fn scale(&self) -> f64 {
         self.scale
     }
 }
 
-/// T' = 2 · |T − ½|, between 0 and 1 for values between 0 and 1.
+/// Computes T' = 2 · |T − ½|, which is between 0 and 1 for values between 0 and 1.
 fn fold(value: f32) -> f32 {
     2.0 * (value - 0.5).abs()
 }

@@ -89,13 +89,13 @@ impl Default for OctavesOptions {
     }
 }
 
-/// Makes octaves of noise; as a field, their sum by equation 5.
+/// Builds octaves of noise. As a field, the result is their sum by equation 5.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/octaves.md"))]
 ///
 /// # Errors
 ///
-/// The errors of [`noise`]; [`Range`](PupsErrorKind::Range) if an option is out of its range;
+/// Same as [`noise`]; [`Range`](PupsErrorKind::Range) if an option is out of its range;
 /// [`NotWrapped`](PupsErrorKind::NotWrapped) if octaves are rescaled and the domain does not wrap along both axes.
 ///
 /// # Examples
@@ -133,13 +133,13 @@ pub fn octaves(options: &OctavesOptions, seed: Seed) -> Result<Layers<Octave>, P
     Ok(Layers::geometric(octaves?, options.gain))
 }
 
-/// Makes Perlin's turbulence: the sum of folded [`octaves`], which is between 0 and 1.875 by default.
+/// Builds Perlin's turbulence: the sum of folded [`octaves`], which is between 0 and 1.875 by default.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/turbulence.md"))]
 ///
 /// # Errors
 ///
-/// The errors of [`octaves`].
+/// Same as [`octaves`].
 pub fn turbulence(options: &OctavesOptions, seed: Seed) -> Result<Layers<Octave>, PupsError> {
     Ok(octaves(options, seed)?.folded())
 }
@@ -187,9 +187,9 @@ impl OctavesOptions {
 
 /// Range of the number of octaves, layers or iterations.
 pub(super) const COUNT: Range = range!(from 1 to 16);
-/// Range of the ratio of frequencies of successive octaves.
+/// Range of the frequency ratio of successive octaves.
 pub(super) const LACUNARITY: Range = range!(above 1 to 16);
-/// Range of the ratio of amplitudes of successive octaves.
+/// Range of the amplitude ratio of successive octaves.
 pub(super) const GAIN: Range = range!(above 0 to 1);
 
 /// Checks the number, the lacunarity and the gain of a series of layers.
@@ -245,8 +245,8 @@ impl PupsRecipe for TurbulenceOptions {
     }
 }
 
-/// Estimated number of control points of layers whose distances are divided by `factor` from layer to layer. An invalid
-/// number of layers, which is an error when the layers are made, counts as 0.
+/// Estimates the number of control points in layers whose point distances are divided by `factor` from layer to layer.
+/// Counts an invalid number of layers, which is an error when the layers are built, as 0.
 pub(super) fn expected_in_series(
     spacing: &Spacing,
     domain: Domain,

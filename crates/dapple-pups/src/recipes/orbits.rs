@@ -1,8 +1,8 @@
-//! Control points that move on circles, for loops in time.
+//! Moves control points on circles, for looping animations.
 //!
 //! The paper's outlook: "the motion of the texture can be governed by the motion of the underlying discrete structure.
 //! The main difficulty here lies in smoothing out sudden changes in the texture arising from sudden changes in the
-//! control net topology." Points keep their values and labels while they move. [`PupsOptions::fade`] smooths the
+//! control net topology." Points retain their values and labels while they move. [`PupsOptions::fade`] smooths the
 //! changes.
 //!
 //! A circle is centered at the position of its point in the texture without motion, so the distribution of distances
@@ -34,12 +34,12 @@ pub struct Orbits {
 
 /// Range of [`Orbits::radius`].
 const RADIUS: Range = range!(above 0 to 1);
-/// Range of the time, in loops; whole loops change nothing.
+/// Range of the time, in loops. Adding whole loops changes nothing.
 const TIME: Range = range!(finite);
 
 impl Orbits {
-    /// The positions of the points after a fraction of the loop; at 1 they equal those at 0. Along axes of the domain
-    /// that do not wrap, circles are limited by its border.
+    /// Returns the points' positions at `time`, a fraction of the loop. Time 1 gives the same positions as 0. Along
+    /// axes of the domain that do not wrap, circles are limited by its border.
     pub(crate) fn moved(
         self,
         points: &PointSet,
@@ -66,14 +66,14 @@ impl Orbits {
     }
 }
 
-/// The mean length of the edges at a point; zero without edges.
+/// Returns the mean length of a point's edges; zero without edges.
 fn mean_distance(graph: &Graph, point: PointIdx) -> f64 {
     let axes = graph.axes(point);
     let sum: f64 = axes.iter().map(|axis| axis.vector.length()).sum();
     sum / axes.len().max(1) as f64
 }
 
-/// A position on a circle, whose radius is reduced where it would cross a border that does not wrap.
+/// Returns a position on a circle whose radius is reduced if it would cross a border that does not wrap.
 fn within(points: &PointSet, center: DVec2, mut radius: f64, circle: DVec2) -> DVec2 {
     let domain = points.domain();
     let (first, last) = (domain.origin, domain.end());

@@ -95,13 +95,13 @@ impl Default for LabelRampOptions {
     }
 }
 
-/// Makes a cow whose patches become smaller to the right (figure 15).
+/// Builds a cow whose patches become smaller to the right (figure 15).
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/cow-progression.md"))]
 ///
 /// # Errors
 ///
-/// The errors of [`cow`].
+/// Same as [`cow`].
 ///
 /// # Examples
 ///
@@ -119,13 +119,13 @@ pub fn cow_progression(
     cow(&options.cow(), seed)
 }
 
-/// Makes a space giraffe whose spots become smaller to the right (figure 16).
+/// Builds a space giraffe whose spots become smaller to the right (figure 16).
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/giraffe-progression.md"))]
 ///
 /// # Errors
 ///
-/// The errors of [`space_giraffe`].
+/// Same as [`space_giraffe`].
 pub fn giraffe_progression(
     options: &ProgressionOptions,
     seed: Seed,
@@ -133,13 +133,13 @@ pub fn giraffe_progression(
     space_giraffe(&options.giraffe(), seed)
 }
 
-/// Makes black and white cells, with the share of white increasing to the right (figure 17).
+/// Builds black and white cells, with the share of white increasing to the right (figure 17).
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/label-ramp.md"))]
 ///
 /// # Errors
 ///
-/// The errors of [`cow`].
+/// Same as [`cow`].
 pub fn label_ramp(options: &LabelRampOptions, seed: Seed) -> Result<LabelTexture, PupsError> {
     let cow_options = CowOptions {
         domain: options.domain,
@@ -152,7 +152,7 @@ pub fn label_ramp(options: &LabelRampOptions, seed: Seed) -> Result<LabelTexture
 }
 
 impl ProgressionOptions {
-    /// The spacing of the points of a cow, or of the spot centers of a giraffe.
+    /// Returns the spacing of the cow's points, or of the giraffe's spot centers.
     #[must_use]
     pub fn spacing(&self) -> Spacing {
         let ramp = left_to_right(&self.domain, self.distances);
@@ -178,7 +178,7 @@ impl ProgressionOptions {
     }
 }
 
-/// The paper's square, which wraps from top to bottom only.
+/// Returns the paper's square, which wraps from top to bottom only.
 fn cylinder() -> Domain {
     Domain {
         wrap: [false, true],

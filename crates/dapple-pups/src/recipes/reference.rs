@@ -1,4 +1,4 @@
-//! Reference image (section 3.2, figure 13): an image determines the labels of the control points.
+//! Reference image (section 3.2, figure 13): the control points' labels come from an image.
 
 use crate::{
     LabelTexture, NetOptions, PupsError, PupsField, PupsRecipe, ReferenceImage, Spacing,
@@ -38,13 +38,14 @@ impl Default for ReferenceOptions {
     }
 }
 
-/// Makes black and white cells from an image: the probability of white at a control point is the intensity there.
+/// Builds black and white cells from an image. A control point is white with a probability equal to the intensity
+/// there.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/reference-texture.md"))]
 ///
 /// # Errors
 ///
-/// [`Points`](crate::PupsErrorKind::Points) if points cannot be placed, and the errors of
+/// [`Points`](crate::PupsErrorKind::Points) if points cannot be placed. If net options are invalid, same as
 /// [`PupsOptions::check`](crate::PupsOptions::check).
 ///
 /// # Examples

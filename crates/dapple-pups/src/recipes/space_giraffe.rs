@@ -102,7 +102,7 @@ impl Default for SpaceGiraffeOptions {
     }
 }
 
-/// Makes irregular spots, one around each point of a Poisson-disk set.
+/// Builds irregular spots, one around each point of a Poisson-disk set.
 ///
 /// The first control points are the centers. The pairs follow, spot by spot: inner point, outer point.
 ///
@@ -110,9 +110,9 @@ impl Default for SpaceGiraffeOptions {
 ///
 /// # Errors
 ///
-/// [`Points`](PupsErrorKind::Points) if points cannot be placed, [`Count`](PupsErrorKind::Count) for a single center
-/// without a neighbor, [`Range`](PupsErrorKind::Range) if a number of pairs is out of its range, and the errors of
-/// [`PupsOptions::check`](crate::PupsOptions::check).
+/// [`Points`](PupsErrorKind::Points) if points cannot be placed, [`Count`](PupsErrorKind::Count) if a single center has
+/// no neighbor, [`Range`](PupsErrorKind::Range) if a number of pairs is out of its range. If net options are invalid,
+/// same as [`PupsOptions::check`](crate::PupsOptions::check).
 ///
 /// # Examples
 ///
@@ -130,7 +130,7 @@ pub fn space_giraffe(options: &SpaceGiraffeOptions, seed: Seed) -> Result<LabelT
 }
 
 impl SpaceGiraffeOptions {
-    /// Places the centers and the pairs; returns them with their labels.
+    /// Places the centers and the point pairs. Returns the points and their labels.
     fn control_points(&self, seed: Seed) -> Result<(PointSet, Vec<u32>), PupsError> {
         self.check()?;
         let seed_of_points = seed.child("points", 0);
@@ -171,7 +171,7 @@ impl SpaceGiraffeOptions {
         Ok(())
     }
 
-    /// Makes the spot around each center.
+    /// Builds the spot around each center.
     fn place_spots(&self, centers: &PointSet, seed: Seed) -> Result<Vec<Spot>, PupsError> {
         let graph = self.net.delaunay(centers)?;
         let place = |(center, _): (PointIdx, DVec2)| {
@@ -186,7 +186,8 @@ impl SpaceGiraffeOptions {
     }
 }
 
-/// Half the distance to the nearest other center (or periodic image): half the length of the shortest Delaunay edge.
+/// Returns half the distance to the nearest other center (or periodic image). This is half the length of the shortest
+/// Delaunay edge.
 fn radius(graph: &Graph, center: PointIdx) -> Result<f64, PupsError> {
     let lengths = graph.axes(center).iter().map(|axis| axis.vector.length());
     lengths.reduce(f64::min).map(|length| 0.5 * length).ok_or(

@@ -1,4 +1,4 @@
-//! The spacing of a recipe's control points, constant or depending on the position.
+//! Spacing of a recipe's control points, which is constant or depends on the position.
 
 #[cfg(feature = "serde")]
 mod data;
@@ -40,28 +40,28 @@ pub enum Spacing {
 }
 
 impl From<f64> for Spacing {
-    /// One smallest distance everywhere, in units of the domain.
+    /// Creates a spacing with the same smallest distance everywhere, in units of the domain.
     fn from(distance: f64) -> Self {
         Self::Distance(distance.into())
     }
 }
 
 impl Spacing {
-    /// Makes a maximal Poisson-disk set with this spacing.
+    /// Generates a maximal Poisson-disk set with this spacing.
     ///
     /// # Errors
     ///
-    /// [`Points`](crate::PupsErrorKind::Points) for the errors of [`poisson_disk`](dapple_points::poisson_disk) or, if
-    /// the spacing varies, of [`variable_poisson_disk`](dapple_points::variable_poisson_disk).
+    /// [`Points`](crate::PupsErrorKind::Points) if [`poisson_disk`](dapple_points::poisson_disk) fails or, for a
+    /// varying spacing, if [`variable_poisson_disk`](dapple_points::variable_poisson_disk) fails.
     pub fn points(&self, domain: Domain, seed: Seed) -> Result<PointSet, PupsError> {
         self.points_cancellable(domain, seed, &|| false)
     }
 
-    /// Makes the set of [`points`](Self::points), unless `is_cancelled` returns true.
+    /// Generates the same set as [`points`](Self::points), unless `is_cancelled` returns true.
     ///
     /// # Errors
     ///
-    /// The errors of [`points`](Self::points), and [`Cancelled`](crate::PupsErrorKind::Cancelled).
+    /// Same as [`points`](Self::points), and [`Cancelled`](crate::PupsErrorKind::Cancelled).
     pub fn points_cancellable(
         &self,
         domain: Domain,
@@ -85,12 +85,12 @@ impl Spacing {
         points.map_err(PupsError::of_part)
     }
 
-    /// Estimated number of [`points`](Self::points) in the domain, computed without making them; rather too large than
-    /// too small. It may be infinite.
+    /// Estimates the number of [`points`](Self::points) in the domain without generating them. The estimate tends to be
+    /// too large rather than too small, and may be infinite.
     ///
-    /// For distances that are constant or a ramp it is an upper bound, at most twice the number if there are many
-    /// points. Any other variation is sampled at a few thousand positions only. The estimate for an invalid spacing is
-    /// 0.
+    /// For distances that are constant or a ramp, the estimate is an upper bound. With many points, it is at most twice
+    /// the number. Any other variation is sampled at a few thousand positions only. The estimate for an invalid spacing
+    /// is 0.
     ///
     /// # Examples
     ///
@@ -115,7 +115,7 @@ impl Spacing {
         }
     }
 
-    /// The smallest distance, if it is constant.
+    /// Returns the smallest distance between points; `None` if it varies.
     pub(crate) fn uniform_distance(&self, domain: Domain) -> Result<Option<f64>, PupsError> {
         let distance = match self {
             Self::Distance(distance) => distance.clone(),
@@ -128,7 +128,7 @@ impl Spacing {
         })
     }
 
-    /// A text that identifies the spacing; `None` if it varies like a raster or a function.
+    /// Returns a text that identifies the spacing; `None` if the spacing comes from a raster or a function.
     pub(crate) fn description(&self) -> Option<String> {
         match self {
             Self::Distance(varying) | Self::Density(varying) => matches!(
@@ -140,7 +140,7 @@ impl Spacing {
         }
     }
 
-    /// The spacing with all distances divided by `factor`, which gives `factor²` times as many points.
+    /// Returns the spacing with all distances divided by `factor`, which gives `factor²` times as many points.
     #[must_use]
     pub fn finer(&self, factor: f64) -> Self {
         match self {
@@ -154,13 +154,13 @@ impl Spacing {
     }
 }
 
-/// Estimated maximum number of points per squared smallest distance; random maximal sets have 0.70.
+/// Estimated maximum number of points in an area equal to the squared smallest distance. Random maximal sets have 0.70.
 const POINTS_PER_SQUARE: f64 = 0.75;
 
-/// Number of parts along each axis of the domain in which a varying spacing is replaced by its minimum.
+/// Number of cells along each axis of the domain in which a varying spacing is replaced by its minimum.
 const PARTS: u32 = 64;
 
-/// Estimated maximum number of points in a rectangle, including its borders.
+/// Estimates the maximum number of points in a rectangle, including its borders.
 fn expected_in(size: DVec2, radius: f64) -> f64 {
     if radius > 0.0 {
         let sides = size / radius + 1.0;
@@ -170,7 +170,7 @@ fn expected_in(size: DVec2, radius: f64) -> f64 {
     }
 }
 
-/// Sum of the estimates for parts of the domain. In each part, the radius is the smallest at its corners.
+/// Sums the estimates over a grid of cells in the domain. In each cell, the radius is the smallest at its corners.
 fn expected_by_parts(domain: Domain, radius: &Varying) -> f64 {
     let part = domain.size / f64::from(PARTS);
     let at = |x: u32, y: u32| {
@@ -195,7 +195,7 @@ fn expected_by_parts(domain: Domain, radius: &Varying) -> f64 {
     sum
 }
 
-/// A varying number, multiplied by a factor.
+/// Multiplies a varying number by a factor.
 fn scaled(varying: &Varying, factor: f64) -> Varying {
     let ramp = |ramp: &Ramp| Ramp {
         start: ramp.start * factor,

@@ -1,9 +1,9 @@
-//! Division of up to 64 points into connected parts, by an exhaustive search with a limited number of trials.
+//! Divides up to 64 points into connected groups, by an exhaustive search with a limited number of trials.
 
-/// Maximum number of parts that are tried.
+/// Maximum number of groups that the search tries.
 const TRIALS: u32 = 20_000;
 
-/// Divides points into connected parts of `sizes[0]` to `sizes[1]` points. Returns `None` if no division is found.
+/// Divides points into connected groups of `sizes[0]` to `sizes[1]` points. Returns `None` if no division is found.
 pub(super) fn divide(
     neighbors: &[Vec<u32>],
     points: &[u32],
@@ -30,7 +30,7 @@ pub(super) fn divide(
         .then(|| search.parts.iter().map(members).collect())
 }
 
-/// A backtracking search. Sets of points are bit masks.
+/// Backtracking search. Sets of points are bit masks.
 struct Search {
     adjacent: Vec<u64>,
     sizes: [u32; 2],
@@ -39,19 +39,19 @@ struct Search {
 }
 
 impl Search {
-    /// Whether the free points can be divided; the parts are then in `parts`.
+    /// Returns whether the free points can be divided. If so, the groups are in `parts`.
     fn divide(&mut self, free: u64) -> bool {
-        // Some part contains the first free point.
+        // Some group contains the first free point.
         free == 0 || self.extend(1 << free.trailing_zeros(), 0, free)
     }
 
-    /// Whether a part that contains `part` and no point of `banned` leads to a division.
+    /// Returns whether a group that contains `part` and no point of `banned` leads to a division.
     fn extend(&mut self, part: u64, mut banned: u64, free: u64) -> bool {
         if self.trials == 0 {
             return false;
         }
         self.trials -= 1;
-        // If the part is large enough, divide the remaining points.
+        // If the group is large enough, divide the remaining points.
         let size = part.count_ones();
         if size >= self.sizes[0] {
             self.parts.push(part);
@@ -63,7 +63,7 @@ impl Search {
         if size == self.sizes[1] {
             return false;
         }
-        // Otherwise, extend the part by one adjacent point. Ban each point after its trial, to try every part once.
+        // Otherwise, extend the group by one adjacent point. Ban each point after its trial, to try every group once.
         let around = bits(part).fold(0, |mask, bit| mask | self.adjacent[bit]);
         for bit in bits(around & free & !part & !banned) {
             if self.extend(part | 1 << bit, banned, free) {
@@ -75,7 +75,7 @@ impl Search {
     }
 }
 
-/// Indices of the set bits, from the lowest.
+/// Iterates over the indices of the set bits, from the lowest.
 fn bits(mask: u64) -> impl Iterator<Item = usize> {
     let next = |&mask: &u64| Some(mask & mask.wrapping_sub(1));
     core::iter::successors(Some(mask), next)

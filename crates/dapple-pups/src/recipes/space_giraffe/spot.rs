@@ -9,13 +9,14 @@ use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_points::PointIdx;
 use glam::DVec2;
 
-/// Minimum distance of a point from the center, the rim and the other point of its pair, as a fraction of the radius.
+/// Minimum distance of a point from the center, the rim and the other point of its pair, as a fraction of the spot's
+/// radius.
 const GAP: f64 = 1.0 / 256.0;
 
 /// Fraction of the available space that a scaled spot fills, as a margin for rounding.
 const SLACK: f64 = 1.0 - 1e-6;
 
-/// The pairs of points around a center.
+/// A giraffe's spot: the pairs of points around a center.
 #[derive(Clone, Debug)]
 pub(super) struct Spot {
     /// Half the distance to the nearest other center.
@@ -25,7 +26,7 @@ pub(super) struct Spot {
 }
 
 impl Spot {
-    /// Draws the spot of a center, before it is fitted.
+    /// Draws the random spot of a center, before it is fitted into the center's Voronoi cell.
     pub(super) fn random(
         radius: f64,
         options: &SpaceGiraffeOptions,
@@ -57,8 +58,8 @@ impl Spot {
         }
     }
 
-    /// Scales the spot down if needed, so that all its cells are inside the Voronoi cell of the center, whose Delaunay
-    /// axes are given.
+    /// Scales the spot down, if needed, until all its cells are inside the center's Voronoi cell. `axes` are the
+    /// center's Delaunay axes.
     pub(super) fn fitted(mut self, axes: &[Axis], axis_scale: f64) -> Self {
         let room = self.room(axes, axis_scale);
         if room < 1.0 {
@@ -70,7 +71,7 @@ impl Spot {
         self
     }
 
-    /// Maximum scale at which the spot fits, at most 1.
+    /// Returns the maximum scale at which the spot fits, at most 1.
     pub(super) fn room(&self, axes: &[Axis], axis_scale: f64) -> f64 {
         let room_for = |corner: DVec2| {
             let along = |axis: &Axis| {
@@ -88,7 +89,7 @@ impl Spot {
             .fold(1.0, f64::min)
     }
 
-    /// The corners of the support of a point among the points of this spot.
+    /// Returns the corners of a point's support among the points of this spot.
     fn support(&self, point: DVec2, axis_scale: f64) -> Vec<DVec2> {
         // Outer points are on all sides, so the support ends long before this square.
         let far = self.radius * 1e12;
@@ -106,8 +107,8 @@ impl Spot {
     }
 }
 
-/// Converts two random numbers to the radii of a pair, as fractions: the inner one first, with gaps to the center, to
-/// the rim and between them.
+/// Converts two random numbers to the radii of a pair, as fractions of the spot's radius. The inner one is first. The
+/// radii have gaps to the center, to the rim and between them.
 fn sorted(parts: [f64; 2]) -> [f64; 2] {
     let [a, b] = parts.map(|part| GAP + (1.0 - 2.0 * GAP) * part);
     let outer = a.max(b).max(2.0 * GAP);
@@ -115,7 +116,7 @@ fn sorted(parts: [f64; 2]) -> [f64; 2] {
     [inner, outer]
 }
 
-/// Smooths radii around a spot: each becomes the weighted mean of its neighbors within a fifth of a turn on either
+/// Smooths radii around a spot. Each becomes the weighted mean of its neighbors within a fifth of a turn on either
 /// side. Weights decrease linearly. Inner points remain inside of outer ones.
 fn smoothed(radii: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let n_pairs = radii.len();

@@ -1,4 +1,4 @@
-//! [`Spacing`] as data: a plain number for the smallest distance, or a table that names the quantity.
+//! Serializes [`Spacing`] as a plain number (the smallest distance) or as a table that names the quantity.
 
 use super::Spacing;
 use core::fmt;
@@ -7,7 +7,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde::ser::{Serialize, Serializer};
 
-/// A spacing as a table.
+/// A spacing in table form.
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Table {
