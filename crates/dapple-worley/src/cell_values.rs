@@ -1,11 +1,11 @@
-//! The random number of the Voronoi cell at each position, as a field.
+//! A field with the random number of the Voronoi cell at each position.
 
 use crate::worley::cell_value;
 use crate::{Dimensions, FeatureView, Plane, Space, Worley};
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 
-/// A random number in `[0, 1)` for each Voronoi cell: [`Feature::cell_value`](crate::Feature::cell_value) of the
-/// nearest feature point.
+/// A field that gives each Voronoi cell a random number in `[0, 1)`. The number at a position is the
+/// [`Feature::cell_value`](crate::Feature::cell_value) of the nearest feature point.
 ///
 /// # Examples
 ///
@@ -25,7 +25,7 @@ impl<const N: usize> Worley<N>
 where
     Dimensions: Space<N>,
 {
-    /// The texture of the cells' random numbers, in `[0, 1)`.
+    /// Returns the field of the cells' random numbers, in `[0, 1)`.
     #[must_use]
     pub fn cell_values(&self) -> CellValues<N> {
         CellValues {
@@ -84,7 +84,7 @@ where
     }
 }
 
-/// The random number of a feature point; NaN for a position without a place.
+/// Returns a feature point's random number; NaN for a position out of range.
 fn value(distance: f32, id: u64) -> f32 {
     if distance.is_nan() {
         return f32::NAN;

@@ -1,4 +1,4 @@
-//! Scalar textures of the basis: a combination of F1 to F4 at every position.
+//! Scalar textures that combine F1 to F4 at every position.
 
 use crate::fixed::Place;
 use crate::ranges::range;
@@ -31,7 +31,7 @@ impl<const N: usize> Worley<N>
 where
     Dimensions: Space<N>,
 {
-    /// The texture of a combination of the distances.
+    /// Returns the texture that combines the distances F1 to F4.
     #[must_use]
     pub fn combine(&self, combination: Combination) -> Cellular<N> {
         Cellular {
@@ -45,22 +45,23 @@ impl<const N: usize> Cellular<N>
 where
     Dimensions: Space<N>,
 {
-    /// The basis that the texture combines.
+    /// Returns the basis that the texture combines.
     #[must_use]
     pub fn worley(&self) -> &Worley<N> {
         &self.worley
     }
 
-    /// The value at a position. NaN if the position has no place; see [`Worley::sample`].
+    /// Returns the value at `position`; NaN if the position is out of range (see [`Worley::sample`]).
     #[must_use]
     pub fn value(&self, position: impl Into<[f64; N]>) -> f32 {
         let place = Place::new(position.into());
         place.map_or(f32::NAN, |place| self.tone.at(&self.worley, &place))
     }
 
-    /// The gradient of the value at a position, per cell: the combination of the distances' gradients.
+    /// Returns the gradient of the value at `position`, per cell. It is the combination of the distances' gradients.
     ///
-    /// It is discontinuous at the borders between cells. All components are NaN if the position has no place.
+    /// The gradient is discontinuous at the borders between cells. All components are NaN if the position is out of
+    /// range.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/gradient.md"))]
     #[must_use]
@@ -86,17 +87,17 @@ where
         self.render_slices(window, vec![(*plane, out)])
     }
 
-    /// Renders several planes, such as the slices of a volume. Neighboring slices share their feature points, which is
+    /// Renders several planes, such as the slices of a volume. Neighboring planes share their feature points, which is
     /// faster than rendering them one by one, most of all if they are close together.
     ///
     /// # Errors
     ///
-    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if the size of a view is not that of the window;
-    /// all views are unchanged then.
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if the size of a view differs from the window's.
+    /// All views are then unchanged.
     ///
     /// # Examples
     ///
-    /// A volume of 32 slices, stacked vertically in one raster:
+    /// Render a volume of 32 slices, stacked vertically in one raster:
     ///
     /// ```
     /// use dapple_worley::{Combination, Plane, Worley3, hash::Seed};
@@ -139,7 +140,7 @@ where
         bands.map(|rows| Output::Values(values, rows)).collect()
     }
 
-    /// Measures the range of the values at `n` random positions, without the lowest and the highest thousandth.
+    /// Measures the range of the values at `n` random positions, ignoring the lowest and the highest thousandth.
     ///
     /// # Errors
     ///
@@ -148,17 +149,18 @@ where
         measure_range(seed, n, |position: [f64; N]| self.value(position))
     }
 
-    /// Maps the values so that their range is about 0 to 1: one value in a thousand is below 0, and one above 1.
+    /// Maps the values so that their range is about 0 to 1: one value in a thousand is below 0, and one is above 1.
     ///
-    /// The ranges come from a table of measurements for [named combinations](Combination::NAMED), the default scatter
-    /// and [`Scatter::Jittered`](crate::Scatter::Jittered) with a jitter of 1, and every metric but Minkowski's.
+    /// The ranges come from a table of measurements. It covers [named combinations](Combination::NAMED), the default
+    /// scatter and [`Scatter::Jittered`](crate::Scatter::Jittered) with a jitter of 1, and every metric except
+    /// Minkowski's.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/normalized.md"))]
     ///
     /// # Errors
     ///
-    /// [`NoRange`](crate::WorleyErrorKind::NoRange) for all other textures, and if a range is already set; for these,
-    /// use [`measure_range`](Self::measure_range) and [`with_range`](Self::with_range).
+    /// [`NoRange`](crate::WorleyErrorKind::NoRange) for all other textures, and if the texture already has a range. In
+    /// these cases, use [`measure_range`](Self::measure_range) and [`with_range`](Self::with_range).
     pub fn normalized(self) -> Result<Self, WorleyError> {
         let Worley {
             metric, scatter, ..
@@ -174,7 +176,7 @@ where
         self.with_range(range)
     }
 
-    /// Maps the values so that `range` becomes 0 to 1. Values outside of it are not clamped.
+    /// Maps the values from `range` to 0 to 1. Values outside of the range are not clamped.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/with-range.md"))]
     ///
@@ -232,7 +234,7 @@ where
     }
 }
 
-/// Renders windows of space, by a function that renders several planes of one window.
+/// Renders 2-D windows of N-D space. `render` renders several planes of one window together.
 pub(crate) fn render_windows<'v, const N: usize>(
     windows: &[Window<N>],
     outs: Vec<RasterViewMut<'v, f32>>,
@@ -255,14 +257,14 @@ where
     Ok(())
 }
 
-/// Measures the range of values at random positions, without the lowest and the highest thousandth.
+/// Measures the range of values at `n` random positions, ignoring the lowest and the highest thousandth.
 pub(crate) fn measure_range<const N: usize>(
     seed: Seed,
     n: u32,
     value: impl Fn([f64; N]) -> f32,
 ) -> Result<[f32; 2], WorleyError> {
-    /// Random positions are within this many cells of the origin. This covers many cells, and `f64` is still finer than
-    /// a step there.
+    /// Maximum distance of random positions from the origin along each axis, in cells. The range covers many cells, and
+    /// `f64` is still finer than a step there.
     const EXTENT: f64 = (1 << 20) as f64;
     WorleyError::check(
         n >= 1000,

@@ -3,7 +3,7 @@
 //! Worley finds that differences of two or more of the distances have more character than F1 to F4 alone ("A Cellular
 //! Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>).
 
-/// A linear combination of the distances: `C1·F1 + C2·F2 + C3·F3 + C4·F4`.
+/// A linear combination of the distances F1 to F4: `C1·F1 + C2·F2 + C3·F3 + C4·F4`.
 ///
 /// # Examples
 ///
@@ -23,7 +23,7 @@ pub struct Combination {
 }
 
 impl Combination {
-    /// The distance to the nearest feature point: cones that meet in valleys.
+    /// The distance to the nearest feature point. It looks like cones that meet in valleys.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/combination-f1.md"))]
     pub const F1: Self = Self::new([1.0, 0.0, 0.0, 0.0]);
@@ -39,7 +39,7 @@ impl Combination {
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/combination-f4.md"))]
     pub const F4: Self = Self::new([0.0, 0.0, 0.0, 1.0]);
-    /// `F2 − F1`, which is zero on the borders of the Voronoi cells: cracks, veins, flagstones.
+    /// `F2 − F1`, which is zero on the borders of the Voronoi cells. Suits cracks, veins and flagstones.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/combination-f2-minus-f1.md"))]
     pub const F2_MINUS_F1: Self = Self::new([-1.0, 1.0, 0.0, 0.0]);
@@ -68,7 +68,7 @@ impl Combination {
     #[cfg_attr(doc, doc = include_str!("../docs/combination-two-f3-minus-f2-minus-f1.md"))]
     pub const TWO_F3_MINUS_F2_MINUS_F1: Self = Self::new([-1.0, -1.0, 2.0, 0.0]);
 
-    /// The named combinations. Their ranges are known; see [`Cellular::normalized`](crate::Cellular::normalized).
+    /// The named combinations. Their value ranges are known; see [`Cellular::normalized`](crate::Cellular::normalized).
     pub const NAMED: [(&'static str, Self); 11] = [
         ("F1", Self::F1),
         ("F2", Self::F2),
@@ -83,7 +83,7 @@ impl Combination {
         ("2 F3 - F2 - F1", Self::TWO_F3_MINUS_F2_MINUS_F1),
     ];
 
-    /// The combination with the given coefficients of F1 to F4.
+    /// Creates a combination with the given coefficients of F1 to F4.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/combination-new.md"))]
     #[must_use]
@@ -91,22 +91,22 @@ impl Combination {
         Self { coefficients }
     }
 
-    /// The coefficients of F1 to F4.
+    /// Returns the coefficients of F1 to F4.
     #[must_use]
     pub const fn coefficients(&self) -> [f32; 4] {
         self.coefficients
     }
 
-    /// The largest n for which the coefficient of `F_n` is nonzero; 1 if all are zero.
+    /// Returns the largest n for which the coefficient of `F_n` is nonzero; 1 if all are zero.
     #[must_use]
     pub fn depth(&self) -> usize {
         let last = self.coefficients.iter().rposition(|&part| part != 0.0);
         last.map_or(1, |last| last + 1)
     }
 
-    /// The combination of the given distances, at least [`depth`](Self::depth) of them.
+    /// Combines the given distances; there must be at least [`depth`](Self::depth) of them.
     ///
-    /// Distances with a coefficient of zero are skipped. Terms are added from F1 up.
+    /// Skips distances with a coefficient of zero. Adds terms from F1 up.
     #[must_use]
     #[inline]
     pub fn of(&self, distances: &[f32]) -> f32 {

@@ -1,4 +1,4 @@
-//! Entry points that compile the code for two, three and four axes in this crate only.
+//! Entry points that ensure that the code for two, three and four axes is compiled in this crate only.
 //!
 //! A function with the number of axes as a parameter is compiled again in every crate that calls it. So the public
 //! functions are thin, and call all heavy code through the functions of this module, which have no generic parameters.
@@ -11,18 +11,19 @@ use crate::search::{Hit, within};
 use crate::{Dimensions, Metric, Worley, one, search};
 use fearless_simd::Level;
 
-/// The functions that are compiled for a number of axes; [`Dimensions`] has them for 2, 3 and 4.
+/// The functions that are compiled separately for each number of axes. [`Dimensions`] implements them for 2, 3 and 4.
 pub trait DimensionDispatch<const N: usize>: Sized {
-    /// The basis in the form that rendering uses.
+    /// Returns the basis in the form that rendering uses.
     fn basis(worley: &Worley<N>) -> &dyn Basis;
 
-    /// Finds the nearest points of a place, nearest first; at most four.
+    /// Finds the points nearest to `place`, nearest first; at most four.
     fn nearest(metric: Metric, lattice: &Lattice, place: &Place<N>, hits: &mut [Hit<N>]);
 
     /// Finds all points whose keys are at most the key of `distance`, unordered.
     fn within(metric: Metric, lattice: &Lattice, place: &Place<N>, distance: f32) -> Vec<Hit<N>>;
 
-    /// Finds the nearest points of the positions of a group; returns a bit for each position whose points are certain.
+    /// Finds the nearest points of each position in a group. Returns a bit mask of the positions whose points are
+    /// certain.
     fn search_group(worley: &Worley<N>, level: Level, group: &mut Group<N>) -> u64;
 }
 

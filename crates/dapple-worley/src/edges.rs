@@ -1,10 +1,10 @@
-//! The distance to the edge of the Voronoi cell at each position, as a texture.
+//! A texture of the distance to the nearest edge of the Voronoi cell.
 
 use crate::render::Output;
 use crate::{Dimensions, Metric, Plane, Space, Worley};
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 
-/// The texture of the distances to the edges of the Voronoi cells: [`Worley::edge_distance`] at every position.
+/// A texture whose value is the distance to the nearest edge of the Voronoi cell; see [`Worley::edge_distance`].
 ///
 /// # Examples
 ///
@@ -28,7 +28,7 @@ impl<const N: usize> Worley<N>
 where
     Dimensions: Space<N>,
 {
-    /// The texture of the distances to the nearest edge of the Voronoi cell.
+    /// Returns the texture of the distances to the nearest edge of the Voronoi cell.
     #[must_use]
     pub fn edge_distances(&self) -> EdgeDistances<N> {
         let worley = Self {
@@ -43,7 +43,7 @@ impl<const N: usize> EdgeDistances<N>
 where
     Dimensions: Space<N>,
 {
-    /// The value at a position: [`Worley::edge_distance`].
+    /// Returns the [`Worley::edge_distance`] at `position`.
     #[must_use]
     pub fn value(&self, position: impl Into<[f64; N]>) -> f32 {
         self.worley.edge_distance(position)

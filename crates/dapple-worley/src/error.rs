@@ -7,27 +7,27 @@ dapple_raster::error! {
     WorleyError,
     /// The cause of a [`WorleyError`], with the limit and the value.
     WorleyErrorKind with Range {
-        /// The numbers of values and positions differ.
+        /// The number of values differs from the number of positions.
         Length {
             /// Number of values.
             length: usize,
             /// Number of values needed.
             needed: usize,
         } => "there is room for {length} values, but {needed} are needed";
-        /// No measured range for a texture.
+        /// The texture has no measured range.
         NoRange {
-            /// Textures that have a measured range.
+            /// Description of the textures that have a measured range.
             measured: &'static str,
         } => "there is no range for this texture, but for {measured}: `measure_range` finds one, and `with_range` sets it";
     }
     from {
-        /// An error of the raster or the window.
+        /// The raster or the window is invalid.
         Raster(RasterError),
     }
 }
 
 impl WorleyError {
-    /// Checks that memory for `length` values has exactly the `needed` length.
+    /// Returns an error if the buffer length `length` differs from the `needed` length.
     pub(crate) fn check_length(length: usize, needed: usize) -> Result<(), Self> {
         if length == needed {
             Ok(())

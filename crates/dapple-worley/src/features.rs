@@ -1,4 +1,4 @@
-//! Rendering of the nearest feature points (distances, vectors, positions, ids, random numbers) and of gradients.
+//! Renders the nearest feature points (distances, vectors, positions, ids, random numbers) and gradients.
 
 use crate::dispatch::DimensionDispatch as _;
 use crate::fixed::STEP;
@@ -7,7 +7,8 @@ use crate::sink::Tone;
 use crate::{Cellular, Dimensions, MAX_NEAREST, Plane, Space, Worley};
 use dapple_raster::{RasterError, RasterViewMut, Window};
 
-/// Output views for one of the nearest feature points. Outputs that are `None` are not computed.
+/// Output views for one rank of nearest feature point, such as the second nearest. Outputs that are `None` are not
+/// computed.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/feature.md"))]
 ///
@@ -35,12 +36,12 @@ pub struct FeatureView<'a, const N: usize> {
     /// Ids of the feature points.
     pub id: Option<RasterViewMut<'a, u64>>,
     /// Random numbers of the feature points, in `[0, 1)`; see [`Feature::cell_value`](crate::Feature::cell_value). NaN
-    /// at a pixel without a place.
+    /// at a pixel that is out of range.
     pub cell_value: Option<RasterViewMut<'a, f32>>,
 }
 
 impl<const N: usize> Default for FeatureView<'_, N> {
-    /// Makes a view without outputs.
+    /// Returns a view without outputs.
     fn default() -> Self {
         Self {
             distance: None,
@@ -52,7 +53,7 @@ impl<const N: usize> Default for FeatureView<'_, N> {
     }
 }
 
-/// The rows of a band, for one of the nearest points. Outputs that are not computed have no rows.
+/// The rows of a band, for one rank of nearest feature point. Outputs that are not computed have no rows.
 #[derive(Debug, Default)]
 pub(crate) struct FeatureRows<'a> {
     pub(crate) distance: Vec<&'a mut [f32]>,
@@ -65,13 +66,14 @@ pub(crate) struct FeatureRows<'a> {
 }
 
 impl FeatureRows<'_> {
-    /// Whether ids are needed.
+    /// Returns whether ids are needed.
     pub(crate) fn wants_ids(&self) -> bool {
         !self.id.is_empty() || !self.cell_value.is_empty()
     }
 }
 
-/// Coordinate of a feature point along one axis, in cells, from the coordinate of a pixel and the vector between them.
+/// Returns a feature point's coordinate along one axis, in cells, from a pixel's coordinate and the vector between
+/// them.
 pub(crate) fn position((cell, steps): (i64, i32), way: f32) -> f64 {
     cell as f64 + f64::from(steps) * f64::from(STEP) - f64::from(way)
 }
@@ -182,7 +184,7 @@ pub(crate) fn flattened<T, const N: usize>(rows: Vec<&mut [[T; N]]>) -> Vec<&mut
 }
 
 impl Tone {
-    /// The gradient of the combination, for the given vectors from the nearest points.
+    /// Returns the gradient of the combination, for the given vectors from the nearest points.
     #[inline]
     pub(crate) fn gradient<const N: usize>(
         &self,
@@ -201,7 +203,7 @@ impl Tone {
         sum
     }
 
-    /// The gradient at a place.
+    /// Returns the gradient at `place`.
     pub(crate) fn gradient_at<const N: usize>(
         &self,
         worley: &Worley<N>,

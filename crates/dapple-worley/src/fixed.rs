@@ -1,10 +1,10 @@
 //! Fixed-point positions: a cell and an integer number of steps within it.
 //!
 //! All search methods use these coordinates. A coordinate is rounded down to a multiple of 2^-21 of a cell; the
-//! coordinates of feature points are such multiples, too. So differences are exact integers, wherever the points are
-//! and whichever corner they are counted from. Only the difference is rounded to `f32`, once; below 8 cells it is exact
-//! even then. So searches of one position, of many positions and of a window agree to the last bit, and an image at 1e9
-//! is as sharp as at 0.
+//! coordinates of feature points are such multiples, too. So differences are exact integers, whatever the points'
+//! positions and the corner that is their origin. Only the difference is rounded to `f32`, once; below 8 cells it is
+//! exact even then. So searches of one position, of many positions and of a window agree to the last bit, and an image
+//! at 1e9 is as sharp as at 0.
 
 /// Binary logarithm of the number of steps in a cell.
 pub(crate) const STEP_BITS: u32 = 21;
@@ -15,24 +15,24 @@ pub(crate) const STEPS: i32 = 1 << STEP_BITS;
 /// Size of a step, in cells.
 pub(crate) const STEP: f32 = 1.0 / STEPS as f32;
 
-/// Largest magnitude of a coordinate, in cells: the neighbors of its cell must be integers that fit into `i64`, too.
+/// Maximum magnitude of a coordinate, in cells. The indices of the neighboring cells must fit into `i64`, too.
 pub(crate) const FARTHEST: f64 = (1_u64 << 62) as f64;
 
-/// A position: the cell that it is in, and the steps from the cell's lower corner, `0..STEPS`.
+/// A fixed-point position: its cell, and its steps from the cell's lower corner, in `0..STEPS`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place<const N: usize> {
     pub(crate) cell: [i64; N],
     pub(crate) steps: [i32; N],
 }
 
-/// A place in a space with any number of axes; the coordinates of missing axes are zero.
+/// A [`Place`] in a space with any number of axes. Coordinates along missing axes are zero.
 pub(crate) type FlatPlace = Place<MOST_AXES>;
 
-/// Maximum number of axes of a space.
+/// Maximum number of axes in a space.
 pub(crate) const MOST_AXES: usize = 4;
 
 impl<const N: usize> Place<N> {
-    /// The place of a position in cells; `None` if a coordinate is not finite or its magnitude is above 2^62.
+    /// Converts a position in cells. Returns `None` if a coordinate is not finite or its magnitude is above 2^62.
     #[inline]
     pub(crate) fn new(position: [f64; N]) -> Option<Self> {
         let mut place = Self {
@@ -54,7 +54,7 @@ pub(crate) fn split(coordinate: f64) -> Option<(i64, i32)> {
     if !has_cell {
         return None;
     }
-    // Not `floor`, which is a function call on processors without an instruction for it.
+    // Avoid `floor`, which is a function call on processors without an instruction for it.
     let truncated = coordinate as i64;
     let floor = truncated - i64::from(truncated as f64 > coordinate);
     let steps = ((coordinate - floor as f64) * f64::from(STEPS)) as i32;
@@ -63,7 +63,7 @@ pub(crate) fn split(coordinate: f64) -> Option<(i64, i32)> {
     Some((floor + i64::from(carry), steps - (carry << STEP_BITS)))
 }
 
-/// The components along the axes of a space with `N` axes.
+/// Returns the first `N` components.
 #[inline(always)]
 pub(crate) fn first_axes<T: Copy, const N: usize>(parts: [T; MOST_AXES]) -> [T; N] {
     core::array::from_fn(|axis| parts[axis])

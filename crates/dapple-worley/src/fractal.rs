@@ -1,9 +1,9 @@
-//! Fractal sums: a texture added up at several scales.
+//! Fractal sums, which add a texture to itself at several scales.
 //!
 //! Worley sums `G_n(x) = Σ 2^-i F_n(2^i x)` for `i` from 0 to 5, of `F_n` and of their combinations ("A Cellular
 //! Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>). His octaves are scaled copies of
-//! one field, which is visible where they coincide: at the origin all have the same center. Here each octave has its
-//! own seed by default; [`Octaves::paper`] is the sum of the paper.
+//! one field, which is visible at the origin, the center of all the copies. Here each octave has its own seed by
+//! default; [`Octaves::paper`] gives the paper's sum.
 //!
 //! With a period, octave `i` repeats after `lacunarity^i` times as many of its own cells. So the sum repeats with the
 //! period of the first octave, and no octave repeats more often.
@@ -17,7 +17,7 @@ use crate::{Cellular, Dimensions, Plane, Space, Vector, Worley, WorleyError};
 use dapple_hash::Seed;
 use dapple_raster::{Field, Gradient, RasterError, RasterViewMut, Window};
 
-/// Options of a fractal sum: the number of octaves, and their ratios and seeds.
+/// Options for a fractal sum: the number of octaves, their frequency and amplitude ratios, and their seeds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -25,20 +25,20 @@ use dapple_raster::{Field, Gradient, RasterError, RasterViewMut, Window};
     serde(default, deny_unknown_fields)
 )]
 pub struct Octaves {
-    /// Number of octaves: from 1 to 32; 6 by default.
+    /// Number of octaves, from 1 to 32. The default is 6.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-count.md"))]
     pub count: u32,
-    /// Ratio of the frequencies of successive octaves: from 1 to 16; 2 by default.
+    /// Frequency ratio of successive octaves, from 1 to 16. The default is 2.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-lacunarity.md"))]
     pub lacunarity: f64,
-    /// Ratio of the amplitudes of successive octaves: from -1 to 1; ½ by default.
+    /// Amplitude ratio of successive octaves, from -1 to 1. The default is ½.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-gain.md"))]
     #[cfg_attr(feature = "serde", serde(alias = "persistence"))]
     pub gain: f64,
-    /// Seeds of the octaves: own seeds by default.
+    /// Seeds of the octaves. By default, each octave has its own.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octave-seeds.md"))]
     pub seeds: OctaveSeeds,
@@ -54,7 +54,7 @@ pub struct Octaves {
     serde(rename_all = "snake_case")
 )]
 pub enum OctaveSeeds {
-    /// All octaves are the same field, as in the paper, and have the same center at the origin.
+    /// All octaves are the same field, as in the paper, scaled around the origin.
     Same,
     /// Every octave has its own feature points.
     #[default]
@@ -62,8 +62,8 @@ pub enum OctaveSeeds {
 }
 
 impl Default for Octaves {
-    /// Six octaves with their own feature points, each with twice the frequency and half the amplitude of the one
-    /// before.
+    /// Returns six octaves with their own feature points. Each has twice the frequency and half the amplitude of the
+    /// previous one.
     fn default() -> Self {
         Self {
             count: 6,
@@ -75,8 +75,8 @@ impl Default for Octaves {
 }
 
 impl Octaves {
-    /// The paper's sum: six octaves of the same field, each with twice the frequency and half the amplitude of the one
-    /// before.
+    /// Returns the paper's sum: six octaves of the same field, each with twice the frequency and half the amplitude of
+    /// the previous one.
     #[must_use]
     pub fn paper() -> Self {
         Self {
@@ -86,7 +86,7 @@ impl Octaves {
     }
 }
 
-/// A fractal sum of a scalar texture.
+/// A fractal sum of octaves of a scalar texture.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/fractal.md"))]
 ///
@@ -102,15 +102,15 @@ impl Octaves {
 #[derive(Clone, Debug)]
 pub struct CellularFractal<const N: usize> {
     octaves: Vec<Octave<N>>,
-    /// Combination of the distances in every octave.
+    /// Combination of the distances, shared by all octaves.
     tone: Tone,
-    /// Mapping of the sum to a range, as a combination with one coefficient.
+    /// Maps the sum to a range; stored as a combination with one coefficient.
     range: Tone,
 }
 
 #[derive(Clone, Debug)]
 struct Octave<const N: usize> {
-    /// The basis of the octave, with its own seed and period.
+    /// The octave's basis, with its own seed and period.
     worley: Worley<N>,
     /// Frequency relative to the first octave.
     frequency: f64,
@@ -122,12 +122,12 @@ impl<const N: usize> Cellular<N>
 where
     Dimensions: Space<N>,
 {
-    /// The sum of this texture over several octaves.
+    /// Returns the sum of several octaves of this texture.
     ///
     /// # Errors
     ///
     /// [`Range`](crate::WorleyErrorKind::Range) if an option is out of its range, if the basis has a period and the
-    /// lacunarity is not an integer, or if the period of an octave is above 2^32 - 1 cells.
+    /// lacunarity is not an integer, or if an octave's period is above 2^32 - 1 cells.
     pub fn fractal(&self, octaves: Octaves) -> Result<CellularFractal<N>, WorleyError> {
         let Octaves {
             count,
@@ -196,7 +196,8 @@ impl<const N: usize> CellularFractal<N>
 where
     Dimensions: Space<N>,
 {
-    /// The value at a position. NaN if the position has no place in one of the octaves; see [`Worley::sample`].
+    /// Returns the value at `position`; NaN if the position is out of range in one of the octaves (see
+    /// [`Worley::sample`]).
     #[must_use]
     pub fn value(&self, position: impl Into<[f64; N]>) -> f32 {
         let position: [f64; N] = position.into();
@@ -218,8 +219,8 @@ where
         self.range.of(&[sum])
     }
 
-    /// The gradient of the value at a position, per cell of the first octave. All components are NaN where the value
-    /// is.
+    /// Returns the gradient of the value at `position`, per cell of the first octave. All components are NaN where the
+    /// value is NaN.
     #[must_use]
     pub fn gradient(&self, position: impl Into<[f64; N]>) -> Vector<N> {
         let position: [f64; N] = position.into();
@@ -256,8 +257,8 @@ where
     ///
     /// # Errors
     ///
-    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if the size of a view is not that of the window;
-    /// all views are unchanged then.
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if the size of a view differs from the window's.
+    /// All views are then unchanged.
     pub fn render_slices(
         &self,
         window: &Window,
@@ -296,7 +297,7 @@ where
         Ok(())
     }
 
-    /// Measures the range of the values at `n` random positions, without the lowest and the highest thousandth.
+    /// Measures the range of the values at `n` random positions, ignoring the lowest and the highest thousandth.
     ///
     /// # Errors
     ///
@@ -305,7 +306,7 @@ where
         measure_range(seed, n, |position: [f64; N]| self.value(position))
     }
 
-    /// Maps the values so that `range` becomes 0 to 1. Values outside of it are not clamped.
+    /// Maps the values from `range` to 0 to 1. Values outside of the range are not clamped.
     ///
     /// # Errors
     ///
@@ -358,7 +359,7 @@ where
         })
     }
 
-    /// Period of the sum, in cells of the first octave. All octaves repeat with it.
+    /// Returns the period of the sum, in cells of the first octave. All octaves repeat with it.
     fn period(&self) -> [Option<f64>; N] {
         let first = self.octaves.first();
         first.map_or([None; N], |octave| octave.worley.period())
@@ -380,7 +381,7 @@ impl<const N: usize> Octave<N> {
         Place::new(self.scaled(position))
     }
 
-    /// Converts a position to cells of this octave.
+    /// Converts a position from cells of the first octave to cells of this octave.
     fn scaled(&self, position: [f64; N]) -> [f64; N] {
         position.map(|part| part * self.frequency)
     }

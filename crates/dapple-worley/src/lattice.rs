@@ -1,10 +1,10 @@
-//! The feature points of each cell, generated from a hash of the cell without any storage.
+//! Generates the feature points of each cell from a hash of the cell, without any storage.
 //!
 //! The hash of a cell is two words. Each word is the exclusive or of one hash for each coordinate. So a search computes
-//! the hashes of a few rows and columns, and combines them. The mixed first word draws the number of points. The
-//! position of each point is drawn from both words, by adding a constant for every point and mixing. As the state of a
-//! [`CellHash`], the words give the id of point `i` at counter `2^31 + i`. With a period, a cell has the words of the
-//! cell that it repeats.
+//! the hashes of a few rows and columns, and combines them. The number of points is drawn from the first word after
+//! mixing. The position of each point is drawn from both words, by adding a constant for every point and mixing.
+//! Interpreted as the state of a [`CellHash`], the words give the id of point `i` at counter `2^31 + i`. With a period,
+//! a cell has the same words as the cell that it repeats.
 
 use crate::fixed::{MOST_AXES, STEP_BITS, STEPS};
 use crate::places::LANES;
@@ -18,10 +18,10 @@ use dapple_hash::{
 use fearless_simd::{prelude::*, u32x16};
 use std::sync::Arc;
 
-/// Constants added to the two words of a cell for each of its points. They are odd, so all sums differ.
+/// Constants that are added to a cell's two words once for each point. They are odd, so all sums differ.
 pub(crate) const STRIDES: [u32; 2] = [0x9E37_79B9, 0xC2B2_AE3D];
 
-/// Counter of the id of point 0.
+/// Counter at which a cell's hash gives the id of its point 0.
 pub(crate) const IDS: u32 = 1 << 31;
 
 /// The feature points of all unit cells, generated from a seed.
@@ -29,13 +29,13 @@ pub(crate) const IDS: u32 = 1 << 31;
 pub struct Lattice {
     /// Number of axes: 2, 3 or 4.
     pub(crate) n_axes: usize,
-    /// Hashes of the two words of cells.
+    /// For each of a cell's two words, the hash that computes it.
     pub(crate) hashes: [LatticeHash<MOST_AXES>; 2],
-    /// Keys of `hashes` for three cells along each axis, one in each lane.
+    /// For each of `hashes`, the keys of three cells along each axis, one key in each lane.
     pub(crate) lane_keys: [[u32; LANES]; 2],
     /// Distribution of the number of points per cell.
     pub(crate) counts: PoissonCounts,
-    /// Varying density; replaces `counts`.
+    /// Spatially varying density; replaces `counts`. `None` if the density is constant.
     pub(crate) density: Option<Density>,
     /// Jitter, in units of 1/[`JITTER_PARTS`].
     pub(crate) jitter: u32,
@@ -57,12 +57,12 @@ impl Lattice {
         }
     }
 
-    /// The hashes of the two words of cells.
+    /// Returns the hashes that compute a cell's two words.
     fn hashes(seed: Seed) -> [LatticeHash<MOST_AXES>; 2] {
         [0, 1].map(|word| LatticeHash::new(seed.child("feature points", word)))
     }
 
-    /// This lattice with another seed.
+    /// Returns this lattice with another seed.
     pub(crate) fn with_seed(&self, seed: Seed) -> Self {
         let hashes = Self::hashes(seed);
         Self {
@@ -76,7 +76,7 @@ impl Lattice {
         hashes.map(|hash| core::array::from_fn(|lane| hash.key(lane / 3 % MOST_AXES)))
     }
 
-    /// The hash parts that a cell's coordinate along an axis contributes to its two words, after wrapping.
+    /// Returns the hash parts that a cell's coordinate along an axis contributes to its two words, after wrapping.
     #[inline(always)]
     pub(crate) fn parts(&self, axis: usize, cell: i64) -> [u32; 2] {
         let cell = self.wrap(axis, cell);
@@ -94,14 +94,14 @@ impl Lattice {
         }
     }
 
-    /// Number of bits for the index of a point in its cell, if the density is constant.
+    /// Returns the number of bits for a point's index in its cell, if the density is constant.
     #[inline]
     pub(crate) fn index_bits(&self) -> u32 {
         u32::BITS - self.counts.range().end().leading_zeros()
     }
 
-    /// Wrapped coordinates along one axis of a cell, of its neighbor on the side `nearer` (-1 or 1), and of the
-    /// neighbor on the other side.
+    /// Returns wrapped coordinates along one axis: those of a cell, of its neighbor on the side `nearer` (-1 or 1), and
+    /// of the neighbor on the other side.
     #[inline(always)]
     pub(crate) fn cells_around(&self, axis: usize, cell: i64, nearer: i64) -> [i64; 3] {
         let period = i64::from(self.period[axis]);
@@ -117,7 +117,7 @@ impl Lattice {
         [own, wrapped(own + nearer), wrapped(own - nearer)]
     }
 
-    /// Whether all cells beyond `ring` rings are repeats of cells within.
+    /// Returns whether all cells beyond `ring` rings repeat cells within these rings.
     pub(crate) fn repeats_within(&self, ring: i64) -> bool {
         let mut periods = self.period[..self.n_axes]
             .iter()
@@ -125,7 +125,7 @@ impl Lattice {
         periods.all(|period| period > 0 && period <= 2 * ring + 1)
     }
 
-    /// The two hash words of a cell.
+    /// Returns a cell's two hash words.
     #[inline]
     pub(crate) fn words<const N: usize>(&self, cell: [i64; N]) -> [u32; 2] {
         (0..N).fold([0; 2], |words, axis| {
@@ -133,7 +133,7 @@ impl Lattice {
         })
     }
 
-    /// The position of a point in its cell, in steps, from the words of the cell.
+    /// Returns a point's position in its cell, in steps, from the cell's words.
     #[inline]
     pub(crate) fn steps<const N: usize>(&self, words: [u32; 2], index: u32) -> [i32; N] {
         let word = |which: usize| {
@@ -143,7 +143,8 @@ impl Lattice {
         steps([word(0), word(1)], self.jitter).map(u32::cast_signed)
     }
 
-    /// Calls `each` with every point of a cell: its steps from the cell's lower corner, and its identity.
+    /// Calls `each` with every point of a cell. The arguments are the point's steps from the cell's lower corner, and
+    /// its identity.
     #[inline]
     pub(crate) fn visit<const N: usize>(
         &self,
@@ -166,7 +167,7 @@ impl Lattice {
         }
     }
 
-    /// Number of points of a cell, from its first word.
+    /// Returns the number of points in a cell, from the cell's first word.
     #[inline]
     pub(crate) fn count(&self, cell: &[i64], word: u32) -> u32 {
         match &self.density {
@@ -175,7 +176,7 @@ impl Lattice {
         }
     }
 
-    /// Mean number of points per cell, near a cell.
+    /// Returns the mean number of points per cell near `cell`.
     pub(crate) fn mean(&self, cell: &[i64]) -> f64 {
         match &self.density {
             None => self.counts.mean(),
@@ -183,7 +184,7 @@ impl Lattice {
         }
     }
 
-    /// The density at the center of a cell, after wrapping, clamped to the allowed range.
+    /// Returns the density at the center of a cell, after wrapping, clamped to the allowed range.
     pub(crate) fn density_at(&self, density: &Density, cell: &[i64]) -> f64 {
         let mut middle = [0.5; MOST_AXES];
         for (axis, (middle, &cell)) in middle.iter_mut().zip(cell).enumerate() {
@@ -197,10 +198,11 @@ impl Lattice {
     }
 }
 
-/// A density that varies in space.
+/// A density of feature points that varies in space.
 #[derive(Clone)]
 pub(crate) struct Density {
-    /// Feature points per cell at a position; ignores the coordinates along missing axes.
+    /// Function that returns the number of feature points per cell at a position. It ignores coordinates along missing
+    /// axes.
     pub(crate) of: Arc<dyn Fn([f64; MOST_AXES]) -> f64 + Send + Sync>,
 }
 
@@ -216,8 +218,8 @@ pub(crate) fn both<W: BitXor<Output = W> + Copy>(words: [W; 2], parts: [W; 2]) -
     [words[0] ^ parts[0], words[1] ^ parts[1]]
 }
 
-/// The hash parts that cell coordinates along an axis contribute, in lanes; see [`Lattice::parts`]. The coordinates
-/// must be wrapped.
+/// Computes the hash parts that cell coordinates along an axis contribute, one cell in each lane; see
+/// [`Lattice::parts`]. The coordinates must be wrapped.
 #[inline(always)]
 pub(crate) fn parts_each<S: Simd, const C: usize>(
     simd: S,
@@ -229,7 +231,7 @@ pub(crate) fn parts_each<S: Simd, const C: usize>(
     lattice_part_pairs(simd, [first.key(axis), second.key(axis)], cells)
 }
 
-/// Hash words and numbers of points of sixteen cells, one in each lane.
+/// Hash words and point counts of sixteen cells, one in each lane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SixteenCells<S: Simd> {
     /// The two words of each cell.
@@ -245,7 +247,7 @@ impl<S: Simd> SixteenCells<S> {
         cells
     }
 
-    /// Makes several registers of cells at once, like [`new`](Self::new); their operations are interleaved.
+    /// Builds several registers of cells at once, like [`new`](Self::new), with interleaved operations.
     #[inline(always)]
     pub(crate) fn new_each<const C: usize>(
         simd: S,
@@ -263,7 +265,7 @@ impl<S: Simd> SixteenCells<S> {
         if lattice.counts.thresholds().is_empty() {
             return cells;
         }
-        // Draw the number of points: count the thresholds that the mixed first word reaches.
+        // Draw the number of points by counting the thresholds that the mixed first word reaches.
         let mut draws = words;
         for i in 0..C {
             draws[i][1] = draws[i][0];
@@ -279,7 +281,7 @@ impl<S: Simd> SixteenCells<S> {
         cells
     }
 
-    /// Maximum number of points of the cells.
+    /// Returns the maximum number of points in any of the cells.
     #[inline(always)]
     pub(crate) fn most(&self, lattice: &Lattice) -> u32 {
         if lattice.counts.thresholds().is_empty() {
@@ -288,7 +290,7 @@ impl<S: Simd> SixteenCells<S> {
         self.counts.reduce_max()
     }
 
-    /// The position of one point of each cell, in steps from the lower corner of the cell; zero along missing axes.
+    /// Returns the position of one point of each cell, in steps from the cell's lower corner; zero along missing axes.
     #[inline(always)]
     pub(crate) fn flat_steps(&self, index: u32x16<S>, lattice: &Lattice) -> [u32x16<S>; MOST_AXES] {
         let words = self.words_of(index);
@@ -306,7 +308,7 @@ impl<S: Simd> SixteenCells<S> {
         }
     }
 
-    /// The random words of one point of each cell.
+    /// Returns the random words of one point of each cell.
     #[inline(always)]
     fn words_of(&self, index: u32x16<S>) -> [u32x16<S>; 2] {
         let mut words = self.words;
@@ -317,14 +319,14 @@ impl<S: Simd> SixteenCells<S> {
         words
     }
 
-    /// The position of one point of each cell, in steps from the lower corner of the cell.
+    /// Returns the position of one point of each cell, in steps from the cell's lower corner.
     #[inline(always)]
     pub(crate) fn steps<const N: usize>(&self, index: u32x16<S>, jitter: u32) -> [u32x16<S>; N] {
         steps(self.words_of(index), jitter)
     }
 
-    /// The positions of points in several registers of cells at once, like [`steps`](Self::steps); their operations are
-    /// interleaved.
+    /// Returns the positions of points in several registers of cells at once, like [`steps`](Self::steps), with
+    /// interleaved operations.
     #[inline(always)]
     pub(crate) fn steps_each<const N: usize, const C: usize>(
         cells: [Self; C],
@@ -346,7 +348,7 @@ impl<S: Simd> SixteenCells<S> {
     }
 }
 
-/// Operations on 32 random bits, in one integer or in sixteen lanes.
+/// Operations on 32 random bits in one integer, or in each of sixteen lanes.
 pub(crate) trait Word:
     Copy
     + Shr<u32, Output = Self>
@@ -369,9 +371,9 @@ impl<W> Word for W where
 {
 }
 
-/// Converts 64 random bits to steps along each axis from the lower corner of the cell.
+/// Converts 64 random bits to steps from the cell's lower corner, along each axis.
 ///
-/// With two and three axes every step is equally likely; with four axes only every 32nd step occurs.
+/// With two and three axes every step is equally likely. With four axes, only every 32nd step occurs.
 #[inline(always)]
 pub(crate) fn steps<W: Word, const N: usize>([high, low]: [W; 2], jitter: u32) -> [W; N] {
     let mut steps = [high; N];

@@ -1,11 +1,11 @@
-//! The SIMD levels that code is compiled for.
+//! Dispatches code by SIMD level.
 //!
 //! On processors with wide registers (nearly all x86-64 processors since 2013), the inner loops are compiled for each
 //! way to accumulate terms and for the common numbers of nearest points. All other cases share one loop of each kind,
-//! for any metric and number. Minkowski's metric uses that loop everywhere, since it is so slow that wide registers
-//! gain nothing.
+//! for any metric and number. Minkowski's metric uses that loop everywhere, since its powers are so slow that wide
+//! registers gain nothing.
 
-/// Runs an operation in wide registers and returns `Some` of its result; `None` if the level has no wide registers.
+/// Runs an operation in wide registers and returns `Some(result)`. Returns `None` if the level has no wide registers.
 #[cfg(target_arch = "x86_64")]
 macro_rules! wide {
     ($level:expr, $simd:ident => $op:expr) => {{
@@ -27,7 +27,7 @@ macro_rules! wide {
     }};
 }
 
-/// Runs an operation in the registers of the level, which count as wide, and returns its result.
+/// Runs an operation in the level's registers, which count as wide, and returns its result.
 #[cfg(not(target_arch = "x86_64"))]
 macro_rules! wide {
     ($level:expr, $simd:ident => $op:expr) => {
@@ -35,19 +35,19 @@ macro_rules! wide {
     };
 }
 
-/// Whether a level has wide registers.
+/// Returns whether a level has wide registers.
 #[cfg(target_arch = "x86_64")]
 pub(crate) fn is_wide(level: fearless_simd::Level) -> bool {
     level.as_avx2().is_some()
 }
 
-/// Whether a level has wide registers; here, every level has.
+/// Returns whether a level has wide registers. On this platform, every level has them.
 #[cfg(not(target_arch = "x86_64"))]
 pub(crate) fn is_wide(_: fearless_simd::Level) -> bool {
     true
 }
 
-/// Runs an operation that needs a metric as a [`Measure`](crate::metric::Measure).
+/// Runs an operation with the metric converted to a [`Measure`](crate::metric::Measure).
 macro_rules! measured {
     ($level:expr, $metric:expr, ($simd:ident, $measure:ident) => $op:expr) => {{
         let metric: crate::Metric = $metric;

@@ -1,8 +1,7 @@
-//! Cellular noise (Worley, Voronoi): exact F1 to F4 with ids and vectors, in the plane, in space and in four
-//! dimensions.
+//! Cellular noise (Worley, Voronoi) with exact F1 to F4, ids and vectors, in two, three and four dimensions.
 //!
-//! Feature points are scattered over all of space: every unit cell has a random number of them, made from a hash of the
-//! cell, and nothing is stored. F1 of a position is its distance to the nearest feature point, F2 to the second
+//! Feature points are scattered over all of space. Every unit cell has a random number of them, generated from a hash
+//! of the cell, so nothing is stored. F1 at a position is the distance to the nearest feature point, F2 to the second
 //! nearest, and so on. [`Worley`] holds such a basis, with its [`Scatter`], its [`Metric`] and its period.
 //!
 //! ```
@@ -29,16 +28,16 @@
 //!
 //! # Ways to sample
 //!
-//! All ways give the same bits at the same position.
+//! All methods give the same bits at the same position.
 //!
 //! | positions | call | cost |
 //! |---|---|---|
 //! | one | [`Worley::sample`], [`Worley::nearest`], [`Cellular::value`] | one search |
-//! | many scattered | [`Worley::sample_many`] | F1 and F2 with vectors and ids: 20.6 ns in 2-D, 43.1 ns in 3-D, for each |
-//! | many, one point in each cell ([`Scatter::Jittered`]), F1 | [`Worley::sample_many`] | 11.2 ns in 2-D, 26.1 ns in 3-D, for each |
+//! | many scattered | [`Worley::sample_many`] | F1 and F2 with vectors and ids: 20.6 ns per position in 2-D, 43.1 ns in 3-D |
+//! | many, one point in each cell ([`Scatter::Jittered`]), F1 | [`Worley::sample_many`] | 11.2 ns per position in 2-D, 26.1 ns in 3-D |
 //! | a window of the plane | [`to_raster`](dapple_raster::Field::to_raster) of a [`Cellular`] | F2 − F1: 0.40 ns/pixel with 64 pixels per cell, 2.73 with 4 |
 //! | a window of a plane through space | [`Cellular::render_plane`] with a [`Plane`] | F2 − F1: 0.37 ns/pixel with 64 pixels per cell, 6.43 with 4 |
-//! | slices of a volume | [`Cellular::render_slices`] | less than slice by slice |
+//! | slices of a volume | [`Cellular::render_slices`] | faster than slice by slice |
 //! | several outputs of one search | [`Worley::render_features`] | distance, vector, position, id, random number |
 //! | gradients | [`Cellular::gradient`], [`Cellular::render_gradient`] | |
 //! | distance to the edge of the cell | [`Worley::edge_distances`], [`Worley::edge_distance`] | 2.14 ns/pixel with 64 pixels per cell |
@@ -60,21 +59,21 @@
 //! # Limits
 //!
 //! * Positions are `f64`, distances `f32`, both in cells. A position is rounded down to a multiple of
-//!   [`POSITION_STEP`]; it is as precise at 1e9 as at 0. Past 2^62, and for positions that are not finite, distances
+//!   [`POSITION_STEP`]; it is as precise at 1e9 as at 0. Beyond 2^62, and for positions that are not finite, distances
 //!   are NaN.
 //! * Nearest points are exact for every metric: no neighbor is missed, so F1 to F4 are continuous.
 //! * One search finds at most 4 points ([`MAX_NEAREST`]).
 //! * The density is from 1/64 to 64 points per cell, clamped to 1 to 9 points in a cell by default. Minkowski's
 //!   exponent is from 1 to 10.
-//! * Periods are whole numbers of cells, exact, per axis.
+//! * Periods are exact, and whole numbers of cells. Each axis has its own.
 //! * [`Cellular::normalized`] has the ranges of [named combinations](Combination::NAMED) with the default scatter or
 //!   full jitter. [`Cellular::measure_range`] measures others.
 //! * The bits are the same on every platform, at every SIMD level and with any number of threads.
 //!
 //! # Without std
 //!
-//! Not supported. `floor` and `sqrt` of `f64` are methods of std, and `dapple-raster` uses threads, locks and the
-//! detection of SIMD levels of std.
+//! Not supported. `floor` and `sqrt` of `f64` are std methods, and `dapple-raster` uses std's threads, locks and SIMD
+//! detection.
 //!
 //! # Reference
 //!

@@ -1,8 +1,8 @@
-//! Search for many scattered positions: sixteen at a time, one in each lane.
+//! Searches many scattered positions, sixteen at a time, one in each lane.
 //!
 //! Every lane visits the cell of its position and the neighbors. Most lanes need the nearer neighbors, so all lanes
 //! visit them together. Few lanes need the farther ones. These visits are collected in a list for a whole group of
-//! positions, and the list then fills the lanes.
+//! positions, and then processed with all lanes in use.
 //!
 //! During the search, the low bits of a key store the code of its point. So one minimum and one maximum sort keys and
 //! codes at once. The order of two points whose keys agree in the other bits is then unknown. A position with such
@@ -17,68 +17,68 @@ use crate::{MAX_NEAREST, Metric, Worley};
 use dapple_hash::CellHashes;
 use fearless_simd::{Level, f32x16, i32x16, mask32x16, prelude::*, u32x16, u64x8};
 
-/// Number of positions of a group.
+/// Number of positions in a group.
 pub(crate) const GROUP: usize = 4 * LANES;
 
 /// Key of a missing point: the largest finite number. (Infinity with a code in its low bits would be NaN.)
 pub(crate) const NOTHING: u32 = f32::MAX.to_bits();
 
-/// The parameters of a search, and the layout of the low bits of a key.
+/// A search's parameters, and the layout of a key's low bits.
 #[derive(Clone, Copy)]
 pub(crate) struct Search<'a> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) exact: Exact,
-    /// Number of bits for the index of a point in its cell. Two bits for each axis follow above.
+    /// Number of bits for a point's index in its cell. Two bits for each axis follow above.
     pub(crate) index_bits: u32,
     /// Mask of all bits of the code.
     pub(crate) code_mask: u32,
 }
 
-/// A group of positions, with the memory for searching their nearest points.
+/// A group of positions, with the scratch memory for searching their nearest points.
 #[derive(Debug)]
 pub struct Group<const N: usize> {
     /// Number of nearest points to find: 1, 2 or 4.
     depth: usize,
     /// Number of unused ranks at the beginning of `best`, which stay zero.
     unused: usize,
-    /// Positions in cells, axis by axis; only the first `len` are in use.
+    /// Positions in cells, axis by axis. Only the first `len` are in use.
     pub(crate) positions: [[f64; GROUP]; N],
     pub(crate) len: usize,
-    /// A bit for each position that has a place.
+    /// Bit mask of the positions that are in range.
     has_place: u64,
-    /// Cells of the positions, as low and high words.
+    /// Cells of the positions, as low and high words of their coordinates.
     cells: [[[u32; GROUP]; 2]; N],
     /// Steps of the positions within their cells.
     steps: [[i32; GROUP]; N],
-    /// Own cells and nearer neighbors of the current register.
+    /// Own cells and nearer neighbors of the current register of positions.
     near: [Near; MOST_NEAR],
     /// Farther neighbors that are still to be visited.
     visits: Visits,
     /// Keys of the nearest points so far.
     best: [[u32; GROUP]; MAX_NEAREST],
-    /// Smallest key of all other points.
+    /// For each position, the smallest key of all points that are not among the nearest.
     next: [u32; GROUP],
-    /// Nearest points that the last search found, by rank.
+    /// Nearest points found by the last search, by rank.
     points: [Points<N>; MAX_NEAREST],
 }
 
-/// The own cells of a register of places, or the neighbors at one of the nearer sides.
+/// The own cells of a register of positions, or one of their nearer neighbors.
 #[derive(Clone, Copy, Debug)]
 struct Near {
     words: [[u32; LANES]; 2],
     counts: [u32; LANES],
-    /// Maximum number of points of the cells.
+    /// Maximum number of points in any of the cells.
     most: u32,
 }
 
-/// Number of own cells and nearer neighbors in four dimensions.
+/// Number of cells to visit at once in four dimensions: the own cell and the nearer neighbors.
 const MOST_NEAR: usize = 1 << 4;
 
 /// The farther neighbors that are still to be visited.
 #[derive(Debug)]
 struct Visits {
-    /// The visits. The low bits hold the code of a neighbor; the bits starting at [`PLACE_SHIFT`] hold an index in the
-    /// group.
+    /// The visits. The low bits hold a neighbor's code; the bits starting at [`PLACE_SHIFT`] hold a position's index in
+    /// the group.
     list: [u32; FULL + (MOST_FAR + 1) * LANES],
     len: usize,
 }
@@ -92,12 +92,12 @@ const FULL: usize = 512;
 /// Number of farther neighbors in four dimensions.
 const MOST_FAR: usize = 81 - MOST_NEAR;
 
-/// The points of one rank for all places of a group.
+/// The points of one rank for all positions of a group.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Points<const N: usize> {
     /// Distances, in cells.
     pub(crate) distances: [f32; GROUP],
-    /// Vectors from the points to the places, in cells.
+    /// Vectors from the points to the positions, in cells.
     pub(crate) vectors: [[f64; GROUP]; N],
     pub(crate) ids: [u64; GROUP],
 }
@@ -144,12 +144,12 @@ impl<const N: usize> Group<N> {
         }
     }
 
-    /// Points that the last search found, nearest first.
+    /// Returns the points that the last search found, nearest first.
     pub(crate) fn points(&self) -> &[Points<N>] {
         &self.points[..self.depth]
     }
 
-    /// Finds the nearest points of the positions; returns a bit for each position whose points are certain.
+    /// Finds the nearest points of the positions. Returns a bit mask of the positions whose points are certain.
     pub(crate) fn search(&mut self, worley: &Worley<N>, level: Level) -> u64 {
         // Powers are so slow that SIMD gains nothing, and the counts of a varying density are drawn one by one.
         let is_scalar = worley.metric.is_slow();
@@ -162,7 +162,7 @@ impl<const N: usize> Group<N> {
         holds.unwrap_or(0)
     }
 
-    /// Finds the nearest points with the loop that is compiled for their number.
+    /// Finds the nearest points, with the loop compiled for the requested number of points.
     fn search_by_depth(&mut self, search: Search<'_>, level: Level) -> Option<u64> {
         // Four-dimensional positions are rare, and share one loop.
         if const { N < MOST_AXES } && self.depth == 1 {
@@ -176,7 +176,7 @@ impl<const N: usize> Group<N> {
 
     #[inline(always)]
     fn search_with<S: Simd, const K: usize>(&mut self, simd: S, search: Search<'_>) -> u64 {
-        // Where sixteen lanes take several registers of the processor, their operations are interleaved already.
+        // If sixteen lanes take several hardware registers, their operations are already interleaved.
         if const { <S::u32s as SimdBase<S>>::LEN < LANES } {
             return self.search_in_step::<S, K, 1>(simd, search);
         }
@@ -186,7 +186,7 @@ impl<const N: usize> Group<N> {
     /// Looks up the ids, distances and vectors of the nearest points.
     #[inline(always)]
     fn finish_with<S: Simd>(&mut self, simd: S, search: Search<'_>) {
-        // The memory has registers past the last position, too; their contents are ignored.
+        // The arrays also have registers beyond the last position, whose contents are ignored.
         let registers = 0..self.len.div_ceil(LANES) * self.depth;
         if const { <S::u32s as SimdBase<S>>::LEN < LANES } {
             for first in registers {
@@ -199,7 +199,7 @@ impl<const N: usize> Group<N> {
         }
     }
 
-    /// Searches the nearest points of all registers; hashes are computed for `C` registers at a time.
+    /// Searches the nearest points of all registers. Hashes are computed for `C` registers at a time.
     #[inline(always)]
     fn search_in_step<S: Simd, const K: usize, const C: usize>(
         &mut self,
@@ -282,7 +282,7 @@ impl<const N: usize> Group<N> {
         store(found.next, &mut self.next, register);
     }
 
-    /// Computes the hashes of the nearer neighbors early, so that the processor knows the numbers of points in time.
+    /// Computes the hashes of the nearer neighbors early, so that the processor knows the point counts in time.
     #[inline(always)]
     fn hash_near<S: Simd, const C: usize>(
         &mut self,
@@ -321,7 +321,7 @@ impl<const N: usize> Group<N> {
     #[inline(always)]
     fn visit_far<S: Simd, const K: usize>(&mut self, simd: S, search: Search<'_>) {
         let (visits, n_visits) = self.visits.take();
-        // Gather the places of the visits.
+        // Gather the positions of the visits.
         let mut cells = [[[0; LANES]; 2]; N];
         let mut steps = [[0; LANES]; N];
         let mut reach = [0; LANES];
@@ -365,7 +365,7 @@ impl<const N: usize> Group<N> {
         }
     }
 
-    /// Inserts the key of a point into the sorted keys of a place.
+    /// Inserts a point's key into the sorted keys of the position with index `place`.
     #[inline(always)]
     fn insert<const K: usize>(&mut self, place: usize, mut coded: u32) {
         for best in &mut self.best[..K] {
@@ -376,7 +376,7 @@ impl<const N: usize> Group<N> {
         self.next[place] = self.next[place].min(coded);
     }
 
-    /// A bit for each lane of a register whose nearest points are certain.
+    /// Returns a bit mask of the lanes of a register whose nearest points are certain.
     #[inline(always)]
     fn holds<S: Simd, const K: usize>(&self, simd: S, search: Search<'_>, register: usize) -> u64 {
         let mask = search.code_mask;
@@ -397,8 +397,8 @@ impl<const N: usize> Group<N> {
         holds.to_bitmask()
     }
 
-    /// Looks up `C` registers of nearest points, starting at register `first`. The ranks of a position's register are
-    /// consecutive: first all ranks of the first one, then of the second, and so on.
+    /// Looks up `C` registers of nearest points, starting at register `first`. All ranks of the first register of
+    /// positions come first, then all ranks of the second, and so on.
     #[inline(always)]
     fn finish<S: Simd, const C: usize>(&mut self, simd: S, search: Search<'_>, first: usize) {
         let lattice = search.lattice;
@@ -406,7 +406,7 @@ impl<const N: usize> Group<N> {
         let (shift, ranks) = (self.depth.trailing_zeros(), self.depth - 1);
         let mut places = [Places::load(simd, &self.cells, &self.steps, first >> shift); C];
         let [mut neighbors, mut index] = [[u32x16::splat(simd, 0); C]; 2];
-        // Decode the neighbor and the index of the point.
+        // Decode the neighbor and the point's index.
         for i in 0..C {
             let (register, rank) = ((first + i) >> shift, (first + i) & ranks);
             places[i] = Places::load(simd, &self.cells, &self.steps, register);
@@ -437,7 +437,7 @@ impl<const N: usize> Group<N> {
 }
 
 impl<const N: usize> Points<N> {
-    /// Stores a register of points: their vectors in steps, and the high and low words of their ids.
+    /// Stores a register of points, given their vectors in steps, and the high and low words of their ids.
     #[inline(always)]
     fn put<S: Simd>(
         &mut self,
@@ -473,7 +473,7 @@ impl Visits {
         self.len += which.to_bitmask().count_ones() as usize;
     }
 
-    /// Removes up to sixteen visits from the list, and returns them with their number; further elements are stale.
+    /// Removes up to sixteen visits from the list, and returns them with their number. Further elements are stale.
     #[inline(always)]
     fn take(&mut self) -> ([u32; LANES], usize) {
         let n_visits = self.len.min(LANES);
@@ -484,16 +484,16 @@ impl Visits {
     }
 }
 
-/// The index in the group of a visit's place.
+/// Returns the index in the group of a visit's position.
 #[inline(always)]
 fn place(visit: u32) -> usize {
     // All indices are below `GROUP`; the remainder proves it to the compiler.
     (visit >> PLACE_SHIFT) as usize % GROUP
 }
 
-/// The keys of the nearest points of sixteen places.
+/// The keys of the points nearest to sixteen positions.
 pub(crate) struct Found<S: Simd, const K: usize> {
-    /// Smallest keys, after some unused ranks that stay zero.
+    /// Smallest keys in ascending order, after some unused ranks that stay zero.
     best: [u32x16<S>; K],
     /// Smallest key of all other points.
     next: u32x16<S>,
@@ -515,7 +515,7 @@ impl<S: Simd, const K: usize> Found<S, K> {
         }
     }
 
-    /// Removes the smallest key of all lanes.
+    /// Removes the smallest key among all lanes, and returns it.
     #[inline(always)]
     pub(crate) fn pop(&mut self) -> u32 {
         let least = self.best[0].reduce_min();
@@ -528,8 +528,8 @@ impl<S: Simd, const K: usize> Found<S, K> {
         least
     }
 
-    /// Compares the points of one cell in each lane. `origins` are the places relative to the cells, `codes` the codes
-    /// without index, and `most` is the maximum number of points of a cell.
+    /// Compares the points of one cell in each lane. `origins` are the positions relative to the cells, `codes` the
+    /// neighbors' codes without point indices, and `most` is the maximum number of points in a cell.
     #[inline(always)]
     pub(crate) fn look<const N: usize>(
         &mut self,
@@ -558,7 +558,8 @@ impl<S: Simd, const K: usize> Found<S, K> {
     }
 }
 
-/// The vector from a point to the place, in steps; both are relative to the lower corner of the point's cell.
+/// Returns the vector from a point to the position, in steps. Both are relative to the lower corner of the point's
+/// cell.
 #[inline(always)]
 pub(crate) fn vector<S: Simd, const N: usize>(
     origins: &[i32x16<S>; N],
@@ -571,7 +572,7 @@ pub(crate) fn vector<S: Simd, const N: usize>(
     vector
 }
 
-/// For each axis, the terms of the distances to the own cell, the nearer and the farther neighbor, in steps.
+/// Computes, for each axis, the terms of the distances to the own cell, the nearer and the farther neighbor, in steps.
 #[inline(always)]
 fn gaps<S: Simd, const N: usize>(
     simd: S,
@@ -588,7 +589,7 @@ fn gaps<S: Simd, const N: usize>(
     gaps
 }
 
-/// A lower bound on the keys of all points beyond the neighbors, in steps.
+/// Returns a lower bound on the keys of all points beyond the neighbors, in steps.
 #[inline(always)]
 fn border<S: Simd, const N: usize>(simd: S, exact: Exact, places: &Places<S, N>) -> f32x16<S> {
     let mut nearest = i32x16::splat(simd, STEPS);
@@ -599,17 +600,18 @@ fn border<S: Simd, const N: usize>(simd: S, exact: Exact, places: &Places<S, N>)
     exact.terms([(nearest + STEPS).to_float()])[0]
 }
 
-/// Bits that are set in the code of a neighbor that is on the farther side along some axis.
+/// Mask for a neighbor's code. A set bit means that the neighbor is on the farther side along some axis.
 const FARTHER: u32 = 0b1010_1010;
 
-/// The index in [`Group::near`] of a neighbor on the nearer sides: one bit for each axis, the first axis lowest.
+/// Returns the index in [`Group::near`] of a neighbor on the nearer sides. It has one bit for each axis, the first axis
+/// lowest.
 #[inline(always)]
 fn near_index<const N: usize>(neighbor: u32) -> usize {
     (0..N).fold(0, |index, axis| index | digit(neighbor, axis) << axis)
 }
 
-/// The hash parts of the columns (own cell and nearer neighbor) and the combined parts of the rows. The index of a row
-/// has one bit for each axis but the first.
+/// Returns the hash parts of the columns (own cell and nearer neighbor) and the combined parts of the rows. The index
+/// of a row has one bit for each axis except the first.
 #[inline(always)]
 fn columns_and_rows<S: Simd, const N: usize>(
     simd: S,

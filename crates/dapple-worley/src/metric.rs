@@ -3,14 +3,14 @@
 //! Worley proposes the Manhattan metric for rigid rectangular regions ("A Cellular Texture Basis Function", SIGGRAPH
 //! 1996, <https://doi.org/10.1145/237170.237267>). All four metrics accumulate one term for each axis, so rendering can
 //! compute the terms of a column and of a row once. Searches compare points by the *key*, a monotone stand-in for the
-//! distance that is cheaper to compute: the squared distance, for the Euclidean metric.
+//! distance that is cheaper to compute. For the Euclidean metric, it is the squared distance.
 //!
 //! Terms are accumulated from the last axis to the first, in the same order everywhere, so that the bits agree.
 
 use crate::{WorleyError, WorleyErrorKind};
 use fearless_simd::{f32x16, prelude::*};
 
-/// A metric: defines the distance between two positions.
+/// A metric, which defines the distance between two positions.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/metric.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -24,19 +24,19 @@ pub enum Metric {
     /// The Euclidean distance: `sqrt(dx² + dy² + …)`.
     #[default]
     Euclidean,
-    /// The sum along the axes: `|dx| + |dy| + …`. Regions are rigidly rectangular.
+    /// The sum along the axes: `|dx| + |dy| + …`. Regions are rigid rectangles.
     Manhattan,
     /// The largest of `|dx|`, `|dy|`, ….
     Chebyshev,
-    /// `(|dx|^p + |dy|^p + …)^(1/p)` with `p` from 1, which is Manhattan, over 2, which is Euclidean, up to 10.
+    /// `(|dx|^p + |dy|^p + …)^(1/p)`, with `p` from 1 to 10. It equals Manhattan at 1 and Euclidean at 2.
     Minkowski(f32),
 }
 
-/// Maximum exponent: above it, the powers of a step and of 16 cells do not both fit into `f32`.
+/// Maximum exponent. Above it, the powers of a step and of 16 cells do not both fit into `f32`.
 const LARGEST_EXPONENT: f32 = 10.0;
 
 impl Metric {
-    /// The metrics without a parameter, with their names in recipes and the command.
+    /// The metrics without a parameter, with their names in recipes and on the command line.
     pub const NAMED: [(&'static str, Self); 3] = [
         ("euclidean", Self::Euclidean),
         ("manhattan", Self::Manhattan),
@@ -56,17 +56,17 @@ impl Metric {
         }
     }
 
-    /// The length of a vector.
+    /// Returns the length of a vector.
     #[inline]
     #[must_use]
     pub fn length<const N: usize>(self, vector: [f32; N]) -> f32 {
         self.distance(self.key(vector))
     }
 
-    /// The gradient of the length with respect to the vector; zero at the zero vector.
+    /// Returns the gradient of the length with respect to the vector; zero at the zero vector.
     ///
-    /// Its components are in `[-1, 1]`. For [`Metric::Chebyshev`] it is along the longest axis, the first if several
-    /// are.
+    /// Its components are in `[-1, 1]`. For [`Metric::Chebyshev`] it is along the longest axis; if several are equally
+    /// long, along the first of them.
     #[inline]
     #[must_use]
     pub fn gradient<const N: usize>(self, vector: [f32; N]) -> [f32; N] {
@@ -102,34 +102,34 @@ fn sign(part: f32) -> f32 {
     }
 }
 
-// A metric accumulates one *term* for each axis: the sum of the terms, or the largest. The result is the *key* of a
-// vector, which is compared instead of the distance: the squared distance, for the Euclidean metric. Keys are at least
+// A metric accumulates one *term* for each axis, by adding the terms or by taking the largest. The result is the *key*
+// of a vector. Keys are compared instead of distances; the Euclidean key is the squared distance. Keys are at least
 // zero, and do not decrease when a difference grows; `rounding_slack` bounds the exceptions that rounding causes.
 impl Metric {
-    /// Factor that turns a key into a bound that is valid despite rounding.
+    /// Returns the factor that turns a key into a bound that is valid despite rounding.
     #[inline]
     pub(crate) fn rounding_slack(self) -> f32 {
         match self {
-            // `powf` is accurate to an ulp or two, so a larger difference can have a power that is smaller by as much.
-            // The factor allows 80 ulps.
+            // `powf` is accurate to an ulp or two, so the power of a larger difference can be too small by as much. The
+            // factor allows 80 ulps.
             Self::Minkowski(_) => 1.000_01,
             Self::Euclidean | Self::Manhattan | Self::Chebyshev => 1.0,
         }
     }
 
-    /// Whether a key is a sum of terms that are each rounded at most once.
+    /// Returns whether a key is a sum of terms that are each rounded at most once.
     #[inline(always)]
     pub(crate) fn is_exact_sum(self) -> bool {
         matches!(self, Self::Euclidean | Self::Manhattan)
     }
 
-    /// Whether terms are so slow to compute that SIMD gains nothing.
+    /// Returns whether terms are so slow to compute that SIMD gains nothing.
     #[inline]
     pub(crate) fn is_slow(self) -> bool {
         matches!(self, Self::Minkowski(_))
     }
 
-    /// The term of a difference along one axis; also the key of a vector along that axis.
+    /// Returns the term of a difference along one axis. It is also the key of a vector along that axis.
     #[inline(always)]
     pub(crate) fn term(self, difference: f32) -> f32 {
         match self {
@@ -139,7 +139,7 @@ impl Metric {
         }
     }
 
-    /// The key of a vector.
+    /// Returns the key of a vector.
     #[inline(always)]
     pub(crate) fn key<const N: usize>(self, differences: [f32; N]) -> f32 {
         let mut key = self.term(differences[N - 1]);
@@ -176,21 +176,21 @@ impl Metric {
     }
 }
 
-/// The inner loops that a metric uses in wide registers.
+/// The kinds of inner loops for wide registers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Kernel {
-    /// Loops with [`Squares`].
+    /// Loops specialized for [`Squares`].
     Squares,
-    /// Loops with [`Additive`].
+    /// Loops specialized for [`Additive`].
     Sum,
-    /// Loops with [`Longest`].
+    /// Loops specialized for [`Longest`].
     Longest,
     /// No loops for wide registers, since [`General`] is as fast.
     General,
 }
 
 impl Metric {
-    /// The inner loops that this metric uses in wide registers.
+    /// Returns the kind of inner loops that this metric uses in wide registers.
     #[inline]
     pub(crate) fn kernel(self) -> Kernel {
         match self {
@@ -203,9 +203,10 @@ impl Metric {
     }
 }
 
-/// A metric on registers, for the inner loops. The default methods support all metrics but Minkowski's.
+/// A metric that operates on registers, for the inner loops. The default methods support all metrics except
+/// Minkowski's.
 pub(crate) trait Measure: Copy {
-    /// The metric, a compile-time constant for some types.
+    /// Returns the metric, which is a compile-time constant for some types.
     fn metric(self) -> Metric;
 
     /// Computes the terms of the differences in several registers.
@@ -261,7 +262,7 @@ pub(crate) trait Measure: Copy {
     }
 }
 
-/// A metric other than Minkowski's. (A function call for terms would spill all registers of a loop.)
+/// Any metric except Minkowski's. (A function call for terms would spill all registers of a loop.)
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Exact(pub(crate) Metric);
 
@@ -343,15 +344,16 @@ impl Measure for General {
     }
 }
 
-/// Factor on differences before their power. It centers the powers of a step and of 16 cells in the range of `f32`.
+/// Factor applied to differences before they are raised to a power. It centers the powers of a step and of 16 cells in
+/// the range of `f32`.
 const MINKOWSKI_SCALE: f32 = 256.0;
 
-/// The term of the Minkowski metric for a difference.
+/// Returns the Minkowski term of a difference.
 fn power(difference: f32, p: f32) -> f32 {
     libm::powf(difference.abs() * MINKOWSKI_SCALE, p)
 }
 
-/// The distance of the Minkowski metric for a key.
+/// Converts a Minkowski key to a distance.
 fn root(key: f32, p: f32) -> f32 {
     libm::powf(key, 1.0 / p) * (1.0 / MINKOWSKI_SCALE)
 }

@@ -1,7 +1,7 @@
-//! Search for the nearest points of one position, with one cell in each lane.
+//! Searches the nearest points of one position, with one cell in each lane.
 //!
-//! Keys are coded as in [`many`](crate::many). If the nearest points are not certain, the search by rings is used:
-//! where two points are at nearly the same distance, or where other cells can contain a nearer point.
+//! Keys are coded as in [`many`](crate::many). The nearest points may be uncertain, because two points are at nearly
+//! the same distance, or because other cells can contain a nearer point. Then the search by rings is used.
 
 use crate::Metric;
 use crate::fixed::{Place, STEP, STEPS};
@@ -15,13 +15,13 @@ use dapple_hash::mix32_pairs;
 use dapple_raster::simd;
 use fearless_simd::{i32x16, mask32x16, prelude::*, u32x16};
 
-/// Number of visited cells: the own cell and the neighbors that are nearest on average. The few neighbors left out are
-/// on the farther side along at least two axes.
+/// Returns the number of visited cells: the own cell and the neighbors that are nearest on average. The few neighbors
+/// left out are on the farther side along at least two axes.
 const fn n_visited(n_axes: usize) -> usize {
     [0, 0, 8, 24][n_axes]
 }
 
-/// Finds the nearest points of a place in the plane or in space, nearest first; at most four.
+/// Finds the points nearest to `place` in 2-D or 3-D, nearest first; at most four.
 pub(crate) fn nearest<const N: usize>(
     lattice: &Lattice,
     metric: Metric,
@@ -33,7 +33,7 @@ pub(crate) fn nearest<const N: usize>(
     }
 }
 
-/// Finds the nearest points among the nearer neighbors; returns whether they are certain.
+/// Finds the nearest points among the nearer neighbors. Returns whether the points are certain.
 #[inline(always)]
 fn finds<const N: usize>(
     lattice: &Lattice,
@@ -57,13 +57,13 @@ fn finds<const N: usize>(
     is_certain.unwrap_or(false)
 }
 
-/// The cell of a place and its neighbors. For each axis: the own cell, the nearer and the farther neighbor.
+/// The cell of a position and its neighbors. Each axis lists the own cell, the nearer and the farther neighbor.
 struct Around<const N: usize> {
     /// Coordinates of the cells, wrapped by the period.
     cells: [[i64; 3]; N],
-    /// Coordinates of the place, in steps from the lower edges of the cells.
+    /// Coordinates of the position, in steps from the lower edges of the cells.
     origins: [[i32; 3]; N],
-    /// Distances to the own cell, to the nearer and to the farther neighbor, in steps.
+    /// Distances from the position to the own cell, to the nearer and to the farther neighbor, in steps.
     sides: [[i32; 3]; N],
 }
 
@@ -86,7 +86,7 @@ impl<const N: usize> Around<N> {
         around
     }
 
-    /// The hash parts of all cells for both words: three numbers for each axis.
+    /// Returns the hash parts of all cells for both words, three numbers for each axis.
     #[inline(always)]
     fn parts<S: Simd>(&self, simd: S, lattice: &Lattice) -> [[u32; LANES]; 2] {
         let mut words = [0; LANES];
@@ -125,7 +125,7 @@ impl<const N: usize> Around<N> {
         parts
     }
 
-    /// The hash words of the cells, and the place in steps from their lower corners, in `C` registers.
+    /// Returns the cells' hash words and the position in steps from the cells' lower corners, in `C` registers.
     #[inline(always)]
     fn lanes<S: Simd, const C: usize>(&self, simd: S, lattice: &Lattice) -> Lanes<S, N, C> {
         let mut words = [[u32x16::splat(simd, 0); 2]; C];
@@ -160,7 +160,7 @@ impl<const N: usize> Around<N> {
         }
     }
 
-    /// Searches cells that have one point each.
+    /// Searches cells that contain one point each.
     #[inline(always)]
     fn search_single<S: Simd, const C: usize>(
         &self,
@@ -202,7 +202,7 @@ impl<const N: usize> Around<N> {
             if !lanes_of_least.is_power_of_two() {
                 return false;
             }
-            // Look up the vector and the identity of the point.
+            // Look up the point's vector and identity.
             let number = lanes_of_least.trailing_zeros() as usize % n_visited(N);
             let (half, lane) = (number / 8, number % 8);
             for axis in 0..N {
@@ -215,7 +215,7 @@ impl<const N: usize> Around<N> {
         true
     }
 
-    /// Searches cells with any number of points.
+    /// Searches cells that contain any number of points.
     #[inline(always)]
     fn search_several<S: Simd, const K: usize, const C: usize>(
         &self,
@@ -243,7 +243,8 @@ impl<const N: usize> Around<N> {
                 break;
             };
             let next = found.pop();
-            // The order of keys that differ only in their codes is unknown. Missing points compare equal, too.
+            // The order of keys that differ only in their codes is unknown. The keys of missing points also compare
+            // equal.
             if coded | code_mask == next | code_mask {
                 return false;
             }
@@ -257,7 +258,7 @@ impl<const N: usize> Around<N> {
         true
     }
 
-    /// A lower bound on the keys of all points of cells that are not visited.
+    /// Returns a lower bound on the keys of all points in cells that are not visited.
     #[inline(always)]
     fn border(&self, metric: Metric) -> f32 {
         let mut border = self.outer_border(metric);
@@ -267,7 +268,7 @@ impl<const N: usize> Around<N> {
         border
     }
 
-    /// A lower bound on the keys of all points of a neighbor.
+    /// Returns a lower bound on the keys of all points in a neighbor.
     #[inline(always)]
     fn gap(&self, metric: Metric, neighbor: u8) -> f32 {
         let mut sides = [0.0; N];
@@ -277,7 +278,7 @@ impl<const N: usize> Around<N> {
         metric.key(sides)
     }
 
-    /// A lower bound on the keys of all points beyond the neighbors.
+    /// Returns a lower bound on the keys of all points beyond the neighbors.
     #[inline(always)]
     fn outer_border(&self, metric: Metric) -> f32 {
         let mut nearest = STEPS;
@@ -287,7 +288,7 @@ impl<const N: usize> Around<N> {
         metric.term((nearest + STEPS) as f32 * STEP)
     }
 
-    /// The hit for a point of a neighbor, whose words are given.
+    /// Returns the hit for a point in a neighbor, given the neighbor's words.
     #[inline(always)]
     fn hit(&self, search: Search<'_>, neighbor: u8, words: [u32; 2], index: u32) -> Hit<N> {
         let steps: [i32; N] = search.lattice.steps(words, index);
@@ -327,17 +328,17 @@ fn visit_rest<const N: usize>(search: Search<'_>, place: &Place<N>, hits: &mut [
     ranking.reach() < around.outer_border(exact.0)
 }
 
-/// The cells of a search, one in each lane.
+/// The cells that a search visits, one in each lane.
 struct Lanes<S: Simd, const N: usize, const C: usize> {
     cells: [SixteenCells<S>; C],
-    /// Coordinates of the place, in steps from the lower corners of the cells.
+    /// Coordinates of the position, in steps from the lower corners of the cells.
     origins: [[i32x16<S>; N]; C],
-    /// Words of the cells in memory, eight at a time.
+    /// Hash words of the cells in memory, eight at a time.
     halves: [[[u32; 8]; 2]; 4],
 }
 
 impl<S: Simd, const N: usize, const C: usize> Lanes<S, N, C> {
-    /// The words of a cell.
+    /// Returns the hash words of a cell.
     #[inline(always)]
     fn words(&self, number: usize) -> [u32; 2] {
         let [first, second] = &self.halves[number / 8];
@@ -345,15 +346,15 @@ impl<S: Simd, const N: usize, const C: usize> Lanes<S, N, C> {
     }
 }
 
-/// Mask of the visited cells of a register. On processors with registers of eight lanes, the compiler removes the
-/// computations of the other cells.
+/// Returns a mask of the visited cells in a register. On processors with eight-lane registers, the compiler removes the
+/// computations for the other cells.
 #[inline(always)]
 fn is_visited<S: Simd, const N: usize>(simd: S, register: usize) -> mask32x16<S> {
     let numbers = u32x16::from_slice(simd, &const { numbers() }[register]);
     numbers.simd_lt(n_visited(N) as u32)
 }
 
-/// Searches up to `K` points, or with `K` = 0 any number of points in cells that have one point each.
+/// Searches up to `K` points. `K` = 0 means any number of points, in cells that contain one point each.
 #[inline(always)]
 fn search_by_axes<S: Simd, const N: usize, const K: usize>(
     simd: S,
@@ -372,7 +373,7 @@ fn search_by_axes<S: Simd, const N: usize, const K: usize>(
     is_certain && (reach < around.border(search.exact.0) || visit_rest(search, place, hits))
 }
 
-/// The code of each cell along each axis, in two registers; see [`places`](crate::places).
+/// Returns the code of each cell along each axis, in two registers; see [`places`](crate::places).
 const fn digits<const N: usize>() -> [[[u32; LANES]; 2]; N] {
     let mut digits = [[[0; LANES]; 2]; N];
     let cells = cells_by_distance::<N>();
@@ -388,7 +389,7 @@ const fn digits<const N: usize>() -> [[[u32; LANES]; 2]; N] {
     digits
 }
 
-/// The indices of the cells, in two registers.
+/// Returns the indices of the cells, in two registers.
 const fn numbers() -> [[u32; LANES]; 2] {
     let mut numbers = [[0; LANES]; 2];
     let mut number = 0;
@@ -399,7 +400,7 @@ const fn numbers() -> [[u32; LANES]; 2] {
     numbers
 }
 
-/// Selects one of the three numbers of `of` from index `from` on, in each lane.
+/// Selects, in each lane, one of the three numbers that start at `of[from]`.
 #[inline(always)]
 fn pick<S: Simd>(digits: u32x16<S>, of: &[u32], from: usize) -> u32x16<S> {
     let own = u32x16::splat(digits.simd, of[from]);

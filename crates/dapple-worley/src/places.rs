@@ -1,4 +1,4 @@
-//! Sixteen places side by side, one in each lane, and the neighbors of their cells.
+//! Sixteen fixed-point positions, one in each lane, and the neighbors of their cells.
 //!
 //! The code of a neighbor has two bits for each axis: 0 for the own cell, 1 for the neighbor on the nearer side, 2 for
 //! the neighbor on the farther side.
@@ -7,35 +7,36 @@ use crate::fixed::{STEPS, split};
 use crate::lattice::{Lattice, both, parts_each};
 use fearless_simd::{f64x8, i32x16, prelude::*, u32x16, u64x8};
 
-/// Number of places in a register.
+/// Number of positions in a register.
 pub(crate) const LANES: usize = 16;
 
 /// The low and the high words of sixteen 64-bit integers.
 pub(crate) type Words<S> = [u32x16<S>; 2];
 
-/// Sixteen places, axis by axis.
+/// Sixteen fixed-point positions, axis by axis.
 #[derive(Clone, Copy)]
 pub(crate) struct Places<S: Simd, const N: usize> {
-    /// Cells of the places.
+    /// Cells of the positions.
     pub(crate) cells: [Words<S>; N],
-    /// Steps within the cells.
+    /// Steps from the lower corners of the cells.
     pub(crate) steps: [i32x16<S>; N],
 }
 
-/// One cell for each of sixteen places.
+/// One cell for each of sixteen positions.
 #[derive(Clone, Copy)]
 pub(crate) struct Cells<S: Simd, const N: usize> {
     /// Hash words of the cells.
     pub(crate) words: Words<S>,
-    /// Coordinates of the places, in steps from the lower corners of the cells.
+    /// Coordinates of the positions, in steps from the lower corners of the cells.
     pub(crate) origins: [i32x16<S>; N],
 }
 
-/// 1.5 · 2^52. All `f64` within a quarter of it are integers, whose low bits hold the difference from this number.
+/// 1.5 · 2^52. All `f64` within a quarter of it are integers, and their low bits hold the difference from this number.
 const WHOLE: f64 = (3_u64 << 51) as f64;
 
 impl<S: Simd, const N: usize> Places<S, N> {
-    /// Splits a register of positions into places, with a bit for each lane that has one; other lanes are arbitrary.
+    /// Converts a register of positions to fixed point. The bit mask has a bit for each position that is in range;
+    /// other lanes are arbitrary.
     #[inline(always)]
     pub(crate) fn new<const LEN: usize>(
         simd: S,
@@ -56,7 +57,7 @@ impl<S: Simd, const N: usize> Places<S, N> {
         (places, has_place)
     }
 
-    /// Loads the places of a register from memory.
+    /// Loads a register of fixed-point positions from memory.
     #[inline(always)]
     pub(crate) fn load<const LEN: usize>(
         simd: S,
@@ -93,14 +94,14 @@ impl<S: Simd, const N: usize> Places<S, N> {
         }
     }
 
-    /// The direction of the neighbor on the nearer side along an axis: -1 or 1.
+    /// Returns the direction of the neighbor on the nearer side along an axis: -1 or 1.
     #[inline(always)]
     pub(crate) fn nearer(&self, simd: S, axis: usize) -> i32x16<S> {
         let [one, minus_one] = [i32x16::splat(simd, 1), i32x16::splat(simd, -1)];
         self.steps[axis].simd_lt(STEPS / 2).select(minus_one, one)
     }
 
-    /// The coordinates of the cells shifted along an axis, wrapped by the period.
+    /// Returns the cells' coordinates shifted along an axis, wrapped by the period.
     #[inline(always)]
     pub(crate) fn shifted(&self, lattice: &Lattice, axis: usize, shift: i32x16<S>) -> Words<S> {
         let [low, high] = self.cells[axis];
@@ -115,7 +116,7 @@ impl<S: Simd, const N: usize> Places<S, N> {
         words
     }
 
-    /// The neighbor of each place with the given code, for several registers whose operations are interleaved.
+    /// Returns each position's neighbor with the given code, for several registers with interleaved operations.
     #[inline(always)]
     pub(crate) fn neighbors_each<const C: usize>(
         simd: S,
@@ -161,8 +162,8 @@ pub(crate) fn store<S: Simd>(lanes: u32x16<S>, words: &mut [u32], register: usiz
     lanes.store_slice(&mut words[register * LANES..][..LANES]);
 }
 
-/// Splits sixteen coordinates into cells and steps from their lower edges, with a bit for each that has a place; see
-/// [`split`].
+/// Splits sixteen coordinates into cells and steps from their lower edges, with a bit mask of the coordinates that are
+/// in range; see [`split`].
 #[inline(always)]
 fn split_lanes<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x16<S>, u64) {
     let halves = [&coordinates[..8], &coordinates[8..]].map(|half| f64x8::from_slice(simd, half));
@@ -193,7 +194,7 @@ fn split_lanes<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x1
     )
 }
 
-/// Splits sixteen coordinates one by one, where some are very large or not finite.
+/// Splits sixteen coordinates one by one. Used if some are very large or not finite.
 #[inline(never)]
 fn split_each<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x16<S>, u64) {
     let mut words = [[0; LANES]; 2];
@@ -215,7 +216,7 @@ fn split_each<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x16
     (words, i32x16::from_slice(simd, &steps), has_place)
 }
 
-/// The cells after the given ones, along one axis.
+/// Returns the next cells along one axis.
 #[inline(always)]
 fn next<S: Simd>([low, high]: Words<S>) -> Words<S> {
     let next = low + 1;
@@ -234,13 +235,13 @@ fn wrap<S: Simd>(lattice: &Lattice, axis: usize, [mut low, mut high]: Words<S>) 
     [low, high]
 }
 
-/// The code of a neighbor along one axis.
+/// Returns a neighbor's code along one axis.
 #[inline(always)]
 pub(crate) const fn digit(cell: u32, axis: usize) -> usize {
     (cell >> (2 * axis) & 3) as usize
 }
 
-/// Codes of a cell and its neighbors, sorted by mean distance.
+/// Returns the codes of a cell and its neighbors, sorted by mean distance.
 pub(crate) const fn cells_by_distance<const N: usize>() -> &'static [u8] {
     const TWO: [u8; 9] = sorted_cells(2);
     const THREE: [u8; 27] = sorted_cells(3);
@@ -252,12 +253,12 @@ pub(crate) const fn cells_by_distance<const N: usize>() -> &'static [u8] {
     }
 }
 
-/// Codes of all cells with `n_axes` axes, sorted by mean squared distance.
+/// Returns the codes of all cells with `n_axes` axes, sorted by mean squared distance.
 const fn sorted_cells<const LEN: usize>(n_axes: u32) -> [u8; LEN] {
     let mut cells = [0; LEN];
     let mut len = 0;
     let mut wanted = 0;
-    // Mean squared distances to the nearer and to the farther neighbor are 1/12 and 7/12: a ratio of 1 to 7.
+    // Mean squared distances to the nearer and to the farther neighbor are 1/12 and 7/12, a ratio of 1 to 7.
     while len < LEN {
         let mut cell = 0_u32;
         while cell < 1 << (2 * n_axes) {

@@ -1,10 +1,10 @@
-//! Planes through spaces of two, three and four dimensions.
+//! Planes through 2-D, 3-D and 4-D space.
 
 use crate::fixed::MOST_AXES;
 use crate::{Dimensions, Space, Vector};
 use dapple_raster::Window;
 
-/// A plane through space, on which images are rendered. Its position `[x, y]` is `origin + x·u + y·v`.
+/// A plane through space on which images are rendered. The position `[x, y]` on it is `origin + x·u + y·v` in space.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/plane.md"))]
 ///
@@ -34,7 +34,7 @@ impl<const N: usize> Plane<N>
 where
     Dimensions: Space<N>,
 {
-    /// The plane along the first two axes, through `origin`.
+    /// Returns the plane along the first two axes, through `origin`.
     #[must_use]
     pub fn slice(origin: Vector<N>) -> Self {
         let along = |axis: usize| {
@@ -49,14 +49,14 @@ where
         }
     }
 
-    /// The plane that contains a window of space.
+    /// Returns the plane that contains a window of space.
     pub(crate) fn of_window(window: &Window<N>) -> Self {
         let mut origin = window.position(0, 0);
         origin[..2].fill(0.0);
         Self::slice(origin.into())
     }
 
-    /// The position in space of a position of the plane.
+    /// Converts a position on the plane to a position in space.
     #[must_use]
     pub fn position(&self, position: impl Into<[f64; 2]>) -> Vector<N> {
         let position = position.into();
@@ -92,26 +92,26 @@ pub(crate) struct Section {
 }
 
 impl Section {
-    /// One coordinate in space of a position of the plane.
+    /// Returns one coordinate, in space, of a position on the plane.
     #[inline]
     pub(crate) fn coordinate(&self, axis: usize, [x, y]: [f64; 2]) -> f64 {
         self.origin[axis] + (self.u[axis] * x + self.v[axis] * y)
     }
 
-    /// Whether another plane has the same coordinates along an axis.
+    /// Returns whether another plane has the same coordinates along an axis.
     pub(crate) fn is_same_along(&self, axis: usize, other: &Self) -> bool {
         let parts = |plane: &Self| [plane.origin, plane.u, plane.v].map(|part| part[axis]);
         parts(self) == parts(other)
     }
 
-    /// The axis along which rows differ, if there is exactly one and it is not the first.
+    /// Returns the axis along which rows differ, if there is exactly one and it is not the first.
     pub(crate) fn row_axis(&self) -> Option<usize> {
         let mut axes = (0..self.n_axes).filter(|&axis| self.v[axis] != 0.0);
         axes.next()
             .filter(|&axis| axis > 0 && axes.next().is_none())
     }
 
-    /// Whether columns differ along the first axis only, and rows do not differ along it.
+    /// Returns whether columns differ along the first axis only, and rows do not differ along it.
     pub(crate) fn is_upright(&self) -> bool {
         self.v[0] == 0.0 && self.u[1..].iter().all(|&part| part == 0.0)
     }
@@ -121,7 +121,7 @@ impl<const N: usize> Default for Plane<N>
 where
     Dimensions: Space<N>,
 {
-    /// The plane along the first two axes, with zero along the others.
+    /// Returns the plane along the first two axes, with zero along the others.
     fn default() -> Self {
         Self::slice(Vector::<N>::from([0.0; N]))
     }

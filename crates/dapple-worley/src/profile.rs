@@ -1,4 +1,4 @@
-//! Cross-sections of bumps: raised spots and inset channels.
+//! Cross-sections of bumps, such as raised spots and inset channels.
 //!
 //! Worley makes "raised spots or inset channels" of F1 and of F2 − F1 ("A Cellular Texture Basis Function", SIGGRAPH
 //! 1996, <https://doi.org/10.1145/237170.237267>), as is usual with noise. A profile converts such a value to a height.
@@ -8,7 +8,7 @@
 
 use crate::{WorleyError, WorleyErrorKind};
 
-/// A cross-section of bumps: the height as a function of the value of a texture.
+/// A cross-section of bumps. It maps the value of a texture to a height.
 ///
 /// # Examples
 ///
@@ -32,26 +32,26 @@ use crate::{WorleyError, WorleyErrorKind};
 )]
 #[non_exhaustive]
 pub enum Profile {
-    /// A dome: height 1 at the value 0, and height 0 from the value `radius` on: `(1 − (value / radius)²)²`. With F1, a
-    /// raised spot around every feature point.
+    /// A dome: height 1 at the value 0, falling to height 0 at the value `radius`, by `(1 − (value / radius)²)²`. With
+    /// F1, this gives a raised spot around every feature point.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/profile-spots.md"))]
     Spots {
-        /// Half of the width of a spot, in the units of the value: above 0.
+        /// Radius of a spot, in units of the value; above 0.
         radius: f32,
     },
-    /// A channel: height 0 at the value 0, and height 1 from the value `width` on: `3 t² − 2 t³` with
-    /// `t = value / width`. With F2 − F1, channels between raised stones; with F1, round pits.
+    /// A channel: height 0 at the value 0, rising to height 1 at the value `width`, by `3 t² − 2 t³` with `t = value /
+    /// width`. With F2 − F1, this gives channels between raised stones; with F1, round pits.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/profile-channels.md"))]
     Channels {
-        /// Half of the width of a channel, in the units of the value: above 0.
+        /// Half-width of a channel, in units of the value; above 0.
         width: f32,
     },
 }
 
 impl Profile {
-    /// Raised spots with this radius.
+    /// Creates raised spots with this radius.
     ///
     /// # Errors
     ///
@@ -61,7 +61,7 @@ impl Profile {
         Ok(Self::Spots { radius })
     }
 
-    /// Inset channels with this half width.
+    /// Creates inset channels with this half-width.
     ///
     /// # Errors
     ///
@@ -71,7 +71,7 @@ impl Profile {
         Ok(Self::Channels { width })
     }
 
-    /// Checks the parameters of a profile that was deserialized or made without a constructor.
+    /// Checks the parameters of a profile that was deserialized or built without a constructor.
     ///
     /// # Errors
     ///
@@ -83,7 +83,7 @@ impl Profile {
         }
     }
 
-    /// The height for a value of the texture, from 0 to 1.
+    /// Returns the height for a value of the texture, from 0 to 1.
     #[must_use]
     pub fn height(self, value: f32) -> f32 {
         match self {
@@ -98,7 +98,7 @@ impl Profile {
         }
     }
 
-    /// The derivative of the height with respect to the value.
+    /// Returns the derivative of the height with respect to the value.
     #[must_use]
     pub fn slope(self, value: f32) -> f32 {
         match self {

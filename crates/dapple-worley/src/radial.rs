@@ -1,10 +1,11 @@
-//! The radial variant: cells in azimuth, polar angle and radius.
+//! Maps cellular textures to radial coordinates: azimuth, polar angle and radius.
 //!
 //! Worley mentions that "a radial coordinate version can cover spheres, creating a surface similar to the Death Star"
 //! ("A Cellular Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>), and gives no formula.
 //! Here a position `[x, y, z]` is mapped to cells along three axes:
 //!
-//! * `n · φ / 2π`, with the azimuth `φ = atan2(y, x)` and `n` whole cells around the axis, the exact period;
+//! * `n · φ / 2π`, with the azimuth `φ = atan2(y, x)`. The `n` cells around the axis are a whole number and an exact
+//!   period;
 //! * `m · θ / π`, with the polar angle `θ` from the north pole at +z, and `m` cells from pole to pole;
 //! * `k · r`, with the radius `r`, and `k` cells per unit.
 //!
@@ -19,17 +20,17 @@ use crate::{Cellular, Worley3, WorleyError};
 use core::f64::consts::{PI, TAU};
 use glam::DVec3;
 
-/// Numbers of cells of a radial texture along each axis.
+/// Number of cells of a radial texture along each axis.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/radial-cells.md"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RadialCells {
-    /// Number of whole cells around the axis: at least 1.
+    /// Number of cells around the axis, a whole number of at least 1.
     pub around: u32,
-    /// Number of cells from pole to pole: above 0. Half of `around` makes square cells on the equator.
+    /// Number of cells from pole to pole; above 0. Half of `around` gives square cells on the equator.
     pub polar: f64,
-    /// Number of cells per unit of radius: at least 0. With 0, the texture is constant along the radius.
+    /// Number of cells per unit of radius; at least 0. With 0, the texture is constant along the radius.
     pub radial: f64,
 }
 
@@ -54,7 +55,7 @@ pub struct Radial {
 }
 
 impl Radial {
-    /// Maps a texture to radial cells. The period of its basis is replaced.
+    /// Maps a texture to radial cells, replacing the period of its basis.
     ///
     /// # Errors
     ///
@@ -85,7 +86,7 @@ impl Radial {
         })
     }
 
-    /// The basis of the texture; its positions are [`cell_position`](Self::cell_position)s.
+    /// Returns the texture's basis. Its positions are [`cell_position`](Self::cell_position)s.
     #[must_use]
     pub fn worley(&self) -> &Worley3 {
         self.texture.worley()
@@ -109,13 +110,13 @@ impl Radial {
         )
     }
 
-    /// The value at a position. NaN if the position is not finite.
+    /// Returns the value at `position`; NaN if the position is not finite.
     #[must_use]
     pub fn value(&self, position: impl Into<DVec3>) -> f32 {
         self.texture.value(self.cell_position(position))
     }
 
-    /// The gradient of the value with respect to `[x, y, z]`.
+    /// Returns the gradient of the value with respect to `[x, y, z]`.
     #[must_use]
     pub fn gradient(&self, position: impl Into<DVec3>) -> DVec3 {
         let at = position.into();
@@ -127,7 +128,7 @@ impl Radial {
         let of_cells = self.texture.gradient(self.cell_position(at));
         let (axial_sq, radius_sq) = (at.x * at.x + at.y * at.y, at.length_squared());
         let mut gradient = DVec3::ZERO;
-        // Add the derivatives of the azimuth and of the polar angle, which are defined off the axis.
+        // Add the derivatives of the azimuth and of the polar angle, which are defined except on the axis.
         if axial_sq > 0.0 {
             let azimuth = DVec3::new(-at.y, at.x, 0.0) / axial_sq;
             gradient += azimuth * (of_cells.x * f64::from(around) / TAU);

@@ -1,13 +1,12 @@
-//! The ranges of the named combinations.
+//! Measured value ranges of the named combinations.
 //!
-//! As in Worley's paper ("A Cellular Texture Basis Function", SIGGRAPH 1996,
-//! <https://doi.org/10.1145/237170.237267>), they were measured once: for each scatter, each metric and each number of
-//! axes. They leave out one value in a thousand at either end. `cargo xtask gallery --ranges` measures them again and
-//! prints the table.
+//! As in Worley's paper ("A Cellular Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>),
+//! the ranges were measured once, for each scatter, each metric and each number of axes. They exclude one value in a
+//! thousand at either end. `cargo xtask gallery --ranges` measures them again and prints the table.
 
 use crate::{Combination, Metric, Scatter};
 
-/// The scatters in the table.
+/// The scatters that the table covers.
 pub(crate) const SCATTERS: [Scatter; 2] = [
     Scatter::Poisson {
         density: Scatter::DENSITY,
@@ -55,7 +54,8 @@ const RANGES: [[[[[f32; 2]; Combination::NAMED.len()]; 3]; Metric::NAMED.len()];
     ],
 ];
 
-/// The range of a combination; otherwise, a description of the textures that have a measured range.
+/// Returns the range of a combination. If the range is not known, returns a description of the textures that have a
+/// measured range.
 pub(crate) fn range(
     n_axes: usize,
     metric: Metric,

@@ -1,8 +1,8 @@
-//! Rendering of windows of a plane.
+//! Renders windows of a plane.
 //!
 //! The window is cut into bands of rows, which are distributed over threads, and each band into blocks of columns. The
-//! feature points of a block and its neighborhood are generated once ([`table`]). Only these tables depend on the
-//! number of axes ([`basis`]).
+//! feature points of a block and its neighborhood are generated once and stored in a table ([`table`]). Only these
+//! tables depend on the number of axes ([`basis`]).
 //!
 //! A block is divided into squares of up to 64 × 64 pixels, and a square into tiles ([`square`]). For each square, and
 //! then for each of its tiles, points that cannot be among the nearest are culled ([`cull`], [`flat`], then
@@ -45,36 +45,36 @@ use std::sync::Arc;
 
 pub(crate) use basis::Basis;
 
-/// Number of pixels (`f32`) in a register.
+/// Number of pixels (`f32`) in one register.
 pub(crate) const LANES: usize = 16;
 
-/// Number of `f64` in a register.
+/// Number of `f64` in one register.
 const F64_LANES: usize = LANES / 2;
 
-/// Maximum number of rows of a band.
+/// Maximum number of rows in a band.
 const BAND_ROWS: usize = 64;
 
-/// Maximum number of columns of a block. The wider the blocks, the less work is repeated at their borders.
+/// Maximum number of columns in a block. With wider blocks, less work is repeated at their borders.
 const BLOCK_COLUMNS: usize = 512;
 
-/// Minimum number of columns of a block that has more cells than [`MANY_CELLS`].
+/// Minimum number of columns in a block with more cells than [`MANY_CELLS`].
 const FEW_COLUMNS: usize = BLOCK_COLUMNS / 4;
 
-/// Number of cells of a block and its neighborhood above which narrower blocks are faster: their points fill the
-/// second-level cache of a core.
+/// Number of cells in a block and its neighborhood above which narrower blocks are faster, because the points no longer
+/// fit into a core's second-level cache.
 const MANY_CELLS: u128 = 1 << 12;
 
-/// A window of a plane through the basis.
+/// A window of a plane through the basis, to be rendered.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Picture<'a> {
     pub(crate) basis: &'a dyn Basis,
     pub(crate) section: Section,
     pub(crate) window: &'a Window,
-    /// Factor from positions of the window to coordinates of the lattice.
+    /// Factor from window positions to lattice coordinates.
     pub(crate) frequency: f64,
 }
 
-/// Output rows of a band, by the quantity to compute.
+/// Output rows of a band. The variant is the quantity to compute.
 pub(crate) enum Output<'a> {
     /// Values of a texture.
     Values(Values, Vec<&'a mut [f32]>),
@@ -87,7 +87,7 @@ pub(crate) enum Output<'a> {
 }
 
 impl Output<'_> {
-    /// The largest n for which `F_n` is needed.
+    /// Returns the largest n for which `F_n` is needed.
     fn depth(&self) -> usize {
         match self {
             Self::Values(Values { tone, .. }, _) | Self::Gradients(tone, _) => tone.depth(),
@@ -96,7 +96,7 @@ impl Output<'_> {
         }
     }
 
-    /// Whether the ids of points are needed.
+    /// Returns whether point ids are needed.
     fn wants_ids(&self) -> bool {
         match self {
             Self::Features(features) => features.iter().any(FeatureRows::wants_ids),
@@ -106,12 +106,12 @@ impl Output<'_> {
 }
 
 impl Picture<'_> {
-    /// Number of bands of the window.
+    /// Returns the number of bands in the window.
     pub(crate) fn n_bands(&self) -> usize {
         self.window.size[1].div_ceil(BAND_ROWS as u32) as usize
     }
 
-    /// Iterator over the bands of a view, each a list of its rows; empty without a view.
+    /// Iterates over the bands of a view, each a list of its rows. Empty if there is no view.
     pub(crate) fn bands<'v, T>(
         &self,
         view: Option<RasterViewMut<'v, T>>,
@@ -122,12 +122,12 @@ impl Picture<'_> {
         bands.map(|band| band.into_rows().collect())
     }
 
-    /// Renders the bands of the window, in parallel with the feature `rayon`.
+    /// Renders the bands of the window. With the feature `rayon`, they are rendered in parallel.
     pub(crate) fn render(&self, bands: Vec<Output<'_>>) {
         render_stack(vec![(*self, bands)]);
     }
 
-    /// The coordinates of the columns, shared with the preceding image if they are equal.
+    /// Returns the coordinates of the columns, shared with the preceding image if they are equal.
     fn columns(&self, before: Option<(&Self, &Arc<Line>)>) -> Arc<Line> {
         match before {
             Some((before, columns)) if before.section.is_same_along(0, &self.section) => {
@@ -139,7 +139,8 @@ impl Picture<'_> {
         }
     }
 
-    /// The coordinates of `n` rows from `first` on along an axis, shared with the preceding picture if they are equal.
+    /// Returns the coordinates of `n` rows along an axis, starting at row `first`. They are shared with the preceding
+    /// image if they are equal.
     fn rows(&self, axis: usize, first: usize, n: usize, before: Option<&Band<'_>>) -> Arc<Line> {
         match before {
             Some(before) if before.picture.section.is_same_along(axis, &self.section) => {
@@ -158,7 +159,7 @@ impl Picture<'_> {
         }
     }
 
-    /// The coordinates of `len` columns or rows along one axis. If the plane is upright, they equal those of
+    /// Returns the coordinates of `len` columns or rows along one axis. If the plane is upright, they equal those from
     /// [`place`](Self::place), since the other component of the position then adds zero.
     fn line(&self, axis: usize, len: u32, position: impl Fn(u32) -> [f64; 2]) -> Line {
         let coordinate = |index| self.section.coordinate(axis, position(index)) * self.frequency;
@@ -170,7 +171,7 @@ impl Picture<'_> {
         Line { places, is_finite }
     }
 
-    /// The lattice coordinates of a pixel; `None` if they are not finite or out of range.
+    /// Returns the lattice coordinates of a pixel; `None` if they are not finite or out of range.
     fn place(&self, column: usize, row: usize) -> Option<FlatPlace> {
         let position = self.window.position(column as u32, row as u32);
         let mut place = FlatPlace {
@@ -188,7 +189,8 @@ impl Picture<'_> {
 /// Maximum number of images of a stack that one thread renders together, with shared tables and candidates.
 const STACK: usize = 16;
 
-/// Renders several pictures of one basis, frequency and window, in parallel with the feature `rayon`.
+/// Renders several images with the same basis, frequency and window. With the feature `rayon`, they are rendered in
+/// parallel.
 pub(crate) fn render_stack<'a>(stack: Vec<(Picture<'a>, Vec<Output<'a>>)>) {
     // Share the column coordinates of equal images.
     let mut pictures: Vec<(Picture<'a>, Arc<Line>, Vec<Output<'a>>)> = Vec::new();
@@ -197,7 +199,7 @@ pub(crate) fn render_stack<'a>(stack: Vec<(Picture<'a>, Vec<Output<'a>>)>) {
         let columns = picture.columns(before.map(|(before, columns, _)| (before, columns)));
         pictures.push((picture, columns, bands));
     }
-    // Make one job for each band of up to `STACK` pictures. Bands are popped from the end, so the last band comes
+    // Create one job for each band of up to `STACK` images. Bands are popped from the end, so the last band comes
     // first.
     let mut jobs = Vec::new();
     for pictures in pictures.chunks_mut(STACK) {
@@ -253,10 +255,10 @@ fn render_bands(
     }
 }
 
-/// A band of rows of a image, with the coordinates of its rows and columns.
+/// A band of rows of an image, with the coordinates of its rows and columns.
 struct Band<'a> {
     picture: Picture<'a>,
-    /// The first row of the band, in the window.
+    /// The band's first row, in the window.
     first: usize,
     n_rows: usize,
     columns: Arc<Line>,
@@ -265,7 +267,7 @@ struct Band<'a> {
 }
 
 impl<'a> Band<'a> {
-    /// Makes the band with this index. Coordinates are shared with `before`, the same band of the preceding picture.
+    /// Builds the band with this index. Coordinates are shared with `before`, the same band of the preceding image.
     fn new(picture: Picture<'a>, index: usize, columns: Arc<Line>, before: Option<&Self>) -> Self {
         let first = index * BAND_ROWS;
         let n_rows = BAND_ROWS.min(picture.window.size[1] as usize - first);
@@ -280,7 +282,7 @@ impl<'a> Band<'a> {
         }
     }
 
-    /// Whether this band and another one are slices along the first two axes with equal columns and rows.
+    /// Returns whether this band and another one are slices along the first two axes with equal columns and rows.
     fn is_slice(&self, other: &Self) -> bool {
         let is_flat = |band: &Self| band.picture.section.row_axis() == Some(1);
         is_flat(self)
@@ -290,7 +292,7 @@ impl<'a> Band<'a> {
     }
 }
 
-/// The coordinates of columns or rows along one axis: for each, the cell and the steps within it.
+/// The coordinates of columns or rows along one axis. Each is a cell and the steps within it.
 struct Line {
     places: Vec<(i64, i32)>,
     /// Whether all coordinates are finite and in range.
@@ -298,7 +300,7 @@ struct Line {
 }
 
 impl Line {
-    /// The smallest and the largest cell of a range of coordinates.
+    /// Returns the smallest and the largest cell of a range of coordinates.
     fn cells(&self, range: core::ops::Range<usize>) -> [i64; 2] {
         let [a, b] = [self.places[range.start].0, self.places[range.end - 1].0];
         [a.min(b), a.max(b)]

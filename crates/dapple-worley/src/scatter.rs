@@ -1,10 +1,10 @@
-//! Scatter: the distribution of feature points over the cells.
+//! Scatter, the distribution of feature points over the cells.
 
 use crate::{WorleyError, WorleyErrorKind};
 use core::ops::RangeInclusive;
 use dapple_hash::PoissonCounts;
 
-/// The distribution of the number of feature points in a cell, and of their positions in it.
+/// The distribution of the number of feature points per cell, and of their positions in it.
 ///
 /// # Examples
 ///
@@ -31,8 +31,7 @@ pub enum Scatter {
         /// Mean number of feature points per cell before clamping: from 1/64 to 64.
         density: f64,
     },
-    /// A Poisson-distributed number of points without clamping. A cell may be empty, and the points show no trace of
-    /// the grid.
+    /// A Poisson-distributed number of points without clamping. A cell may be empty, and the grid is not visible.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/scatter-unclamped.md"))]
     Unclamped {
@@ -43,8 +42,8 @@ pub enum Scatter {
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/scatter-jittered.md"))]
     Jittered {
-        /// Maximum offset of the point from the center of its cell: from 0, a regular grid, to 1, anywhere in its cell.
-        /// It is rounded to a multiple of 1/1024.
+        /// Maximum offset of the point from the center of its cell. At 0, points form a regular grid; at 1, a point may
+        /// be anywhere in its cell. Rounded to a multiple of 1/1024.
         jitter: f64,
     },
 }
@@ -52,14 +51,14 @@ pub enum Scatter {
 /// Range to which the paper clamps the number of points.
 const CLAMPED: RangeInclusive<u32> = 1..=9;
 
-/// Smallest and largest density.
+/// Range of the density, in points per cell.
 pub(crate) const DENSITIES: RangeInclusive<f64> = 1.0 / 64.0..=64.0;
 
-/// Number of steps from 0 to 1 to which a jitter is rounded.
+/// Resolution of the jitter, as the number of steps from 0 to 1.
 pub(crate) const JITTER_PARTS: u32 = 1024;
 
 impl Default for Scatter {
-    /// [`Scatter::Poisson`] with the density [`Scatter::DENSITY`].
+    /// Returns [`Scatter::Poisson`] with the density [`Scatter::DENSITY`].
     fn default() -> Self {
         Self::Poisson {
             density: Self::DENSITY,
@@ -68,12 +67,12 @@ impl Default for Scatter {
 }
 
 impl Scatter {
-    /// Default density, 3 points per cell. Worley found his program fastest at about 3, and so is this one. For the
+    /// Default density, in points per cell. Worley found his program fastest at about 3, and so is this one. For the
     /// same number of feature points in an image of F2 − F1, in 2-D and 3-D, a density of 1 takes 1.4 to 2 times as
     /// long, 2 takes up to 1.3 times, and 4 to 8 take 0.9 to 1.4 times as long.
     pub const DENSITY: f64 = 3.0;
 
-    /// Mean number of feature points of a cell, after clamping.
+    /// Returns the mean number of feature points per cell, after clamping.
     ///
     /// # Errors
     ///
@@ -82,13 +81,13 @@ impl Scatter {
         Ok(self.counts()?.mean())
     }
 
-    /// The distribution of counts of the default scatter.
+    /// Returns the distribution of point counts for the default scatter.
     pub(crate) fn default_counts() -> PoissonCounts {
         let counts = PoissonCounts::new(Self::DENSITY, CLAMPED);
         counts.unwrap_or_else(|_| unreachable!("the default density is in its range"))
     }
 
-    /// The distribution of counts of this scatter.
+    /// Returns the distribution of point counts for this scatter.
     pub(crate) fn counts(self) -> Result<PoissonCounts, WorleyError> {
         let (density, range) = match self {
             Self::Poisson { density } => (density, CLAMPED),
@@ -116,7 +115,7 @@ impl Scatter {
         PoissonCounts::new(density, range).map_err(|_| refused())
     }
 
-    /// The jitter, in units of 1/[`JITTER_PARTS`].
+    /// Returns the jitter, in units of 1/[`JITTER_PARTS`].
     pub(crate) fn jitter(self) -> u32 {
         match self {
             Self::Jittered { jitter } => (jitter * f64::from(JITTER_PARTS)).round() as u32,

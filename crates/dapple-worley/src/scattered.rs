@@ -1,4 +1,4 @@
-//! Sampling at many scattered positions, such as the shading points of a renderer.
+//! Samples many scattered positions, such as the shading points of a renderer.
 
 use crate::dispatch::DimensionDispatch as _;
 use crate::fixed::Place;
@@ -17,7 +17,7 @@ where
     ///
     /// # Errors
     ///
-    /// [`Length`](crate::WorleyErrorKind::Length) if the numbers of `features` and `positions` differ.
+    /// [`Length`](crate::WorleyErrorKind::Length) if the lengths of `features` and `positions` differ.
     ///
     /// # Examples
     ///
@@ -105,8 +105,8 @@ where
         });
     }
 
-    /// Calls `found` for each group of positions, with the range of their indices, a bit for each position whose
-    /// nearest points are certain, and these points: 1, 2 or 4 for each position.
+    /// Calls `found` for each group of positions. Its arguments are the range of their indices, a bit mask of the
+    /// positions whose nearest points are certain, and these points: 1, 2 or 4 for each position.
     fn each_group(
         &self,
         depth: usize,

@@ -1,10 +1,10 @@
-//! The exact search for the nearest feature points of one position, by rings of cells.
+//! Exact search for the feature points nearest to one position, by rings of cells.
 //!
 //! Cells are visited in rings of growing size around the cell of the position. Cells of a ring that are too far away
 //! are skipped, and the search ends when no cell outside can contain a nearer point. Points placed by the caller are
 //! searched in the same way ([`by_rings`]), in rings of bins. Worley visits the 26 neighbors and stops ("A Cellular
-//! Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>). This misses points now and then,
-//! and more often the higher n is.
+//! Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>). This occasionally misses points,
+//! the more often the higher the n of `F_n`.
 //!
 //! Bounds are computed from the same exact differences, terms and sums as the keys themselves. Rounding is monotonic,
 //! so a bound never excludes a point wrongly and needs no margin.
@@ -18,16 +18,16 @@ use crate::{MAX_NEAREST, Metric};
 use core::cmp::Ordering;
 use dapple_hash::CellHash;
 
-/// The identity of a point in a lattice: its cell and its index there.
+/// The identity of a point in a lattice: its cell, and its index in that cell.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PointId {
-    /// The words of the cell.
+    /// Hash words of the cell.
     pub(crate) words: [u32; 2],
     pub(crate) index: u32,
 }
 
 impl PointId {
-    /// The id of the point.
+    /// Returns the point's id.
     #[inline]
     pub(crate) fn id(self) -> u64 {
         CellHash::of_words(self.words).at(IDS + self.index)
@@ -37,16 +37,16 @@ impl PointId {
 /// A feature point that a search has found.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<const N: usize> {
-    /// Key of the distance from the position to the point.
+    /// Key of the distance from the point to the position.
     pub(crate) key: f32,
-    /// The vector from the feature point to the position, in cells.
+    /// Vector from the feature point to the position, in cells.
     pub(crate) vector: [f32; N],
-    /// The identity of the point; `None` if no point was found.
+    /// Identity of the point; `None` if no point was found.
     pub(crate) name: Option<PointId>,
 }
 
 impl<const N: usize> Hit<N> {
-    /// The result for a position without a place: NaN.
+    /// The result for a position that is out of range, with NaN as key and vector.
     pub(crate) const NOWHERE: Self = Self {
         key: f32::NAN,
         vector: [f32::NAN; N],
@@ -66,7 +66,7 @@ impl<const N: usize> Hit<N> {
 const LAST_RING: i64 = 96;
 
 /// Finds the `n` nearest points, at most four, in rings of growing size. `visit` adds the points of a ring, and returns
-/// a lower bound on the keys of all points beyond it, or infinity if there are none.
+/// a lower bound on the keys of all points beyond the ring, or infinity if there are no such points.
 #[inline(always)]
 pub(crate) fn by_rings<const N: usize>(
     n: usize,
@@ -83,7 +83,7 @@ pub(crate) fn by_rings<const N: usize>(
     ranking
 }
 
-/// Finds the nearest points of a place, nearest first; at most four.
+/// Finds the points nearest to `place`, nearest first; at most four.
 pub(crate) fn nearest<const N: usize>(
     lattice: &Lattice,
     metric: Metric,
@@ -97,7 +97,7 @@ pub(crate) fn nearest<const N: usize>(
         place,
     };
     let ranking = by_rings(hits.len(), metric, |ring, ranking| {
-        // Visit the cell of the place and the ring around it at once.
+        // Visit the position's cell and the ring around it at once.
         let ring = ring + 1;
         if ring == 1 {
             search.neighbors(ranking);
@@ -108,7 +108,7 @@ pub(crate) fn nearest<const N: usize>(
                 }
             });
         }
-        // Stop where all further cells are repeats of empty ones, or at the maximum ring.
+        // Stop if all further cells repeat empty ones, or at the maximum ring.
         let is_empty = ranking.hits[0].name.is_none() && lattice.repeats_within(ring);
         if is_empty || ring == LAST_RING {
             return f32::INFINITY;
@@ -171,7 +171,7 @@ impl<const N: usize> Ranking<N> {
         &self.hits[..self.len]
     }
 
-    /// Keys above this value cannot enter the ranking.
+    /// Returns the largest key that can still enter the ranking.
     pub(crate) fn reach(&self) -> f32 {
         self.reach
     }
@@ -201,7 +201,7 @@ impl<const N: usize> Ranking<N> {
     }
 }
 
-/// Orders hits by key, then by id; repeats of one point by their vectors.
+/// Orders hits by key, then by id, then (for repeats of one point) by vector.
 #[inline]
 pub(crate) fn order<const N: usize>(
     a: &Hit<N>,
@@ -226,15 +226,15 @@ fn order_of_equal<const N: usize>(a: &Hit<N>, b: &Hit<N>, id: impl Fn(PointId) -
 /// Number of cells whose points are added in one batch.
 const BATCH: usize = 4;
 
-/// The cell of a place and its neighbors. For each axis: the own cell, the nearer and the farther neighbor.
+/// The cell of a position and its neighbors. Each axis lists the own cell, the nearer and the farther neighbor.
 struct Around<const N: usize> {
     /// Coordinates of the cells, wrapped by the period.
     cells: [[i64; 3]; N],
-    /// Coordinates of the place, in steps from the lower edges of the cells.
+    /// Coordinates of the position, in steps from the lower edges of the cells.
     origins: [[i32; 3]; N],
-    /// Terms of the distances to the cells.
+    /// Terms of the distances from the position to the cells.
     gaps: [[f32; 3]; N],
-    /// Hash parts of the cells' words.
+    /// Parts of the cells' hash words.
     parts: [[[u32; 2]; 3]; N],
 }
 
@@ -267,7 +267,7 @@ impl<const N: usize> Around<N> {
         around
     }
 
-    /// A lower bound on the keys of all points of a neighbor.
+    /// Returns a lower bound on the keys of all points in a neighbor.
     #[inline(always)]
     fn gap(&self, metric: Metric, neighbor: u8) -> f32 {
         let gap = |axis: usize| self.gaps[axis][digit(neighbor.into(), axis)];
@@ -279,7 +279,7 @@ impl<const N: usize> Around<N> {
     }
 }
 
-/// A search by rings.
+/// State of a search by rings.
 struct Search<'a, const N: usize> {
     lattice: &'a Lattice,
     metric: Metric,
@@ -287,8 +287,8 @@ struct Search<'a, const N: usize> {
 }
 
 impl<const N: usize> Search<'_, N> {
-    /// Adds the points of the place's cell and of its neighbors to a ranking. Cells are visited in the order of their
-    /// mean distance.
+    /// Adds the points of the position's cell and of its neighbors to a ranking. Cells are visited in the order of
+    /// their mean distance.
     fn neighbors(&self, ranking: &mut Ranking<N>) {
         let rounding_slack = self.metric.rounding_slack();
         let around = Around::new(self);
@@ -308,8 +308,8 @@ impl<const N: usize> Search<'_, N> {
         self.batch(&around, &batch[..n], ranking);
     }
 
-    /// Adds the points of a few neighbors to a ranking. The hashes of a batch can be computed in parallel: a cell's
-    /// number of points is unknown before, and the processor predicts it badly.
+    /// Adds the points of a few neighbors to a ranking. Hashing a batch of cells at once lets the processor work in
+    /// parallel, since it predicts the number of points in a cell badly.
     #[inline]
     fn batch(&self, around: &Around<N>, neighbors: &[u8], ranking: &mut Ranking<N>) {
         let rounding_slack = self.metric.rounding_slack();
@@ -336,13 +336,13 @@ impl<const N: usize> Search<'_, N> {
         }
     }
 
-    /// The coordinates of the cell with an offset of `shift` cells from the place's own.
+    /// Returns the coordinates of the cell that is `shift` cells from the position's own.
     #[inline(always)]
     fn shifted(&self, shift: [i64; N]) -> [i64; N] {
         core::array::from_fn(|axis| self.place.cell[axis] + shift[axis])
     }
 
-    /// The hit for a point in the cell with an offset of `shift` cells from the place's own.
+    /// Returns the hit for a point in the cell that is `shift` cells from the position's own.
     #[inline(always)]
     fn hit(&self, shift: [i64; N], steps: [i32; N], name: PointId) -> Hit<N> {
         let mut vector = [0.0; N];
@@ -357,7 +357,7 @@ impl<const N: usize> Search<'_, N> {
         }
     }
 
-    /// Calls `each` with the offset of every cell of a ring, and with a lower bound on the keys of its points. The
+    /// Calls `each` with the offset of every cell in a ring, and with a lower bound on the keys of its points. The
     /// largest component of these offsets is `ring` cells.
     fn ring(&self, ring: i64, mut each: impl FnMut([i64; N], f32)) {
         let mut shift = [-ring; N];
@@ -384,7 +384,7 @@ impl<const N: usize> Search<'_, N> {
         }
     }
 
-    /// Calls `each` with the points of the cell with an offset of `shift` cells.
+    /// Calls `each` with the points in the cell that is `shift` cells from the position's own.
     #[inline(always)]
     fn cell(&self, shift: [i64; N], mut each: impl FnMut(Hit<N>)) {
         self.lattice.visit(self.shifted(shift), |steps, name| {
@@ -392,7 +392,7 @@ impl<const N: usize> Search<'_, N> {
         });
     }
 
-    /// A lower bound on the keys of all points of the cell with an offset of `shift` cells.
+    /// Returns a lower bound on the keys of all points in the cell that is `shift` cells from the position's own.
     #[inline]
     fn gap(&self, shift: [i64; N]) -> f32 {
         let mut gap = [0.0; N];
@@ -408,7 +408,7 @@ impl<const N: usize> Search<'_, N> {
         self.metric.key(gap)
     }
 
-    /// A lower bound on the keys of all points beyond `ring` rings.
+    /// Returns a lower bound on the keys of all points beyond `ring` rings.
     fn border(&self, ring: i64) -> f32 {
         let sides = self.place.steps.map(|steps| steps.min(STEPS - steps));
         let nearest = sides.into_iter().fold(STEPS, i32::min);

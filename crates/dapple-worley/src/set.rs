@@ -1,4 +1,4 @@
-//! Feature points placed by the caller.
+//! A basis over feature points placed by the caller.
 //!
 //! Worley suggests that "object geometry might be used to disperse pre-computed feature spots" ("A Cellular Texture
 //! Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>), as Turk does. Here F1 to F4 are searched
@@ -9,10 +9,10 @@
 use crate::search::{Hit, PointId, Ranking, by_rings};
 use crate::{Dimensions, Feature, MAX_NEAREST, Metric, Space, Vector, WorleyError};
 
-/// Mean number of points of a bin.
+/// Mean number of points per bin.
 const POINTS_PER_BIN: f64 = 2.0;
 
-/// Feature points placed by the caller.
+/// A basis over feature points that the caller places.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/feature-set.md"))]
 ///
@@ -28,9 +28,10 @@ const POINTS_PER_BIN: f64 = 2.0;
 /// ```
 #[derive(Clone, Debug)]
 pub struct FeatureSet<const N: usize> {
-    /// Points with their indices, sorted by bin and then by index.
+    /// Points with their original indices, sorted by bin and then by index.
     points: Vec<([f64; N], u32)>,
-    /// Index of the first point of each bin, the first axis fastest; the last element is the number of points.
+    /// Index of each bin's first point, with bins ordered so that the first axis varies fastest. The last element is
+    /// the number of points.
     starts: Vec<u32>,
     bins: Bins<N>,
     metric: Metric,
@@ -40,7 +41,7 @@ pub struct FeatureSet<const N: usize> {
 #[derive(Clone, Copy, Debug)]
 struct Bins<const N: usize> {
     origin: [f64; N],
-    /// Size of a bin.
+    /// Size of a bin along each axis.
     size: [f64; N],
     /// Number of bins along each axis.
     count: [u32; N],
@@ -51,8 +52,8 @@ impl<const N: usize> FeatureSet<N>
 where
     Dimensions: Space<N>,
 {
-    /// Creates a basis over `points`, which repeats after `period` along each axis that has one. The id of a point is
-    /// its index.
+    /// Creates a basis over `points`, repeated with `period` along each axis for which it is not `None`. The id of a
+    /// point is its index.
     ///
     /// # Errors
     ///
@@ -106,7 +107,7 @@ where
             .iter()
             .map(|&count| count as usize)
             .product::<usize>();
-        // Accumulate the counts of points to the first index of each bin.
+        // Accumulate the point counts to the index of each bin's first point.
         let mut starts = vec![0; n_bins + 1];
         for &(bin, _) in &order {
             starts[bin + 1] += 1;
@@ -126,7 +127,7 @@ where
         })
     }
 
-    /// This set with another metric.
+    /// Returns this set with another metric.
     ///
     /// # Errors
     ///
@@ -138,10 +139,11 @@ where
         })
     }
 
-    /// The `K` nearest feature points of a position, nearest first; `K` is from 1 to 4.
+    /// Returns the `K` feature points nearest to `position`, nearest first. `K` is from 1 to 4.
     ///
-    /// Points at equal distances are ordered by index. If there are fewer than `K` points, the rest are infinitely far
-    /// away, with the id `u64::MAX`. A position that is not finite gives NaN and the same id.
+    /// Points at equal distances are ordered by index. If there are fewer than `K` points, the missing ones are
+    /// infinitely far away, with the id `u64::MAX`. For a position that is not finite, distances and vectors are NaN,
+    /// and ids are `u64::MAX`.
     #[must_use]
     pub fn sample<const K: usize>(&self, position: impl Into<[f64; N]>) -> [Feature<Vector<N>>; K] {
         const {
@@ -184,7 +186,7 @@ where
                 return f32::INFINITY;
             }
             let [first, last] = bins.reach(center, ring);
-            // Visit the bins of the ring, the first axis fastest.
+            // Visit the bins of the ring; the first axis varies fastest.
             let mut bin = first;
             loop {
                 if (0..N).any(|axis| (bin[axis] - center[axis]).abs() == ring) {
@@ -246,7 +248,7 @@ impl<const N: usize> Bins<N> {
                 None => (0.0, 0.0),
             };
         }
-        // Choose cubic bins by the wanted number, with at least one bin along each axis.
+        // Choose cubic bins for the target number of bins, with at least one bin along each axis.
         let wanted = (points.len() as f64 / POINTS_PER_BIN).max(1.0);
         let longest = extent.iter().copied().fold(0.0, f64::max);
         let mut side = longest;
@@ -276,15 +278,15 @@ impl<const N: usize> Bins<N> {
         }
     }
 
-    /// Extent of the bins along an axis; equals the period if the axis wraps.
+    /// Returns the extent of the grid along an axis. It equals the period if the axis wraps.
     fn period(&self, axis: usize) -> f64 {
         self.size[axis] * f64::from(self.count[axis])
     }
 
-    /// The bin that contains a coordinate, or the nearest bin.
+    /// Returns the bin that contains a coordinate, or the nearest bin.
     fn bin(&self, axis: usize, coordinate: f64) -> u32 {
         let bin = (coordinate - self.origin[axis]) / self.size[axis];
-        // Coordinates below the first bin, and NaN from an extent of zero, go to the first.
+        // Coordinates below the first bin, and NaN from an extent of zero, are in the first bin.
         (bin as u32).min(self.count[axis] - 1)
     }
 
@@ -294,7 +296,8 @@ impl<const N: usize> Bins<N> {
         })
     }
 
-    /// The first and the last bin within `ring` bins of `center`. They exceed the grid only along axes that wrap.
+    /// Returns the first and the last bin within `ring` bins of `center`. They exceed the grid only along axes that
+    /// wrap.
     fn reach(&self, center: [i64; N], ring: i64) -> [[i64; N]; 2] {
         let mut reach = [center; 2];
         for axis in 0..N {
@@ -309,7 +312,8 @@ impl<const N: usize> Bins<N> {
         reach
     }
 
-    /// A lower bound on the distance from a position to the points beyond these bins; infinite if there are none.
+    /// Returns a lower bound on the distance from a position to the points beyond these bins; infinite if there are
+    /// none.
     fn border(&self, position: [f64; N], [first, last]: [[i64; N]; 2]) -> f32 {
         let mut border = f64::INFINITY;
         for axis in 0..N {
@@ -321,7 +325,8 @@ impl<const N: usize> Bins<N> {
                 border = border.min(edge(last[axis] + 1) - position[axis]);
             }
         }
-        // Edges are rounded, and so are differences to points beyond them. The margin visits one more ring if in doubt.
+        // Edges are rounded, and so are differences to points beyond them. In doubt, the margin makes the search visit
+        // one more ring.
         let scale = position
             .iter()
             .fold(0.0, |scale: f64, part| scale.max(part.abs()));

@@ -1,4 +1,4 @@
-//! From keys to values: combinations of distances, and their output for sixteen pixels at a time.
+//! Converts keys to values of a combination, and writes them for sixteen pixels at a time.
 
 use crate::fixed::{FlatPlace, Place};
 use crate::metric::Measure;
@@ -16,7 +16,7 @@ pub(crate) struct Tone {
 }
 
 impl Tone {
-    /// The combination without a mapping to a range.
+    /// Creates the combination without a mapping to a range.
     pub(crate) fn plain(combination: Combination) -> Self {
         Self {
             weights: combination,
@@ -24,7 +24,7 @@ impl Tone {
         }
     }
 
-    /// Maps the values so that `range` becomes 0 to 1.
+    /// Maps the values from `range` to 0 to 1.
     pub(crate) fn with_range(self, [low, high]: [f32; 2]) -> Result<Self, WorleyError> {
         let extent = high - low;
         WorleyError::check(
@@ -36,17 +36,17 @@ impl Tone {
         let weights = self.weights.coefficients().map(|weight| weight / extent);
         Ok(Self {
             weights: Combination::new(weights),
-            // Adding zero turns -0 into 0; otherwise adding zero later would change the bits.
+            // Adding zero turns -0 into 0. Otherwise, adding zero later would change the bits.
             shift: (self.shift - low) / extent + 0.0,
         })
     }
 
-    /// The largest n for which `F_n` is needed.
+    /// Returns the largest n for which `F_n` is needed.
     pub(crate) fn depth(&self) -> usize {
         self.weights.depth()
     }
 
-    /// The value at a place.
+    /// Returns the value at `place`.
     pub(crate) fn at<const N: usize>(&self, worley: &Worley<N>, place: &Place<N>) -> f32
     where
         Dimensions: Space<N>,
@@ -55,7 +55,7 @@ impl Tone {
         self.of(&hits.map(|hit| worley.metric.distance(hit.key)))
     }
 
-    /// The value for the given distances, at least [`Tone::depth`] of them.
+    /// Returns the value for the given distances; there must be at least [`Tone::depth`] of them.
     pub(crate) fn of(&self, distances: &[f32]) -> f32 {
         let mut sum = self.shift;
         for (&weight, &distance) in self.weights.coefficients().iter().zip(distances) {
@@ -67,16 +67,16 @@ impl Tone {
     }
 }
 
-/// Output of a combination into rows of values: replaces them, or is added to them with a weight.
+/// How values of a combination are written to rows. They replace the output, or are added to it with a weight.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Values {
     pub(crate) tone: Tone,
-    /// Weight of the values that are added to the output; `None` replaces the output.
+    /// Weight of the values that are added to the output. If `None`, values replace the output.
     pub(crate) weight: Option<f32>,
 }
 
 impl Values {
-    /// Writes the value at a place; NaN without a place.
+    /// Writes the value at `place`; NaN if the position is out of range.
     pub(crate) fn put_one(&self, basis: &dyn Basis, place: Option<FlatPlace>, out: &mut f32) {
         let value = place.map_or(f32::NAN, |place| {
             let mut hits = [Hit::NONE; MAX_NEAREST];
@@ -95,7 +95,7 @@ impl Values {
         };
     }
 
-    /// Broadcasts the parameters to sixteen lanes, for `K` keys of which the last `depth` are in use.
+    /// Broadcasts the parameters to sixteen lanes, for `K` keys, of which the last `depth` are in use.
     #[inline(always)]
     pub(crate) fn lanes<S: Simd, const K: usize>(&self, simd: S, depth: usize) -> ValueLanes<S, K> {
         let coefficients = self.tone.weights.coefficients();

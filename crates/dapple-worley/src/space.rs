@@ -1,4 +1,4 @@
-//! Spaces of two, three and four dimensions, and their vectors.
+//! Marker types for spaces of two, three and four dimensions, and their vectors.
 
 use crate::dispatch::DimensionDispatch;
 use core::fmt;
@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3, DVec4};
 #[derive(Debug)]
 pub struct Dimensions;
 
-/// A space with `N` axes; [`Dimensions`] implements it for 2, 3 and 4, and other implementations are not possible.
+/// A space with `N` axes. [`Dimensions`] implements it for 2, 3 and 4; other implementations are not possible.
 pub trait Space<const N: usize>: DimensionDispatch<N> {
     /// The vector type: `DVec2`, `DVec3` or `DVec4`.
     type Vector: Copy + fmt::Debug + PartialEq + From<[f64; N]> + Into<[f64; N]> + Send + Sync;

@@ -1,4 +1,4 @@
-//! Measures of the Voronoi cells: distance to the edge, radius of the inscribed sphere, smooth F1.
+//! Computes measures of Voronoi cells: the distance to the edge, the radius of the inscribed sphere, and smooth F1.
 //!
 //! The distance to the edge and the radius of the sphere are known from Blender's Voronoi texture; here they are exact.
 //! The smooth F1 is our own definition, since the usual ones depend on the order of the points.
@@ -12,11 +12,11 @@ impl<const N: usize> Worley<N>
 where
     Dimensions: Space<N>,
 {
-    /// The distance from a position to the nearest edge of its Voronoi cell, in cells; at least zero.
+    /// Returns the distance from `position` to the nearest edge of its Voronoi cell, in cells; at least zero.
     ///
-    /// It is Euclidean for every metric of the basis: the smallest distance to a bisecting plane between the nearest
-    /// feature point and another point. Unlike F2 − F1, it has the same scale in wide and in narrow cells. NaN for a
-    /// position without a place; see [`sample`](Self::sample).
+    /// The distance is Euclidean whatever the metric of the basis. It is the smallest distance to a bisecting plane
+    /// between the nearest feature point and another point. Unlike F2 − F1, it has the same scale in wide and in narrow
+    /// cells. NaN if the position is out of range; see [`sample`](Self::sample).
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/edge-distance.md"))]
     #[must_use]
@@ -25,7 +25,7 @@ where
         place.map_or(f32::NAN, |place| self.edge_distance_at(&place))
     }
 
-    /// The distance from a place to the nearest edge of its Voronoi cell.
+    /// Returns the distance from `place` to the nearest edge of its Voronoi cell.
     pub(crate) fn edge_distance_at(&self, place: &Place<N>) -> f32 {
         let (metric, lattice) = (Metric::Euclidean, &self.lattice);
         let mut pair = [Hit::NONE; 2];
@@ -46,10 +46,10 @@ where
         planes.fold(to_plane(first, second), f64::min).max(0.0) as f32
     }
 
-    /// The radius of the largest sphere around the nearest feature point that is inside its Voronoi cell, in cells. It
-    /// is half of the distance from that point to its own nearest neighbor, in the metric of the basis.
+    /// Returns the radius, in cells, of the largest sphere around the nearest feature point that is inside its Voronoi
+    /// cell. This is half of the distance from that point to its own nearest neighbor, in the metric of the basis.
     ///
-    /// NaN for a position without a place; see [`sample`](Self::sample).
+    /// NaN if the position is out of range; see [`sample`](Self::sample).
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/sphere-radius.md"))]
     #[must_use]
@@ -61,7 +61,7 @@ where
         if hit.name.is_none() {
             return f32::INFINITY;
         }
-        // Search again from the feature point; its nearest point is the point itself.
+        // Search again from the feature point, whose nearest point is itself.
         let mut point = place;
         for axis in 0..N {
             let steps = i64::from(place.steps[axis]) - i64::from((hit.vector[axis] / STEP) as i32);
@@ -72,12 +72,12 @@ where
         0.5 * neighbor
     }
 
-    /// F1 without creases, in cells: neighboring cells are blended within the distance `radius`.
+    /// Returns F1 without creases, in cells. Neighboring cells are blended within the distance `radius`.
     ///
     /// The value is the solution `s` of `Σ max(0, 1 + (s − d) / radius)³ = 1`, summed over the distances `d` of all
     /// feature points. It is between F1 − `radius` and F1. It equals F1 where no second point has a distance below F1 +
     /// `radius`. It has two continuous derivatives wherever the distances have. Only points nearer than F1 + `radius`
-    /// contribute; they are summed in the order of their distances and ids. NaN for a position without a place; see
+    /// contribute; they are summed in the order of their distances and ids. NaN if the position is out of range; see
     /// [`sample`](Self::sample).
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/smooth-f1.md"))]
@@ -116,8 +116,8 @@ where
 
 /// Solves the equation of [`Worley::smooth_f1`] by Newton's method.
 ///
-/// The sum is convex, increases with `s`, and is at least 1 at the smallest distance. So the steps from there decrease
-/// and never pass the solution.
+/// The sum is convex, increases with `s`, and is at least 1 at the smallest distance. So Newton's steps from there
+/// decrease `s` and never go beyond the solution.
 fn smooth_minimum(distances: &[f64], radius: f64) -> f64 {
     let mut s = distances.first().copied().unwrap_or(f64::INFINITY);
     for _ in 0..64 {
@@ -138,7 +138,8 @@ fn smooth_minimum(distances: &[f64], radius: f64) -> f64 {
     s
 }
 
-/// The distance of a position from the bisecting plane of two points, given the vectors from the points to it.
+/// Returns the distance of a position from the bisecting plane of two points, given the vectors from the points to the
+/// position.
 fn to_plane<const N: usize>(first: [f64; N], other: [f64; N]) -> f64 {
     let between: [f64; N] = core::array::from_fn(|axis| first[axis] - other[axis]);
     let [near, far] = [first, other].map(|way| dot(way, way));

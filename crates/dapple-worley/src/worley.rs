@@ -1,4 +1,4 @@
-//! Worley's basis: distances to the nearest feature points.
+//! Worley's basis, the distances to the nearest feature points.
 
 use crate::dispatch::DimensionDispatch as _;
 use crate::fixed::{MOST_AXES, Place, STEP, STEPS, first_axes};
@@ -17,7 +17,7 @@ pub type Worley2 = Worley<2>;
 /// Worley's basis in three dimensions.
 pub type Worley3 = Worley<3>;
 
-/// Worley's basis in four dimensions, for animated textures: a period along the fourth axis makes a loop.
+/// Worley's basis in four dimensions, for animated textures. A period along the fourth axis makes the animation loop.
 pub type Worley4 = Worley<4>;
 
 /// Worley's cellular basis: feature points scattered over unit cells, and the distances to the nearest of them.
@@ -45,12 +45,12 @@ pub struct Worley<const N: usize> {
     pub(crate) metric: Metric,
 }
 
-/// A feature point, relative to a position.
+/// A feature point, described relative to a position.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/feature.md"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Feature<V> {
-    /// Distance in cells, at least zero. NaN if the position has no place; see [`Worley::sample`].
+    /// Distance in cells, at least zero. NaN if the position is out of range; see [`Worley::sample`].
     pub distance: f32,
     /// Vector from the feature point to the position, in cells. For the Euclidean metric, this vector divided by the
     /// distance is the gradient of the distance; see [`Metric::gradient`].
@@ -60,7 +60,7 @@ pub struct Feature<V> {
 }
 
 impl<V> Feature<V> {
-    /// A random number in `[0, 1)` for the feature point; constant in its Voronoi cell.
+    /// Returns the feature point's random number in `[0, 1)`, which is constant in its Voronoi cell.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/cell-value.md"))]
     #[must_use]
@@ -69,12 +69,12 @@ impl<V> Feature<V> {
     }
 }
 
-/// The random number in `[0, 1)` of the feature point with the given id.
+/// Returns the random number in `[0, 1)` of the feature point with the given id.
 pub(crate) fn cell_value(id: u64) -> f32 {
     unit_f32((id >> 32) as u32)
 }
 
-/// A feature point of a cell.
+/// A feature point in a given cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellPoint<V> {
     /// Position relative to the lower corner of the cell; components are in `[0, 1)`.
@@ -99,7 +99,7 @@ where
         }
     }
 
-    /// This basis with another seed for the feature points.
+    /// Returns this basis with another seed for the feature points.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/with-seed.md"))]
     #[must_use]
@@ -111,7 +111,7 @@ where
         }
     }
 
-    /// This basis with another scatter and a constant density.
+    /// Returns this basis with another scatter and a constant density.
     ///
     /// # Errors
     ///
@@ -129,7 +129,8 @@ where
         })
     }
 
-    /// This basis with `density` feature points per cell on average, clamped to 1 to 9: [`Scatter::Poisson`].
+    /// Returns this basis with `density` feature points per cell on average, clamped to 1 to 9 points per cell (see
+    /// [`Scatter::Poisson`]).
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/scatter-poisson.md"))]
     ///
@@ -140,7 +141,7 @@ where
         self.with_scatter(Scatter::Poisson { density })
     }
 
-    /// This basis with a density that varies in space, so cells are small where it is high.
+    /// Returns this basis with a density that varies in space. Cells are small where it is high.
     ///
     /// `density` is called with the center of each cell, and returns the mean number of feature points per cell. The
     /// result is clamped to 1/64 to 64; NaN counts as 1/64. The number of points in a cell is not clamped, so its mean
@@ -173,7 +174,7 @@ where
         Self { lattice, ..self }
     }
 
-    /// This basis with another metric.
+    /// Returns this basis with another metric.
     ///
     /// # Errors
     ///
@@ -185,7 +186,7 @@ where
         })
     }
 
-    /// Period along each axis, in cells; `None` for an axis that does not repeat.
+    /// Returns the period along each axis, in cells; `None` for an axis that does not repeat.
     pub(crate) fn period(&self) -> [Option<f64>; N] {
         self.periods().map(|cells| cells.map(f64::from))
     }
@@ -193,8 +194,8 @@ where
     /// Repeats the feature points after a whole number of cells along each axis; `None` for an axis that does not
     /// repeat.
     ///
-    /// The repeat is exact, without blending. Repeats of a point are separate points with one id, so with a period of
-    /// 1, F1 and F2 may belong to the same id.
+    /// The repeat is exact, without blending. Repeats of a point are separate points with the same id. So with a period
+    /// of 1, F1 and F2 may belong to the same id.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/with-period.md"))]
     ///
@@ -214,13 +215,13 @@ where
         Ok(Self { lattice, ..self })
     }
 
-    /// The seed of the feature points.
+    /// Returns the seed of the feature points.
     #[must_use]
     pub fn seed(&self) -> Seed {
         self.seed
     }
 
-    /// Period of the feature points along each axis, in cells; `None` for an axis that does not repeat.
+    /// Returns the period of the feature points along each axis, in cells; `None` for an axis that does not repeat.
     #[must_use]
     pub fn periods(&self) -> [Option<u32>; N] {
         core::array::from_fn(|axis| match self.lattice.period[axis] {
@@ -229,19 +230,19 @@ where
         })
     }
 
-    /// The metric of the distances.
+    /// Returns the metric of the distances.
     #[must_use]
     pub fn metric(&self) -> Metric {
         self.metric
     }
 
-    /// The scatter of the feature points.
+    /// Returns the scatter of the feature points.
     #[must_use]
     pub fn scatter(&self) -> Scatter {
         self.scatter
     }
 
-    /// The nearest feature point of a position: the first of [`sample`](Self::sample).
+    /// Returns the feature point nearest to `position`, the first of [`sample`](Self::sample).
     #[must_use]
     #[inline]
     pub fn nearest(&self, position: impl Into<[f64; N]>) -> Feature<Vector<N>> {
@@ -249,11 +250,11 @@ where
         nearest
     }
 
-    /// The `K` nearest feature points of a position, nearest first; `K` is from 1 to 4.
+    /// Returns the `K` feature points nearest to `position`, nearest first. `K` is from 1 to 4.
     ///
-    /// Points at equal distances are ordered by id. A position has no place if a coordinate is not finite or its
-    /// magnitude is above 2^62: its distances and vectors are NaN, and its ids 0. Where a short period of unclamped
-    /// points contains no point at all, distances and vectors are infinite, and ids 0.
+    /// Points at equal distances are ordered by id. A position is out of range if a coordinate is not finite or its
+    /// magnitude is above 2^62. Then distances and vectors are NaN, and ids are 0. If a short period of unclamped
+    /// points contains no point at all, distances and vectors are infinite, and ids are 0.
     #[must_use]
     #[inline]
     pub fn sample<const K: usize>(&self, position: impl Into<[f64; N]>) -> [Feature<Vector<N>>; K] {
@@ -269,7 +270,7 @@ where
             id: 0,
         }; K];
         if let Some(place) = Place::new(position.into()) {
-            // No `map` here: it would compile to a call for each hit.
+            // Avoid `map`, which would compile to a call for each hit.
             let hits = self.hits::<K>(&place);
             for (feature, hit) in features.iter_mut().zip(hits) {
                 *feature = self.feature(hit);
@@ -278,7 +279,7 @@ where
         features
     }
 
-    /// The feature points of a cell, unordered. All other results follow from them.
+    /// Returns the feature points in a cell, unordered. All other results follow from them.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/cell-points.md"))]
     #[must_use]
@@ -295,7 +296,7 @@ where
         points
     }
 
-    /// The `K` nearest points of a place.
+    /// Returns the `K` points nearest to `place`.
     #[inline]
     pub(crate) fn hits<const K: usize>(&self, place: &Place<N>) -> [Hit<N>; K] {
         let mut hits = [Hit::NONE; K];
@@ -303,14 +304,14 @@ where
         hits
     }
 
-    /// The `n` nearest points of a place, at most four; the remaining elements are [`Hit::NONE`].
+    /// Returns the `n` points nearest to `place`, at most four. The remaining elements are [`Hit::NONE`].
     pub(crate) fn nearest_hits(&self, n: usize, place: &Place<N>) -> [Hit<N>; MAX_NEAREST] {
         let mut hits = [Hit::NONE; MAX_NEAREST];
         Dimensions::nearest(self.metric, &self.lattice, place, &mut hits[..n]);
         hits
     }
 
-    /// The distances from a place to its `K` nearest points.
+    /// Returns the distances from `place` to its `K` nearest points.
     pub(crate) fn distances<const K: usize>(&self, place: &Place<N>) -> [f32; K] {
         self.hits::<K>(place)
             .map(|hit| self.metric.distance(hit.key))
@@ -330,5 +331,5 @@ where
     }
 }
 
-/// Maximum rounding error of a coordinate, in cells: positions are rounded down to whole steps.
+/// Maximum rounding error of a coordinate, in cells. Positions are rounded down to whole steps.
 pub const POSITION_STEP: f32 = STEP;

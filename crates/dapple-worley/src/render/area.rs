@@ -1,4 +1,4 @@
-//! Areas of pixels: a block, its squares and tiles, and parts of them.
+//! Rectangular areas of pixels: blocks, their squares and tiles, and parts of these.
 
 use core::ops::Range;
 
@@ -21,7 +21,7 @@ impl Area {
         }
     }
 
-    /// Whether the area has more columns or more rows than the given size.
+    /// Returns whether the area has more columns or more rows than the given size.
     pub(super) fn is_larger(&self, [width, height]: [usize; 2]) -> bool {
         self.columns.len() > width || self.rows.len() > height
     }

@@ -1,4 +1,4 @@
-//! The interface between rendering and a basis of any number of axes.
+//! The interface between rendering and a basis with any number of axes.
 
 use crate::dispatch::DimensionDispatch as _;
 use crate::fixed::{FlatPlace, MOST_AXES, Place, first_axes};
@@ -7,19 +7,19 @@ use crate::search::Hit;
 use crate::{Dimensions, MAX_NEAREST, Metric, Space, Worley};
 use core::fmt;
 
-/// A basis in the form that rendering uses, independent of the number of axes. Places and vectors are zero along
+/// A basis in the form that rendering uses, independent of the number of axes. Positions and vectors are zero along
 /// missing axes.
 pub trait Basis: Sync + fmt::Debug {
-    /// The metric of the basis.
+    /// Returns the metric of the basis.
     fn metric(&self) -> Metric;
 
-    /// The feature points of the basis.
+    /// Returns the feature points of the basis.
     fn lattice(&self) -> &Lattice;
 
-    /// Finds the nearest points of a place, nearest first; at most four.
+    /// Finds the points nearest to `place`, nearest first; at most four.
     fn nearest(&self, place: &FlatPlace, hits: &mut [Hit<MOST_AXES>]);
 
-    /// The distance from a place to the nearest edge of its Voronoi cell.
+    /// Returns the distance from `place` to the nearest edge of its Voronoi cell.
     fn edge_distance(&self, place: &FlatPlace) -> f32;
 }
 
@@ -53,7 +53,7 @@ where
     }
 }
 
-/// Removes the coordinates of the missing axes from a place.
+/// Removes the coordinates along missing axes from a position.
 fn own_axes<const N: usize>(place: &FlatPlace) -> Place<N> {
     Place {
         cell: first_axes(place.cell),

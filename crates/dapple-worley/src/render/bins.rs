@@ -1,9 +1,10 @@
-//! Feature points sorted into bins of pixels.
+//! Sorts feature points into bins of pixels.
 //!
 //! The pixels of a block are covered by tiles of 4 × 4. A bin is as wide as a tile and half as high. Points are sorted
-//! by bin, column of bins by column, so the points near a tile are one contiguous run in each of the columns around it.
-//! If their number is odd, the columns of bins are aligned with the tiles; if it is even, they begin in the middle of
-//! tiles. The terms of a point are computed once, for the pixel columns of all tiles that are compared with it.
+//! by bin, with bins ordered column by column. So the points near a tile are one contiguous run in each of the bin
+//! columns around it. If the number of bin columns is odd, they are aligned with the tiles; if it is even, they begin
+//! in the middle of tiles. The terms of a point are computed once, for the pixel columns of all tiles that are compared
+//! with it.
 
 use super::LANES;
 use super::table::{CellBox, numbers, row_words};
@@ -15,13 +16,13 @@ use crate::metric::{Exact, General, Kernel, Measure};
 use dapple_raster::simd::{baseline, dispatch};
 use fearless_simd::{Level, f32x4, f32x16, i32x4, i32x16, mask32x16, prelude::*, u32x16};
 
-/// Number of columns and of rows of a tile.
+/// Width and height of a tile, in pixels.
 pub(super) const TILE: usize = 4;
 
-/// Number of rows of half a tile, the height of a bin.
+/// Height of a bin, half the height of a tile, in pixels.
 pub(super) const HALF: usize = TILE / 2;
 
-/// Number of pixels to the left and to the right of a tile that `columns` columns of bins cover.
+/// Returns the number of pixels to the left and to the right of a tile that `columns` columns of bins cover.
 pub(super) const fn beyond(columns: usize) -> usize {
     HALF * (columns - 1)
 }
@@ -29,11 +30,11 @@ pub(super) const fn beyond(columns: usize) -> usize {
 /// The rectangle of bins that a tile is compared with.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
-    /// Number of columns of bins.
+    /// Number of bin columns.
     pub(super) columns: usize,
-    /// Number of rows of bins above the tile, and the number below it.
+    /// Number of bin rows above the tile. The number below is the same.
     pub(super) halves: usize,
-    /// Largest accumulated key along the axes across the image.
+    /// Largest accumulated key along the axes that are orthogonal to the image.
     pub(super) key: f32,
 }
 
@@ -48,7 +49,7 @@ pub(super) struct Grid {
     pub(super) origin: [i64; MOST_AXES],
     /// Coordinates of the first pixel, in steps.
     pub(super) first: [i32; MOST_AXES],
-    /// Numbers of columns and rows.
+    /// Number of columns and of rows.
     pub(super) size: [usize; 2],
     /// Distance from one column to the next, and from one row to the next, in steps.
     pub(super) pixel: [f32; 2],
@@ -62,33 +63,33 @@ pub(super) struct Grid {
 pub(super) struct Point<const TILES: usize> {
     /// Terms at the pixel columns of the tiles near the point.
     pub(super) terms: [[f32; TILE]; TILES],
-    /// Coordinate along the axis of the rows, in steps.
+    /// Coordinate along the rows' axis, in steps.
     pub(super) row: i32,
-    /// Accumulated terms along the axes across the image.
+    /// Accumulated terms along the axes that are orthogonal to the image.
     pub(super) across: f32,
 }
 
-/// Scratch memory for points, by the number of tiles that their terms cover.
+/// Scratch memory for points, one list for each number of tiles that a point's terms cover.
 #[derive(Debug, Default)]
 pub(super) struct PointLists {
-    /// Points for two or three columns of bins.
+    /// Points for two or three bin columns.
     pub(super) three: Vec<Point<3>>,
     pub(super) five: Vec<Point<5>>,
 }
 
-/// The points of a block sorted by bin, with the parameters for reading the run of a row of tiles.
+/// The points of a block sorted by bin, with the parameters for reading the points near a row of tiles.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Runs<'a, const TILES: usize> {
     pub(super) metric: Metric,
-    /// Whether there are axes across the image.
+    /// Whether there are axes orthogonal to the image.
     pub(super) is_deep: bool,
     /// Keys at or above this value may be wrong.
     pub(super) limit: f32,
     /// Index of the first point of each bin.
     pub(super) starts: &'a [u32],
-    /// Number of rows of bins.
+    /// Number of bin rows.
     pub(super) n_halves: usize,
-    /// Number of rows of bins above the tile, and the number below it.
+    /// Number of bin rows above the tile. The number below is the same.
     pub(super) halves: usize,
     pub(super) points: &'a [Point<TILES>],
     /// Coordinates of the rows, in steps.
@@ -102,13 +103,13 @@ pub(super) struct Bins {
     len: usize,
     /// Coordinates of the points along the axes of the image, in steps, in the order of the cells.
     steps: [Vec<i32>; 2],
-    /// Accumulated terms of the points along the other axes, in the order of the cells. They stay zero in the plane,
-    /// since one `Bins` serves a single basis.
+    /// Accumulated terms of the points along the other axes, in the order of the cells. They stay zero in 2-D, since
+    /// one `Bins` serves a single basis.
     across: Vec<f32>,
-    /// Bins of the points, in the order of the cells: the column in the upper half of the word, the index of the bin in
-    /// the lower half. 16 bits are enough for the 2^12 bins of a block and those around it.
+    /// Bins of the points, in the order of the cells. The upper half of the word is the bin's column, the lower half
+    /// its index. 16 bits are enough for the 2^12 bins of a block and those around it.
     places: Vec<u32>,
-    /// Number of rows of bins.
+    /// Number of bin rows.
     n_halves: usize,
     /// Index of the first point of each bin; the last element is the number of points.
     starts: Vec<u32>,
@@ -145,7 +146,7 @@ impl Bins {
         self.columns.resize(end, 0);
     }
 
-    /// Generates the points of `cells` that are within reach of a tile.
+    /// Generates the points in `cells` that are within reach of a tile.
     pub(super) fn collect(
         &mut self,
         level: Level,
@@ -170,7 +171,7 @@ impl Bins {
                 let sixteen = SixteenCells::new(simd, lattice, words);
                 cell[0] = cells.first[0] + first as i64;
                 let mut numbers = numbers(lattice, &sixteen, cell);
-                // Cells past the end of the row have no points.
+                // Cells beyond the end of the row have no points.
                 numbers[LANES.min(side - first)..].fill(0);
                 let numbers = u32x16::from_slice(simd, &numbers);
                 self.add(lattice, &sixteen, numbers, cell, grid);
@@ -178,7 +179,7 @@ impl Bins {
         }
     }
 
-    /// Appends the points of sixteen cells that are within reach of a tile.
+    /// Appends the points in sixteen cells that are within reach of a tile.
     #[inline(always)]
     fn add<S: Simd>(
         &mut self,
@@ -217,7 +218,8 @@ impl Bins {
                 let ahead = steps[axis].bitcast::<i32x16<S>>() + (corner - grid.first[axis]);
                 points[axis] = if axis == 0 { ahead + lanes } else { ahead };
             }
-            // Select the coordinate along the rows, and accumulate the terms of the axes across the image.
+            // Select the coordinate along the rows, and accumulate the terms of the axes that are orthogonal to the
+            // image.
             let [x, mut rows, ..] = points;
             let is_deep = lattice.n_axes > 2;
             let mut across = f32x16::splat(simd, 0.0);
@@ -230,7 +232,7 @@ impl Bins {
                     across = General(metric).accumulate(terms, across);
                 }
             }
-            // Find the bins, and keep the points that exist and lie in the rectangle of bins.
+            // Find the bins, and select the points that exist and are inside the rectangle of bins.
             let column = bin(x, grid.pixel[0], TILE, beyond(reach.columns));
             let half = bin(rows, grid.pixel[1], HALF, HALF * reach.halves);
             let mut matters = numbers.simd_gt(index)
@@ -358,8 +360,9 @@ impl Bins {
 /// Indices of the lanes.
 const ASCENDING: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
-/// Groups of `pixels` pixels in which sixteen points lie, from their offsets to the center of the first pixel. Group 0
-/// begins `before` pixels before that pixel. A point before group 0 gives either 0 or a very large number.
+/// Returns the indices of the groups of `pixels` pixels that contain sixteen points, given the points' offsets from the
+/// center of the first pixel. Group 0 begins `before` pixels before that pixel. The index of a point before group 0 is
+/// either 0 or a very large number.
 #[inline(always)]
 fn bin<S: Simd>(ahead: i32x16<S>, pixel: f32, pixels: usize, before: usize) -> u32x16<S> {
     let group = pixels as f32;
@@ -368,7 +371,7 @@ fn bin<S: Simd>(ahead: i32x16<S>, pixel: f32, pixels: usize, before: usize) -> u
     bins.to_int::<i32x16<S>>().bitcast()
 }
 
-/// The index of a bin, from its packed word.
+/// Extracts a bin's index from its packed word.
 #[inline(always)]
 fn index(place: u32) -> usize {
     (place & 0xFFFF) as usize

@@ -1,4 +1,4 @@
-//! Blocks: some columns of a band, whose feature points are generated once.
+//! Blocks of columns in a band. The feature points of a block are generated once.
 
 use super::area::Area;
 use super::bins::{Bins, PointLists};
@@ -19,7 +19,7 @@ use crate::worley::cell_value;
 use core::ops::Range;
 use fearless_simd::Level;
 
-/// Maximum number of cells of a block with its neighborhood; with more cells, a pixel is larger than a cell.
+/// Maximum number of cells in a block with its neighborhood. With more cells, a pixel is larger than a cell.
 pub(super) const MOST_CELLS: u128 = 1 << 16;
 
 /// Maximum number of cells along an axis, so that steps fit into 32 bits.
@@ -28,28 +28,28 @@ pub(super) const LONGEST_SIDE: usize = 1000;
 /// Maximum distance between slices that are rendered together, in steps.
 const DEEPEST: i32 = STEPS * 5 / 16;
 
-/// Some columns of a band.
+/// A range of columns in a band.
 pub(super) struct Block<'a> {
-    /// The band of the block, or the bands of several slices with equal columns and rows.
+    /// The block's band, or the bands of several slices with equal columns and rows.
     pub(super) bands: &'a [Band<'a>],
     pub(super) level: Level,
-    /// Columns of the block, in the window.
+    /// The block's columns, in the window.
     pub(super) range: Range<usize>,
 }
 
 /// Per-thread scratch memory, reused from block to block.
 pub(super) struct Memory {
     pub(super) table: Table,
-    /// Points around a square whose neighborhood had to grow.
+    /// Table of the points around a square whose neighborhood had to grow.
     pub(super) wide_table: Table,
     /// Whether the candidates come from `wide_table`.
     pub(super) is_wide: bool,
-    /// Candidates of a square, as points of the space and of the image.
+    /// Candidates of a square, in space and projected to the image.
     pub(super) list: PointList,
     pub(super) square: FlatPoints,
     /// Origin of the coordinates of `square`, in steps from the lower corner of the table.
     pub(super) low: [i32; MOST_AXES],
-    /// Candidates of a tile, as points of the space and of the image.
+    /// Candidates of a tile, in space and projected to the image.
     pub(super) tile_list: PointList,
     pub(super) tile: FlatPoints,
     pub(super) candidates: Vec<Candidate>,
@@ -57,20 +57,20 @@ pub(super) struct Memory {
     pub(super) dominance: Dominance,
     /// Pixels that need points beyond the neighborhood.
     pub(super) unknown: Vec<Area>,
-    /// Planes between a feature point and its neighbors.
+    /// Bisecting planes between a feature point and its neighbors.
     pub(super) neighbors: Neighbors,
     pub(super) planes: Planes,
-    /// Distances to edges that are already drawn.
+    /// Distances to edges that are already computed.
     pub(super) values: Vec<f32>,
     pub(super) runs: Vec<Range<usize>>,
     /// Points sorted into bins of pixels, in the order of their cells.
     pub(super) bins: Bins,
     /// Points of `bins`, sorted by bin.
     pub(super) points: PointLists,
-    /// Coordinates of the block's columns and, along the other axes, of the band's rows, in steps from the lower corner
+    /// Coordinates of the block's columns (first axis) and the band's rows (other axes), in steps from the lower corner
     /// of the table. The last one is repeated to fill a register.
     pub(super) lines: [Vec<i32>; MOST_AXES],
-    /// Coordinates of several slices along the axes across them, in steps.
+    /// Coordinates of several slices along the axes orthogonal to them, in steps.
     pub(super) slices: Vec<[i32; MOST_AXES]>,
     n_axes: usize,
 }
@@ -102,7 +102,7 @@ impl Memory {
         }
     }
 
-    /// The bounds of the pixels of an area, in all of its slices.
+    /// Returns the bounds of an area's pixels in all of its slices.
     #[inline]
     pub(super) fn pixel_box(&self, area: &Area) -> PixelBox {
         let mut pixels = PixelBox {
@@ -128,11 +128,11 @@ impl Memory {
         pixels
     }
 
-    /// The axis along which several slices differ.
+    /// Returns the axis along which several slices differ; `None` for a single slice.
     fn deep_axis(&self) -> Option<usize> {
         let (first, last) = (self.slices.first()?, self.slices.last()?);
         let axes = 2..self.n_axes;
-        // Slices at the same place differ along no axis; the third axis is then as good as any.
+        // Slices at the same position differ along no axis. The third axis is then as good as any other.
         Some(
             axes.clone()
                 .find(|&axis| first[axis] != last[axis])
@@ -174,7 +174,7 @@ impl Memory {
 }
 
 impl Block<'_> {
-    /// Renders the pixels of the block; `outs` are the rows of its bands.
+    /// Renders the pixels of the block. `outs` are the rows of its bands.
     pub(super) fn render(&self, outs: &mut [Output<'_>], memory: &mut Memory) {
         let mut first = 0;
         while first < self.bands.len() {
@@ -189,7 +189,7 @@ impl Block<'_> {
         }
     }
 
-    /// Number of slices, from `first` on, that can share one list of candidates.
+    /// Returns the number of slices, starting at `first`, that can share one list of candidates.
     fn n_together(&self, first: usize, out: &Output<'_>) -> usize {
         if first + 1 == self.bands.len() {
             return 1;
@@ -219,7 +219,8 @@ impl Block<'_> {
         bands.iter().take_while(is_near).count().max(1)
     }
 
-    /// Number of nearest points that the inner loops find: one, two or four for values, otherwise two or four.
+    /// Returns the number of nearest points that the inner loops find: one, two or four for values, otherwise two or
+    /// four.
     fn depth(out: &Output<'_>) -> usize {
         match (out, out.depth()) {
             (Output::Values(..), 1) => 1,
@@ -228,13 +229,13 @@ impl Block<'_> {
         }
     }
 
-    /// A guess of the distance of the nearest points of pixels in the middle of the block.
+    /// Estimates the distance to the nearest points, for pixels in the middle of the block.
     fn guess(&self, out: &Output<'_>) -> Guess {
         let Picture { basis, section, .. } = self.bands[0].picture;
         Guess::new(basis, self.middle(), section.n_axes, Self::depth(out))
     }
 
-    /// Parameters of the method for small cells, if it applies.
+    /// Returns the parameters for rendering small cells; `None` if that method does not apply.
     fn splat(&self, out: &Output<'_>, guess: Guess) -> Option<Splat> {
         let is_values = matches!(out, Output::Values(..));
         Splat::new(self, Self::depth(out), guess.distance).filter(|_| is_values)
@@ -280,7 +281,7 @@ impl Block<'_> {
             depth,
             guess,
             metric,
-            // The terms of the axes across the image are accumulated before those of the rows.
+            // The terms of the axes orthogonal to the image are accumulated before those of the rows.
             row_axis: section
                 .row_axis()
                 .filter(|&axis| section.n_axes < 4 || axis == 1),
@@ -290,7 +291,7 @@ impl Block<'_> {
         self.squares(plan, outs, memory);
     }
 
-    /// The area of all pixels of the block.
+    /// Returns the area of all pixels of the block.
     pub(super) fn all(&self) -> Area {
         Area {
             columns: 0..self.range.len(),
@@ -299,7 +300,7 @@ impl Block<'_> {
         }
     }
 
-    /// The cell of the pixel in the middle.
+    /// Returns the cell of the pixel in the middle.
     pub(super) fn middle(&self) -> [i64; MOST_AXES] {
         let mut middle = [0; MOST_AXES];
         let band = &self.bands[0];
@@ -310,7 +311,7 @@ impl Block<'_> {
         middle
     }
 
-    /// The cells of the block's pixels and `ring` cells around them, if a table can hold them.
+    /// Returns the cells of the block's pixels and `ring` cells around them; `None` if a table cannot hold them.
     pub(super) fn cells(&self, ring: i32) -> Option<CellBox> {
         let band = &self.bands[0];
         let is_finite = band.columns.is_finite && band.rows.iter().all(|rows| rows.is_finite);
@@ -342,13 +343,13 @@ impl Block<'_> {
         is_small.then_some(cells)
     }
 
-    /// Whether the block and its neighborhood have more cells than [`MANY_CELLS`].
+    /// Returns whether the block and its neighborhood have more cells than [`MANY_CELLS`].
     pub(super) fn has_many_cells(&self) -> bool {
         self.cells(1)
             .is_none_or(|cells| cells.n_cells() > MANY_CELLS)
     }
 
-    /// Renders pixels by one search each.
+    /// Renders pixels with a separate search for each pixel.
     pub(super) fn one_by_one(&self, area: &Area, outs: &mut [Output<'_>]) {
         for slice in area.slices.clone() {
             for row in area.rows.clone() {
@@ -359,7 +360,7 @@ impl Block<'_> {
         }
     }
 
-    /// Renders one pixel of a slice; `column` is a column of the window, `row` a row of the band.
+    /// Renders one pixel of a slice. `column` is a column of the window, `row` a row of the band.
     pub(super) fn one(&self, slice: usize, column: usize, row: usize, out: &mut Output<'_>) {
         let band = &self.bands[slice];
         let Picture { basis, section, .. } = band.picture;

@@ -1,4 +1,4 @@
-//! Candidates of a tile, and their terms at its pixels.
+//! Selects the candidates of a tile, and computes their terms at its pixels.
 
 use super::LANES;
 use super::area::Area;
@@ -62,7 +62,7 @@ impl Memory {
         self.terms(level, area, square, None);
     }
 
-    /// Computes the terms of a tile's candidates at its columns and, unless there are several slices, at its rows.
+    /// Computes the terms of a tile's candidates at its columns and, if there is a single slice, at its rows.
     ///
     /// With `slice`, computes only the terms at the rows of this slice, which is given as steps from the lower corner
     /// of the square.
@@ -82,7 +82,7 @@ impl Memory {
         });
     }
 
-    /// The bounds of a tile's pixels, in cells from the lower corner of its square.
+    /// Returns the bounds of a tile's pixels, in cells from the lower corner of its square.
     fn cuboid(&self, area: &Area, square: &Square) -> Cuboid {
         let mut cuboid = square.cuboid;
         if square.is_tile {
@@ -202,7 +202,7 @@ impl Memory {
     }
 }
 
-/// Sixteen coordinates of `line`, in cells from `low`, the lower corner of a square.
+/// Returns sixteen coordinates of `line`, in cells from `low`, the lower corner of a square.
 #[inline(always)]
 fn places<S: Simd>(simd: S, line: &[i32], low: i32) -> f32x16<S> {
     (i32x16::from_slice(simd, &line[..LANES]) - low).to_float::<f32x16<S>>() * STEP

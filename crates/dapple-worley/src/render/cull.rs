@@ -1,4 +1,5 @@
-//! Culling: selects the feature points that can be among the nearest of some pixel in a box, its candidates.
+//! Culling: selects the candidates of a box of pixels, which are the feature points that can be among the nearest of
+//! some pixel.
 //!
 //! A point is a candidate if its smallest distance to the box is at most a bound. There are two bounds:
 //!
@@ -17,7 +18,7 @@ use crate::metric::Measure;
 use core::ops::Range;
 use fearless_simd::{Level, f32x16, i32x16, mask32x16, prelude::*, u32x16};
 
-/// The bounds of some pixels, in steps from the lower corner of a table.
+/// The bounds of an area of pixels, in steps from the lower corner of a table.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PixelBox {
     pub(super) n_axes: usize,
@@ -26,8 +27,8 @@ pub(super) struct PixelBox {
 }
 
 impl PixelBox {
-    /// The range of cells within `ring` cells of the cells that the box touches, as first and last cell along each axis
-    /// of the table. The range may exceed the table.
+    /// Returns the first and the last cell, along each axis of the table, within `ring` cells of the cells that the box
+    /// touches. The range may exceed the table.
     pub(super) fn cells(&self, ring: i32) -> [[i32; MOST_AXES]; 2] {
         let mut cells = [[0; MOST_AXES]; 2];
         for axis in 0..self.n_axes {
@@ -37,7 +38,7 @@ impl PixelBox {
         cells
     }
 
-    /// The distance from the box to the border of a range of cells, in steps.
+    /// Returns the distance from the box to the border of a range of cells, in steps.
     pub(super) fn border(&self, [first, last]: [[i32; MOST_AXES]; 2]) -> i32 {
         let mut border = i32::MAX;
         for axis in 0..self.n_axes {
@@ -48,7 +49,7 @@ impl PixelBox {
         border
     }
 
-    /// The squared Euclidean distance from a point to the box, in cells; 0 inside.
+    /// Returns the squared Euclidean distance from a point to the box, in cells; 0 inside.
     pub(super) fn distance_sq(&self, point: &[i32; MOST_AXES]) -> f32 {
         let mut sum = 0.0;
         for axis in 0..self.n_axes {
@@ -59,7 +60,7 @@ impl PixelBox {
         sum
     }
 
-    /// The longest side of the box, in steps.
+    /// Returns the length of the box's longest side, in steps.
     pub(super) fn extent(&self) -> i32 {
         let mut extent = 0;
         for axis in 0..self.n_axes {
@@ -92,10 +93,10 @@ pub(super) struct Points<'a> {
     pub(super) wants_numbers: bool,
 }
 
-/// The criterion for candidates.
+/// The criterion by which candidates are selected.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Keep {
-    /// Points that can be among the given number of nearest ones; the bound is multiplied by the rounding slack.
+    /// Points that can be among the given number of nearest ones. The bound is multiplied by the rounding slack.
     Nearest(usize, f32),
     /// Points whose smallest key in the box is at most this value.
     Within(f32),
@@ -119,7 +120,7 @@ impl PointList {
         }
     }
 
-    /// The points of the list in the form that culling reads.
+    /// Returns the points of the list in the form that culling reads.
     pub(super) fn points<'a>(&'a self, run: &'a Range<usize>, wants_numbers: bool) -> Points<'a> {
         Points {
             steps: &self.steps,
@@ -129,7 +130,7 @@ impl PointList {
         }
     }
 
-    /// Replaces the list by the candidates among some points, in their order.
+    /// Replaces the list by the candidates among `points`, in their order.
     pub(super) fn cull(&mut self, level: Level, cull: Cull<'_>, points: Points<'_>) {
         measured!(level, cull.metric, (simd, measure) => {
             self.cull_by(simd, measure, cull, points);
@@ -153,7 +154,8 @@ impl PointList {
         if self.near.len() < room {
             self.near.resize(room.next_power_of_two(), 0.0);
         }
-        // Compute the smallest and largest key of each point in the box; keep the least of the largest keys per lane.
+        // Compute the smallest and largest key of each point in the box. Track the smallest of the largest keys in each
+        // lane.
         for run in points.runs {
             for start in run.clone().step_by(LANES) {
                 let (key, far) = cull.pixels.keys(simd, measure, points.steps, start);
@@ -182,7 +184,7 @@ impl PointList {
         }
     }
 
-    /// Clears the list, and reserves memory for some points; returns the reserved length.
+    /// Clears the list, and reserves memory for `points`. Returns the reserved length.
     fn make_room(&mut self, points: Points<'_>, n_axes: usize) -> usize {
         self.len = 0;
         let slots = points.runs.iter().map(|run| run.len().div_ceil(LANES));
@@ -229,14 +231,14 @@ impl PointList {
 /// Indices of the lanes.
 const ASCENDING: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
-/// A mask of the first `n` lanes, at most sixteen.
+/// Returns a mask of the first `n` lanes, at most sixteen.
 #[inline(always)]
 pub(super) fn lanes_before<S: Simd>(simd: S, n: usize) -> mask32x16<S> {
     mask32x16::from_bitmask(simd, u64::MAX >> (64 - n.min(LANES)))
 }
 
 impl PixelBox {
-    /// The smallest and the largest keys of sixteen points in the box.
+    /// Returns the smallest and the largest keys of sixteen points in the box.
     #[inline(always)]
     fn keys<S: Simd, M: Measure>(
         &self,
@@ -255,7 +257,7 @@ impl PixelBox {
             let steps = i32x16::from_slice(simd, &steps[axis][start..start + LANES]);
             let ahead = (steps - low).to_float::<f32x16<S>>() * STEP;
             let past = ahead - (high - low) as f32 * STEP;
-            // Terms are at least zero, so accumulating onto zero keeps the first ones.
+            // Terms are at least zero, so accumulating onto zero gives the terms themselves.
             let [near, far] = measure.terms([past.max(-ahead).max(zero), ahead.max(-past)]);
             near_key = measure.accumulate(near, near_key);
             far_key = measure.accumulate(far, far_key);
@@ -264,8 +266,8 @@ impl PixelBox {
     }
 }
 
-/// The smallest number in the lanes after the `n` smallest are removed. Equal numbers are removed together, which may
-/// give a larger result.
+/// Returns the smallest number in the lanes after the `n` smallest are removed. Equal numbers are removed together,
+/// which may give a larger result.
 ///
 /// Each lane holds the largest key of a different point, so at least `n + 1` points have keys up to the result.
 #[inline(always)]

@@ -1,9 +1,10 @@
-//! Rendering of the distance to the edge of the Voronoi cell.
+//! Renders the distance to the edge of the Voronoi cell.
 //!
 //! The cells with pixels in a block are drawn one by one. A bisecting plane lies halfway between the feature point of a
 //! cell and each other point ([`planes`](super::planes)). The signed distance to such a plane, negative beyond it, is
 //! linear along a row of pixels. The smallest of these distances is the distance to the edge, and it is positive only
-//! inside the cell. So the nearest point of a pixel need not be known first, and a superset of the cell may be drawn.
+//! inside the cell. So the nearest point of a pixel need not be known in advance, and a superset of the cell may be
+//! drawn.
 //!
 //! For each cell, the nearest planes give an outline, and the outline gives a ball that contains the cell's pixels.
 //! Planes that are farther than another one from the whole ball are left out. About as many remain as the cell has
@@ -26,17 +27,17 @@ use core::ops::Range;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{f32x16, f64x8, i32x16, prelude::*};
 
-/// Length of a row of values in memory; the last register of a row may be incomplete.
+/// Length of a row of values in memory. A row ends with an incomplete register if needed.
 const STRIDE: usize = BLOCK_COLUMNS + LANES;
 
-/// Distances within which neighbors of a point are searched, as multiples of the guessed distance of the nearest
+/// Distances within which a point's neighbors are searched, as multiples of the estimated distance to the nearest
 /// points. The larger one is used if the smaller one was not enough.
 const REACHES: [f32; 2] = [1.7, 2.6];
 
-/// Maximum length of a vector to a neighbor, in cells: vectors up to one and a half times as long are exact in `f32`.
+/// Maximum length of a vector to a neighbor, in cells. Vectors up to one and a half times as long are exact in `f32`.
 const LONGEST_REACH: f32 = 5.0;
 
-/// Number of rings of cells around a block in which points are needed, as a multiple of the guess's ring. They cover
+/// Number of rings of cells around a block in which points are needed, as a multiple of the estimate's ring. They cover
 /// the distance from a pixel to its nearest point, and from there to the neighbors.
 const RINGS: i32 = 4;
 
@@ -50,12 +51,12 @@ struct Pixels<'a> {
     columns_per_cell: f32,
     /// Maximum offset of a column from its evenly spaced position, in columns.
     unevenness: f32,
-    /// Smallest and largest coordinate of the columns, from the first one, in cells.
+    /// Smallest and largest coordinate of the columns, relative to the first column, in cells.
     ends: [f32; 2],
 }
 
 impl Block<'_> {
-    /// Renders the distances from the block's pixels to the edges.
+    /// Renders the distances from the block's pixels to the nearest edges.
     pub(super) fn edges(&self, out: &mut [&mut [f32]], memory: &mut Memory) {
         let Picture { basis, section, .. } = self.bands[0].picture;
         // An edge lies between two points.
@@ -75,7 +76,7 @@ impl Block<'_> {
         memory.values.clear();
         memory.values.resize(out.len() * STRIDE, -1.0);
         dispatch!(self.level, simd => self.draw_cells(simd, guess, memory));
-        // Copy the values; search the pixels that are still marked (negative) on their own.
+        // Copy the values. Search pixels that are still marked (negative) on their own.
         for (row, (out, values)) in out.iter_mut().zip(memory.values.chunks(STRIDE)).enumerate() {
             let out = &mut out[self.range.clone()];
             out.copy_from_slice(&values[..out.len()]);
@@ -91,7 +92,7 @@ impl Block<'_> {
         }
     }
 
-    /// Searches the value of a single pixel.
+    /// Computes the value of a single pixel by a search.
     #[cold]
     pub(super) fn edge(&self, column: usize, row: usize) -> f32 {
         let band = &self.bands[0];
@@ -129,7 +130,7 @@ impl Block<'_> {
                     break;
                 };
                 let is_alone = neighbors.find(simd, table, point, reach, around);
-                // Where two points coincide, all of their cell is at distance zero from an edge.
+                // If two points coincide, all of their cell is at distance zero from an edge.
                 if !is_alone || neighbors.hide(simd, &whole) {
                     break;
                 }
@@ -146,7 +147,7 @@ impl<'a> Pixels<'a> {
     fn new(lines: &'a [Vec<i32>; MOST_AXES], [n_columns, n_rows]: [usize; 2]) -> Self {
         let columns = &lines[0][..n_columns];
         let extent = (columns[n_columns - 1] - columns[0]) as f32;
-        // Where all columns have the same coordinate, any of them may be in the cell.
+        // If all columns have the same coordinate, any of them may be in the cell.
         let [columns_per_step, mut unevenness] = match extent {
             0.0 => [0.0, n_columns as f32],
             _ => [(n_columns - 1) as f32 / extent, 0.0],
@@ -165,7 +166,7 @@ impl<'a> Pixels<'a> {
         }
     }
 
-    /// Draws a cell; returns whether the neighbors within reach determine it.
+    /// Draws a cell. Returns whether the neighbors within reach determine it.
     #[inline(always)]
     fn draw<S: Simd>(
         &self,
@@ -180,7 +181,7 @@ impl<'a> Pixels<'a> {
             ends: [0; BAND_ROWS],
             radius_sq: -1.0,
         };
-        // The first row that can have pixels, and the one past the last.
+        // The first row that can have pixels, and the one after the last.
         let mut rows = [self.n_rows, 0];
         for first in (0..self.n_rows).step_by(LANES) {
             if self.outline(simd, neighbors, first, &mut outline) {
@@ -190,7 +191,7 @@ impl<'a> Pixels<'a> {
         if outline.radius_sq < 0.0 {
             return true;
         }
-        // Select the planes that matter for these pixels, and draw them row by row.
+        // Select the planes that are relevant for these pixels, and draw the pixels row by row.
         neighbors.pick(simd, outline.radius_sq, planes);
         let sight = Sight::new(neighbors, planes, outline.radius_sq);
         let mut is_enough = true;
@@ -230,7 +231,7 @@ impl<'a> Pixels<'a> {
         let zero = f32x16::splat(simd, 0.0);
         let mut rest = [zero; MOST_AXES];
         let mut rest_sq = zero;
-        // The vector from the point to the rows, along the axes past the first.
+        // Compute the vector from the point to the rows, along all axes except the first.
         for axis in 1..neighbors.n_axes {
             let steps = i32x16::from_slice(simd, &self.lines[axis][first..first + LANES]);
             rest[axis] = (steps - neighbors.point[axis]).to_float::<f32x16<S>>() * STEP;
@@ -248,7 +249,7 @@ impl<'a> Pixels<'a> {
                 ahead += rest[axis] * neighbors.normals[axis][plane];
             }
             let normal = neighbors.normals[0][plane];
-            // A plane parallel to the row needs a crossing, too; this change moves planes by less than the slack.
+            // A plane parallel to the row needs an intersection, too. This change moves planes by less than the slack.
             let normal = normal.abs().max(SLACK / 8.0).copysign(normal);
             let crossing = ahead * (-1.0 / normal);
             let [at_low, at_high] = if normal > 0.0 {
@@ -282,14 +283,14 @@ impl<'a> Pixels<'a> {
 
 /// The pixels that can be in a cell.
 struct Outline {
-    /// For each row, the first column and the one past the last.
+    /// For each row, the first column and the one after the last.
     starts: [i32; BAND_ROWS],
     ends: [i32; BAND_ROWS],
     /// Largest squared distance of the pixels from the point, in cells; negative if there are no pixels.
     radius_sq: f32,
 }
 
-/// A row of pixels and the planes of a cell.
+/// A row of pixels in a cell, with the cell's planes.
 struct Along<'a> {
     /// Coordinates of the columns, in steps.
     steps: &'a [i32],
@@ -302,7 +303,7 @@ struct Along<'a> {
 }
 
 impl Along<'_> {
-    /// Draws some pixels of the row; returns whether the planes determine them.
+    /// Draws some pixels of the row. Returns whether the planes determine them.
     #[inline(always)]
     fn draw<S: Simd>(&self, simd: S, columns: Range<usize>, values: &mut [f32]) -> bool {
         let (planes, sight) = (self.planes, self.sight);
@@ -336,7 +337,7 @@ impl Along<'_> {
     }
 }
 
-/// The limits within which the distances of a cell are reliable, in cells.
+/// The limits within which the computed distances of a cell are reliable, in cells.
 struct Sight {
     /// Maximum error of a distance.
     error: f64,

@@ -1,7 +1,7 @@
-//! Candidates projected to the image, and removal of dominated candidates.
+//! Projects candidates to the image, and removes dominated candidates.
 //!
-//! The axes across the image add the same amount to the keys of a point at all pixels. So three numbers describe a
-//! point: its column, its row, and the accumulated terms of the other axes.
+//! The axes orthogonal to the image add the same amount to the keys of a point at all pixels. So three numbers describe
+//! a point: its column, its row, and the accumulated terms of the other axes.
 //!
 //! If a key is a sum of terms, the difference between the keys of two points is a sum over the axes. Along each axis
 //! the difference is monotonic, since terms are convex. Its smallest value in a rectangle is therefore the sum, over
@@ -19,7 +19,7 @@ use crate::levels::{is_wide, measured, wide};
 use crate::metric::{Exact, Measure};
 use fearless_simd::{Level, f32x16, i32x16, mask32x16, prelude::*, u32x16};
 
-/// The bounds of some pixels along the axes of the columns, of the rows, and of the slices, in cells.
+/// The bounds of an area of pixels along the axes of the columns, of the rows, and of the slices, in cells.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cuboid {
     pub(super) low: [f32; 3],
@@ -40,7 +40,7 @@ pub(super) struct Dominance {
     dominators: Dominators,
 }
 
-/// Whether dominated points can be removed, which needs a metric whose terms are added and wide registers.
+/// Returns whether dominated points can be removed. This requires a metric whose terms are added, and wide registers.
 pub(super) fn culls_dominated(level: Level, metric: Metric) -> bool {
     is_wide(level) && metric.is_exact_sum()
 }
@@ -54,7 +54,7 @@ impl Dominance {
         }
     }
 
-    /// Largest key at the far corner of the rectangle for a point that is tested as a dominator.
+    /// Returns the largest key, at the far corner of the rectangle, for which a point is tested as a dominator.
     #[inline(always)]
     fn nearby(&self, metric: Metric, cuboid: &Cuboid) -> f32 {
         let sides = [0, 1, 2].map(|axis| cuboid.high[axis] - cuboid.low[axis]);
@@ -63,15 +63,15 @@ impl Dominance {
     }
 }
 
-/// Allowance for rounding, relative to the largest key of a point. The keys of two points and their comparison take
-/// fewer than 64 roundings, each of at most 2⁻²⁴ of that key. (A second point with larger terms does not dominate in
-/// any case.)
+/// Allowance for rounding, relative to a point's largest key. The keys of two points and their comparison take fewer
+/// than 64 roundings, each of at most 2⁻²⁴ of that key. (A second point with larger terms does not dominate in any
+/// case.)
 const SPARE: f32 = 128.0 / (1 << 24) as f32;
 
 /// Sixteen points, with their terms at the ends of a rectangle.
 #[derive(Clone, Copy)]
 struct Seen<S: Simd> {
-    /// Terms at the low and at the high end of the three axes; unused along the third if there is one slice.
+    /// Terms at the low and at the high end of the three axes. The third axis is unused if there is one slice.
     ends: [[f32x16<S>; 2]; 3],
     /// Accumulated terms of the other axes.
     rest: f32x16<S>,
@@ -99,7 +99,7 @@ impl<S: Simd> Seen<S> {
     }
 }
 
-/// Points that are tested as dominators.
+/// The points that are tested as dominators.
 #[derive(Debug)]
 struct Dominators {
     len: usize,
@@ -173,7 +173,7 @@ impl Dominators {
     }
 }
 
-/// The axes of space along which rows and several slices differ. Columns differ along the first axis.
+/// The axes of space along which rows and slices differ. Columns differ along the first axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PictureAxes {
     pub(super) rows: usize,
@@ -184,15 +184,15 @@ pub(super) struct PictureAxes {
 #[derive(Debug)]
 pub(super) struct FlatPoints {
     pub(super) len: usize,
-    /// Coordinates along the axes of the columns and of the rows, in cells from a corner. The corner is less than 8
-    /// cells away, so they are exact. They are padded by a register.
+    /// Coordinates along the axes of the columns and of the rows, in cells from a corner, padded by a register. The
+    /// corner is less than 8 cells away, so they are exact.
     pub(super) x: Vec<f32>,
     pub(super) y: Vec<f32>,
-    /// Coordinates along the axis across several slices, in cells.
+    /// Coordinates along the axis orthogonal to the slices, in cells.
     pub(super) z: Vec<f32>,
     /// Accumulated terms of the other axes.
     pub(super) rest: Vec<f32>,
-    /// Indices of the points in the table, if needed.
+    /// Indices of the points in the table, if needed; otherwise empty.
     pub(super) numbers: Vec<u32>,
     pub(super) wants_numbers: bool,
 }
@@ -226,7 +226,7 @@ impl FlatPoints {
         }
     }
 
-    /// Replaces the points by those of a list, with coordinates from the lower corner of some pixels.
+    /// Replaces the points by those of a list, with coordinates relative to the lower corner of `pixels`.
     pub(super) fn flatten(
         &mut self,
         level: Level,
@@ -254,7 +254,7 @@ impl FlatPoints {
         self.len = points.len;
         for start in (0..points.len).step_by(LANES) {
             let at = start..start + LANES;
-            // Accumulate the terms of the axes across the image.
+            // Accumulate the terms of the axes that are orthogonal to the image.
             let mut rest = f32x16::splat(simd, 0.0);
             for axis in (1..pixels.n_axes).rev() {
                 if axis != axes.rows && Some(axis) != axes.slices {
@@ -277,8 +277,8 @@ impl FlatPoints {
         }
     }
 
-    /// Selects the points that fewer than `dominance.depth` others dominate in a cuboid. Only for metrics whose terms
-    /// are added.
+    /// Selects the points that fewer than `dominance.depth` others dominate in a cuboid. Supports only metrics whose
+    /// terms are added.
     pub(super) fn take_undominated(
         &mut self,
         level: Level,
@@ -294,7 +294,7 @@ impl FlatPoints {
         });
     }
 
-    /// SIMD implementation of [`take_undominated`](Self::take_undominated); `DEEP` means several slices.
+    /// SIMD implementation of [`take_undominated`](Self::take_undominated). `DEEP` means that there are several slices.
     #[inline(always)]
     fn take_undominated_axes<S: Simd, const DEEP: bool>(
         &mut self,
@@ -314,7 +314,7 @@ impl FlatPoints {
             let is_there = lanes_before(simd, points.len - start);
             dominators.push::<S, DEEP>(&seen, seen.far.simd_le(nearby) & is_there);
         }
-        // Keep the points with fewer than `depth` dominators.
+        // Select the points with fewer than `depth` dominators.
         for start in (0..points.len).step_by(LANES) {
             let lanes = points.lanes(simd, start);
             let seen = Seen::new::<DEEP>(Exact(metric), cuboid, lanes);
@@ -338,7 +338,7 @@ impl FlatPoints {
         }
     }
 
-    /// The columns, rows, depths and rests of sixteen points.
+    /// Returns the columns, rows, depths and remaining terms of sixteen points.
     #[inline(always)]
     fn lanes<S: Simd>(&self, simd: S, start: usize) -> [f32x16<S>; 4] {
         let at = start..start + LANES;
@@ -351,7 +351,7 @@ impl FlatPoints {
     }
 }
 
-/// Coordinates of sixteen points of a list along an axis, in cells from the lower corner of some pixels.
+/// Returns the coordinates of sixteen points of a list along an axis, in cells from the lower corner of `pixels`.
 #[inline(always)]
 fn places<S: Simd>(
     simd: S,

@@ -1,4 +1,4 @@
-//! The inner loop for values: the smallest keys of sixteen pixels side by side, for several rows at once.
+//! The inner loop for values. It finds the smallest keys of sixteen adjacent pixels, for several rows at once.
 
 use super::LANES;
 use crate::metric::Measure;
@@ -6,23 +6,23 @@ use crate::sink::Values;
 use core::ops::Range;
 use fearless_simd::{f32x16, prelude::*};
 
-/// Maximum number of columns and of rows of a tile: two registers.
+/// Maximum width and height of a tile, in pixels; two registers.
 pub(super) const TILE: usize = 2 * LANES;
 
-/// The terms of a candidate at the pixels of a tile: one for each column, and the accumulated terms of all other axes
-/// for each row. Elements after the last column or row are unused.
+/// A candidate's terms at the pixels of a tile: one for each column, and the accumulated terms of all other axes for
+/// each row. Elements after the last column or row are unused.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
     pub(super) columns: [f32; TILE],
     pub(super) rows: [f32; TILE],
 }
 
-/// Some rows of a tile, and the parameters for rendering them.
+/// Rows of a tile, and the parameters for rendering them.
 #[derive(Debug)]
 pub(super) struct Rows<'a> {
     /// Rows of the tile, in the band.
     pub(super) rows: Range<usize>,
-    /// Columns, in the window: at most [`LANES`], or exactly [`TILE`].
+    /// Columns, in the window; at most [`LANES`], or exactly [`TILE`].
     pub(super) columns: Range<usize>,
     /// Index of the first register of the tile's columns, 0 or 1; 0 if both are rendered.
     pub(super) register: usize,
@@ -33,7 +33,7 @@ pub(super) struct Rows<'a> {
 }
 
 impl Rows<'_> {
-    /// Renders pixels row by row, and returns the first row with a key that reaches the limit, or the end of the rows.
+    /// Renders pixels row by row. Returns the first row that has a key at or above the limit, or the end of the rows.
     ///
     /// `depth` is the number of nearest points to find, at most `K`.
     ///
@@ -75,7 +75,7 @@ impl Rows<'_> {
         }
     }
 
-    /// Renders groups of `R` rows and `C` registers of columns; `C = 0` stands for a part of a register.
+    /// Renders groups of `R` rows and `C` registers of columns. `C = 0` stands for part of a register.
     #[inline(always)]
     pub(super) fn fill_groups<
         S: Simd,
@@ -142,8 +142,8 @@ impl Rows<'_> {
     }
 }
 
-/// `K` sorted keys before any comparison. The last `depth` are in use and hold `nothing`; the others stay zero, below
-/// all keys.
+/// Returns `K` sorted keys, before any comparison. The last `depth` are in use and hold `nothing`. The others stay
+/// zero, below all keys.
 #[inline(always)]
 pub(super) fn empty<S: Simd, const K: usize>(
     simd: S,
@@ -168,8 +168,8 @@ fn insert<S: Simd, const K: usize>(best: &mut [f32x16<S>; K], key: f32x16<S>) {
     best[0] = lesser(best[0], key);
 }
 
-/// The smaller of two numbers that are at least zero. The bits of such floats have the same order, and most processors
-/// compare integers faster.
+/// Returns the smaller of two numbers that are at least zero. The bits of such floats have the same order, and most
+/// processors compare integers faster.
 #[inline(always)]
 pub(super) fn lesser<S: Simd, V: SimdFloat<S, Element = f32>>(a: V, b: V) -> V {
     if floats_are_faster(a.token()) {
@@ -179,7 +179,7 @@ pub(super) fn lesser<S: Simd, V: SimdFloat<S, Element = f32>>(a: V, b: V) -> V {
     }
 }
 
-/// The larger of two numbers that are at least zero; see [`lesser`].
+/// Returns the larger of two numbers that are at least zero; see [`lesser`].
 #[inline(always)]
 pub(super) fn greater<S: Simd, V: SimdFloat<S, Element = f32>>(a: V, b: V) -> V {
     if floats_are_faster(a.token()) {
@@ -189,7 +189,8 @@ pub(super) fn greater<S: Simd, V: SimdFloat<S, Element = f32>>(a: V, b: V) -> V 
     }
 }
 
-/// Whether floats are compared faster than integers: SSE2 has no minimum of 32-bit integers.
+/// Returns whether floats are compared faster than integers. This holds for SSE2, which has no minimum of 32-bit
+/// integers.
 #[inline(always)]
 fn floats_are_faster<S: Simd>(simd: S) -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

@@ -1,4 +1,4 @@
-//! Bisecting planes between a feature point and its neighbors, and the selection of those that bound its Voronoi cell.
+//! Computes bisecting planes between a feature point and its neighbors, and selects those that bound its Voronoi cell.
 
 use super::cull::{PixelBox, lanes_before};
 use super::table::Table;
@@ -7,7 +7,7 @@ use crate::fixed::{MOST_AXES, STEP};
 use core::ops::Range;
 use fearless_simd::{f32x16, f64x8, i32x16, mask32x16, prelude::*};
 
-/// Bound on the error of distances in `f32`, in cells.
+/// Bound on the error of distances computed in `f32`, in cells.
 pub(super) const SLACK: f32 = 1.0 / (1 << 14) as f32;
 
 /// Fraction of the reach within which neighbors are used for the outline of the cell.
@@ -32,7 +32,7 @@ pub(super) struct Neighbors {
     pub(super) inner: Vec<usize>,
 }
 
-/// The planes that can bound a cell, padded by a register.
+/// The planes that can bound a cell; padded by a register.
 #[derive(Debug)]
 pub(super) struct Planes {
     pub(super) n_axes: usize,
@@ -130,8 +130,8 @@ impl Neighbors {
         self.len += mask.to_bitmask().count_ones() as usize;
     }
 
-    /// Whether a single neighbor is nearer than the point to the whole box. Only the part of the box within half of the
-    /// reach counts.
+    /// Returns whether a single neighbor is nearer than the point to the whole box. Only the part of the box within
+    /// half of the reach counts.
     #[inline(always)]
     pub(super) fn hide<S: Simd>(&self, simd: S, pixels: &PixelBox) -> bool {
         let half = self.reach / 2.0;
@@ -161,7 +161,7 @@ impl Neighbors {
         false
     }
 
-    /// Computes the bisecting planes of the neighbors.
+    /// Computes the neighbors' bisecting planes.
     #[inline(always)]
     pub(super) fn make_planes<S: Simd>(&mut self, simd: S) {
         self.inner.clear();
@@ -269,8 +269,8 @@ impl Planes {
         }
     }
 
-    /// Computes the offsets for a row of pixels. `rest` is the vector from the point to the row along the axes past the
-    /// first, in cells.
+    /// Computes the offsets for a row of pixels. `rest` is the vector from the point to the row, along all axes except
+    /// the first, in cells.
     #[inline(always)]
     pub(super) fn take_row<S: Simd>(&mut self, simd: S, rest: &[f64; MOST_AXES]) {
         for start in (0..self.len).step_by(F64_LANES) {
@@ -284,7 +284,7 @@ impl Planes {
         }
     }
 
-    /// Smallest distance of a plane from the point, in cells.
+    /// Returns the smallest distance of a plane from the point, in cells.
     pub(super) fn least(&self) -> f64 {
         let distances = self.distances[..self.len].iter();
         distances.copied().fold(f64::INFINITY, f64::min)

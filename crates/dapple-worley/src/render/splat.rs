@@ -1,4 +1,4 @@
-//! Rendering of small cells: every tile is compared with all feature points of a rectangle around it.
+//! Renders small cells by comparing every tile with all feature points of a rectangle around it.
 //!
 //! Where a cell has only a few pixels, culling points for each tile takes longer than comparing them. So tiles have
 //! 4 × 4 pixels, one register, and each is compared with all points in the bins around it ([`bins`](super::bins)). The
@@ -18,34 +18,35 @@ use crate::sink::{ValueLanes, Values};
 use dapple_raster::simd::baseline;
 use fearless_simd::{Level, f32x4, f32x16, i32x4, prelude::*};
 
-/// Maximum offset of a pixel from its evenly spaced position, in pixels: well below the margin that [`SURE`] leaves.
+/// Maximum offset of a pixel from its evenly spaced position, in pixels. It is well below the margin that [`SURE`]
+/// leaves.
 const UNEVEN: f32 = 0.001;
 
-/// Reliable fraction of the distance from a tile to the edge of the rectangle around it: the positions of points
-/// relative to the pixels are rounded.
+/// Reliable fraction of the distance from a tile to the edge of the rectangle around it. It is below 1 because the
+/// positions of points relative to the pixels are rounded.
 const SURE: f32 = 0.999;
 
-/// Maximum reach of the rectangle around a tile, in cells: coordinates that differ by less are exact in `f32`.
+/// Maximum reach of the rectangle around a tile, in cells. Coordinates that differ by less are exact in `f32`.
 const FARTHEST: f32 = 8.0;
 
-/// Maximum ratio of the reach to the needed distance. Above it, searching each pixel on its own is as fast.
+/// Maximum ratio of the reach to the required distance. Above it, searching each pixel on its own is as fast.
 const MOST_WASTE: f32 = 10.0;
 
-/// Numbers of columns of bins that a tile may be compared with. The first is used only for flat sums, the most common
-/// case.
+/// Numbers of bin columns that a tile may be compared with. The first is used only for 2-D metrics whose terms are
+/// added, the most common case.
 const COLUMNS: [usize; 3] = [2, 3, 5];
 
-/// Upper limit, exclusive, for the number of rows of bins above a tile, and for the number below it.
+/// Upper limit, exclusive, for the number of bin rows above a tile, and for the number below it.
 const MOST_HALVES: usize = 8;
 
-/// Distance along the axes across the image within which points are taken, as a multiple of the guess. Searching a
-/// pixel on its own takes as long as comparing hundreds of points.
+/// Distance along the axes orthogonal to the image within which points are used, as a multiple of the estimated
+/// distance. Searching a pixel on its own takes as long as comparing hundreds of points.
 const SPARE: f32 = 1.1;
 
-/// The parameters of the method for small cells, for a block.
+/// Parameters of the method for small cells, for one block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Splat {
-    /// Number of columns of bins that a tile is compared with, and of rows of bins on either side of it.
+    /// Number of bin columns that a tile is compared with, and of bin rows on either side of it.
     around: [usize; 2],
     /// Distance from any pixel within which all points are compared, in cells.
     pub(super) reach: f32,
@@ -61,7 +62,7 @@ impl Splat {
     pub(super) fn new(block: &Block<'_>, depth: usize, distance: f32) -> Option<Self> {
         let Picture { section, basis, .. } = &block.bands[0].picture;
         let row_axis = section.row_axis()?;
-        // The terms of the axes across the image are accumulated before those of the rows.
+        // The terms of the axes orthogonal to the image are accumulated before those of the rows.
         if section.n_axes == 4 && row_axis != 1 {
             return None;
         }
@@ -77,7 +78,7 @@ impl Splat {
         let useful = distance..FARTHEST.min(MOST_WASTE * distance);
         let is_flat_sum = section.n_axes == 2 && basis.metric().is_exact_sum();
         let is_usual = is_flat_sum && depth <= 2 && is_wide(block.level);
-        // Take the fewest columns and rows of bins that reach far enough.
+        // Choose the fewest bin columns and rows that reach far enough.
         for &columns in &COLUMNS[usize::from(!is_usual)..] {
             let along_row = reach(pixel[0], beyond(columns));
             let halves = (1..MOST_HALVES).find(|halves| reach(pixel[1], HALF * halves) >= distance);
@@ -100,7 +101,8 @@ impl Splat {
         None
     }
 
-    /// Whether pixels are spaced evenly enough for tiles. Far from zero, rounding of `f64` may make them uneven.
+    /// Returns whether pixels are spaced evenly enough for tiles. Far from zero, rounding of `f64` may make them
+    /// uneven.
     pub(super) fn is_even(&self, lines: &[Vec<i32>; MOST_AXES]) -> bool {
         let is_even = |axis: usize, pixel: f32| {
             let line = &lines[axis][..lines[axis].len() - LANES];
@@ -112,7 +114,7 @@ impl Splat {
         is_even(0, self.pixel[0]) && is_even(self.row_axis, self.pixel[1])
     }
 
-    /// Renders the pixels of a block; its coordinates are counted from the lower corner of `cells`.
+    /// Renders the pixels of a block, whose coordinates are relative to the lower corner of `cells`.
     pub(super) fn render(
         &self,
         block: &Block<'_>,
@@ -152,7 +154,7 @@ impl Splat {
         bins.clear(&lines[0][..block.range.len()], block.bands[0].n_rows, reach);
         bins.collect(block.level, basis.lattice(), &near, &grid);
         bins.count();
-        // Render the tiles with the loop for the number of columns of bins.
+        // Render the tiles with the loop for the number of bin columns.
         let rows = &lines[self.row_axis];
         if columns < 5 {
             let runs = bins.runs(block.level, &grid, rows, &mut points.three);
@@ -164,7 +166,7 @@ impl Splat {
         }
     }
 
-    /// The cells with points within reach of the block.
+    /// Returns the cells whose points are within reach of the block.
     fn cells(&self, block: &Block<'_>, cells: &CellBox, memory: &Memory) -> CellBox {
         let pixels = memory.pixel_box(&block.all());
         let reach = (self.reach / STEP) as i32 + 1;
@@ -245,8 +247,8 @@ struct TileRow<'a> {
     unknown: &'a mut [u16],
 }
 
-/// Renders a row of tiles from two columns of bins: in the plane, for sums, one or two nearest points, and wide
-/// registers.
+/// Renders a row of tiles from two bin columns. Supports 2-D, metrics whose terms are added, one or two nearest points,
+/// and wide registers.
 fn fill_two(level: Level, runs: Runs<'_, 3>, tiles: &mut TileRow<'_>) {
     let sum = Additive(runs.metric);
     let _done = match tiles.values.tone.depth() {
@@ -255,7 +257,7 @@ fn fill_two(level: Level, runs: Runs<'_, 3>, tiles: &mut TileRow<'_>) {
     };
 }
 
-/// Renders a row of tiles from three columns of bins.
+/// Renders a row of tiles from three bin columns.
 fn fill_three(level: Level, runs: Runs<'_, 3>, tiles: &mut TileRow<'_>) {
     let sum = Additive(runs.metric);
     let done = match tiles.values.tone.depth() {
@@ -269,7 +271,7 @@ fn fill_three(level: Level, runs: Runs<'_, 3>, tiles: &mut TileRow<'_>) {
     }
 }
 
-/// Renders a row of tiles from as many columns of bins as points have terms for, with the loop that is compiled for the
+/// Renders a row of tiles from as many bin columns as points have terms for, with the loop that is compiled for the
 /// metric and the number of nearest points.
 fn fill_any<const TILES: usize>(level: Level, runs: Runs<'_, TILES>, tiles: &mut TileRow<'_>) {
     let depth = match tiles.values.tone.depth() {
@@ -301,10 +303,10 @@ fn fill_any<const TILES: usize>(level: Level, runs: Runs<'_, TILES>, tiles: &mut
     }
 }
 
-/// Renders a row of tiles. Each column of bins is compared with `TILES` tiles, which are held in registers.
+/// Renders a row of tiles. Each bin column is compared with `TILES` tiles, which are held in registers.
 ///
 /// `depth` is the number of nearest points to find, at most `K`. Points have terms for `SLOTS` tiles. `DEEP` means that
-/// there may be axes across the image.
+/// there may be axes orthogonal to the image.
 #[inline(always)]
 fn fill<
     S: Simd,
@@ -328,7 +330,7 @@ fn fill<
     let last = first + TILE / HALF + 2 * runs.halves;
     for column in 0..tiles.unknown.len() + TILES - 1 {
         let starts = &runs.starts[column * runs.n_halves..];
-        // Compare the points of this column of bins with the tiles around it.
+        // Compare the points of this bin column with the tiles around it.
         for point in &runs.points[starts[first] as usize..starts[last] as usize] {
             let ahead = (rows - point.row).to_float::<f32x4<S>>() * STEP;
             let [mut rows] = measure.terms([ahead]);
@@ -349,7 +351,7 @@ fn fill<
                 }
             }
         }
-        // The first tile has been compared with all of its columns. Store it, and shift the others.
+        // The first tile has been compared with all of its bin columns. Store it, and shift the others.
         if let Some(tile) = (column + 1).checked_sub(TILES) {
             tiles.put(measure, &values, best[0], runs.limit, tile);
         }
@@ -361,7 +363,7 @@ fn fill<
 }
 
 impl TileRow<'_> {
-    /// Stores the values of a tile, except for the pixels whose keys reach the limit.
+    /// Stores the values of a tile, except for pixels whose keys reach the limit.
     #[inline(always)]
     fn put<S: Simd, M: Measure, const K: usize>(
         &mut self,

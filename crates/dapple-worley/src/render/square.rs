@@ -1,4 +1,4 @@
-//! Squares of up to 64 × 64 pixels and their tiles of up to 32 × 32: from candidates to values.
+//! Renders squares of up to 64 × 64 pixels and their tiles of up to 32 × 32, from candidates to values.
 //!
 //! The candidates of a square are selected from the table, and those of a tile from the candidates of its square. Where
 //! a key reaches the border of the neighborhood that the candidates come from, the pixels are rendered again from a
@@ -20,18 +20,18 @@ use core::ops::Range;
 use dapple_raster::simd::baseline;
 use fearless_simd::Level;
 
-/// A guess of the distance to the nearest points; few pixels exceed it.
+/// An estimate of the distance to the nearest points. Few pixels exceed it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Guess {
-    /// The guess, in cells.
+    /// The estimated distance, in cells.
     pub(super) distance: f32,
     /// Number of cells that the distance spans, rounded up; at least 1.
     pub(super) ring: i32,
 }
 
 impl Guess {
-    /// Makes the guess for the `depth` nearest points: the radius of a ball that holds fewer than `depth` points with a
-    /// probability of about 1 in 250.
+    /// Estimates the distance to the `depth` nearest points. The estimate is the radius of a ball that holds fewer than
+    /// `depth` points with a probability of about 1 in 250.
     pub(super) fn new(
         basis: &dyn Basis,
         middle: [i64; MOST_AXES],
@@ -39,7 +39,7 @@ impl Guess {
         depth: usize,
     ) -> Self {
         let points = [5.5, 7.8, 9.8, 11.6][depth - 1];
-        // The volumes of the Euclidean unit balls, precise enough for a guess.
+        // Volumes of the Euclidean unit balls, precise enough for an estimate.
         let ball = [1.0, 2.0, 3.1, 4.2, 4.9][n_axes];
         let distance = libm::pow(
             points / (ball * basis.lattice().mean(&middle)),
@@ -59,21 +59,21 @@ pub(super) struct Plan {
     pub(super) depth: usize,
     pub(super) guess: Guess,
     pub(super) metric: Metric,
-    /// Axis of the rows, if the terms of all other axes can be accumulated before those of the rows.
+    /// Axis of the rows, if the terms of all other axes can be accumulated before those of the rows; otherwise `None`.
     pub(super) row_axis: Option<usize>,
-    /// Numbers of columns and rows of a tile.
+    /// Width and height of a tile, in pixels.
     pub(super) tile: [usize; 2],
-    /// Axis along which slices differ, if there are several.
+    /// Axis along which slices differ; `None` for a single slice.
     pub(super) deep_axis: Option<usize>,
 }
 
 impl Plan {
-    /// The criterion for points that can be among the nearest.
+    /// Returns the criterion for points that can be among the nearest.
     pub(super) fn nearest(&self) -> Keep {
         Keep::Nearest(self.depth, self.metric.rounding_slack())
     }
 
-    /// The bounds of some pixels, in cells from their lower corner.
+    /// Returns the bounds of an area of pixels, in cells from its lower corner.
     fn cuboid(&self, pixels: &PixelBox) -> Cuboid {
         let mut high = [0.0; 3];
         for (high, axis) in high
@@ -91,18 +91,18 @@ impl Plan {
         }
     }
 
-    /// Whether values are rendered by a kernel that takes two registers of columns at once.
+    /// Returns whether values are rendered by a kernel that takes two registers of columns at once.
     fn has_wide_kernel(&self, level: Level) -> bool {
         is_wide(level) && self.depth <= 2 && self.metric.is_exact_sum()
     }
 
-    /// Whether dominated points are removed from the candidates.
+    /// Returns whether dominated points are removed from the candidates.
     pub(super) fn culls_dominated(&self, level: Level) -> bool {
         self.row_axis.is_some() && culls_dominated(level, self.metric)
     }
 }
 
-/// A square with selected candidates.
+/// A square with its selected candidates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Square {
     pub(super) pixels: PixelBox,
@@ -115,37 +115,37 @@ pub(super) struct Square {
     pub(super) plan: Plan,
 }
 
-/// Sizes of squares and of their tiles, as numbers of columns and rows; largest first.
+/// Sizes of squares and of their tiles, as columns and rows; largest first.
 const SIZES: [[[usize; 2]; 2]; 3] = [
     [[64, 64], [32, 32]],
     [[32, 32], [32, 16]],
     [[16, 16], [16, 16]],
 ];
 
-/// Maximum width of a square, in steps. In wider squares, almost all points are candidates.
+/// Maximum width of a square, in steps. In a wider square, almost all points are candidates.
 const WIDEST_SQUARE: i32 = STEPS + STEPS / 2;
 
-/// Maximum number of cells that a square and its neighborhood span, so that coordinates in it are exact in `f32`.
+/// Maximum number of cells that a square and its neighborhood span. Up to this limit, coordinates are exact in `f32`.
 const SPAN: i32 = 8;
 
-/// The region from which the feature points of a square are taken.
+/// The region from which a square's feature points are taken.
 #[derive(Clone, Copy, Debug)]
 struct Neighborhood {
-    /// Number of cells around those that the square touches.
+    /// Number of rings of cells around the cells that the square touches.
     ring: i32,
-    /// Distance from the square within which points are selected, in cells; `None` selects all that can be among the
-    /// nearest.
+    /// Distance from the square within which points are selected, in cells. `None` selects all points that can be among
+    /// the nearest.
     guess: Option<f32>,
 }
 
 impl Neighborhood {
-    /// Whether coordinates within the neighborhood are exact.
+    /// Returns whether coordinates within the neighborhood are exact.
     fn fits(&self, pixels: &PixelBox) -> bool {
         let [first, last] = pixels.cells(self.ring);
         (0..pixels.n_axes).all(|axis| last[axis] - first[axis] < SPAN)
     }
 
-    /// The next larger neighborhood: first without the guess, then with one more ring of cells.
+    /// Returns the next larger neighborhood: first without the distance estimate, then with one more ring of cells.
     fn grown(self) -> Self {
         Self {
             ring: self.ring + i32::from(self.guess.is_none()),
@@ -171,11 +171,11 @@ impl Block<'_> {
         let square;
         [square, plan.tile] = SIZES.into_iter().find(fits).unwrap_or_else(|| {
             neighborhood.guess = Some(plan.guess.distance);
-            // Wider squares use the guess as the bound; their tiles are lower if pixels are far apart.
+            // Wider squares use the estimate as the bound. Their tiles are less high if pixels are far apart.
             let is_widest = extent([LANES, 1]) as f32 * STEP >= 1.5;
             [[LANES, LANES / if is_widest { 4 } else { 2 }]; 2]
         });
-        // Where the kernel finds only one or two keys, more candidates cost less than more tiles.
+        // If the kernel finds only one or two keys, more candidates cost less than more tiles.
         let is_short = plan.depth <= 2 && matches!(outs[0], Output::Values(..));
         if is_short && plan.deep_axis.is_none() && square == [TILE; 2] {
             plan.tile = square;
@@ -215,7 +215,7 @@ impl Block<'_> {
         if memory.unknown.is_empty() {
             return;
         }
-        // Render the rows that need farther points again, from a larger neighborhood.
+        // Render the rows that need farther points again, using a larger neighborhood.
         for part in core::mem::take(&mut memory.unknown) {
             self.square(&part, neighborhood.grown(), plan, outs, memory);
         }
@@ -232,7 +232,7 @@ impl Block<'_> {
     ) -> f32 {
         let metric = plan.metric;
         let cells = pixels.cells(neighborhood.ring);
-        // Keys are exact up to the border of the neighborhood and up to the guess.
+        // Keys are exact up to the border of the neighborhood and up to the estimate.
         let border = metric.term(pixels.border(cells) as f32 * STEP);
         let guess = neighborhood.guess.map(|guess| metric.term(guess));
         let limit = metric.tightened(guess.map_or(border, |guess| guess.min(border)));
@@ -337,7 +337,7 @@ impl Block<'_> {
         }
     }
 
-    /// Renders one or two registers of columns of a tile, and returns the first row with a key that reaches the limit,
+    /// Renders one or two registers of columns of a tile. Returns the first row that has a key at or above the limit,
     /// or the end of the rows.
     fn fill_part(&self, part: Part<'_>, out: &mut Output<'_>, memory: &Memory) -> usize {
         match out {
@@ -411,7 +411,7 @@ impl Block<'_> {
         })
     }
 
-    /// The parameters of the kernel for a part of a tile.
+    /// Returns the kernel's parameters for a part of a tile.
     fn rows_of<'a>(&self, part: Part<'_>, values: &'a Values, memory: &'a Memory) -> Rows<'a> {
         Rows {
             rows: part.area.rows.clone(),
@@ -423,7 +423,7 @@ impl Block<'_> {
         }
     }
 
-    /// The columns of an area, in the window.
+    /// Returns the columns of an area, in the window.
     fn columns_of(&self, area: &Area) -> Range<usize> {
         let left = self.range.start;
         left + area.columns.start..left + area.columns.end

@@ -8,7 +8,7 @@ use dapple_hash::CellHashes;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, prelude::*, u32x16};
 
-/// A box of cells, from the first to the last along each axis; along missing axes it has only the cell 0.
+/// A box of cells, from the first to the last along each axis. Along missing axes it has only the cell 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct CellBox {
     pub(super) n_axes: usize,
@@ -17,12 +17,12 @@ pub(super) struct CellBox {
 }
 
 impl CellBox {
-    /// The number of cells along an axis.
+    /// Returns the number of cells along an axis.
     pub(super) fn side(&self, axis: usize) -> usize {
         (self.last[axis] - self.first[axis] + 1) as usize
     }
 
-    /// The box extended by `by` cells on every side.
+    /// Returns the box extended by `by` cells on every side.
     pub(super) fn widened(mut self, by: i64) -> Self {
         for axis in 0..self.n_axes {
             self.first[axis] -= by;
@@ -31,8 +31,8 @@ impl CellBox {
         self
     }
 
-    /// Iterator over the rows of cells along the first axis: for each, the row's part of the cell words, and its first
-    /// cell.
+    /// Iterates over the rows of cells along the first axis. Each item is the row's part of the cell words, and its
+    /// first cell.
     pub(super) fn rows(
         &self,
         lattice: &Lattice,
@@ -52,7 +52,7 @@ impl CellBox {
         })
     }
 
-    /// Number of cells; saturates at the largest `u128`.
+    /// Returns the number of cells. Saturates at the largest `u128`.
     pub(super) fn n_cells(&self) -> u128 {
         let sides = self.first.iter().zip(self.last);
         sides
@@ -61,10 +61,10 @@ impl CellBox {
     }
 }
 
-/// Number of points of a cell that are copied without checking their count.
+/// Number of points that are copied for a cell without checking its count.
 const USUAL: usize = 4;
 
-/// The feature points in a box of cells, by row of cells.
+/// The feature points in a box of cells, stored row by row.
 #[derive(Debug)]
 pub(super) struct Table {
     pub(super) cells: CellBox,
@@ -74,14 +74,14 @@ pub(super) struct Table {
     scratch: Vec<u32>,
     /// Coordinates along each axis, in steps from the lower corner of the box; padded by a register.
     pub(super) steps: [Vec<i32>; MOST_AXES],
-    /// Whether ids are needed.
+    /// Whether point ids are needed.
     pub(super) wants_ids: bool,
-    /// Ids of the points, if needed.
+    /// Point ids, if needed; otherwise empty.
     pub(super) ids: Vec<u64>,
 }
 
 impl Table {
-    /// An empty table.
+    /// Creates an empty table.
     pub(super) fn new() -> Self {
         Self {
             cells: CellBox {
@@ -97,12 +97,12 @@ impl Table {
         }
     }
 
-    /// Whether the table holds exactly these cells, with or without ids as requested.
+    /// Returns whether the table holds exactly these cells, with or without ids as requested.
     pub(super) fn has(&self, cells: &CellBox, with_ids: bool) -> bool {
         !self.starts.is_empty() && self.cells == *cells && self.wants_ids == with_ids
     }
 
-    /// Generates the points of `cells`, of which there are at most 1000 along each axis.
+    /// Generates the points of `cells`, at most 1000 cells along each axis.
     pub(super) fn fill(&mut self, level: Level, lattice: &Lattice, cells: CellBox) {
         dispatch!(level, simd => self.fill_by(simd, lattice, cells));
     }
@@ -130,7 +130,7 @@ impl Table {
         }
     }
 
-    /// Appends the points of up to sixteen cells side by side.
+    /// Appends the points of up to sixteen adjacent cells.
     #[inline(always)]
     fn add<S: Simd>(
         &mut self,
@@ -198,7 +198,7 @@ impl Table {
         }
     }
 
-    /// Appends the ids of the points of up to sixteen cells with the given numbers of points.
+    /// Appends the point ids of up to sixteen cells, given the cells' numbers of points.
     #[inline(always)]
     fn add_ids<S: Simd>(&mut self, simd: S, hashes: CellHashes<S>, numbers: &[u32]) {
         let most = numbers.iter().copied().fold(0, u32::max);
@@ -222,7 +222,7 @@ impl Table {
         }
     }
 
-    /// Coordinates of a point, in steps from the lower corner of the box.
+    /// Returns the coordinates of a point, in steps from the lower corner of the box.
     pub(super) fn point(&self, index: usize) -> [i32; MOST_AXES] {
         let mut point = [0; MOST_AXES];
         for axis in 0..self.cells.n_axes {
@@ -231,13 +231,14 @@ impl Table {
         point
     }
 
-    /// Whether the table holds the cells from `first` to `last` along each axis.
+    /// Returns whether the table holds the cells from `first` to `last` along each axis.
     pub(super) fn has_cells(&self, [first, last]: [[i32; MOST_AXES]; 2]) -> bool {
         (0..self.cells.n_axes)
             .all(|axis| first[axis] >= 0 && (last[axis] as usize) < self.cells.side(axis))
     }
 
-    /// Ranges of points in the cells within `reach` steps of a point along each axis; `None` if the table lacks a cell.
+    /// Returns the ranges of points in the cells within `reach` steps of a point along each axis; `None` if the table
+    /// lacks a cell.
     pub(super) fn around<'a>(
         &self,
         point: &[i32; MOST_AXES],
@@ -272,7 +273,7 @@ impl Table {
         }
     }
 
-    /// Range of points in the given columns (along the first axis) of a row of cells.
+    /// Returns the range of points in the given columns (along the first axis) of a row of cells.
     #[inline(always)]
     fn run(&self, row: usize, columns: Range<usize>) -> Range<usize> {
         let first = row * self.cells.side(0);
@@ -280,7 +281,7 @@ impl Table {
     }
 }
 
-/// Numbers of points of sixteen cells along the first axis, starting at `cell`.
+/// Returns the numbers of points in sixteen cells along the first axis, starting at `cell`.
 #[inline(always)]
 pub(super) fn numbers<S: Simd>(
     lattice: &Lattice,
@@ -299,7 +300,7 @@ pub(super) fn numbers<S: Simd>(
     numbers
 }
 
-/// The words of sixteen cells of a row, combined from the parts of the row and of the columns.
+/// Returns the words of sixteen cells of a row, combined from the parts of the row and of the columns.
 #[inline(always)]
 pub(super) fn row_words<S: Simd>(
     simd: S,

@@ -1,4 +1,4 @@
-//! The inner loop for outputs that need the identity of the nearest feature points.
+//! The inner loop for outputs that need to identify the nearest feature points.
 //!
 //! Keys store the index of their candidate in the low bits, as in [`many`](crate::many). If the remaining bits do not
 //! determine the order of the nearest points, the pixel is searched on its own.
@@ -16,13 +16,13 @@ use crate::worley::cell_value;
 use core::ops::Range;
 use fearless_simd::{f32x16, i32x16, prelude::*, u8x64, u32x16};
 
-/// The candidates of a tile, to look up the nearest by index.
+/// The candidates of a tile, for looking up the nearest ones by index.
 #[derive(Debug)]
 pub(super) struct Lookup {
     n_axes: usize,
-    /// Coordinates along each axis, in cells from a corner of the tile; padded to whole registers.
+    /// Coordinates along each axis, in cells from a corner of the tile, padded to whole registers.
     coordinates: [Vec<f32>; MOST_AXES],
-    /// Ids of the candidates, if needed.
+    /// Candidate ids, if needed; otherwise empty.
     ids: Vec<u64>,
 }
 
@@ -35,7 +35,7 @@ impl Lookup {
         }
     }
 
-    /// Copies the candidates from the table; `low` is the corner, in steps.
+    /// Copies the candidates from the table. `low` is the corner from which coordinates are counted, in steps.
     pub(super) fn fill(&mut self, points: &FlatPoints, table: &Table, low: [i32; MOST_AXES]) {
         let numbers = &points.numbers[..points.len];
         let room = points.len.next_multiple_of(LANES).max(LANES);
@@ -58,7 +58,7 @@ impl Lookup {
     }
 }
 
-/// Some rows of a tile, and the parameters for rendering them.
+/// Rows of a tile, and the parameters for rendering them.
 #[derive(Debug)]
 pub(super) struct TrackedRows<'a> {
     /// Rows of the tile, in the band.
@@ -77,14 +77,14 @@ pub(super) struct TrackedRows<'a> {
     pub(super) limit: f32,
 }
 
-/// The nearest points of the pixels of a row. Arrays come first, so that registers do not cross cache lines.
+/// The nearest points of a row of pixels. Arrays come first, so that registers do not cross cache lines.
 #[repr(C, align(64))]
 pub(super) struct Found {
     pub(super) distances: [[f32; LANES]; MAX_NEAREST],
     /// Vectors with interleaved components.
     pub(super) vectors: [[f32; MOST_AXES * LANES]; MAX_NEAREST],
     pub(super) ids: [[u64; LANES]; MAX_NEAREST],
-    /// A bit for each lane in which the order of points is unknown.
+    /// Bit mask of the lanes in which the order of points is unknown.
     pub(super) unknown: u64,
     pub(super) row: usize,
     pub(super) columns: Range<usize>,
@@ -106,8 +106,8 @@ struct Keys<S: Simd, const K: usize> {
 }
 
 impl TrackedRows<'_> {
-    /// Finds the `depth` nearest points row by row, at most `K`. Returns the first row with a key that reaches the
-    /// limit, or the end of the rows.
+    /// Finds the `depth` nearest points row by row; `depth` is at most `K`. Returns the first row that has a key at or
+    /// above the limit, or the end of the rows.
     #[inline(always)]
     pub(super) fn fill<S: Simd, M: Measure, const K: usize>(
         &self,
@@ -285,7 +285,7 @@ fn interleave<S: Simd>(parts: &[f32x16<S>], out: &mut [f32; MOST_AXES * LANES]) 
     }
 }
 
-/// Elements of a table at sixteen indices. The table is padded to a whole register.
+/// Returns the elements of a table at sixteen indices. The table is padded to a whole register.
 #[inline(always)]
 fn look_up<S: Simd>(simd: S, table: &[f32], indices: u32x16<S>) -> f32x16<S> {
     if table.len() <= LANES {
@@ -342,7 +342,7 @@ impl Found {
         }
     }
 
-    /// Vectors of one lane, nearest point first.
+    /// Returns the vectors of one lane, nearest point first.
     pub(super) fn vectors<const N: usize>(&self, lane: usize) -> [[f32; N]; MAX_NEAREST] {
         let mut vectors = [[0.0; N]; MAX_NEAREST];
         for rank in 0..self.depth {
