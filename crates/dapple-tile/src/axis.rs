@@ -1,11 +1,11 @@
-//! Processing of planes along one axis after the other.
+//! Processes planes along one axis after the other.
 //!
-//! A function for rows is applied to columns by transposing the planes before and after.
+//! A function for rows is applied to columns by transposing the planes before and after it.
 
 use crate::TileError;
 use dapple_raster::Raster;
 
-/// An axis; x is processed before y.
+/// An axis of an image. The x axis is processed before the y axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Axis {
     X,
@@ -14,7 +14,7 @@ pub(crate) enum Axis {
 
 /// Processes the rows of all planes if x repeats, then the columns of the result if y repeats.
 ///
-/// `along_rows` gets planes whose rows run along the given axis.
+/// `along_rows` receives planes whose rows run along the given axis.
 pub(crate) fn each_axis(
     planes: &[Raster<f32>],
     axes: [bool; 2],
@@ -35,7 +35,7 @@ fn transpose_all(planes: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> 
     planes.iter().map(transpose).collect()
 }
 
-/// Number of columns and rows that are transposed at a time, so that source and target of a block stay in the cache.
+/// Side length of the blocks that are transposed at a time, in pixels. Source and target of a block fit into the cache.
 const BLOCK: usize = 32;
 
 /// Exchanges the rows and columns of a raster.

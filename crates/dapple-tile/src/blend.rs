@@ -1,22 +1,22 @@
-//! Blending of textures: all maps of several materials, by weights.
+//! Blends textures by weights, in all maps of several materials.
 //!
-//! Blending has two independent parts. The [`Weighting`] determines the share of each layer in a pixel: its weight as
-//! it is, more for the higher layer, or the share from a blend tile, which is the purpose of the tiles of Du, Wang and
-//! Meng ("Wavelet and Blend maps for texture synthesis", section V). The [`Mixing`] determines how the values `x` of
-//! the layers are combined by these shares `w`:
+//! Blending has two independent parts. The [`Weighting`] determines the share of each layer in a pixel. The share is
+//! the weight itself, or is larger for the higher layer, or comes from a blend tile. The last is the purpose of the
+//! tiles of Du, Wang and Meng ("Wavelet and Blend maps for texture synthesis", section V). The [`Mixing`] determines
+//! how the layers' values `x` are combined by these shares `w`:
 //!
 //! * linear: `Σ w x`, the splatting of Charles Bloom (2000);
 //! * variance-preserving: `Σ w μ + Σ w (x - μ) / sqrt(Σ w²)`, with `μ` the mean of a layer's map over the raster, after
 //!   Eric Heitz and Fabrice Neyret, "High-Performance By-Example Noise using a Histogram-Preserving Blending Operator",
 //!   Proceedings of the ACM on Computer Graphics and Interactive Techniques 1(2), 2018,
 //!   <https://doi.org/10.1145/3233304>. Their operator is for textures with histograms made Gaussian; here values are
-//!   used as they are;
+//!   used unchanged;
 //! * in bands: see [`Pyramid`].
 //!
-//! The fine contrast that is left in the middle of a ramp of 128 pixels, for two different noises of equal contrast, as
+//! The fine contrast that remains in the middle of a ramp of 128 pixels, for two different noises of equal contrast, as
 //! measured by the tests:
 //!
-//! | weighting | linear | keeping the variance | pyramid |
+//! | weighting | linear | variance-preserving | pyramid |
 //! |---|---|---|---|
 //! | given | 0.71 | 1.00 | 0.88 |
 //! | height, depth 0.3 | 0.92 | | |
@@ -34,7 +34,7 @@ use dapple_raster::Raster;
 /// A material with the weight of its layer at each pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Layer<'a> {
-    /// Maps of the material. All layers have the same kinds in the same order, and all maps have one size.
+    /// Maps of the material. All layers have the same kinds in the same order, and all maps are the same size.
     pub maps: &'a [Map],
     /// Weight of the layer at each pixel, at least 0, relative to the weights of the other layers.
     pub weight: &'a Raster<f32>,
@@ -42,7 +42,7 @@ pub struct Layer<'a> {
     pub height: Option<&'a Raster<f32>>,
 }
 
-/// Options of a blend of layers.
+/// Options for blending layers.
 ///
 /// # Examples
 ///
@@ -62,13 +62,13 @@ pub struct Layer<'a> {
     serde(default, deny_unknown_fields)
 )]
 pub struct Blend {
-    /// Rule that converts weights to shares; [`Weighting::Given`] by default.
+    /// Rule that converts weights to shares. The default is [`Weighting::Given`].
     pub weighting: Weighting,
-    /// Rule that combines layers by their shares; linear by default.
+    /// Rule that combines layers by their shares. The default is linear.
     pub mixing: Mixing,
 }
 
-/// The rule that combines layers by their shares.
+/// Rule that combines layers by their shares.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/mixing.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -78,12 +78,13 @@ pub struct Blend {
     serde(rename_all = "snake_case")
 )]
 pub enum Mixing {
-    /// Weighted mean; it stays in the range of the layers.
+    /// Weighted mean. It stays in the range of the layers' values.
     #[default]
     Linear,
-    /// Variance-preserving: keeps the contrast of uncorrelated layers. Values may exceed the range of the layers.
+    /// Variance-preserving mean, which retains the contrast of uncorrelated layers. Values may exceed the range of the
+    /// layers.
     KeepVariance,
-    /// Weighted mean in bands, with sharper transitions for finer detail.
+    /// Weighted mean in frequency bands, with sharper transitions for finer detail.
     Pyramid(Pyramid),
 }
 
@@ -95,11 +96,11 @@ impl Blend {
     }
 }
 
-/// Blends the maps of layers.
+/// Blends the maps of all layers.
 ///
-/// Where only one layer has a weight, the result equals its maps: exactly with [`Mixing::Linear`], up to rounding with
-/// [`Mixing::KeepVariance`], and up to one rounding per level with [`Mixing::Pyramid`] where no other layer has a
-/// weight nearby. Normals are exact up to the rounding of their slopes.
+/// Where only one layer has a weight, the result equals its maps: exactly with [`Mixing::Linear`], and up to rounding
+/// with [`Mixing::KeepVariance`]. With [`Mixing::Pyramid`] it is equal up to one rounding per level, if no other layer
+/// has a weight nearby. Normals are exact up to the rounding of their slopes.
 ///
 /// # Errors
 ///
@@ -107,10 +108,10 @@ impl Blend {
 ///   height or a blend tile is missing
 /// * [`KindMismatch`](TileErrorKind::KindMismatch) if the kinds of maps differ between layers
 /// * [`Raster`](TileErrorKind::Raster) if sizes differ
-/// * [`NotFinite`](TileErrorKind::NotFinite) for pixels that are NaN or infinite
-/// * [`Range`](TileErrorKind::Range) for a weight below 0, a pixel without any weight, and a depth, gain, sharpness or
-///   number of levels out of its range
-/// * [`Wavelet`](TileErrorKind::Wavelet) if a size cannot be halved as often as a pyramid needs
+/// * [`NotFinite`](TileErrorKind::NotFinite) if a pixel is NaN or infinite
+/// * [`Range`](TileErrorKind::Range) if a weight is below 0, a pixel has no weight in any layer, or a depth, gain,
+///   sharpness or number of levels is out of its range
+/// * [`Wavelet`](TileErrorKind::Wavelet) if a size cannot be halved as often as a pyramid requires
 ///
 /// # Examples
 ///
@@ -130,17 +131,17 @@ pub fn blend(layers: &[Layer<'_>], how: &Blend) -> Result<Vec<Map>, TileError> {
     blend_layers(layers, None, how)
 }
 
-/// Blends the maps of layers along the features of a blend tile of the same size. The tile is the mask for
-/// [`Weighting::Mask`], and the height of layers without a height for [`Weighting::Height`]. Other weightings ignore
-/// it.
+/// Blends the maps of all layers along the features of a blend tile, which is the same size as the maps. The tile is
+/// the mask for [`Weighting::Mask`]. For [`Weighting::Height`], it is the height of layers without a height. Other
+/// weightings ignore it.
 ///
 /// # Errors
 ///
-/// The errors of [`blend`]; and [`Range`](TileErrorKind::Range) if a mask has a value outside of 0 to 1.
+/// Same as [`blend`], and [`Range`](TileErrorKind::Range) if a mask has a value outside of 0 to 1.
 ///
 /// # Examples
 ///
-/// Grass in the cracks of stones, over a third of the area:
+/// Grow grass in the cracks of stones, over a third of the area:
 ///
 /// ```
 /// use dapple_raster::Raster;
@@ -185,7 +186,7 @@ fn blend_layers(
         .collect()
 }
 
-/// Checks that the maps of all layers match in number, kind and size.
+/// Checks that the layers have the same number, kinds and sizes of maps.
 fn check_layers(layers: &[Layer<'_>]) -> Result<(), TileError> {
     let count = |what, count, needed| {
         TileError::new(TileErrorKind::Count {
@@ -241,7 +242,7 @@ fn mix_map(
     }
 }
 
-/// The linear blend `Σ w x`, clamped to the range of the values with a share.
+/// Computes the linear blend `Σ w x`, clamped to the range of the values whose share is nonzero.
 pub(crate) fn linear(
     planes: &[Raster<f32>],
     shares: &[Raster<f32>],
@@ -259,13 +260,13 @@ pub(crate) fn linear(
                 }
             }
         }
-        // The shares sum to 1 up to rounding, which must not exceed the range.
+        // Rounding of the sum of shares must not push the result out of the range.
         let mixed = |(sum, min, max): (f64, f32, f32)| (sum as f32).max(min).min(max);
         sums.into_iter().map(mixed)
     })?)
 }
 
-/// The variance-preserving blend `Σ w μ + Σ w (x - μ) / sqrt(Σ w²)`.
+/// Computes the variance-preserving blend `Σ w μ + Σ w (x - μ) / sqrt(Σ w²)`.
 fn keep_variance(planes: &[Raster<f32>], shares: &[Raster<f32>]) -> Result<Raster<f32>, TileError> {
     let size = planes[0].size();
     let means: Vec<f64> = planes.iter().map(|plane| plane.statistics().mean).collect();

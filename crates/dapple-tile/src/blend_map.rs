@@ -1,12 +1,12 @@
-//! Blend maps from the features of a texture.
+//! Computes blend maps from the features of a texture.
 //!
-//! A blend map assigns an importance to every pixel: an overlaid texture appears first where the map is low. Grass
-//! grows in the cracks between stones, and not on the stones.
+//! A blend map assigns an importance to every pixel. An overlaid texture appears first where the map is low. For
+//! example, grass grows in the cracks between stones, and not on the stones.
 //!
-//! The idea is that of Alexandre Hardy and Duncan Andrew Keith Mc Roberts, "Blend Maps: Enhanced Terrain Texturing",
-//! SAICSIT 2006: find the important parts of a texture by its features. Du, Wang and Meng ("Wavelet and Blend maps for
-//! texture synthesis") found that "there are too many coefficients need to be define in this method". The formula here
-//! is our own and has two parameters, a size and a contrast.
+//! The idea of finding the important parts of a texture by its features comes from Alexandre Hardy and Duncan Andrew
+//! Keith Mc Roberts, "Blend Maps: Enhanced Terrain Texturing", SAICSIT 2006. Du, Wang and Meng ("Wavelet and Blend maps
+//! for texture synthesis") found that "there are too many coefficients need to be define in this method". The formula
+//! here is our own and has two parameters, a size and a contrast.
 //!
 //! Let `L` be the luminance (or the height), mapped to the range from -1 to 1, `G(s)` the blur by a Gaussian of
 //! standard deviation `s`, and `s = feature_size / 16`, but at least half a pixel:
@@ -26,9 +26,9 @@
 //! stones, so a growing texture extends from the cracks inward. With blurs half as wide, the centers would fall back to
 //! ½.
 //!
-//! The map is `½ + ½ x / sqrt(1 + x²)` of `x = contrast · (I - median I)`: ½ at the median, and between 0 and 1.
-//! [`rank_equalize`](crate::rank_equalize) turns it into a mask that covers exactly its share. A mask without features
-//! is made from any noise in the same way.
+//! The map is `½ + ½ x / sqrt(1 + x²)` with `x = contrast · (I - median I)`. It is ½ at the median, and between 0 and
+//! 1. [`rank_equalize`](crate::rank_equalize) turns it into a mask that covers exactly its share. A mask without
+//! features can be computed from any noise in the same way.
 //!
 //! Reference: Hardy and Mc Roberts, as above, for the idea; the formula is our own.
 
@@ -39,7 +39,7 @@ use crate::{IsCancelled, TileError};
 use dapple_color::LinearRgb;
 use dapple_raster::{Raster, Wrap};
 
-/// Options of a blend map.
+/// Options for a blend map.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/blend-map.md"))]
 ///
@@ -62,15 +62,15 @@ use dapple_raster::{Raster, Wrap};
     serde(default, deny_unknown_fields)
 )]
 pub struct BlendMap {
-    /// Size of the features, such as the diameter of the stones, in pixels, from 1 to 4096; 32 by default.
+    /// Size of the features, such as the diameter of the stones, in pixels, from 1 to 4096. The default is 32.
     ///
-    /// With half of their size, cracks are still found, but the centers of large stones fall to ½. With twice their
-    /// size, thin cracks are lost.
+    /// If the value is half of the real size, cracks are still found, but the centers of large stones fall to ½. If it
+    /// is twice the real size, thin cracks are lost.
     pub feature_size: f64,
-    /// Steepness of the map around its median, at least 0; 1 by default. At 0 the map is ½ everywhere, at 1 it
+    /// Steepness of the map around its median, at least 0. The default is 1. At 0 the map is ½ everywhere, at 1 it
     /// increases by ½ per standard deviation of the surroundings, and at 100 it is almost black and white.
     pub contrast: f64,
-    /// Wrapping past the edges, along x and y. By default the texture repeats, and so does its map.
+    /// Wrapping beyond the edges, along x and y. By default the texture repeats, and so does its map.
     pub wrap: [Wrap; 2],
 }
 
@@ -88,7 +88,7 @@ const LEAST_SIGMA: f64 = 0.5;
 const COARSE: f64 = 4.0;
 /// Weight of the whole raster in the local contrast `E`.
 const WHOLE: f32 = 0.05;
-/// Square of the smallest contrast that counts, in a range of 2; `f32` blurs are accurate to about 1e-7.
+/// Square of the smallest contrast that counts, for values from -1 to 1. Blurs in `f32` are accurate to about 1e-7.
 const FLAT: f32 = 1e-10;
 
 impl BlendMap {
@@ -108,40 +108,40 @@ impl BlendMap {
         Self { contrast, ..self }
     }
 
-    /// Sets the wrapping past the edges, along x and y.
+    /// Sets the wrapping beyond the edges, along x and y.
     #[must_use]
     pub fn with_wrap(self, wrap: [Wrap; 2]) -> Self {
         Self { wrap, ..self }
     }
 
-    /// Computes the blend map of a color texture, from its luminance.
+    /// Computes the blend map of a color texture from its luminance.
     ///
     /// # Errors
     ///
-    /// The errors of [`apply`](Self::apply).
+    /// Same as [`apply`](Self::apply).
     pub fn apply_color(&self, texture: &Raster<LinearRgb>) -> Result<Raster<f32>, TileError> {
         self.apply(&texture.map(|color| color.luminance()))
     }
 
-    /// Computes the blend map of a gray texture or of a height. Values are between 0 and 1: low in dark or deep cracks,
-    /// high on raised or bright parts, and ½ everywhere for a constant.
+    /// Computes the blend map of a gray texture or a height map. Values are between 0 and 1. They are low in dark or
+    /// deep cracks, high on raised or bright parts, and ½ everywhere if the texture is constant.
     ///
-    /// If both axes repeat, a shifted texture gives the shifted map, bit for bit.
+    /// If both axes repeat, shifting the texture shifts the map, bit for bit.
     ///
     /// # Errors
     ///
-    /// [`Range`](crate::TileErrorKind::Range) for a feature size or a contrast out of its range,
-    /// [`NotFinite`](crate::TileErrorKind::NotFinite) for a pixel that is NaN or infinite.
+    /// [`Range`](crate::TileErrorKind::Range) if the feature size or the contrast is out of its range,
+    /// [`NotFinite`](crate::TileErrorKind::NotFinite) if a pixel is NaN or infinite.
     pub fn apply(&self, texture: &Raster<f32>) -> Result<Raster<f32>, TileError> {
         self.apply_cancellable(texture, &|| false)
     }
 
-    /// Computes the blend map of [`apply`](Self::apply), unless `is_cancelled` returns true. It is called before each
-    /// pass over the texture.
+    /// Computes the same blend map as [`apply`](Self::apply), unless `is_cancelled` returns true. The callback is
+    /// called before each pass over the texture.
     ///
     /// # Errors
     ///
-    /// The errors of [`apply`](Self::apply), and [`Cancelled`](crate::TileErrorKind::Cancelled).
+    /// Same as [`apply`](Self::apply), and [`Cancelled`](crate::TileErrorKind::Cancelled).
     pub fn apply_cancellable(
         &self,
         texture: &Raster<f32>,
@@ -159,7 +159,7 @@ impl BlendMap {
         Ok(importance.par_map(|&value| squash(contrast * f64::from(value - median))))
     }
 
-    /// The importance `I` of a texture with values from -1 to 1.
+    /// Computes the importance `I` of a texture with values from -1 to 1.
     fn importance(
         &self,
         texture: &Raster<f32>,
@@ -169,14 +169,14 @@ impl BlendMap {
             check(is_cancelled)?;
             blur(texture, sigma, self.wrap)
         };
-        // The contrast to the surroundings, B.
+        // Compute the contrast to the surroundings, B.
         let sigma = (self.feature_size / FINE).max(LEAST_SIGMA);
         let smooth = blur(texture, sigma)?;
         let around = blur(texture, COARSE * sigma)?;
         let band = smooth.zip_map(&around, |smooth, around| smooth - around)?;
-        // The gradient, D.
+        // Compute the gradient, D.
         let edges = blur(&slopes(&smooth, self.wrap)?, sigma)?;
-        // The local contrast, E.
+        // Compute the local contrast, E.
         let squares = band.map(|band| band * band);
         let floor = WHOLE * mean(&squares) + FLAT;
         let power = blur(&squares, COARSE * sigma)?;
@@ -185,7 +185,7 @@ impl BlendMap {
     }
 }
 
-/// Maps the range of the raster to -1 to 1; a constant raster becomes zero.
+/// Maps the range of the raster to -1 to 1. A constant raster becomes zero.
 ///
 /// Unlike a mean, the minimum and maximum do not depend on the order of pixels.
 fn to_unit_range(raster: &Raster<f32>) -> Raster<f32> {
@@ -197,7 +197,7 @@ fn to_unit_range(raster: &Raster<f32>) -> Raster<f32> {
     raster.par_map(|&value| ((f64::from(value) - middle) / half) as f32)
 }
 
-/// Lengths of the gradients, by central differences, per pixel.
+/// Computes the lengths of the gradients, per pixel, by central differences.
 fn slopes(raster: &Raster<f32>, wrap: [Wrap; 2]) -> Result<Raster<f32>, TileError> {
     let [width, height] = raster.size();
     let last = width as usize - 1;
@@ -215,7 +215,8 @@ fn slopes(raster: &Raster<f32>, wrap: [Wrap; 2]) -> Result<Raster<f32>, TileErro
     })?)
 }
 
-/// The mean of numbers from 0 to 4, rounded to multiples of 2^-40, so that the sum does not depend on the order.
+/// Returns the mean of numbers from 0 to 4. Numbers are rounded to multiples of 2^-40, so that the sum does not depend
+/// on the order.
 fn mean(raster: &Raster<f32>) -> f32 {
     const STEPS: f64 = (1_u64 << 40) as f64;
     let pixels = raster.pixels();
@@ -226,7 +227,7 @@ fn mean(raster: &Raster<f32>) -> f32 {
     (sum as f64 / STEPS / pixels.len() as f64) as f32
 }
 
-/// The median; the upper one for an even number of pixels.
+/// Returns the median. For an even number of pixels, it is the upper one.
 fn median(raster: &Raster<f32>) -> f32 {
     let mut values = raster.pixels().to_vec();
     let middle = values.len() / 2;

@@ -1,12 +1,12 @@
-//! Corner tiles: sets of tiles that fit in any order.
+//! Corner tiles, sets of tiles that fit together in any order.
 //!
 //! Ares Lagae and Philip Dutré, "An Alternative for Wang Tiles: Colored Edges versus Colored Corners", ACM Transactions
 //! on Graphics 25(4), 2006, <https://doi.org/10.1145/1183287.1183296>. A square tile has a color at each of its
 //! corners. Tiles fit if the colors agree at the corners that they share, along edges as well as across corners. With C
 //! colors there are C⁴ tiles, and a plane of randomly colored corners has exactly one tile for every position.
 //!
-//! Each color is a source, a material that repeats by itself, and its source is visible near a corner. As in the paper,
-//! pieces meet along cuts where they are most similar, and all other pixels are copies.
+//! Each color stands for a source, which is a material that repeats by itself and is visible near corners of that
+//! color. As in the paper, pieces meet along cuts where they are most similar, and all other pixels are copies.
 //!
 //! Difference from the paper: instead of one graph cut there are three cuts through rows or columns (see `cut.rs`).
 //! First, the left and the right source of a pair are cut from top to bottom. This cut is closed, and it is the same in
@@ -21,13 +21,13 @@ use crate::{Map, TileError, TileErrorKind};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::{Raster, Wrap};
 
-/// Maximum number of sources, and so of colors.
+/// Maximum number of sources, and therefore of colors.
 const MOST_SOURCES: usize = 4;
 
-/// Default share of a side that cuts may take.
+/// Default fraction of a side that cuts may occupy.
 const WIDTH: f64 = 0.5;
 
-/// A set of corner tiles, made from 2 to 4 materials that repeat by themselves.
+/// A set of corner tiles, built from 2 to 4 materials that repeat by themselves.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/corner-tiles.md"))]
 ///
@@ -48,35 +48,35 @@ const WIDTH: f64 = 0.5;
 pub struct CornerTiles {
     /// Planes of the maps of each source.
     sources: Vec<Vec<Raster<f32>>>,
-    /// One pixel of each map of the first source, which records the kind of the map.
+    /// One pixel of each map of the first source, which records the map's kind.
     kinds: Vec<Map>,
     /// Period of the corner colors along x and y, in tiles.
     period: [Option<u32>; 2],
     cuts: Cuts,
 }
 
-/// The cuts for a set of C colors.
+/// The cuts for a set with C colors.
 #[derive(Clone, Debug, PartialEq)]
 struct Cuts {
     /// Cut between color a on the left and b on the right, at index a + b C.
     beside: Vec<Cut>,
-    /// Cut between the upper and the lower pair, from left to right, at the index of the tile.
+    /// Cut between the upper and the lower pair, from left to right, at the tile's index.
     across: Vec<Cut>,
 }
 
 impl CornerTiles {
-    /// Creates the tiles of 2 to 4 sources. Each source has the maps of a material; all sizes are equal. Cuts may take
-    /// half of a side.
+    /// Creates the tiles from 2 to 4 sources. Each source has the maps of a material; all maps are the same size. Cuts
+    /// may occupy half of a side.
     ///
     /// During the search for cuts, C² copies of a source are in memory.
     ///
     /// # Errors
     ///
-    /// * [`TileErrorKind::Count`] for another number of sources, and for a source whose number of maps is 0 or not that
-    ///   of the first source
+    /// * [`TileErrorKind::Count`] if the number of sources is not 2 to 4, if a source has no maps, or if its number of
+    ///   maps differs from the first source
     /// * [`TileErrorKind::KindMismatch`] if the kinds of maps differ between sources
     /// * [`TileErrorKind::Raster`] if sizes differ
-    /// * [`TileErrorKind::NotFinite`] for a pixel that is NaN or infinite
+    /// * [`TileErrorKind::NotFinite`] if a pixel is NaN or infinite
     pub fn new(sources: &[Vec<Map>]) -> Result<Self, TileError> {
         let count = sources.len();
         if !(2..=MOST_SOURCES).contains(&count) {
@@ -102,12 +102,12 @@ impl CornerTiles {
         })
     }
 
-    /// Sets the share of the shorter side that cuts may take, above 0 and at most 1; ½ by default. The larger the
-    /// share, the less the pieces look like squares.
+    /// Sets the fraction of the shorter side that cuts may occupy, above 0 and at most 1. The default is ½. The larger
+    /// the fraction, the less the pieces look like squares.
     ///
     /// # Errors
     ///
-    /// [`TileErrorKind::Range`] for a width out of its range.
+    /// [`TileErrorKind::Range`] if the width is out of its range.
     pub fn with_width(self, width: f64) -> Result<Self, TileError> {
         let holds = width > 0.0 && width <= 1.0;
         TileError::check(holds, "width of the cuts", width, "above 0, at most 1")?;
@@ -115,12 +115,12 @@ impl CornerTiles {
         Ok(Self { cuts, ..self })
     }
 
-    /// Sets the period of the corner colors along x and y, in tiles. A map of whole periods repeats. By default
-    /// there are no periods.
+    /// Sets the period of the corner colors along x and y, in tiles. A map that covers whole periods repeats. By
+    /// default there are no periods.
     ///
     /// # Errors
     ///
-    /// [`TileErrorKind::Range`] for a period of 0.
+    /// [`TileErrorKind::Range`] if a period is 0.
     pub fn with_period(self, period: [Option<u32>; 2]) -> Result<Self, TileError> {
         for tiles in period.into_iter().flatten() {
             TileError::check(tiles > 0, "period in tiles", tiles.into(), "at least 1")?;
@@ -128,17 +128,17 @@ impl CornerTiles {
         Ok(Self { period, ..self })
     }
 
-    /// Numbers of columns and rows of a tile.
+    /// Returns the number of columns and rows of a tile.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.sources[0][0].size()
     }
 
-    /// Makes the tile with the given colors at its corners: top left, top right, bottom left, bottom right.
+    /// Builds the tile with the given corner colors: top left, top right, bottom left, bottom right.
     ///
     /// # Errors
     ///
-    /// [`TileErrorKind::Range`] for a color that is not the index of a source.
+    /// [`TileErrorKind::Range`] if a color is not the index of a source.
     pub fn tile(&self, colors: [u8; 4]) -> Result<Vec<Map>, TileError> {
         for color in colors {
             let holds = usize::from(color) < self.sources.len();
@@ -156,23 +156,23 @@ impl CornerTiles {
         Map::all_with_planes(&self.kinds, planes)
     }
 
-    /// Makes all C⁴ tiles. The tile with corner colors `[a, b, c, d]`, in the order of [`tile`](Self::tile), is at
+    /// Builds all C⁴ tiles. The tile with corner colors `[a, b, c, d]`, in the order of [`tile`](Self::tile), is at
     /// index a + b C + c C² + d C³.
     ///
     /// # Errors
     ///
-    /// No errors for sources that [`new`](Self::new) accepts.
+    /// None for sources that [`new`](Self::new) accepts.
     pub fn all(&self) -> Result<Vec<Vec<Map>>, TileError> {
         let n_colors = self.sources.len();
         let tiles = (0..n_colors.pow(4)).map(|index| self.tile(colors_of(index, n_colors)));
         tiles.collect()
     }
 
-    /// Renders maps of `size` pixels, starting at pixel `first` of a plane with random corner colors; in parallel with
-    /// the feature `rayon`.
+    /// Renders maps of `size` pixels, starting at pixel `first` of a plane with random corner colors. With the feature
+    /// `rayon`, tiles are rendered in parallel.
     ///
-    /// A window equals the crop of the whole. Tile `[0, 0]` starts at pixel `[0, 0]` of the plane. Past the largest
-    /// `i64`, coordinates wrap around to the smallest, in the middle of a tile.
+    /// A window equals the same crop of a larger map. Tile `[0, 0]` starts at pixel `[0, 0]` of the plane. Beyond the
+    /// largest `i64`, coordinates wrap around to the smallest, in the middle of a tile.
     ///
     /// # Errors
     ///
@@ -203,7 +203,7 @@ impl CornerTiles {
         Map::all_with_planes(&self.kinds, planes)
     }
 
-    /// Corner colors of a tile of the plane.
+    /// Returns the corner colors of the tile at a position in the plane.
     fn colors(&self, seed: Seed, tile: [i64; 2]) -> [u8; 4] {
         let [left, above] = tile;
         let [right, below] = tile.map(|at| at.wrapping_add(1));
@@ -221,7 +221,7 @@ impl CornerTiles {
         (((bits >> 32) * self.sources.len() as u64) >> 32) as u8
     }
 
-    /// Joins some columns of a row of one plane of a tile.
+    /// Joins a range of columns in one row of one plane of a tile, and appends them to `values`.
     fn join_row(
         &self,
         colors: [u8; 4],
@@ -249,7 +249,7 @@ impl CornerTiles {
     }
 }
 
-/// The index of a tile with the given corner colors.
+/// Returns the index of the tile with the given corner colors.
 fn index_of(colors: [usize; 4], n_colors: usize) -> usize {
     colors
         .iter()
@@ -257,13 +257,13 @@ fn index_of(colors: [usize; 4], n_colors: usize) -> usize {
         .fold(0, |index, color| index * n_colors + color)
 }
 
-/// The corner colors of the tile with the given index.
+/// Returns the corner colors of the tile with the given index.
 fn colors_of(index: usize, n_colors: usize) -> [u8; 4] {
     [0, 1, 2, 3].map(|place| (index / n_colors.pow(place) % n_colors) as u8)
 }
 
 impl Cuts {
-    /// Finds the cheapest cuts in a band that takes a share of the shorter side.
+    /// Finds the cheapest cuts in a band that occupies the fraction `width` of the shorter side.
     fn new(sources: &[Vec<Raster<f32>>], width: f64) -> Result<Self, TileError> {
         let size = check_planes(&sources.concat())?;
         let [along_x, along_y] = size.map(|side| band(side, size, width));
@@ -303,9 +303,9 @@ impl Cuts {
     }
 }
 
-/// The band of the cuts in the middle of a side. It takes a share of the shorter side, so a cut that moves one pixel
-/// sideways in each row can connect any two pixels of the band. One pixel at each end of the side stays free, if the
-/// side has at least three.
+/// Returns the band of the cuts in the middle of a side. It occupies a fraction of the shorter side, so a cut that
+/// moves one pixel sideways in each row can connect any two pixels of the band. One pixel at each end of the side
+/// remains free if the side has at least three.
 fn band(side: u32, size: [u32; 2], width: f64) -> Band {
     let shorter = size[0].min(size[1]);
     let share = (f64::from(shorter) * width).round() as u32;

@@ -1,15 +1,15 @@
-//! Crossfade: a blend of two images by weights, with or without preserving the variance.
+//! Crossfade: blends two images by weights, with or without preserving the variance.
 //!
-//! The mean of two uncorrelated images has less contrast than either. If the deviation from the mean is divided by the
-//! length of the vector of weights instead of by their sum, it keeps its variance: Eric Heitz and Fabrice Neyret,
+//! The mean of two uncorrelated images has less contrast than either. Dividing the deviation from the mean by the
+//! length of the vector of weights, instead of by their sum, preserves its variance: Eric Heitz and Fabrice Neyret,
 //! "High-Performance By-Example Noise using a Histogram-Preserving Blending Operator", Proceedings of the ACM on
-//! Computer Graphics and Interactive Techniques 1(2), 2018, <https://doi.org/10.1145/3233304>; here without their
-//! histogram transform.
+//! Computer Graphics and Interactive Techniques 1(2), 2018, <https://doi.org/10.1145/3233304>. Their histogram
+//! transform is not used here.
 //!
-//! Difference from the paper: the operator assumes independent images, and along a cut of least difference they are
-//! not. With weights v and w and correlation r, the deviation is divided by sqrt(v² + w² + 2 r v w). This is the
-//! operator for r = 0 and the plain mean for r = 1. The correlation is measured over the blended pixels, and clamped to
-//! at least 0 so that opposite images are not amplified.
+//! Difference from the paper: the operator assumes independent images, which does not hold along a cut of least
+//! difference. With weights v and w and correlation r, the deviation is divided by sqrt(v² + w² + 2 r v w). This equals
+//! the operator for r = 0 and the plain mean for r = 1. The correlation is measured over the blended pixels, and
+//! clamped to at least 0 so that opposite images are not amplified.
 
 use crate::TileError;
 use dapple_raster::Raster;
@@ -29,7 +29,7 @@ dapple_raster::named! {
     }
 }
 
-/// Two images of one size, with the means of their planes.
+/// Two images of the same size, with the means of their planes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair<'a> {
     pub(crate) images: [&'a Raster<f32>; 2],
@@ -60,21 +60,21 @@ impl Crossfade {
     }
 }
 
-/// Factors of the two deviations, for a weight of the second image and a correlation.
+/// Returns the factors of the two deviations, for the second image's weight and a correlation.
 fn shares(weight: f64, correlation: f64) -> [f64; 2] {
     let [v, w] = [1.0 - weight, weight];
     let length = (v * v + w * w + 2.0 * correlation * v * w).sqrt();
     [v / length, w / length]
 }
 
-/// Blends two values: the weighted mean of the means plus both scaled deviations.
+/// Blends two values: the weighted mean of the means, plus both scaled deviations.
 fn mix_two(values: [f32; 2], means: [f64; 2], shares: [f64; 2], weight: f64) -> f32 {
     let [a, b] = [0, 1].map(|side| (f64::from(values[side]) - means[side]) * shares[side]);
     (means[0] + weight * (means[1] - means[0]) + (a + b)) as f32
 }
 
 impl<'a> Pair<'a> {
-    /// Iterator over the values of both images at a pixel, with the weight of the second.
+    /// Iterates over the pixels, with the values of both images and the weight of the second.
     fn pixels(
         self,
         weights: &'a Raster<f64>,
@@ -87,7 +87,8 @@ impl<'a> Pair<'a> {
         Ok(pixels.map(|((a, b), weight)| ([*a, *b], *weight)))
     }
 
-    /// Correlation of the images over all blended pixels, clamped to 0 to 1; 0 if one image is constant there.
+    /// Returns the correlation of the images over all blended pixels, clamped to 0 to 1. It is 0 if one image is
+    /// constant there.
     fn correlation(self, weights: &Raster<f64>) -> Result<f64, TileError> {
         let [mut aa, mut bb, mut ab] = [0.0; 3];
         for ([a, b], weight) in self.pixels(weights)? {

@@ -1,24 +1,24 @@
-//! A cut between two images along the path where they are most similar.
+//! Finds a cut between two images along the path where they are most similar.
 //!
 //! The first image is visible to the left of the cut, the second to the right. In each row the cut passes through one
-//! pixel, and it moves at most one column from row to row. It is the cheapest of all such paths: the cut of Alexei A.
+//! pixel, and it moves at most one column from row to row. The cheapest of all such paths is used, as by Alexei A.
 //! Efros and William T. Freeman, "Image Quilting for Texture Synthesis and Transfer", SIGGRAPH 2001,
 //! <https://doi.org/10.1145/383259.383296>.
 //!
 //! The difference of two images at a pixel is the sum over all planes of their squared differences. Each plane is
 //! divided by its variance, so a height in meters counts as much as a color. Across the cut, the images are blended
-//! along a short smooth ramp, where they are similar and a mean does no harm. All other pixels are copies. In each row,
-//! the cost of a cut is the sum over the pixels of the ramp of the difference times w (1 - w), for the weight w: the
-//! variance that the mean loses.
+//! along a short smooth ramp. They are similar there, so a mean does no harm. All other pixels are copies. In each row,
+//! the cost of a cut is the variance that the mean loses: the sum over the ramp's pixels of the difference times w (1 -
+//! w), where w is the weight.
 
 use crate::TileError;
 use crate::cut_path::{closed_path, open_path, path_between};
 use dapple_raster::Raster;
 
-/// Half of the width of the ramp across a cut between different tiles, in pixels.
+/// Half-width of the ramp across a cut between different tiles, in pixels.
 const HALF_WIDTH: f64 = 2.0;
 
-/// The columns that a cut and its ramp may take.
+/// The columns that a cut and its ramp may occupy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Band {
     /// First column.
@@ -27,18 +27,18 @@ pub(crate) struct Band {
     pub(crate) count: u32,
 }
 
-/// The constraint on the first and the last pixel of a cut.
+/// Constraint on the first and the last pixel of a cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ends {
     /// The cut may start and end in any column.
     Free,
-    /// The last pixel is at most one column from the first one, for rows that repeat.
+    /// The last pixel is at most one column from the first one. Used for rows that repeat.
     Closed,
     /// The cut starts and ends in the given columns.
     At([u32; 2]),
 }
 
-/// A cut: for each row, the column of the pixel where both weights are ½.
+/// A cut. In each row it has one pixel, at which both weights are ½.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Cut {
     columns: Vec<u32>,
@@ -46,7 +46,7 @@ pub(crate) struct Cut {
 }
 
 impl Cut {
-    /// Finds the cheapest cut in a band. `scales` are the scales of the planes; see [`scales`].
+    /// Finds the cheapest cut in a band. `scales` are the factors of the planes' differences; see [`scales`].
     pub(crate) fn cheapest(
         images: [&[Raster<f32>]; 2],
         scales: &[f64],
@@ -54,7 +54,7 @@ impl Cut {
         ends: Ends,
     ) -> Result<Self, TileError> {
         let half_width = half_width(band);
-        // Even a band without columns has a column to its right.
+        // Even if the band has no columns, there is a column to its right.
         let size = [
             band.count.max(1),
             images[0].first().map_or(1, Raster::height),
@@ -77,7 +77,7 @@ impl Cut {
         })
     }
 
-    /// Makes a cut straight down the middle of a band.
+    /// Builds a cut straight down the middle of a band.
     pub(crate) fn straight(band: Band, height: u32) -> Self {
         Self {
             columns: vec![band.first + band.count / 2; height as usize],
@@ -85,12 +85,12 @@ impl Cut {
         }
     }
 
-    /// Columns of the first and the last pixel of the cut.
+    /// Returns the columns of the cut's first and last pixel.
     pub(crate) fn ends(&self) -> [u32; 2] {
         [self.columns[0], self.columns[self.columns.len() - 1]]
     }
 
-    /// Weight of the second image at a pixel.
+    /// Returns the weight of the second image at a pixel.
     pub(crate) fn weight(&self, column: u32, row: u32) -> f64 {
         let cut = self.columns[row as usize];
         weight(f64::from(column) - f64::from(cut), self.half_width)
@@ -106,12 +106,12 @@ impl Cut {
     }
 }
 
-/// Half of the width of the ramp across a cut in a band, limited so that the ramp fits into the band.
+/// Returns the half-width of the ramp across a cut in a band, limited so that the ramp fits into the band.
 fn half_width(band: Band) -> f64 {
     HALF_WIDTH.min(f64::from(band.count) / 2.0)
 }
 
-/// The cost of a cut through each pixel whose ramp fits into the band.
+/// Computes the cost of a cut through each pixel whose ramp fits into the band.
 fn costs(differences: &Raster<f64>, half_width: f64) -> Result<Raster<f64>, TileError> {
     let inset = inset(half_width);
     let factors: Vec<f64> = (0..=2 * inset)
@@ -128,7 +128,7 @@ fn costs(differences: &Raster<f64>, half_width: f64) -> Result<Raster<f64>, Tile
     })?)
 }
 
-/// Interpolates linearly between two values; exact at both ends.
+/// Interpolates linearly between two values. The result is exact at both ends.
 pub(crate) fn mix(a: f32, b: f32, weight: f64) -> f32 {
     match weight {
         0.0 => a,
@@ -137,8 +137,8 @@ pub(crate) fn mix(a: f32, b: f32, weight: f64) -> f32 {
     }
 }
 
-/// Weight of the image to the right of a cut, for a distance from the cut in columns: 0 to the left, 1 to the right, ½
-/// on the cut.
+/// Returns the weight of the image to the right of a cut, given the distance from the cut in columns. It is 0 to the
+/// left, 1 to the right, and ½ on the cut.
 pub(crate) fn weight(from_cut: f64, half_width: f64) -> f64 {
     if half_width > 0.0 {
         cubic_ramp((from_cut + half_width) / (2.0 * half_width))
@@ -147,7 +147,7 @@ pub(crate) fn weight(from_cut: f64, half_width: f64) -> f64 {
     }
 }
 
-/// Number of columns at each end of a band that the cut avoids, so that its ramp stays inside.
+/// Returns the number of columns at each end of a band that the cut avoids, so that its ramp stays inside.
 pub(crate) fn inset(half_width: f64) -> u32 {
     (half_width.ceil() as u32).saturating_sub(1)
 }
@@ -168,7 +168,8 @@ pub(crate) fn add_differences(
     }
 }
 
-/// For each plane, the reciprocal of the root of its mean variance over all materials; 0 if it is constant in each.
+/// Returns, for each plane, the reciprocal of the root of its mean variance over all materials; 0 if it is constant in
+/// each.
 pub(crate) fn scales(materials: &[&[Raster<f32>]]) -> Vec<f64> {
     let n_planes = materials.first().map_or(0, |planes| planes.len());
     let scale = |plane: usize| {
@@ -185,7 +186,7 @@ pub(crate) fn scales(materials: &[&[Raster<f32>]]) -> Vec<f64> {
     (0..n_planes).map(scale).collect()
 }
 
-/// The cubic 3t² − 2t³ from 0 to 1, constant outside.
+/// Returns the cubic 3t² − 2t³, which rises from 0 to 1 for `t` from 0 to 1 and is constant outside.
 fn cubic_ramp(t: f64) -> f64 {
     let t = t.clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
@@ -197,13 +198,13 @@ mod tests {
     use dapple_hash::{Seed, hash2};
     use dapple_raster::Raster;
 
-    /// An image of small integers, so that sums are exact in any order.
+    /// Returns an image of small integers, so that sums are exact in any order.
     fn image(seed: u64, size: [u32; 2]) -> Raster<f32> {
         let value = |x: u32, y: u32| hash2(Seed(seed), [x.into(), y.into()], 0) % 8;
         Raster::from_fn(size, |x, y| value(x, y) as f32).unwrap()
     }
 
-    /// The cost of a cut, Σ w (1 - w) d² over all pixels.
+    /// Returns the cost of a cut, Σ w (1 - w) d² over all pixels.
     fn price(cut: &Cut, images: [&Raster<f32>; 2]) -> f64 {
         let [width, height] = images[0].size();
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
@@ -215,7 +216,7 @@ mod tests {
         lost.sum()
     }
 
-    /// All cuts in columns `from..=to` that move at most one column from row to row.
+    /// Returns all cuts in columns `from..=to` that move at most one column from row to row.
     fn all_cuts(from: u32, to: u32, height: usize, half_width: f64) -> Vec<Cut> {
         let mut paths: Vec<Vec<u32>> = (from..=to).map(|column| vec![column]).collect();
         for _ in 1..height {
@@ -262,7 +263,7 @@ mod tests {
                     let best = prices.fold(f64::INFINITY, f64::min);
                     let price = price(&found, [&a[0], &b[0]]);
                     assert!(holds(&found), "{ends:?}: {found:?}");
-                    // Sums of the same terms in another order.
+                    // The sums have the same terms in another order.
                     let gap = price - best;
                     assert!(
                         gap <= 1e-12 * best,

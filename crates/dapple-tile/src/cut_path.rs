@@ -1,20 +1,20 @@
-//! The cheapest path from the top of a grid of costs to its bottom.
+//! Finds the cheapest path from the top of a grid of costs to its bottom.
 //!
-//! A path visits one cell of every row, and moves at most one column from row to row. Its price is the sum of the costs
-//! of its cells, in the order of the rows. The open path is found by dynamic programming, as in Alexei A. Efros and
-//! William T. Freeman, "Image Quilting for Texture Synthesis and Transfer", SIGGRAPH 2001,
+//! A path visits one cell of every row, and moves at most one column from row to row. Its total cost is the sum of the
+//! costs of its cells, in the order of the rows. The open path is found by dynamic programming, as in Alexei A. Efros
+//! and William T. Freeman, "Image Quilting for Texture Synthesis and Transfer", SIGGRAPH 2001,
 //! <https://doi.org/10.1145/383259.383296>.
 //!
 //! A closed path ends at most one column from where it began, so it continues where the grid repeats. The cheapest
-//! closed path for a given first cell is a problem of the same kind. The cheapest of all is found by bisection of the
-//! first cells. Two paths that cross can exchange their ends without changing the total price, so paths of neighboring
-//! first cells need not cross, and the path of the middle cell bounds the search in both halves. This takes
-//! O(rows · width · log width) and is exact.
+//! closed path with a given first cell is found in the same way. The cheapest of all is found by bisection of the first
+//! cells. Two paths that cross can exchange their ends without changing the total cost. So paths of neighboring first
+//! cells need not cross, and the path of the middle cell bounds the search in both halves. This takes O(rows · width ·
+//! log width) and is exact.
 
 use dapple_raster::Raster;
 
-/// The columns of the cheapest path, row by row. Of equally cheap paths, the one with the smaller columns from the end
-/// on.
+/// Returns the columns of the cheapest path, row by row. If several paths are equally cheap, returns the one with the
+/// smaller columns, compared from the last row up.
 ///
 /// Costs must be finite.
 pub(crate) fn open_path(costs: &Raster<f64>) -> Vec<u32> {
@@ -22,7 +22,8 @@ pub(crate) fn open_path(costs: &Raster<f64>) -> Vec<u32> {
     Search::new(costs).cheapest(&left, &right, None).columns
 }
 
-/// The columns of the cheapest closed path, row by row. Of equally cheap paths, the one with the smallest first column.
+/// Returns the columns of the cheapest closed path, row by row. If several paths are equally cheap, returns the one
+/// with the smallest first column.
 pub(crate) fn closed_path(costs: &Raster<f64>) -> Vec<u32> {
     let [left, right] = whole_band(costs);
     let mut search = Search::new(costs);
@@ -32,7 +33,7 @@ pub(crate) fn closed_path(costs: &Raster<f64>) -> Vec<u32> {
     best.columns
 }
 
-/// The columns of the cheapest path from a column of the first row to a column of the last row, row by row.
+/// Returns the columns of the cheapest path between the given columns of the first and the last row, row by row.
 ///
 /// The difference of the two columns must be less than the number of rows.
 pub(crate) fn path_between(costs: &Raster<f64>, [begin, end]: [u32; 2]) -> Vec<u32> {
@@ -42,7 +43,7 @@ pub(crate) fn path_between(costs: &Raster<f64>, [begin, end]: [u32; 2]) -> Vec<u
     search.trace(left.len() - 1, [end; 2]).columns
 }
 
-/// A path with its price.
+/// A path with its total cost.
 struct Path {
     price: f64,
     columns: Vec<u32>,
@@ -54,24 +55,24 @@ impl Path {
     }
 }
 
-/// Bounds of the band for a search in the whole grid: the smallest and the largest column of each row.
+/// Returns the bounds of a band that covers the whole grid: the smallest and the largest column of each row.
 fn whole_band(costs: &Raster<f64>) -> [Vec<u32>; 2] {
     [0, costs.width() - 1].map(|column| vec![column; costs.height() as usize])
 }
 
-/// A grid of costs, with scratch memory that is reused from search to search.
+/// A grid of costs, with scratch memory that is reused between searches.
 struct Search<'a> {
     costs: &'a Raster<f64>,
-    /// Prices of the cheapest paths to the cells of the current row and of the row above, with [`PAD`] cells before the
-    /// first column.
+    /// Total costs of the cheapest paths to the cells of the current row and of the row above, with [`PAD`] cells
+    /// before the first column.
     prices: [Vec<f64>; 2],
-    /// For each cell, the step of the cheapest path to it: from the column before (0), the same column (1), or the one
-    /// after (2).
+    /// For each cell, the last step of the cheapest path to it: from the column before (0), the same column (1), or the
+    /// column after (2).
     steps: Vec<u8>,
 }
 
 /// Number of cells of infinite cost on either side of a band. A step moves one column, and the band of the next row may
-/// start and end one column further out.
+/// extend one column farther.
 const PAD: usize = 2;
 
 impl<'a> Search<'a> {
@@ -98,8 +99,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Finds the cheapest path from `left` to `right`, both inclusive. With `begin`, the path is closed and starts in
-    /// that column.
+    /// Finds the cheapest path between the bounds `left` and `right`, both inclusive. With `begin`, the path is closed
+    /// and starts in that column.
     fn cheapest(&mut self, left: &[u32], right: &[u32], begin: Option<u32>) -> Path {
         let last = left.len() - 1;
         let begins = begin.map_or([left[0], right[0]], |column| [column; 2]);
@@ -112,7 +113,7 @@ impl<'a> Search<'a> {
         self.trace(last, [from, to])
     }
 
-    /// Computes the prices of all cells of the band, for paths that start in a cell of `begins[0]..=begins[1]`.
+    /// Computes the total costs of all cells of the band, for paths that start in a cell of `begins[0]..=begins[1]`.
     fn spread(&mut self, left: &[u32], right: &[u32], begins: [u32; 2]) {
         self.begin([left[0], right[0]], begins);
         for row in 1..left.len() {
@@ -120,7 +121,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Computes the prices of the first row, for paths that start in a cell of `from..=to`.
+    /// Computes the total costs of the first row, for paths that start in a cell of `from..=to`.
     fn begin(&mut self, band: [u32; 2], [from, to]: [u32; 2]) {
         let [low, high] = band.map(|column| column as usize + PAD);
         let prices = &mut self.prices[0];
@@ -130,7 +131,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Computes the prices of the next row, whose band starts and ends at most one column from the previous band.
+    /// Computes the total costs of the next row, whose band starts and ends at most one column from the previous band.
     fn advance(&mut self, row: usize, band: [u32; 2]) {
         let [low, high] = band.map(|column| column as usize);
         let width = self.costs.width() as usize;
@@ -155,7 +156,7 @@ impl<'a> Search<'a> {
         self.prices.swap(0, 1);
     }
 
-    /// Traces the path to the cheapest cell of `from..=to` of the last row.
+    /// Traces the path to the cheapest cell of `from..=to` in the last row.
     fn trace(&self, last: usize, [from, to]: [u32; 2]) -> Path {
         let price = |column: u32| self.prices[0][column as usize + PAD];
         let cheaper = |best, column| {
@@ -185,7 +186,7 @@ mod tests {
     use dapple_hash::{Seed, hash2};
     use dapple_raster::Raster;
 
-    /// Costs that are small integers, so that sums are exact in any order and ties are frequent.
+    /// Returns costs that are small integers, so that sums are exact in any order and ties are frequent.
     fn costs(seed: u64, size: [u32; 2]) -> Raster<f64> {
         let cost = |x: u32, y: u32| hash2(Seed(seed), [x.into(), y.into()], 0) % 7;
         Raster::from_fn(size, |x, y| cost(x, y) as f64).unwrap()
@@ -199,7 +200,8 @@ mod tests {
             .sum()
     }
 
-    /// The price of the cheapest path from any of `begin` to any of `ends`, cell by cell, without a band.
+    /// Returns the total cost of the cheapest path from any cell of `begin` to any column that `ends` accepts, cell by
+    /// cell, without a band.
     fn brute_force(costs: &Raster<f64>, begin: &[u32], ends: impl Fn(u32) -> bool) -> f64 {
         let at = |column: u32, row| costs.row(row)[column as usize];
         let mut prices: Vec<_> = (0..costs.width())

@@ -1,15 +1,15 @@
-//! Copies of a tile that differ inside and have equal borders.
+//! Copies of a tile that have different interiors and equal borders.
 //!
 //! The repetition of a tile is visible. Jin-Lian Du, Song Wang and Xianhai Meng, "Wavelet and Blend maps for texture
 //! synthesis", propose "using stochastic function to disturb the signal inner each tile but keep the boundary not
 //! change", and leave the function open. Here the interior of each copy is a piece of the same tile, shifted by a
-//! random number of whole pixels. The two meet along a cut where they are most similar (see `cut.rs`). So copies
-//! contain no content that the tile lacks. A shift is at least a quarter of the tile along each axis, in either
-//! direction (a side of a single pixel cannot be shifted).
+//! random number of whole pixels. The interior meets the tile's border along a cut where the two are most similar (see
+//! `cut.rs`). So copies contain no content that the tile lacks. A shift is at least a quarter of the tile along each
+//! axis, in either direction (a side of a single pixel cannot be shifted).
 //!
 //! In all copies, the `frozen` pixels next to the borders equal the tile's, bit for bit. The cut is in the `margin`
-//! next to them. The shift of a copy is a hash of its column and row. So a window equals the crop of the whole, and a
-//! map of whole copies repeats.
+//! next to them. The shift of a copy is a hash of its column and row. So a window equals the same crop of a larger map,
+//! and a map that covers whole copies repeats.
 //!
 //! Reference: Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", section 4 C; the
 //! shifts and the cut are our own.
@@ -22,7 +22,7 @@ use crate::{IsCancelled, Map, TileError, TileErrorKind};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::Raster;
 
-/// Makes maps of copies of a tile that differ inside and have equal borders.
+/// Covers maps with copies of a tile that have different interiors and equal borders.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/disturbance.md"))]
 ///
@@ -44,12 +44,12 @@ use dapple_raster::Raster;
     serde(default, deny_unknown_fields)
 )]
 pub struct Disturbance {
-    /// Number of unchanged pixels along each border; 4 by default.
+    /// Number of unchanged pixels along each border. The default is 4.
     pub frozen: u32,
-    /// Number of pixels next to the frozen ones in which the cut may be, where the tile and the shifted tile overlap;
-    /// 24 by default. Together with the frozen pixels it is at most half of a side.
+    /// Number of pixels, next to the frozen ones, in which the tile and the shifted tile overlap and the cut may run.
+    /// The default is 24. Together with the frozen pixels, it is at most half of a side.
     pub margin: u32,
-    /// Seed of the shifts; `Seed(0)` by default.
+    /// Seed of the shifts. The default is `Seed(0)`.
     pub seed: Seed,
 }
 
@@ -60,7 +60,8 @@ impl Default for Disturbance {
 }
 
 impl Disturbance {
-    /// Creates options with a seed, 4 frozen pixels and a margin of 24, for tiles of at least 56 pixels.
+    /// Creates options with the given seed, 4 frozen pixels and a margin of 24. They require tiles of at least 56
+    /// pixels.
     #[must_use]
     pub fn new(seed: Seed) -> Self {
         Self {
@@ -71,16 +72,16 @@ impl Disturbance {
     }
 
     /// Renders a map of `size` pixels, starting at pixel `first` of a plane that is covered with disturbed copies of a
-    /// periodic tile; in parallel with the feature `rayon`.
+    /// periodic tile. With the feature `rayon`, copies are computed in parallel.
     ///
-    /// Copy `[0, 0]` of the tile starts at pixel `[0, 0]` of the plane. Past the largest `i64`, coordinates wrap around
-    /// to the smallest, in the middle of a copy.
+    /// Copy `[0, 0]` of the tile starts at pixel `[0, 0]` of the plane. Beyond the largest `i64`, coordinates wrap
+    /// around to the smallest, in the middle of a copy.
     ///
     /// # Errors
     ///
     /// [`TileErrorKind::Margin`] if the frozen pixels and the margin are more than half of a side,
-    /// [`TileErrorKind::NotFinite`] for a pixel that is NaN or infinite, [`TileErrorKind::Raster`] if `size` is empty or
-    /// too large.
+    /// [`TileErrorKind::NotFinite`] if a pixel is NaN or infinite, [`TileErrorKind::Raster`] if `size` is empty or too
+    /// large.
     pub fn render(
         &self,
         tile: &Raster<f32>,
@@ -91,14 +92,13 @@ impl Disturbance {
         Ok(maps.swap_remove(0))
     }
 
-    /// Renders maps covered with disturbed copies of the tiles of a material. All maps are shifted and cut in the same
-    /// way.
+    /// Renders maps covered with disturbed copies of a material's tiles. All maps are shifted and cut in the same way.
     ///
     /// Normals are blended as slopes, so normals of the frozen border are unchanged only up to rounding.
     ///
     /// # Errors
     ///
-    /// The errors of [`render`](Self::render); [`TileErrorKind::Count`] without maps, and [`TileErrorKind::Raster`] if
+    /// Same as [`render`](Self::render). Also [`TileErrorKind::Count`] without maps, and [`TileErrorKind::Raster`] if
     /// their sizes differ.
     pub fn render_maps(
         &self,
@@ -109,12 +109,12 @@ impl Disturbance {
         self.render_maps_cancellable(maps, first, size, &|| false)
     }
 
-    /// Renders the maps of [`render_maps`](Self::render_maps), unless `is_cancelled` returns true. It is called once
-    /// for each copy and map.
+    /// Renders the same maps as [`render_maps`](Self::render_maps), unless `is_cancelled` returns true. The callback is
+    /// called once for each copy and map.
     ///
     /// # Errors
     ///
-    /// The errors of [`render_maps`](Self::render_maps), and [`TileErrorKind::Cancelled`].
+    /// Same as [`render_maps`](Self::render_maps), and [`TileErrorKind::Cancelled`].
     pub fn render_maps_cancellable(
         &self,
         maps: &[Map],
@@ -141,7 +141,7 @@ impl Disturbance {
         Raster::<()>::filled(size, ())?;
         let seed = self.seed.child("disturb", 0);
         let [columns, rows] = [0, 1].map(|axis| pieces(first[axis], size[axis], sides[axis]));
-        // Make each copy that the window touches, and lay them out.
+        // Compute each copy that the window touches, and assemble the map.
         let copies = Raster::from_rows([columns.len() as u32, rows.len() as u32], |row| {
             let hash = CellHash::new(seed, [rows[row as usize].copy]);
             let copy = move |column: &Piece| {
@@ -161,7 +161,7 @@ impl Disturbance {
         planes.map(lay).collect()
     }
 
-    /// Makes the planes of a copy.
+    /// Computes the planes of the copy whose shift comes from `hash`.
     fn copy(&self, tile: &[Raster<f32>], hash: CellHash) -> Result<Vec<Raster<f32>>, TileError> {
         let [x, y] = [0, 1].map(|axis| shift(hash.at(axis), tile[0].size()[axis as usize]));
         let shifted = tile.iter().map(|plane| rolled(plane, [x, y]));
@@ -197,10 +197,11 @@ pub(crate) fn rolled(plane: &Raster<f32>, [x, y]: [u32; 2]) -> Result<Raster<f32
     })?)
 }
 
-/// A random number of pixels from a quarter to three quarters of a side, both inclusive; 0 for a side of one pixel.
+/// Returns a random number of pixels from a quarter to three quarters of a side, both inclusive; 0 for a side of one
+/// pixel.
 fn shift(bits: u64, side: u32) -> u32 {
     let least = side.div_ceil(4);
-    // The largest shift is a quarter less than the side. A side of one pixel cannot be shifted.
+    // The largest shift is the side minus a quarter. A side of one pixel cannot be shifted.
     let choices = u64::from((side - least + 1).saturating_sub(least));
     // Multiply a fixed-point number below 1 by the number of choices.
     let chosen = (((bits >> 32) * choices) >> 32) as u32;

@@ -4,7 +4,7 @@ use dapple_color::ColorError;
 use dapple_raster::RasterError;
 use dapple_wavelet::WaveletError;
 
-/// A callback that returns whether the caller no longer needs the result. It is called on any thread.
+/// Callback that returns whether the caller no longer needs the result. It may be called from any thread.
 pub type IsCancelled<'a> = dyn Fn() -> bool + Sync + 'a;
 
 /// Returns an error if the caller's callback cancels.
@@ -16,7 +16,7 @@ pub(crate) fn check(is_cancelled: &IsCancelled) -> Result<(), TileError> {
 }
 
 dapple_raster::error! {
-    /// An error of making a tile, a report or a blend.
+    /// An error in computing a tile, a report or a blend.
     TileError,
     /// The cause of a [`TileError`], with the limit and the value.
     TileErrorKind with Range {
@@ -29,7 +29,7 @@ dapple_raster::error! {
         } => "a side of {length} pixels is too short; it must have at least {least}";
         /// A margin, or the width of the changed borders, is too large for the image.
         Margin {
-            /// Margin or width, in pixels.
+            /// Margin or width given, in pixels.
             margin: u32,
             /// Length of the side, in pixels.
             length: u32,
@@ -40,9 +40,9 @@ dapple_raster::error! {
         Count {
             /// Kind of the items.
             what: &'static str,
-            /// Number of items.
+            /// Number of items given.
             count: usize,
-            /// Number needed, as text.
+            /// Required number, as text.
             needed: &'static str,
         } => "there are {count} {what}, but {needed} are needed";
         /// Corresponding maps are of different kinds.
@@ -63,11 +63,11 @@ dapple_raster::error! {
         Cancelled => "the callback asked to stop";
     }
     from {
-        /// An error of the wavelet filter: an odd size, or one that is not divisible by 2^levels.
+        /// The wavelet filter failed, because a size is odd or not divisible by 2^levels.
         Wavelet(WaveletError),
-        /// An error of the raster, or a difference of sizes.
+        /// A raster is invalid, or sizes differ.
         Raster(RasterError),
-        /// An error of the color crate.
+        /// An error from `dapple-color`.
         Color(ColorError),
     }
 }

@@ -1,4 +1,4 @@
-//! The discrete Fourier transform of any length, with the same bits everywhere.
+//! Discrete Fourier transforms of any length, with the same bits everywhere.
 //!
 //! Reference: T. G. Stockham, "High-speed convolution and correlation", Spring Joint Computer Conference 1966, for
 //! self-sorting passes (given in this form by P. N. Swarztrauber, "FFT algorithms for vector computers", Parallel
@@ -25,24 +25,24 @@ use passes::Pass;
 pub(crate) use lines::{BAND, Element, LANES, map_columns, par_flat_map, times};
 pub(crate) use power::power_spectrum;
 
-/// A transform of one length, prepared for any number of lines.
+/// A transform of one length, set up once for any number of lines.
 #[derive(Debug)]
 pub(crate) struct Fourier {
     length: usize,
     route: Route,
 }
 
-/// The algorithm for a length.
+/// The algorithm used for a length.
 #[derive(Debug)]
 enum Route {
-    /// Passes, one for each small factor of the length.
+    /// Passes, one for each small prime factor of the length.
     Passes(Vec<Pass>),
     /// A convolution with a chirp.
     Chirp(Box<Chirp>),
 }
 
 impl Fourier {
-    /// Prepares a transform; a length of 0 counts as 1.
+    /// Sets up a transform. A length of 0 counts as 1.
     pub(crate) fn new(length: usize) -> Self {
         let length = length.max(1);
         let route = match passes::plan(length) {
@@ -52,7 +52,7 @@ impl Fourier {
         Self { length, route }
     }
 
-    /// Number of elements of a line.
+    /// Returns the number of elements in a line.
     pub(crate) fn length(&self) -> usize {
         self.length
     }
@@ -73,15 +73,15 @@ impl Fourier {
     }
 }
 
-/// Swaps the real and the imaginary parts: conjugates every number and multiplies it by i. Swapping before and after a
-/// transform reverses its direction.
+/// Swaps the real and the imaginary parts, which conjugates every number and multiplies it by i. Swapping before and
+/// after a transform reverses its direction.
 fn exchange_parts(lines: &mut [Element]) {
     lines
         .iter_mut()
         .for_each(|element| element.rotate_left(LANES));
 }
 
-/// The root of unity `exp(−2πi step/n)`, as cosine and sine.
+/// Returns the root of unity `exp(−2πi step/n)`, as cosine and sine.
 fn turn(step: u64, n: u64) -> [f64; 2] {
     let (sin, cos) = libm::sincos(TAU * ((step % n) as f64 / n as f64));
     [cos, -sin]

@@ -1,7 +1,7 @@
-//! Frames: the borders of one image around the middle of another, with a cut all around.
+//! Frames, which surround the middle of one image by the borders of another, with a cut all around.
 //!
-//! Along each axis there is a cut at either end. First, the left and the right cut run from top to bottom; then, on the
-//! result, the upper and the lower cut run from left to right. Where both sides of a cut are the frame, it costs
+//! Along each axis there is a cut at either end. First, the left and the right cut run from top to bottom. Then, on the
+//! result, the upper and the lower cut run from left to right. Where both sides of a cut show the frame, it costs
 //! nothing, so the four cuts join to one closed path around the middle.
 
 use crate::TileError;
@@ -12,13 +12,13 @@ use dapple_raster::Raster;
 /// The width of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Frame {
-    /// Number of pixels along each border that belong to the frame.
+    /// Number of pixels along each border that are taken from the frame unchanged.
     pub(crate) whole: u32,
-    /// Number of further pixels for the cut and its ramp. Together with `whole` it is at most half of a side.
+    /// Number of additional pixels for the cut and its ramp. Together with `whole`, it is at most half of a side.
     pub(crate) band: u32,
 }
 
-/// Puts planes into a frame; all planes are cut along the same path.
+/// Puts planes into a frame. All planes are cut along the same path.
 pub(crate) fn framed(
     planes: &[Raster<f32>],
     frame: &[Raster<f32>],
@@ -27,7 +27,7 @@ pub(crate) fn framed(
     framed_along(planes, width, |_, axis| in_axis(frame, axis))
 }
 
-/// The planes of a frame, transposed if needed so that their rows run along the axis.
+/// Returns the frame's planes, transposed if needed so that their rows run along `axis`.
 pub(crate) fn in_axis(frame: &[Raster<f32>], axis: Axis) -> Result<Vec<Raster<f32>>, TileError> {
     match axis {
         Axis::X => Ok(frame.to_vec()),
@@ -35,7 +35,7 @@ pub(crate) fn in_axis(frame: &[Raster<f32>], axis: Axis) -> Result<Vec<Raster<f3
     }
 }
 
-/// Puts planes into a frame. It is computed for each axis from the current planes, whose rows run along that axis.
+/// Puts planes into a frame that `frame` computes for each axis, from the current planes with rows along that axis.
 pub(crate) fn framed_along(
     planes: &[Raster<f32>],
     width: Frame,
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn framed_shows_no_cut_where_there_is_a_way_of_no_difference() {
-        // The two differ everywhere except in a ring of equal pixels whose distance from the border varies.
+        // The two images differ everywhere except in a ring of equal pixels whose distance from the border varies.
         let ring = |x: u32, y: u32| {
             let from_border = x.min(39 - x).min(y.min(39 - y));
             let wave = 7 + (x / 5 + y / 7) % 3;

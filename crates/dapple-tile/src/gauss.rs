@@ -1,4 +1,4 @@
-//! Gaussian blur, row by row and column by column.
+//! Gaussian blur, applied row by row and column by column.
 //!
 //! The weights are `exp(-k² / 2σ²)` up to 3.5 standard deviations, normalized to a sum of 1. Less than 0.05 % of the
 //! Gaussian is beyond. Each pixel is summed in `f32` from the center outward, in the same order at every position. So
@@ -10,16 +10,16 @@ use dapple_raster::{Raster, Wrap, parallel};
 /// Radius of the blur, in standard deviations.
 const REACH: f64 = 3.5;
 
-/// Number of columns that are summed at a time: 4 kB of sums stay in the first-level cache.
+/// Number of columns that are summed at a time. Their sums (4 kB) fit into the first-level cache.
 const BLOCK: usize = 1024;
 
 /// Blurs a raster by a Gaussian with a standard deviation of `sigma` pixels, from 0 to 65536.
 ///
-/// `wrap` is the wrapping past the edges, along x and y.
+/// `wrap` is the wrapping beyond the edges, along x and y.
 ///
 /// # Errors
 ///
-/// [`TileErrorKind::Range`](crate::TileErrorKind::Range) for a `sigma` out of its range.
+/// [`TileErrorKind::Range`](crate::TileErrorKind::Range) if `sigma` is out of its range.
 ///
 /// # Examples
 ///
@@ -45,7 +45,7 @@ pub fn blur(raster: &Raster<f32>, sigma: f64, wrap: [Wrap; 2]) -> Result<Raster<
     })
 }
 
-/// Makes a raster whose rows are written by `fill`, in parallel with the feature `rayon`.
+/// Builds a raster whose rows are written by `fill`. With the feature `rayon`, rows are written in parallel.
 fn rows(size: [u32; 2], fill: impl Fn(u32, &mut [f32]) + Sync) -> Result<Raster<f32>, TileError> {
     let mut raster = Raster::filled(size, 0.0)?;
     let width = size[0] as usize;
@@ -55,7 +55,7 @@ fn rows(size: [u32; 2], fill: impl Fn(u32, &mut [f32]) + Sync) -> Result<Raster<
     Ok(raster)
 }
 
-/// Weight of the center, followed by the weight of each distance from it.
+/// Returns the weight of the center, followed by the weight of each distance from it.
 fn weights(sigma: f64) -> Vec<f32> {
     let reach = libm::ceil(REACH * sigma) as u32;
     let bell: Vec<f64> = (0..=reach)
@@ -163,7 +163,7 @@ mod tests {
                         }
                     }
                     let got = f64::from(*blurred.at(at[0], at[1], wrap));
-                    // Some dozen roundings of `f32` sums of numbers below ½.
+                    // Allows for several dozen roundings of `f32` sums of numbers below ½.
                     assert!((got - sum / total).abs() < 1e-6, "{size:?} {wrap:?} {at:?}");
                 }
             }

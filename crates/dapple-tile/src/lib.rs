@@ -1,7 +1,7 @@
 //! Makes images repeat without a seam, measures the seams, fills large maps from small tiles, and blends materials.
 //!
-//! If a generator of this workspace makes the image, give it a period: it then repeats exactly, without any loss. The
-//! methods here are for images without a generator, such as photographs.
+//! If a generator in this workspace produces the image, give it a period. It then repeats exactly, without any loss.
+//! The methods here are for images without a generator, such as photographs.
 //!
 //! ```
 //! use dapple_tile::raster::Raster;
@@ -34,26 +34,26 @@
 //! | measure a seam | [`SeamReport`], [`SeamReports`] for all channels | |
 //! | fill any size | [`repeat`], [`repeat_into`] | 0.18 ns/pixel from a tile of 128 × 128 |
 //! | vary the copies | [`Disturbance`] | |
-//! | make sets that fit in any order | [`CornerTiles`] | the copies of each source are the square of the number of sources, in memory |
-//! | make unlike tiles fit | [`MatchBorders`] | |
+//! | build tiles that fit in any order | [`CornerTiles`] | while built, memory for C² copies of a source, for C sources |
+//! | make different tiles fit | [`MatchBorders`] | |
 //! | find the cracks of a texture | [`BlendMap`] | |
 //! | make a mask that covers exactly its share | [`rank_equalize`] | |
 //! | mix materials by weight, height, mask or in bands | [`blend`], [`blend_by_tile`] | |
 //!
 //! Times are from one thread of a server processor (AMD EPYC).
 //!
-//! | method | use it for | what it costs |
+//! | method | use it for | cost |
 //! |---|---|---|
 //! | [`Periodic`](Method::Periodic) | smooth noise | no margin; keeps all fine detail |
-//! | [`Poisson`](Method::Poisson) | the same, with the nearest gradients | no margin; keeps all fine detail |
+//! | [`Poisson`](Method::Poisson) | smooth noise, with gradients nearest to the source's | no margin; keeps all fine detail |
 //! | [`SoftCut`] | photographs, grains | a margin along each axis |
 //! | [`SplineProject`] | the blend tile of Du, Wang and Meng | with one level, two thirds to three quarters of the finest octave |
-//! | [`PeriodicThenProject`](Method::PeriodicThenProject) | the same without its seam | as `SplineProject` |
-//! | [`Feather`] | a baseline | contrast: 0.70 to 0.95 of it is kept |
-//! | [`Mirror`](Method::Mirror) | a baseline | symmetry that is plain to see |
+//! | [`PeriodicThenProject`](Method::PeriodicThenProject) | the same blend tile without its seam | as `SplineProject` |
+//! | [`Feather`] | a baseline | contrast, of which 0.70 to 0.95 remains |
+//! | [`Mirror`](Method::Mirror) | a baseline | obvious symmetry |
 //!
-//! No method is best everywhere, and none here joins courses of bricks: for these, use `dapple-synth`. The README has
-//! the measurements, and says how far the verdict of a report agrees with eyes.
+//! No method is best everywhere, and none of them joins courses of bricks; for these, use `dapple-synth`. The README
+//! has the measurements, and says how far a report's verdict agrees with visual judgment.
 //!
 //! # Features
 //!
@@ -65,21 +65,21 @@
 //!
 //! # Limits
 //!
-//! * Pixels must be finite. Maps of a material have one size.
+//! * Pixels must be finite. All maps of a material are the same size.
 //! * [`CornerTiles`] takes two to four sources.
-//! * A tile that passes a report may still look bad, and one that fails may look good. Check both by eye.
+//! * A tile that passes a report may still look bad, and one that fails may look good. Check both visually.
 //! * Rasters are `f32`, and equations are solved in `f64`. All results have the same bits on every platform and with
 //!   any number of threads.
 //! * The crate has no file formats and does not access files.
 //!
 //! # Without std
 //!
-//! Not supported. `floor` and `sqrt` of `f64` are methods of std, and `dapple-raster`, `dapple-color` and
-//! `dapple-wavelet` need std.
+//! Not supported. `floor` and `sqrt` of `f64` are std methods, and `dapple-raster`, `dapple-color` and `dapple-wavelet`
+//! need std.
 //!
 //! # Reference
 //!
-//! Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", make a small tile that
+//! Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", compute a small tile that
 //! repeats, fill large blend maps with it and blend textures by them. This crate has the paper's tile, better methods,
 //! and the measurements that compare them.
 

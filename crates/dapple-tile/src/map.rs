@@ -1,4 +1,4 @@
-//! The maps of a material, and their decomposition into planes.
+//! The maps of a material, and their conversion to and from planes.
 
 use crate::{TileError, TileErrorKind};
 use core::mem::discriminant;
@@ -12,15 +12,15 @@ pub enum Map {
     Value(Raster<f32>),
     /// Linear color.
     Color(Raster<LinearRgb>),
-    /// Normals. They are processed as slopes (x/z, y/z); results are unit vectors.
+    /// Normals. They are processed as slopes (x/z, y/z). Results are unit vectors.
     Normal(Raster<Normal>),
 }
 
-/// Minimum z of a normal when it is converted to a slope: slopes of unit vectors are at most 1000.
+/// Minimum z of a normal when it is converted to a slope. Slopes of unit vectors are therefore at most 1000.
 const LEAST_Z: f32 = 1e-3;
 
 impl Map {
-    /// Numbers of columns and rows.
+    /// Returns the number of columns and rows.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         match self {
@@ -30,7 +30,7 @@ impl Map {
         }
     }
 
-    /// Number of planes of the map: 1 for values, 3 for colors, 2 for normals (slopes).
+    /// Returns the number of planes of the map: 1 for values, 3 for colors, 2 for normals (slopes).
     pub(crate) fn n_planes(&self) -> usize {
         match self {
             Self::Value(_) => 1,
@@ -39,7 +39,7 @@ impl Map {
         }
     }
 
-    /// The planes of the map, one raster for each channel.
+    /// Returns the planes of the map, one raster for each channel.
     pub(crate) fn planes(&self) -> Vec<Raster<f32>> {
         match self {
             Self::Value(raster) => vec![raster.clone()],
@@ -51,7 +51,7 @@ impl Map {
         }
     }
 
-    /// The map with [centered](Normal::centered) normals.
+    /// Returns the map with [centered](Normal::centered) normals.
     pub(crate) fn centered(&self) -> Self {
         match self {
             Self::Normal(raster) => Self::Normal(raster.map(|normal| normal.centered())),
@@ -59,9 +59,10 @@ impl Map {
         }
     }
 
-    /// Factors of the planes, in the order of [`planes`](Self::planes), for reflections of the map along x and along y.
+    /// Returns, for each plane, the factors for reflecting the map along x and along y, in the order of
+    /// [`planes`](Self::planes).
     ///
-    /// A slope along the axis of a reflection changes its sign.
+    /// A slope along the axis of reflection changes its sign.
     pub(crate) fn reflections(&self) -> &'static [[f32; 2]] {
         match self {
             Self::Value(_) => &[[1.0; 2]],
@@ -70,10 +71,10 @@ impl Map {
         }
     }
 
-    /// The planes of the maps of several materials.
+    /// Returns the planes of the maps of several materials.
     ///
-    /// Fails if the number of maps is 0 or differs from the first material, if kinds or sizes differ, and for pixels
-    /// that are not finite.
+    /// Fails if the number of maps is 0 or differs from the first material, if kinds or sizes differ, or if a pixel is
+    /// not finite.
     pub(crate) fn planes_of_all(
         materials: &[Vec<Self>],
     ) -> Result<Vec<Vec<Raster<f32>>>, TileError> {
@@ -99,7 +100,7 @@ impl Map {
         Ok(all)
     }
 
-    /// Makes maps of the kinds of `maps` from all their planes.
+    /// Builds maps from the planes of all maps. The kinds are taken from `maps`.
     pub(crate) fn all_with_planes(
         maps: &[Self],
         planes: Vec<Raster<f32>>,
@@ -110,7 +111,7 @@ impl Map {
             .collect()
     }
 
-    /// Makes a map of this kind from its planes, in the order of [`planes`](Self::planes).
+    /// Builds a map of this kind from its planes, in the order of [`planes`](Self::planes).
     pub(crate) fn with_planes(&self, planes: Vec<Raster<f32>>) -> Result<Self, TileError> {
         Ok(match self {
             Self::Value(_) => {
@@ -126,7 +127,7 @@ impl Map {
     }
 }
 
-/// The red, green and blue planes of a color raster.
+/// Returns the red, green and blue planes of a color raster.
 pub(crate) fn color_planes(image: &Raster<LinearRgb>) -> [Raster<f32>; 3] {
     [
         image.map(|color| color.r),
@@ -135,14 +136,14 @@ pub(crate) fn color_planes(image: &Raster<LinearRgb>) -> [Raster<f32>; 3] {
     ]
 }
 
-/// Makes a color raster from its red, green and blue planes.
+/// Builds a color raster from its red, green and blue planes.
 pub(crate) fn color_from_planes(planes: Vec<Raster<f32>>) -> Result<Raster<LinearRgb>, TileError> {
     let [r, g, b] = exactly(planes)?;
     let rg = r.zip_map(&g, |&r, &g| [r, g])?;
     Ok(rg.zip_map(&b, |&[r, g], &b| LinearRgb::new(r, g, b))?)
 }
 
-/// Converts the planes to an array of exactly `N`.
+/// Converts the planes to an array of exactly `N` planes.
 fn exactly<const N: usize>(planes: Vec<Raster<f32>>) -> Result<[Raster<f32>; N], TileError> {
     planes.try_into().map_err(|planes: Vec<_>| {
         TileError::new(TileErrorKind::Count {
@@ -162,7 +163,7 @@ fn slope(part: f32, z: f32) -> f32 {
     }
 }
 
-/// The unit vector along (x, y, 1), computed in `f64`, where the squares of all slopes are finite.
+/// Returns the unit vector along (x, y, 1), computed in `f64`, where the squares of all slopes are finite.
 fn from_slopes(x: f32, y: f32) -> Normal {
     let [x, y] = [x, y].map(f64::from);
     let length = (x * x + y * y + 1.0).sqrt();
@@ -170,7 +171,8 @@ fn from_slopes(x: f32, y: f32) -> Normal {
     Normal { x, y, z }
 }
 
-/// Checks that there is at least one plane, that all planes have one size, and that all pixels are finite.
+/// Checks that there is at least one plane, that all planes are the same size, and that all pixels are finite. Returns
+/// the size.
 pub(crate) fn check_planes(planes: &[Raster<f32>]) -> Result<[u32; 2], TileError> {
     let first = planes.first().ok_or(TileError::new(TileErrorKind::Count {
         what: "maps",
@@ -184,7 +186,7 @@ pub(crate) fn check_planes(planes: &[Raster<f32>]) -> Result<[u32; 2], TileError
     Ok(first.size())
 }
 
-/// Returns an error for the first pixel of a raster that is not finite.
+/// Returns an error for the raster's first pixel that is not finite.
 pub(crate) fn check_finite(raster: &Raster<f32>) -> Result<(), TileError> {
     let bad = raster.pixels().iter().position(|value| !value.is_finite());
     bad.map_or(Ok(()), |index| {

@@ -1,4 +1,4 @@
-//! Different tiles that fit next to each other.
+//! Makes different tiles fit next to each other, by giving them the same borders.
 //!
 //! Jin-Lian Du, Song Wang and Xianhai Meng, "Wavelet and Blend maps for texture synthesis", name an optional step of
 //! their method: to "adjust the tile borders to accommodate tile meshing (if using different tiles)". They leave the
@@ -61,10 +61,10 @@ dapple_raster::named! {
     serde(default, deny_unknown_fields)
 )]
 pub struct MatchBorders {
-    /// Distance from a border within which a tile changes, in pixels: from 1 to half of a side, rounded down, and one
-    /// pixel less for [`BorderSource::Middle`]. 16 by default.
+    /// Distance from a border within which a tile changes, in pixels. It is from 1 to half of a side, rounded down, and
+    /// one pixel less for [`BorderSource::Middle`]. The default is 16.
     pub width: u32,
-    /// Source of the pixels of all borders; the border of the first tile by default.
+    /// Source of the pixels of all borders. The default is the first tile's own border.
     pub source: BorderSource,
 }
 
@@ -78,13 +78,13 @@ impl Default for MatchBorders {
 }
 
 impl MatchBorders {
-    /// Makes tiles with equal borders, which fit next to each other in any order.
+    /// Computes tiles with equal borders, which fit next to each other in any order.
     ///
     /// # Errors
     ///
-    /// [`TileErrorKind::Count`] without tiles, [`TileErrorKind::Margin`] or [`TileErrorKind::Range`] for a width that
-    /// is too large or zero, [`TileErrorKind::Raster`] if the sizes of the tiles differ, [`TileErrorKind::NotFinite`]
-    /// for a pixel that is NaN or infinite.
+    /// [`TileErrorKind::Count`] without tiles, [`TileErrorKind::Margin`] or [`TileErrorKind::Range`] if the width is
+    /// too large or zero, [`TileErrorKind::Raster`] if the sizes of the tiles differ, [`TileErrorKind::NotFinite`] if a
+    /// pixel is NaN or infinite.
     pub fn apply(&self, tiles: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
         let materials: Vec<_> = tiles
             .iter()
@@ -94,22 +94,22 @@ impl MatchBorders {
         Ok(matched.into_iter().flatten().collect())
     }
 
-    /// Makes tiles of several materials with equal borders. All maps of a material are cut along the same path.
+    /// Computes tiles of several materials with equal borders. All maps of a material are cut along the same path.
     ///
     /// # Errors
     ///
-    /// The errors of [`apply`](Self::apply); also [`TileErrorKind::Count`] if the number of maps is 0 or differs from
-    /// the first material, and [`TileErrorKind::KindMismatch`] if the kinds of maps differ.
+    /// Same as [`apply`](Self::apply). Also [`TileErrorKind::Count`] if the number of maps is 0 or differs from the
+    /// first material, and [`TileErrorKind::KindMismatch`] if the kinds of maps differ.
     pub fn apply_maps(&self, tiles: &[Vec<Map>]) -> Result<Vec<Vec<Map>>, TileError> {
         self.apply_maps_cancellable(tiles, &|| false)
     }
 
-    /// Makes the tiles of [`apply_maps`](Self::apply_maps), unless `is_cancelled` returns true. It is called for each
-    /// axis of each tile.
+    /// Computes the same tiles as [`apply_maps`](Self::apply_maps), unless `is_cancelled` returns true. The callback is
+    /// called for each axis of each tile.
     ///
     /// # Errors
     ///
-    /// The errors of [`apply_maps`](Self::apply_maps), and [`TileErrorKind::Cancelled`].
+    /// Same as [`apply_maps`](Self::apply_maps), and [`TileErrorKind::Cancelled`].
     pub fn apply_maps_cancellable(
         &self,
         tiles: &[Vec<Map>],
@@ -125,12 +125,13 @@ impl MatchBorders {
     /// Renders maps of `size` pixels, starting at pixel `first` of a plane that is covered with the tiles in random
     /// order.
     ///
-    /// A window equals the crop of the whole, and a map of whole tiles repeats. Tile `[0, 0]` starts at pixel `[0, 0]`
-    /// of the plane. Past the largest `i64`, coordinates wrap around to the smallest, in the middle of a tile.
+    /// A window equals the same crop of a larger map, and a map that covers whole tiles repeats. Tile `[0, 0]` starts
+    /// at pixel `[0, 0]` of the plane. Beyond the largest `i64`, coordinates wrap around to the smallest, in the middle
+    /// of a tile.
     ///
     /// # Errors
     ///
-    /// The errors of [`apply_maps`](Self::apply_maps); also [`TileErrorKind::Raster`] if `size` is empty or too large.
+    /// Same as [`apply_maps`](Self::apply_maps). Also [`TileErrorKind::Raster`] if `size` is empty or too large.
     pub fn render(
         &self,
         tiles: &[Vec<Map>],
@@ -201,7 +202,7 @@ impl MatchBorders {
         TileError::check(self.width >= 1, "width", self.width.into(), "at least 1")
     }
 
-    /// Makes a tile whose borders are the middle of the given tile, where it is continuous.
+    /// Builds a tile whose borders come from the middle of the given tile, where it is continuous.
     fn with_middle_at_borders(
         &self,
         tile: &[Raster<f32>],
@@ -217,7 +218,7 @@ impl MatchBorders {
         })
     }
 
-    /// The frame: a quarter of the width, at least one pixel, belongs to the first tile.
+    /// Returns the frame. A quarter of the width, at least one pixel, belongs to the first tile.
     fn frame(&self) -> Frame {
         let whole = self.width.div_ceil(4);
         Frame {

@@ -1,4 +1,4 @@
-//! The overlap of the two ends of a row.
+//! Blends the two ends of a row where they overlap.
 
 use crate::crossfade::Pair;
 use crate::{Crossfade, TileError, TileErrorKind};
@@ -26,7 +26,7 @@ pub(crate) fn check_margin(
     TileError::check(margin >= 1, what, margin.into(), "at least 1")
 }
 
-/// The first and the last `margin` columns.
+/// Returns the first and the last `margin` columns.
 pub(crate) fn ends(plane: &Raster<f32>, margin: u32) -> Result<[Raster<f32>; 2], TileError> {
     let size = [margin, plane.height()];
     let last = plane.crop([plane.width() - margin, 0], size)?;
@@ -56,7 +56,7 @@ pub(crate) fn overlap(
         .collect()
 }
 
-/// Joins the blended columns and the columns without overlap.
+/// Joins the blended columns and the columns outside of the overlap.
 fn join(mixed: &Raster<f32>, plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     let margin = mixed.width();
     let rest = margin as usize..(plane.width() - margin) as usize;

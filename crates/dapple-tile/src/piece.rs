@@ -1,12 +1,12 @@
-//! Pieces of copies of a tile along an axis of a map, and maps that are covered with them.
+//! Pieces of copies of a tile along one axis, and maps that are covered with such pieces.
 
 use crate::TileError;
 use dapple_raster::Raster;
 
-/// A run of pixels of a copy of a tile, along one axis.
+/// A run of pixels, along one axis, within a copy of a tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Piece {
-    /// Index of the copy; copy 0 starts at pixel 0 of the plane.
+    /// Index of the copy. Copy 0 starts at pixel 0 of the plane.
     pub(crate) copy: i64,
     /// First pixel of the run, relative to the start of the copy.
     pub(crate) from: u32,
@@ -14,9 +14,9 @@ pub(crate) struct Piece {
     pub(crate) count: u32,
 }
 
-/// The pieces of copies of `side` pixels that cover the pixels `first..first + length` of the plane.
+/// Returns the pieces of copies, each `side` pixels long, that cover the pixels `first..first + length` of the plane.
 ///
-/// Past the largest `i64`, coordinates wrap around to the smallest, in the middle of a copy.
+/// Beyond the largest `i64`, coordinates wrap around to the smallest, in the middle of a copy.
 pub(crate) fn pieces(first: i64, length: u32, side: u32) -> Vec<Piece> {
     let mut pieces = Vec::new();
     let mut done = 0;
@@ -36,7 +36,7 @@ pub(crate) fn pieces(first: i64, length: u32, side: u32) -> Vec<Piece> {
     pieces
 }
 
-/// Makes a map that is covered with pieces of copies, one for each column and row of pieces.
+/// Builds a map that is covered with pieces of copies, one for each column and row of pieces.
 pub(crate) fn lay<'a>(
     [columns, rows]: [&[Piece]; 2],
     copy: impl Fn([usize; 2]) -> &'a Raster<f32> + Sync,

@@ -1,4 +1,4 @@
-//! Blending in bands, with sharper transitions for finer detail.
+//! Blends in frequency bands, with sharper transitions for finer detail.
 //!
 //! A transition that is wide enough for the large features of two textures blurs their fine details into each other. A
 //! transition that is narrow enough for the details cuts the large features. If the textures are decomposed into bands,
@@ -6,9 +6,9 @@
 //!
 //! Bartlomiej Wronski, "GPU-Friendly Laplacian Texture Blending", Journal of Computer Graphics Techniques 14(1), 2025
 //! (arXiv:2502.13945), blends the levels of a Laplacian pyramid by masks that are sharper at finer levels. Here the
-//! bands are those of the quadratic spline filter of `dapple-wavelet`, and the shares are halved by the same filter.
-//! The sharpening is a power: in the band of level `l`, counted from 0 for the finest, the shares `w` become
-//! `w^p / Σ w^p` with `p = 1 + sharpness · (levels - l) / levels`. The coarse rest is blended with `p = 1`.
+//! bands come from the quadratic spline filter of `dapple-wavelet`, and the shares are halved by the same filter. The
+//! sharpening is a power. In the band of level `l`, counted from 0 for the finest, the shares `w` become `w^p / Σ w^p`
+//! with `p = 1 + sharpness · (levels - l) / levels`. The coarse remainder is blended with `p = 1`.
 
 use crate::TileError;
 use crate::blend::linear;
@@ -16,7 +16,7 @@ use crate::weighting::{normalize, zip};
 use dapple_raster::Raster;
 use dapple_wavelet::{Bands, Border, SplineFilter};
 
-/// Options of a weighted mean in bands.
+/// Options for a weighted mean in frequency bands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -24,13 +24,13 @@ use dapple_wavelet::{Bands, Border, SplineFilter};
     serde(default, deny_unknown_fields)
 )]
 pub struct Pyramid {
-    /// Number of bands, at most 30; 4 by default. 0 is the plain mean.
+    /// Number of bands, at most 30. The default is 4. With 0, the result is the plain mean.
     pub levels: u32,
-    /// Sharpness of the transition of the finest band, at least 0; 8 by default. Its shares are raised to the power
-    /// `1 + sharpness`. At 0 the result is nearly the plain mean.
+    /// Sharpness of the transition in the finest band, at least 0. The default is 8. The shares of this band are raised
+    /// to the power `1 + sharpness`. At 0 the result is nearly the plain mean.
     pub sharpness: f64,
-    /// Extension past the edges, along x and y. Mirrored by default, for sides longer than 2^(levels - 1) pixels. Use
-    /// periodic borders for tiles whose weights also repeat, with sides that are multiples of 2^levels.
+    /// Extension beyond the edges, along x and y. The default is mirrored, which requires sides longer than 2^(levels -
+    /// 1) pixels. Use periodic borders for tiles whose weights also repeat, with sides that are multiples of 2^levels.
     pub borders: [Border; 2],
 }
 
@@ -45,7 +45,8 @@ impl Default for Pyramid {
 }
 
 impl Pyramid {
-    /// The shares of each band, finest first and the coarse rest last, from the shares of the pixels.
+    /// Computes the shares of each band from the shares of the pixels. The finest band is first, the coarse remainder
+    /// last.
     pub(crate) fn shares(
         &self,
         finest: Vec<Raster<f32>>,
@@ -91,7 +92,7 @@ impl Pyramid {
         let mut details: Vec<_> = mixed
             .map(|(layers, shares)| linear(layers, shares))
             .collect::<Result<_, _>>()?;
-        // The last one is the coarse rest: `shares` has one element more than there are levels.
+        // The last element is the coarse remainder: `shares` has one element more than there are levels.
         let coarse = details.swap_remove(self.levels as usize);
         Ok(filter.synthesize(&Bands { details, coarse }, self.borders)?)
     }

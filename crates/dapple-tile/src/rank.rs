@@ -1,4 +1,4 @@
-//! Histogram equalization by ranks, so that a threshold covers its share of the area.
+//! Histogram equalization by ranks, which makes a threshold cover exactly its share of the area.
 //!
 //! A mask that is only stretched to its range covers hardly anything at a low threshold, and almost everything at a
 //! high one, since its values are concentrated in the middle. Ranks are evenly distributed by construction: this is
@@ -26,7 +26,7 @@ use dapple_raster::{Raster, parallel};
 ///
 /// # Errors
 ///
-/// [`NotFinite`](crate::TileErrorKind::NotFinite) for a pixel that is NaN or infinite.
+/// [`NotFinite`](crate::TileErrorKind::NotFinite) if a pixel is NaN or infinite.
 ///
 /// # Examples
 ///
@@ -51,8 +51,8 @@ pub fn rank_equalize(raster: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     Ok(ranks)
 }
 
-/// A unique sort key for each pixel, from high to low bits: the value as an integer in the same order, the hash of the
-/// position, and the index of the pixel.
+/// Returns a unique sort key for each pixel. From high to low bits, it holds the value as an integer in the same order,
+/// the hash of the position, and the index of the pixel.
 fn keys(raster: &Raster<f32>) -> Result<Raster<u128>, TileError> {
     const PLACES: Seed = Seed(0).child("rank", 0);
     let width = raster.width();
@@ -66,7 +66,7 @@ fn keys(raster: &Raster<f32>) -> Result<Raster<u128>, TileError> {
     })?)
 }
 
-/// Converts values to integers in the same order; both zeros become one integer.
+/// Converts values to integers in the same order. Both zeros become the same integer.
 fn ordered_bits(value: f32) -> u32 {
     // Adding zero turns a negative zero into a positive one.
     let bits = (value + 0.0).to_bits();
@@ -82,7 +82,7 @@ mod tests {
     use dapple_raster::Raster;
     use proptest::prelude::*;
 
-    /// Noise that is concentrated around ½, like sums of random numbers.
+    /// Returns noise that is concentrated around ½, like sums of random numbers.
     fn bell(size: [u32; 2], seed: u64) -> Raster<f32> {
         Raster::from_fn(size, |column, row| {
             let cell = [column.into(), row.into()];
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn ranks_equal_those_of_a_naive_count() {
-        // A few levels, so that most values occur often.
+        // Use few levels, so that most values occur often.
         let levels = bell([23, 17], 3).map(|value| (value * 6.0).floor() - 3.0);
         let ranks = rank_equalize(&levels).unwrap();
         let n = 23.0 * 17.0;

@@ -1,12 +1,12 @@
-//! Repetition of a tile over a map of any size.
+//! Repeats a tile over a map of any size.
 //!
 //! Every row starts with one period, which is copied in pieces of doubling length, at the speed of copying memory. A
-//! window of a large map can be filled without the rest of it, and equals its crop.
+//! window of a large map can be filled without computing the rest of the map, and equals the same crop of it.
 
 use crate::TileError;
 use dapple_raster::{Raster, RasterViewMut, Wrap};
 
-/// Makes a map of `size` pixels covered with copies of a tile, starting at the top left corner.
+/// Builds a map of `size` pixels covered with copies of a tile, starting at the top left corner.
 ///
 /// # Errors
 ///
@@ -41,10 +41,10 @@ pub fn repeat<T: Copy + Send + Sync>(
     Ok(Raster::from_vec(size, pixels)?)
 }
 
-/// Covers `out` with copies of a tile, in parallel with the feature `rayon`.
+/// Covers `out` with copies of a tile. With the feature `rayon`, bands of rows are filled in parallel.
 ///
-/// The pixel in column c and row r becomes the tile's pixel `first + [c, r]`, modulo its size. So a window of a large
-/// map is filled like the whole.
+/// The pixel in column c and row r becomes the tile's pixel `first + [c, r]`, modulo the tile's size. So windows of a
+/// large map agree with the map.
 pub fn repeat_into<T: Copy + Send + Sync>(
     tile: &Raster<T>,
     first: [i64; 2],

@@ -1,6 +1,6 @@
-//! Seam reports: measurements of how well a tile repeats.
+//! Seam reports, which measure how well a tile repeats.
 //!
-//! A report answers these questions, each with a number that can be checked by eye:
+//! A report answers these questions, each with a number that can be checked visually:
 //!
 //! * Is the wrap visible? [`Seam`] compares the step across it with the steps inside the tile.
 //! * Has the method lost detail or contrast? [`DetailKept`] compares the tile with its source, octave by octave.
@@ -8,15 +8,15 @@
 //!   softest band.
 //! * Does the seam have content that the source lacks? [`DetailKept::strangeness`] measures it.
 //!
-//! [`SeamReport::faults`] is the verdict over all measures, and [`SeamReports`] the verdict over all channels of an
+//! [`SeamReport::faults`] is the verdict over all measures, and [`SeamReports`] is the verdict over all channels of an
 //! image.
 //!
 //! The measures are our own, and each is defined at its field. One of them needs care: a spline tile changes more
 //! across some pixel boundaries than across others. A wrap that is like the other boundaries of the spline lattice has
 //! a ratio of 1.19 relative to all boundaries. [`SeamOptions::lattice`] selects the boundaries to compare with.
 //!
-//! Sums are in `f64` and in a fixed order, so a report is the same on every machine. No number of it is NaN or
-//! infinite: a quotient is 1 if both of its parts are zero, and at most [`MOST`](SeamReport::MOST).
+//! Sums are in `f64` and in a fixed order, so a report is the same on every machine. None of its numbers is NaN or
+//! infinite: a quotient is 1 if both of its parts are zero, and is at most [`MOST`](SeamReport::MOST).
 
 mod channels;
 mod clipped;
@@ -38,7 +38,7 @@ use crate::{TileError, TileErrorKind};
 use clipped::{Ends, PLAIN_SLOPES};
 use dapple_raster::{Raster, Wrap};
 
-/// Options of a report: the axes to measure, and the boundaries to compare the wrap with.
+/// Options for a report: the axes to measure, and the boundaries to compare the wrap with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -46,13 +46,13 @@ use dapple_raster::{Raster, Wrap};
     serde(default, deny_unknown_fields)
 )]
 pub struct SeamOptions {
-    /// Axes along which the tile repeats, x first; only these are measured. Both by default.
+    /// Axes along which the tile repeats, x first. Only these are measured. The default is both.
     pub axes: [bool; 2],
-    /// Distance in pixels, along each axis, between the boundaries that are like the wrap: divisors of the sides. By
-    /// default 1, which selects every boundary.
+    /// Distance in pixels, along each axis, between the boundaries that are comparable with the wrap. It must divide
+    /// the side. The default is 1, which selects every boundary.
     ///
-    /// A tile that is made on a lattice differs more across some boundaries than across others. Use `2^levels` for a
-    /// spline tile, and the number of pixels per cell for cellular noise.
+    /// A tile that is generated on a lattice differs more across some boundaries than across others. Use `2^levels` for
+    /// a spline tile, and the number of pixels per cell for cellular noise.
     pub lattice: [u32; 2],
 }
 
@@ -84,13 +84,13 @@ impl Default for SeamOptions {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SeamReport {
-    /// Numbers of columns and rows of the tile.
+    /// Number of columns and rows of the tile.
     pub size: [u32; 2],
     /// Options of the measurement.
     pub options: SeamOptions,
-    /// Steps across the wrap, for means of 1, 2, 4 and 8 pixels.
+    /// Steps across the wrap, for means over 1, 2, 4 and 8 pixels.
     pub seams: [Seam; 4],
-    /// Detail of the softest band of the tile as a fraction of the detail of the whole tile, from 0 to 1.
+    /// Detail of the tile's softest band as a fraction of the detail of the whole tile, from 0 to 1.
     ///
     /// Detail is the difference of the image from the mean of 3 × 3 pixels, with weights 1 2 1 along each axis. A band
     /// is 8 columns or 8 rows wide (all of them, if there are fewer), and extends from side to side. Along axes that
@@ -99,64 +99,64 @@ pub struct SeamReport {
     /// band is flat and another is not. It is 1 for a tile that is flat everywhere. Up to rounding, it is also 1 for a
     /// tile of at most 8 columns and 8 rows, which is a single band.
     pub lowest_local_detail: f64,
-    /// Comparison of the tile with its source, if a source was given.
+    /// Comparison of the tile with its source; `None` without a source.
     pub kept: Option<DetailKept>,
 }
 
-/// The contrast and detail that a tile has kept of its source. The two images may differ in size.
+/// The contrast and detail of its source that a tile has retained. The two images may differ in size.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DetailKept {
-    /// Numbers of columns and rows of the source.
+    /// Number of columns and rows of the source.
     pub source_size: [u32; 2],
     /// Power of the tile in each octave, as a multiple of the power of the source, finest octave first.
     ///
-    /// The first octave has the frequencies above ¼ up to ½ cycles per pixel along x or y, whichever is higher: the
-    /// detail that an image of half the size cannot show. The next octave has those above ⅛ up to ¼, and so on. The
-    /// last octave is the last one that begins at 4 cycles per side or more, in the smaller of the two images; below 16
-    /// pixels there is no octave. Powers are per pixel, under a Hann window, so the wrap of neither image affects them.
+    /// The first octave has the frequencies above ¼ up to ½ cycles per pixel along x or y, whichever is higher. This is
+    /// the detail that an image of half the size cannot show. The next octave has the frequencies above ⅛ up to ¼, and
+    /// so on. The last octave is the last one that begins at 4 cycles per side or more, in the smaller of the two
+    /// images. Below 16 pixels there is no octave. Powers are per pixel, under a Hann window, so the wrap of neither
+    /// image affects them.
     pub octaves: Vec<f64>,
-    /// Standard deviation of the tile as a multiple of that of the source.
+    /// Standard deviation of the tile as a multiple of the source's standard deviation.
     pub contrast: f64,
     /// [`SeamReport::lowest_local_detail`] of the source, with mirrored borders.
     pub source_lowest_local_detail: f64,
-    /// Strangeness: dissimilarity of the tile near its seams to the source.
+    /// Strangeness: how much the tile near its seams differs from the source.
     ///
     /// Squares of 8 × 8 pixels across and next to the wrap are compared with all squares of the source. The strangeness
-    /// is their mean distance to the nearest square, as a multiple of the mean distance of squares of the source to the
-    /// nearest other square in it; the largest of all zones. It is about 1 where a seam was moved and not repaired,
-    /// more for stains and double exposures of images with clear shapes, and less for copied parts. `None` for images
-    /// of less than 24 pixels along a side, and for a flat source.
+    /// is their mean distance to the nearest square of the source, divided by the mean distance of the source's own
+    /// squares to the nearest other square in it. The largest value of all zones is used. It is about 1 where a seam
+    /// was moved and not repaired, more for stains and double exposures of images with clear shapes, and less for
+    /// copied parts. `None` if a side of an image is below 24 pixels, or the source is flat.
     pub strangeness: Option<f64>,
     /// Strangeness of both images at half of their size, where a square covers 16 × 16 pixels.
     ///
-    /// Elements that end at a seam, such as courses of a wall, are detected at this size. `None` for images of less
-    /// than 48 pixels along a side, and for a flat source.
+    /// Elements that end at a seam, such as courses of a wall, are detected at this size. `None` if a side of an image
+    /// is below 48 pixels, or the source is flat.
     pub coarse_strangeness: Option<f64>,
     /// Share of the samples that the method clipped, from 0 to 1.
     ///
     /// A sample counts as clipped if it is outside of 0 to 1 by more than half an 8-bit code. At either end, the share
-    /// is limited to the excess of the tile's samples at or past that end over the source's. Samples that are exactly 0
-    /// or 1, as in a tile read from a file, do not count, since their original values are unknown. The share is 0 for a
-    /// source that is outside of 0 to 1 itself. For any other source, the tile is clamped to 0 and 1 before its seams
-    /// are measured, as in an image file.
+    /// is limited to the surplus of the tile's samples at or beyond that end over the source's. Samples that are
+    /// exactly 0 or 1, as in a tile read from a file, do not count, since their original values are unknown. The share
+    /// is 0 for a source that is outside of 0 to 1 itself. For any other source, the tile is clamped to 0 and 1 before
+    /// its seams are measured, as in an image file.
     pub clipped: f64,
-    /// Whether both sides of the wrap are mirror images along an axis that repeats, and the sides of the source are
+    /// Whether the two sides of the wrap are mirror images along an axis that repeats, while the source's sides are
     /// not.
     pub is_mirrored: bool,
 }
 
 impl SeamReport {
-    /// Maximum ratio in a report; larger and infinite ratios are replaced by it.
+    /// Maximum ratio in a report. Larger and infinite ratios are replaced by it.
     pub const MOST: f64 = 1e9;
 
     /// Measures how well a tile repeats.
     ///
     /// # Errors
     ///
-    /// [`NotFinite`](TileErrorKind::NotFinite) for a pixel that is NaN or infinite, [`Count`](TileErrorKind::Count) if
-    /// no axis repeats, [`Range`](TileErrorKind::Range) for a lattice that does not divide the side of an axis that
-    /// repeats.
+    /// [`NotFinite`](TileErrorKind::NotFinite) if a pixel is NaN or infinite, [`Count`](TileErrorKind::Count) if no
+    /// axis repeats, [`Range`](TileErrorKind::Range) if the lattice does not divide the side of an axis that repeats.
     pub fn of(tile: &Raster<f32>, options: &SeamOptions) -> Result<Self, TileError> {
         options.check(tile.size())?;
         check_finite(tile)?;
@@ -169,11 +169,12 @@ impl SeamReport {
         })
     }
 
-    /// Measures how well a tile repeats, and how much it has kept of its source image.
+    /// Measures how well a tile repeats, and how much contrast and detail of its source image it retains.
     ///
     /// # Errors
     ///
-    /// The errors of [`of`](Self::of), and [`NotFinite`](TileErrorKind::NotFinite) for pixels of the source.
+    /// Same as [`of`](Self::of), and [`NotFinite`](TileErrorKind::NotFinite) if a pixel of the source is NaN or
+    /// infinite.
     pub fn beside(
         source: &Raster<f32>,
         tile: &Raster<f32>,
@@ -213,7 +214,7 @@ impl SeamReport {
     ///
     /// # Errors
     ///
-    /// No report causes an error; the type is that of `serde_json`.
+    /// Never fails. The error type is the one of `serde_json`.
     #[cfg(feature = "json")]
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         serde_json::to_string_pretty(self)
@@ -241,14 +242,14 @@ impl SeamOptions {
         Ok(())
     }
 
-    /// Wrapping past the borders of the tile: periodic along axes that repeat, mirrored along the others.
+    /// Returns the wrapping beyond the tile's borders: periodic along axes that repeat, mirrored along the others.
     fn wrap(&self) -> [Wrap; 2] {
         self.axes
             .map(|repeats| if repeats { Wrap::Repeat } else { Wrap::Mirror })
     }
 }
 
-/// The quotient `part / whole` of two numbers that are at least zero: 1 if both are zero, and at most
+/// Returns the quotient `part / whole` of two numbers that are at least zero. It is 1 if both are zero, and at most
 /// [`SeamReport::MOST`].
 fn quotient(part: f64, whole: f64) -> f64 {
     if part == whole {

@@ -1,4 +1,4 @@
-//! The entry point: makes a tile from an image by one of several methods.
+//! Makes a tile from an image by one of several methods. This is the entry point to all of them.
 
 mod feather;
 mod mirror;
@@ -16,7 +16,7 @@ pub use poisson::WrapGradient;
 pub use soft_cut::SoftCut;
 pub use spline_project::{Basis, Pixels, SplineProject};
 
-/// The method that makes an image repeat.
+/// Method that makes an image repeat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -30,7 +30,7 @@ pub enum Method {
     #[cfg_attr(doc, doc = include_str!("../docs/method-periodic.md"))]
     #[default]
     Periodic,
-    /// The periodic image whose gradients are nearest to the given image's gradients.
+    /// The periodic image whose gradients are nearest to the source image's gradients.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/method-poisson.md"))]
     Poisson(WrapGradient),
@@ -38,11 +38,11 @@ pub enum Method {
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/method-soft-cut.md"))]
     SoftCut(SoftCut),
-    /// The paper's blend tile: the image halved and doubled with periodic filters.
+    /// The paper's blend tile, which is the image halved and doubled with periodic filters.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/method-spline-project.md"))]
     SplineProject(SplineProject),
-    /// First [`Periodic`](Self::Periodic), then [`SplineProject`](Self::SplineProject).
+    /// [`Periodic`](Self::Periodic) followed by [`SplineProject`](Self::SplineProject).
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/method-periodic-then-project.md"))]
     PeriodicThenProject(SplineProject),
@@ -50,7 +50,7 @@ pub enum Method {
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/method-feather.md"))]
     Feather(Feather),
-    /// The image next to its mirror image, twice as large along each axis; another common baseline.
+    /// The image next to its mirror image, twice as large along each axis. This is another common baseline.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/method-mirror.md"))]
     Mirror,
@@ -77,9 +77,9 @@ pub enum Method {
     serde(default, deny_unknown_fields)
 )]
 pub struct Seamless {
-    /// Method; [`Method::Periodic`] by default.
+    /// Method; the default is [`Method::Periodic`].
     pub method: Method,
-    /// Axes along which the tile repeats, x first; both by default.
+    /// Axes along which the tile repeats, x first; the default is both.
     pub axes: [bool; 2],
 }
 
@@ -105,40 +105,40 @@ impl Seamless {
         Self { axes, ..self }
     }
 
-    /// Makes the tile of one raster.
+    /// Makes a tile from a scalar raster.
     ///
     /// # Errors
     ///
-    /// See [`apply_maps`](Self::apply_maps).
+    /// Same as [`apply_maps`](Self::apply_maps).
     pub fn apply(&self, image: &Raster<f32>) -> Result<Raster<f32>, TileError> {
         let mut planes = self.planes(core::slice::from_ref(image), &[[1.0; 2]])?;
         Ok(planes.swap_remove(0))
     }
 
-    /// Makes the tile of a color raster.
+    /// Makes a tile from a color raster.
     ///
     /// # Errors
     ///
-    /// See [`apply_maps`](Self::apply_maps).
+    /// Same as [`apply_maps`](Self::apply_maps).
     pub fn apply_color(&self, image: &Raster<LinearRgb>) -> Result<Raster<LinearRgb>, TileError> {
         color_from_planes(self.planes(&color_planes(image), &[[1.0; 2]; 3])?)
     }
 
-    /// Makes the tiles of all maps of a material, which are cut along the same paths.
+    /// Makes tiles from all maps of a material. All maps are cut along the same paths.
     ///
     /// Normals are processed as slopes. Where an image is reflected, its normals match the reflected heights.
     ///
     /// # Errors
     ///
     /// * [`Count`](TileErrorKind::Count) without maps
-    /// * [`Raster`](TileErrorKind::Raster) for maps of different sizes
-    /// * [`NotFinite`](TileErrorKind::NotFinite) for pixels that are NaN or infinite
-    /// * [`TooSmall`](TileErrorKind::TooSmall) for a side of a single pixel along an axis that repeats
-    /// * [`Wavelet`](TileErrorKind::Wavelet), [`Margin`](TileErrorKind::Margin) or [`Range`](TileErrorKind::Range) for
-    ///   sizes and options that the method does not support
+    /// * [`Raster`](TileErrorKind::Raster) if the sizes of the maps differ
+    /// * [`NotFinite`](TileErrorKind::NotFinite) if a pixel is NaN or infinite
+    /// * [`TooSmall`](TileErrorKind::TooSmall) if a side along an axis that repeats is a single pixel
+    /// * [`Wavelet`](TileErrorKind::Wavelet), [`Margin`](TileErrorKind::Margin) or [`Range`](TileErrorKind::Range) if
+    ///   the method does not support the size or the options
     pub fn apply_maps(&self, maps: &[Map]) -> Result<Vec<Map>, TileError> {
         let planes: Vec<_> = match self.method {
-            // Center normals first: otherwise, the slope of the code for a flat normal would have another code when
+            // Center normals first. Otherwise, the code of a flat normal, which is slightly sloped, would change when
             // reflected.
             Method::Mirror => maps
                 .iter()
@@ -150,7 +150,7 @@ impl Seamless {
         Map::all_with_planes(maps, self.planes(&planes, &reflections)?)
     }
 
-    /// Makes the tiles of planes. `reflections` are the factors of each plane for reflection along x and along y.
+    /// Makes tiles from planes. `reflections` are the factors of each plane for reflection along x and along y.
     fn planes(
         &self,
         planes: &[Raster<f32>],

@@ -1,4 +1,4 @@
-//! The periodic Fourier projector: a plane halved and doubled again with sines and cosines.
+//! The periodic Fourier projector, which halves and doubles a plane with sines and cosines.
 //!
 //! Du, Wang and Meng name sines as other functions for a tile, and leave open how sines are refined. Here a coarse line
 //! of `m` samples represents the function that has these samples and consists of the sines and cosines below the
@@ -19,14 +19,14 @@ use dapple_wavelet::Phase;
 /// Lengths of a line before and after halving, and the position of the coarse samples.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Axis {
-    /// Number of pixels.
+    /// Number of pixels in the line.
     pub(crate) fine: u32,
-    /// Number of coarse samples, fewer than pixels.
+    /// Number of coarse samples, which is less than the number of pixels.
     pub(crate) coarse: u32,
     /// Whether the line repeats; otherwise it is mirrored.
     pub(crate) repeats: bool,
-    /// Position of the first coarse sample, if the line repeats: at the center of the pixels that become one sample, or
-    /// one fine pixel earlier for each halving.
+    /// Position of the first coarse sample, if the line repeats. It is at the center of the pixels that become one
+    /// sample, or one fine pixel earlier for each halving.
     pub(crate) phase: Phase,
 }
 
@@ -65,8 +65,8 @@ struct Sampling {
     coarse: Fourier,
     /// Whether lines are mirrored, which doubles the length of the transforms.
     mirrored: bool,
-    /// Phase from the first pixel to the first coarse sample, as cosine and sine, for each frequency up to the coarse
-    /// line's last.
+    /// Phase shifts from the first pixel to the first coarse sample, as cosine and sine, for each frequency up to the
+    /// coarse line's highest.
     turns: Vec<[f64; 2]>,
 }
 

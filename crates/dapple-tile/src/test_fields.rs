@@ -5,8 +5,8 @@ use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::Raster;
 use dapple_raster::glam::DVec2;
 
-/// Five octaves of gradient noise. The first octave has 5 cells per side if it repeats, and otherwise cells of 25
-/// pixels at a random offset.
+/// Returns five octaves of gradient noise. The first octave has 5 cells per side if it repeats, and otherwise cells of
+/// 25 pixels at a random offset.
 pub(crate) fn fbm(seed: u64, size: [u32; 2], repeats: bool) -> Raster<f32> {
     let octave = |octave: u32| {
         let seed = Seed(seed).child("octave", octave.into());
@@ -20,7 +20,7 @@ pub(crate) fn fbm(seed: u64, size: [u32; 2], repeats: bool) -> Raster<f32> {
     Raster::from_fn(size, |x, y| value(x, y) as f32).unwrap()
 }
 
-/// Stones of about 9 pixels, each with a constant shade, with dark joints.
+/// Returns stones of about 9 pixels with dark joints. Each stone has a constant shade.
 pub(crate) fn gravel(seed: u64, size: [u32; 2], repeats: bool) -> Raster<f32> {
     let seed = Seed(seed).child("gravel", 0);
     let lattice = Lattice::new(seed, size, size[0] / 9, repeats, 9.3);
@@ -118,7 +118,7 @@ pub(crate) fn beside(left: &Raster<f32>, right: &Raster<f32>) -> Raster<f32> {
     .unwrap()
 }
 
-/// The mean absolute difference of the means of `px` pixels on both sides of a column's left border.
+/// Returns the mean absolute difference of the means of `px` pixels on both sides of a column's left border.
 pub(crate) fn step_at(raster: &Raster<f32>, column: u32, px: u32) -> f64 {
     let [from, at, to] = [column - px, column, column + px].map(|column| column as usize);
     let mean = |values: &[f32]| values.iter().map(|v| f64::from(*v)).sum::<f64>() / f64::from(px);
@@ -129,7 +129,7 @@ pub(crate) fn step_at(raster: &Raster<f32>, column: u32, px: u32) -> f64 {
     steps.sum::<f64>() / f64::from(raster.height())
 }
 
-/// The step where two rasters meet, divided by the mean of all steps inside both.
+/// Returns the step where two rasters meet, divided by the mean of all steps inside both.
 pub(crate) fn seam_ratio_of(left: &Raster<f32>, right: &Raster<f32>, px: u32) -> f64 {
     let seam = step_at(&beside(left, right), left.width(), px);
     let inside = |raster: &Raster<f32>| {
@@ -143,13 +143,14 @@ pub(crate) fn seam_ratio_of(left: &Raster<f32>, right: &Raster<f32>, px: u32) ->
     seam / (0.5 * (inside(left) + inside(right)))
 }
 
-/// The mean seam ratio of a tile with itself along both axes.
+/// Returns the mean seam ratio of a tile with itself along both axes.
 pub(crate) fn seam_ratio(tile: &Raster<f32>, px: u32) -> f64 {
     let turned = turned(tile);
     0.5 * (seam_ratio_of(tile, tile, px) + seam_ratio_of(&turned, &turned, px))
 }
 
-/// The power of the highest frequencies: the mean square of fourth differences along both axes inside the raster.
+/// Returns the power of the highest frequencies, as the mean square of fourth differences along both axes inside the
+/// raster.
 pub(crate) fn top_power(raster: &Raster<f32>) -> f64 {
     let along_rows = |raster: &Raster<f32>| {
         let rows = raster.view();
@@ -163,7 +164,7 @@ pub(crate) fn top_power(raster: &Raster<f32>) -> f64 {
     0.5 * (along_rows(raster) + along_rows(&turned(raster)))
 }
 
-/// The mean variance of many rasters around their common mean.
+/// Returns the mean variance of many rasters around their common mean.
 pub(crate) fn variance(rasters: &[Raster<f32>]) -> f64 {
     let statistics: Vec<_> = rasters.iter().map(Raster::statistics).collect();
     let mean_of = |value: &dyn Fn(usize) -> f64| {
@@ -176,7 +177,7 @@ pub(crate) fn variance(rasters: &[Raster<f32>]) -> f64 {
     })
 }
 
-/// Whether the result has the same bits on one, two and seven threads.
+/// Returns whether the result has the same bits on one, two and seven threads.
 pub(crate) fn same_on_threads(result: impl Fn() -> Raster<f32> + Send + Sync) -> bool {
     let on = |count: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build();

@@ -1,4 +1,4 @@
-//! Weighting: the shares of layers at every pixel.
+//! Weighting, which determines the shares of layers at every pixel.
 //!
 //! Plain weights give gradual transitions in which both textures are half transparent. With heights, the higher stones
 //! of one layer extend into the other. A blend tile cuts the transition along its own features.
@@ -21,7 +21,7 @@ use crate::map::check_finite;
 use crate::{Layer, TileError, TileErrorKind};
 use dapple_raster::Raster;
 
-/// The rule that converts the weights of layers to their shares. The shares of a pixel sum to 1.
+/// Rule that converts the weights of layers to their shares. The shares of a pixel sum to 1.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/weighting.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -34,27 +34,27 @@ pub enum Weighting {
     /// Each weight divided by the sum of all weights.
     #[default]
     Given,
-    /// By height: the higher layer is visible. The blend tile is the height of layers without one.
+    /// Share by height: the higher layer is visible. The blend tile is the height of layers without one.
     Height {
-        /// Difference of heights over which layers mix, above 0, for heights from 0 to 1: 0.1 is crisp, 0.3 soft. With
-        /// such heights and up to four layers, a layer with less than 1/16 of the weights is invisible, for depths up
-        /// to 1.
+        /// Height difference over which layers mix, above 0. For heights from 0 to 1, 0.1 is crisp and 0.3 is soft.
+        /// With such heights and up to four layers, a layer with less than 1/16 of the weights is invisible, for depths
+        /// up to 1.
         depth: f64,
     },
-    /// The blend tile is divided at thresholds. The first layer is where the tile is lowest: in the cracks of a
-    /// [`BlendMap`](crate::BlendMap).
+    /// Share by mask: the blend tile is divided at thresholds. The first layer is visible where the tile is lowest, as
+    /// in the cracks of a [`BlendMap`](crate::BlendMap).
     Mask {
-        /// Reciprocal of the width of the transition, in values of the tile, above 0 and at most 1e9. 1 is soft, 4 and
-        /// more show the features of the tile, and 1e9 gives hard edges without any transition.
+        /// Reciprocal of the transition's width, which is measured in tile values. Above 0 and at most 1e9. 1 is soft,
+        /// 4 and more show the features of the tile, and 1e9 gives hard edges without any transition.
         gain: f64,
     },
 }
 
-/// The gain of hard edges.
+/// Maximum gain, which gives hard edges.
 const MOST_GAIN: f64 = 1e9;
 
 impl Weighting {
-    /// The share of each layer.
+    /// Computes the share of each layer.
     pub(crate) fn shares(
         &self,
         layers: &[Layer<'_>],
@@ -94,7 +94,7 @@ pub(crate) fn normalize(weights: &[&Raster<f32>]) -> Result<Vec<Raster<f32>>, Ti
     shares.collect()
 }
 
-/// The sums of the weights, added in the order of the layers. They must be above zero.
+/// Returns the sums of the weights, added in the order of the layers. They must be above zero.
 fn sums(weights: &[&Raster<f32>]) -> Result<Raster<f64>, TileError> {
     let first = weights.first().ok_or(TileError::new(TileErrorKind::Count {
         what: "layers",
@@ -110,7 +110,7 @@ fn sums(weights: &[&Raster<f32>]) -> Result<Raster<f64>, TileError> {
     Ok(sums)
 }
 
-/// The height of each layer; the blend tile for layers without one.
+/// Returns the height of each layer. For layers without a height, it is the blend tile.
 fn heights<'a>(
     layers: &[Layer<'a>],
     tile: Option<&'a Raster<f32>>,
@@ -142,7 +142,7 @@ fn by_height(
     for levels in &levels[1..] {
         top = zip(&top, levels, |top, level| level.max(*top))?;
     }
-    // Divide by the depth first, so that the highest layer has nearness 1 even for the smallest depth.
+    // Divide by the depth first. The highest layer then has a nearness of 1 even for the smallest depth.
     let nearness = |level: &f64, top: &f64| (1.0 - (top - level) / depth).max(0.0);
     let product = |&weight: &f32, nearness: &f64| (f64::from(weight) * nearness) as f32;
     let shares: Vec<Raster<f32>> = weights
@@ -153,8 +153,8 @@ fn by_height(
     normalize(&shares.iter().collect::<Vec<_>>())
 }
 
-/// The level of a layer for the shares by height. The highest layer is visible, and a layer without weight is below all
-/// others.
+/// Returns the level of a layer for the shares by height. The highest layer is visible, and a layer without weight is
+/// below all others.
 fn level(&weight: &f32, &height: &f32) -> f64 {
     let weight = f64::from(weight);
     f64::from(height) + weight - (0.25 / weight - 1.0).max(0.0)
@@ -205,7 +205,7 @@ fn by_mask(
     Ok(shares)
 }
 
-/// A ramp from 1 where the mask is below the threshold to 0 where it is above.
+/// Returns a ramp from 1, where the mask is below the threshold, to 0, where it is above.
 fn step(threshold: f64, mask: f32, half_width: f64) -> f64 {
     let half_width = half_width.min(threshold).min(1.0 - threshold);
     let above = f64::from(mask) - threshold;
@@ -218,7 +218,7 @@ fn step(threshold: f64, mask: f32, half_width: f64) -> f64 {
     }
 }
 
-/// Combines two rasters of the same size, in parallel with the feature `rayon`.
+/// Combines two rasters of the same size. With the feature `rayon`, pixels are combined in parallel.
 pub(crate) fn zip<A: Sync, B: Sync, C: Send>(
     a: &Raster<A>,
     b: &Raster<B>,

@@ -1,4 +1,4 @@
-//! Transforms of lengths with large prime factors: a convolution with a chirp.
+//! Transforms lengths with large prime factors by a convolution with a chirp.
 
 use super::passes::{self, Pass};
 use super::{BAND, Element, LANES, exchange_parts, times, turn};
@@ -9,7 +9,7 @@ use super::{BAND, Element, LANES, exchange_parts, times, turn};
 pub(super) struct Chirp {
     /// The chirp `exp(−πi j²/n)`, as cosine and sine.
     chirp: Vec<[f64; 2]>,
-    /// Transform of the conjugate chirp, padded to a circular convolution, divided by the padded length.
+    /// Transform of the conjugate chirp, padded for a circular convolution, divided by the padded length.
     kernel: Vec<[f64; 2]>,
     /// Passes for the padded length.
     passes: Vec<Pass>,
@@ -18,7 +18,7 @@ pub(super) struct Chirp {
 impl Chirp {
     pub(super) fn new(length: usize) -> Self {
         let n = length as u64;
-        // j² modulo 2n without overflow: (j + 1)² = j² + 2j + 1.
+        // Compute j² modulo 2n without overflow, by (j + 1)² = j² + 2j + 1.
         let squares = (0..n).scan(0, |square, j| {
             let now = *square;
             *square = (now + 2 * j + 1) % (2 * n);

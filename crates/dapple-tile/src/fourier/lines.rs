@@ -23,7 +23,7 @@ pub(crate) fn times(element: &Element, [re, im]: [f64; 2]) -> Element {
     product
 }
 
-/// [`BAND`] columns of a plane, starting at `first`, with zeros past the last column.
+/// Returns [`BAND`] columns of a plane, starting at `first`, with zeros beyond the last column.
 pub(crate) fn columns(plane: &[f64], width: usize, first: usize) -> Vec<Element> {
     let n_columns = BAND.min(width - first);
     let element = |row: &[f64]| {
@@ -51,7 +51,8 @@ pub(crate) fn map_columns(
     })
 }
 
-/// Concatenates the results of `make` for the indices below `count`, computed in parallel with the feature `rayon`.
+/// Concatenates the results of `make` for the indices below `count`. With the feature `rayon`, they are computed in
+/// parallel.
 pub(crate) fn par_flat_map<T: Copy + Send>(
     count: usize,
     make: impl Fn(usize) -> Vec<T> + Sync,

@@ -1,4 +1,4 @@
-//! Transforms of lengths with small factors only: one pass over all lines for each factor.
+//! Transforms lengths with small prime factors only, by one pass over all lines for each factor.
 
 use super::{BAND, Element, LANES, turn};
 
@@ -13,13 +13,13 @@ pub(super) struct Pass {
     radix: usize,
     blocks: usize,
     stride: usize,
-    /// Twiddle factors of the outputs of the butterfly, by block and output, as cosine and sine.
+    /// Twiddle factors for the butterfly's outputs, by block and output, as cosine and sine.
     twiddles: Vec<[f64; 2]>,
     /// Roots of unity `exp(−2πi j/radix)`.
     roots: Vec<[f64; 2]>,
 }
 
-/// The passes for a length; `None` if it has a prime factor other than 2, 3, 5 and 7.
+/// Returns the passes for a length; `None` if it has a prime factor other than 2, 3, 5 and 7.
 pub(super) fn plan(length: usize) -> Option<Vec<Pass>> {
     let mut passes = Vec::new();
     let mut rest = length;
@@ -47,7 +47,7 @@ pub(super) fn run(passes: &[Pass], lines: &mut Vec<Element>) {
     }
 }
 
-/// Real and imaginary parts of the elements of a small transform.
+/// Real and imaginary parts of a small transform's elements.
 type Parts<const R: usize> = ([f64; R], [f64; R]);
 
 impl Pass {
@@ -102,7 +102,7 @@ impl Pass {
     }
 }
 
-/// The transform of two elements.
+/// Transforms two elements.
 #[inline(always)]
 fn butterfly2((re, im): Parts<2>, _: &[[f64; 2]; 2]) -> Parts<2> {
     (
@@ -111,7 +111,7 @@ fn butterfly2((re, im): Parts<2>, _: &[[f64; 2]; 2]) -> Parts<2> {
     )
 }
 
-/// The transform of four elements.
+/// Transforms four elements.
 #[inline(always)]
 fn butterfly4((re, im): Parts<4>, _: &[[f64; 2]; 4]) -> Parts<4> {
     let even_re = [re[0] + re[2], re[0] - re[2]];
@@ -130,7 +130,7 @@ fn butterfly4((re, im): Parts<4>, _: &[[f64; 2]; 4]) -> Parts<4> {
     (join(even_re, odd_re), join(even_im, odd_im))
 }
 
-/// The transform of an odd number of elements. Outputs `j` and `R − j` share their sums.
+/// Transforms an odd number of elements. Outputs `j` and `R − j` share their sums.
 #[inline(always)]
 fn butterfly_odd<const R: usize>((re, im): Parts<R>, roots: &[[f64; 2]; R]) -> Parts<R> {
     let mut out = ([0.0; R], [0.0; R]);

@@ -1,18 +1,18 @@
-//! The power spectrum of a plane.
+//! Computes the power spectrum of a plane.
 
 use super::lines::columns;
 use super::{BAND, Element, Fourier, LANES, par_flat_map};
 
-/// Powers `|F(k)|²` of all frequencies of a plane, row by row, starting with frequency `[0, 0]`.
+/// Returns the powers `|F(k)|²` of all frequencies of a plane, row by row, starting with frequency `[0, 0]`.
 ///
-/// `values` are the pixels of a plane of `size`, row by row. Frequencies past the middle of a side are negative. The
-/// sum of all powers is the sum of all squared values times their number.
+/// `values` are the pixels of a plane of `size`, row by row. Frequencies beyond the middle of a side are negative. The
+/// sum of all powers is the sum of all squared values times the number of values.
 pub(crate) fn power_spectrum(values: &[f64], size: [usize; 2]) -> Vec<f64> {
     let [width, height] = size;
     let n_halves = height / 2 + 1;
     let spectra = column_spectra(values, width, n_halves);
     let mut powers = row_powers(&spectra, width, n_halves);
-    // The spectrum of a real plane at a negative frequency is the conjugate of that at the frequency.
+    // The spectrum of a real plane at a negative frequency is the conjugate of that at the positive frequency.
     for row in n_halves..height {
         let opposite = (height - row) * width;
         for column in 0..width {
@@ -22,7 +22,7 @@ pub(crate) fn power_spectrum(values: &[f64], size: [usize; 2]) -> Vec<f64> {
     powers
 }
 
-/// Spectra of all columns up to the middle frequency, column by column.
+/// Computes the spectra of all columns up to the middle frequency, column by column.
 fn column_spectra(values: &[f64], width: usize, n_halves: usize) -> Vec<[f64; 2]> {
     let height = values.len() / width;
     let fourier = Fourier::new(height);
@@ -37,8 +37,8 @@ fn column_spectra(values: &[f64], width: usize, n_halves: usize) -> Vec<[f64; 2]
     })
 }
 
-/// Separates the spectrum of a real line that was transformed as the real or imaginary part of a complex line, from the
-/// elements at a frequency and at its negative.
+/// Separates the spectrum of a real line that was transformed as the real or imaginary part of a complex line, given
+/// the elements at a frequency and at its negative.
 fn half_of_pair(element: &Element, opposite: &Element, line: usize) -> [f64; 2] {
     let lane = line % LANES;
     let [re, im] = [element[lane], element[LANES + lane]];
@@ -50,7 +50,7 @@ fn half_of_pair(element: &Element, opposite: &Element, line: usize) -> [f64; 2] 
     }
 }
 
-/// Powers of the rows up to the middle one, from the spectra of the columns.
+/// Computes the powers of the rows up to the middle one, from the spectra of the columns.
 fn row_powers(spectra: &[[f64; 2]], width: usize, n_halves: usize) -> Vec<f64> {
     let fourier = Fourier::new(width);
     par_flat_map(n_halves.div_ceil(LANES), |strip| {

@@ -1,4 +1,4 @@
-//! Reports of all channels of a map, with a common verdict.
+//! Reports for all channels of a map, with a common verdict.
 
 use super::clipped::{Ends, SRGB_SLOPES};
 use super::{SeamOptions, SeamReport};
@@ -7,24 +7,24 @@ use core::fmt;
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
 
-/// The seam reports of all channels of an image.
+/// Seam reports for all channels of an image.
 ///
 /// A seam in a single channel is a change of hue, and may be absent from the luminance. `Display` lists the faults of
 /// each channel, and then the table of the worst channel.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SeamReports {
-    /// Reports, one for each channel.
+    /// The reports, one for each channel.
     channels: Vec<ChannelReport>,
 }
 
-/// The seam report of a channel.
+/// The seam report for one channel.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ChannelReport {
     /// Name of the channel; empty if it is the only one.
     pub channel: String,
-    /// Report of the channel.
+    /// The channel's report.
     pub report: SeamReport,
 }
 
@@ -34,7 +34,7 @@ impl SeamReports {
     ///
     /// # Errors
     ///
-    /// See [`SeamReport::of`].
+    /// Same as [`SeamReport::of`].
     pub fn of<'a>(
         channels: impl IntoIterator<Item = (&'a str, &'a Raster<f32>)>,
         options: &SeamOptions,
@@ -55,7 +55,7 @@ impl SeamReports {
     ///
     /// # Errors
     ///
-    /// See [`SeamReport::of`].
+    /// Same as [`SeamReport::of`].
     pub fn of_map(tile: &Map, options: &SeamOptions) -> Result<Self, TileError> {
         let channels = channels(tile)?;
         Self::of(
@@ -64,11 +64,12 @@ impl SeamReports {
         )
     }
 
-    /// Measures how well a map repeats, and how much it has kept of its source, a map of the same kind.
+    /// Measures how well a map repeats, and how much contrast and detail of its source (a map of the same kind) it
+    /// retains.
     ///
     /// # Errors
     ///
-    /// See [`SeamReport::beside`].
+    /// Same as [`SeamReport::beside`].
     pub fn beside(source: &Map, tile: &Map, options: &SeamOptions) -> Result<Self, TileError> {
         let pairs = channels(source)?.into_iter().zip(channels(tile)?);
         let reports = pairs.map(|((name, source), (_, tile))| {
@@ -81,7 +82,7 @@ impl SeamReports {
             channels: reports.collect::<Result<_, TileError>>()?,
         };
         if let (Map::Color(source), Map::Color(tile)) = (source, tile) {
-            // Displayed colors end at 0 and 1, so clipping is measured in linear light.
+            // Displayed colors are limited to 0 to 1, so clipping is measured in linear light.
             for ((of, source), tile) in reports
                 .channels
                 .iter_mut()
@@ -96,26 +97,26 @@ impl SeamReports {
         Ok(reports)
     }
 
-    /// The reports, one for each channel.
+    /// Returns the reports, one for each channel.
     #[must_use]
     pub fn channels(&self) -> &[ChannelReport] {
         &self.channels
     }
 
-    /// Whether there is at least one channel, and all channels pass.
+    /// Returns whether there is at least one channel, and all channels pass.
     #[must_use]
     pub fn passes(&self) -> bool {
         !self.channels.is_empty() && self.channels.iter().all(|of| of.report.passes())
     }
 
-    /// The largest [`badness`](SeamReport::badness) of all channels.
+    /// Returns the largest [`badness`](SeamReport::badness) of all channels.
     #[must_use]
     pub fn badness(&self) -> f64 {
         self.worst()
             .map_or(SeamReport::MOST, |of| of.report.badness())
     }
 
-    /// The channel with the largest badness; the first if several are equal.
+    /// Returns the channel with the largest badness. If several are equal, returns the first.
     #[must_use]
     pub fn worst(&self) -> Option<&ChannelReport> {
         let worse =
@@ -156,7 +157,7 @@ impl fmt::Display for SeamReports {
     }
 }
 
-/// The channels of a map as displayed.
+/// Returns the channels of a map as displayed.
 fn channels(map: &Map) -> Result<Vec<(&'static str, Raster<f32>)>, TileError> {
     Ok(match map {
         Map::Value(values) => vec![("", values.clone())],
@@ -178,7 +179,7 @@ fn channels(map: &Map) -> Result<Vec<(&'static str, Raster<f32>)>, TileError> {
     })
 }
 
-/// Shares of the samples of red, green and blue at the ends of the range.
+/// Counts the shares of the red, green and blue samples at the ends of the range.
 fn color_ends(colors: &Raster<LinearRgb>) -> [Ends; 3] {
     let channels: [fn(&LinearRgb) -> f32; 3] = [|color| color.r, |color| color.g, |color| color.b];
     channels.map(|channel| Ends::of(colors.pixels().iter().map(channel), SRGB_SLOPES))

@@ -1,25 +1,25 @@
-//! The share of the samples that a method clipped.
+//! Measures the share of samples that a method clipped.
 //!
-//! A sample is clipped if the method moved it past 0 or 1, where an image file stores the end of its range. A source
+//! A sample is clipped if the method moved it beyond 0 or 1, where an image file stores the end of its range. A source
 //! has samples at the ends, too: a black disk remains black in the tile, and crops and mixtures of black are black. So
-//! at each end, the clipped share is limited to the tile's excess of samples over the source.
+//! at each end, the clipped share is limited to the surplus of the tile's samples over the source's.
 //!
 //! Reference: our own.
 
-/// Maximum distance from 0 or 1 that counts as rounding: half an 8-bit code.
+/// Maximum distance from 0 or 1 that is attributed to rounding, half an 8-bit code.
 const ROUNDING: f32 = 0.5 / 255.0;
 
-/// Slope of the sRGB curve at 0 and at 1: change of the code, from 0 to 1, per change of the linear value.
+/// Slope of the sRGB curve at 0 and at 1, as the change of the code (from 0 to 1) per change of the linear value.
 pub(super) const SRGB_SLOPES: [f32; 2] = [12.92, 1.055 / 2.4];
 
-/// Slope of values that are displayed as they are.
+/// Slope at 0 and at 1 for values that are displayed without conversion.
 pub(super) const PLAIN_SLOPES: [f32; 2] = [1.0; 2];
 
-/// Shares of the samples of an image at 0 and at 1.
+/// Shares of an image's samples at 0 and at 1.
 pub(super) struct Ends {
-    /// Share of samples at or past each end.
+    /// Share of samples at or beyond each end.
     reached: [f64; 2],
-    /// Share of samples past each end by more than rounding.
+    /// Share of samples beyond each end by more than rounding.
     past: [f64; 2],
 }
 
@@ -41,7 +41,7 @@ impl Ends {
         }
     }
 
-    /// Share of the samples of a tile that were clipped; 0 for a source that is outside of 0 to 1 itself.
+    /// Returns the share of a tile's samples that were clipped; 0 for a source that is outside of 0 to 1 itself.
     pub(super) fn clipped(source: &Self, tile: &Self) -> f64 {
         if source.past != [0.0; 2] {
             return 0.0;

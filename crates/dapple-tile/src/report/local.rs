@@ -1,4 +1,4 @@
-//! The band of an image with the least detail.
+//! Finds the band of an image with the least detail.
 //!
 //! Reference: our own.
 
@@ -17,7 +17,7 @@ pub(super) fn lowest_detail(image: &Raster<f32>, wrap: [Wrap; 2]) -> f64 {
     quotient(lowest, mean).sqrt().min(1.0)
 }
 
-/// Mean square of the detail in each column, and in each row.
+/// Computes the mean square of the detail in each column, and in each row.
 fn detail_powers(image: &Raster<f32>, wrap: [Wrap; 2]) -> [Vec<f64>; 2] {
     let [width, height] = image.size();
     let beside = |axis: usize, index: u32, length: u32| {
@@ -28,7 +28,7 @@ fn detail_powers(image: &Raster<f32>, wrap: [Wrap; 2]) -> [Vec<f64>; 2] {
     let mut rows = Vec::with_capacity(height as usize);
     for y in 0..height {
         let [above, here, below] = beside(1, y, height).map(|row| image.row(row));
-        // The vertical mean over three rows, with weights 1 2 1.
+        // Compute the vertical mean over three rows, with weights 1 2 1.
         let down: Vec<f64> = (0..width as usize)
             .map(|x| mean_121([above[x], here[x], below[x]].map(f64::from)))
             .collect();
@@ -44,12 +44,12 @@ fn detail_powers(image: &Raster<f32>, wrap: [Wrap; 2]) -> [Vec<f64>; 2] {
     [columns, rows]
 }
 
-/// The mean of three numbers with weights 1 2 1; exact for equal numbers.
+/// Returns the mean of three numbers with weights 1 2 1, which is exact for equal numbers.
 fn mean_121([before, here, after]: [f64; 3]) -> f64 {
     ((before + after) + 2.0 * here) / 4.0
 }
 
-/// The lowest mean over the width of a band.
+/// Returns the lowest mean over the width of a band.
 fn lowest_band(powers: &[f64], wrap: Wrap) -> f64 {
     let n = powers.len();
     let width = BAND.min(n);

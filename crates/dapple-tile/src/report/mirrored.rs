@@ -1,16 +1,17 @@
-//! Test whether both sides of a wrap are mirror images of each other.
+//! Tests whether both sides of a wrap are mirror images of each other.
 
 use crate::TileError;
 use crate::axis::transpose;
 use dapple_raster::Raster;
 
-/// Number of pixels on either side that are compared.
+/// Number of pixels that are compared on either side.
 const REACH: usize = 8;
 
 /// Maximum squared difference of mirror images, as a fraction of the variation of the compared pixels.
 const LARGEST: f64 = 0.01;
 
-/// Whether the last columns mirror the first ones, or the last rows the first ones, along an axis that repeats.
+/// Returns whether the last columns mirror the first columns, or the last rows the first rows, along an axis that
+/// repeats.
 pub(super) fn is_mirrored(tile: &Raster<f32>, axes: [bool; 2]) -> Result<bool, TileError> {
     Ok((axes[0] && along_rows(tile)) || (axes[1] && along_rows(&transpose(tile)?)))
 }

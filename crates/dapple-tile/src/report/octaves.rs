@@ -1,4 +1,4 @@
-//! The power of an image in octaves of frequency.
+//! Measures the power of an image in octaves of frequency.
 //!
 //! Reference: our own.
 
@@ -11,7 +11,7 @@ use dapple_raster::Raster;
 /// cycles to either side, so it affects no octave.
 const LEAST_CYCLES: u32 = 4;
 
-/// Power of the tile in each octave as a multiple of the power of the source, finest octave first.
+/// Returns the tile's power in each octave as a multiple of the source's power, finest octave first.
 pub(super) fn kept(source: &Raster<f32>, tile: &Raster<f32>) -> Vec<f64> {
     let sides = source.size().into_iter().chain(tile.size());
     let shortest = sides.min().unwrap_or(0);
@@ -21,7 +21,7 @@ pub(super) fn kept(source: &Raster<f32>, tile: &Raster<f32>) -> Vec<f64> {
     pairs.map(|(kept, all)| quotient(kept, all)).collect()
 }
 
-/// Mean square of an image in each octave, under the window.
+/// Computes the mean square of an image in each octave, under the window.
 fn octave_powers(image: &Raster<f32>, n_octaves: usize) -> Vec<f64> {
     let mut powers = vec![0.0; n_octaves];
     if n_octaves == 0 {
@@ -49,7 +49,7 @@ fn octave_powers(image: &Raster<f32>, n_octaves: usize) -> Vec<f64> {
     powers
 }
 
-/// The pixels minus their mean, multiplied by the windows of columns and rows.
+/// Returns the pixels minus their mean, multiplied by the windows of columns and rows.
 fn windowed(image: &Raster<f32>, [columns, rows]: &[Vec<f64>; 2]) -> Vec<f64> {
     // Subtract the first pixel, so that a flat image is exactly zero.
     let first = f64::from(image.pixels()[0]);
@@ -63,7 +63,7 @@ fn windowed(image: &Raster<f32>, [columns, rows]: &[Vec<f64>; 2]) -> Vec<f64> {
     values
 }
 
-/// The Hann window for a side of `n` pixels.
+/// Returns the Hann window for a side of `n` pixels.
 fn hann(n: u32) -> Vec<f64> {
     let turn = |index: u32| TAU * (f64::from(index) + 0.5) / f64::from(n);
     (0..n)
@@ -71,7 +71,7 @@ fn hann(n: u32) -> Vec<f64> {
         .collect()
 }
 
-/// The octave of a frequency: 0 above ¼ cycle per pixel, `usize::MAX` for the mean.
+/// Returns the octave of a frequency: 0 above ¼ cycle per pixel, `usize::MAX` for the mean.
 fn octave(index: u32, n: u32) -> usize {
     let cycles = u64::from(index.min(n - index));
     if cycles == 0 {

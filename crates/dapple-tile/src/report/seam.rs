@@ -1,4 +1,4 @@
-//! The step across the wrap, compared with the steps inside the tile.
+//! Compares the step across the wrap with the steps inside the tile.
 //!
 //! Reference: our own.
 
@@ -7,7 +7,7 @@ use crate::TileError;
 use crate::axis::transpose;
 use dapple_raster::Raster;
 
-/// Widths of the means on either side of a boundary, in pixels.
+/// Widths of the pixel ranges that are averaged on either side of a boundary, in pixels.
 const WIDTHS: [u32; 4] = [1, 2, 4, 8];
 
 /// The ratio of the step across the wrap to the steps inside the tile, at one scale.
@@ -17,7 +17,7 @@ const WIDTHS: [u32; 4] = [1, 2, 4, 8];
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Seam {
-    /// Number of pixels in a mean.
+    /// Number of pixels that are averaged on either side.
     pub width: u32,
     /// Seam from the last column to the first.
     ///
@@ -29,12 +29,12 @@ pub struct Seam {
     /// Both axes together: the sum of the steps across their wraps, divided by the sum of their steps inside. `None` if
     /// a repeating axis has no ratio.
     pub both: Option<SeamRatio>,
-    /// Excess of the visibility of the wrap over the most visible boundary inside, in standard deviations of the
-    /// boundaries inside, for the axis with the larger excess; 0 if the wrap is less visible.
+    /// Difference between the visibility of the wrap and that of the most visible boundary inside, in standard
+    /// deviations of the boundaries inside. The axis with the larger difference counts. 0 if the wrap is less visible.
     ///
-    /// The visibility of a boundary is a mean over all lines. On each line, it is the step divided by a reference: the
-    /// mean of the 8 steps on either side plus a tenth of the mean step of the line. Deviations are at least 5 % of the
-    /// mean. `None` if an axis is too short.
+    /// The visibility of a boundary is a mean over all lines. On each line, it is the step divided by a reference,
+    /// which is the mean of the 8 steps on either side plus a tenth of the mean step of the line. Deviations are at
+    /// least 5 % of the mean. `None` if an axis is too short.
     pub stands_out: Option<f64>,
 }
 
@@ -42,11 +42,11 @@ pub struct Seam {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SeamRatio {
-    /// The ratio, at least 0: 1 for a wrap like any other boundary, more for a seam, less where the tile is soft; 1 for
-    /// a flat tile.
+    /// The ratio, at least 0. It is 1 if the wrap is like any other boundary, more for a seam, and less where the tile
+    /// is soft. It is 1 for a flat tile.
     pub ratio: f64,
-    /// Standard deviation of the ratio over the boundaries inside, each taken as the wrap: the expected deviation from
-    /// 1 for a good tile. At least 0; `None` if there are fewer than two such boundaries.
+    /// Standard deviation of the ratio over the boundaries inside, each taken as the wrap. This is the deviation from 1
+    /// to expect for a good tile. At least 0; `None` if there are fewer than two such boundaries.
     pub spread: Option<f64>,
 }
 
@@ -77,7 +77,8 @@ pub(super) fn seams(tile: &Raster<f32>, options: &SeamOptions) -> Result<[Seam; 
     }))
 }
 
-/// The excess of the wrap's visibility, for the axis where it is largest; `None` if an axis is too short.
+/// Returns the wrap's excess visibility (see [`Seam::stands_out`]), for the axis where it is largest. Returns `None` if
+/// an axis is too short.
 fn stands_out(lines: [Option<&Raster<f32>>; 2], width: u32, options: &SeamOptions) -> Option<f64> {
     let mut most: f64 = 0.0;
     for (lines, lattice) in lines.into_iter().zip(options.lattice) {
@@ -92,7 +93,7 @@ fn stands_out(lines: [Option<&Raster<f32>>; 2], width: u32, options: &SeamOption
     Some(most)
 }
 
-/// Steps of one axis at one width, each a mean over all lines.
+/// Steps along one axis for one width, each a mean over all lines.
 #[derive(Clone, Copy)]
 struct Steps {
     /// Step across the wrap.
@@ -118,7 +119,7 @@ impl Steps {
         }
     }
 
-    /// The sums of the steps of two axes, which are treated as independent.
+    /// Adds the steps of two axes, which are treated as independent.
     fn plus(self, other: Self) -> Self {
         let variances = self.variance.zip(other.variance);
         Self {
@@ -176,8 +177,8 @@ fn axis_steps(tile: &Raster<f32>, lattice: usize) -> [Option<Steps>; 4] {
     })
 }
 
-/// First pixels of the two means at the wrap, and then at every boundary of the lattice with enough pixels for both.
-/// Empty if there is no boundary inside.
+/// Returns the first pixels of the two averaged ranges at the wrap, and then at every boundary of the lattice with
+/// enough pixels for both. Empty if there is no boundary inside.
 pub(super) fn boundaries(n: usize, width: usize, lattice: usize) -> Vec<[usize; 2]> {
     let last = n.saturating_sub(width);
     let inside = (lattice..=last).step_by(lattice);
@@ -187,7 +188,7 @@ pub(super) fn boundaries(n: usize, width: usize, lattice: usize) -> Vec<[usize; 
     if all.len() > 1 { all } else { Vec::new() }
 }
 
-/// Replaces the sums of `half` pixels starting at each pixel by sums of twice as many.
+/// Replaces the sums of `half` pixels, which start at each pixel, by sums of twice as many pixels.
 ///
 /// The order of additions is symmetric: sums of the same pixels in reverse order have the same bits. So the seam of a
 /// mirror image is exactly 0.

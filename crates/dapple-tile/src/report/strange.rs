@@ -1,4 +1,4 @@
-//! Strangeness: dissimilarity of a tile near its seams to the source.
+//! Strangeness, which measures how much a tile near its seams differs from the source.
 //!
 //! Sample squares of pixels across and next to the wrap are compared with all squares of the source. Parts that were
 //! cut or moved as a whole have a match there; a stain, an interrupted line, or a double exposure has none. The
@@ -21,7 +21,7 @@ use crate::axis::transpose;
 use dapple_raster::{Raster, Wrap, parallel, simd};
 use fearless_simd::{f32x16, prelude::*};
 
-/// Side of a square, in pixels.
+/// Side length of a square, in pixels.
 const SIDE: u32 = 8;
 
 /// Number of squares that are compared in each zone.
@@ -30,7 +30,8 @@ const SQUARES: u32 = 128;
 /// Maximum number of candidate positions in the source: all positions of an image of 256 × 256 pixels.
 const PLACES: usize = 1 << 16;
 
-/// Divisor of the side: the zone on the far side of the wrap, where methods blend two images, is a fifth of the side.
+/// Divisor of the side that gives the width of the zone on the far side of the wrap, where methods blend two images.
+/// The zone is a fifth of the side.
 const BESIDE: u32 = 5;
 
 /// Number of candidates that are compared at once.
@@ -39,11 +40,11 @@ const LANES: usize = 16;
 /// Width and height of a quarter of a square.
 const HALF: usize = SIDE as usize / 2;
 
-/// Factor that keeps a bound valid despite rounding of the bound and of distances. Each takes fewer than 100 operations
+/// Factor that makes a bound valid despite rounding of the bound and of distances. Each takes fewer than 100 operations
 /// with a relative error of at most half of the last bit, 6e-8.
 const SAFE: f32 = 1.0 - 1e-5;
 
-/// Maximum error of the difference of two quarter means by rounding, as a fraction of the largest value: half of the
+/// Maximum rounding error of the difference of two quarter means, as a fraction of the largest value. It is half of the
 /// last bit for either mean, and twice as much for their difference.
 const MEAN_ERROR: f32 = 4e-7;
 
@@ -56,8 +57,8 @@ type Square = [f32; (SIDE * SIDE) as usize];
 /// First column and row of each quarter of a square.
 const QUARTERS: [[usize; 2]; 4] = [[0, 0], [HALF, 0], [0, HALF], [HALF, HALF]];
 
-/// The strangeness at a scale: the maximum over all zones. Each value of a square is the mean of `scale` × `scale`
-/// pixels. `None` if an image is too small or the source is flat.
+/// Computes the strangeness at a scale, as the maximum over all zones. Each value of a square is the mean of `scale` ×
+/// `scale` pixels. Returns `None` if an image is too small or the source is flat.
 pub(super) fn strangeness(
     source: &Raster<f32>,
     tile: &Raster<f32>,
@@ -73,11 +74,11 @@ pub(super) fn strangeness(
     if deviation == 0.0 {
         return Ok(None);
     }
-    // The distance of matches within the source.
+    // Measure the distance of matches within the source.
     let places = Places::new(&reduced);
     let usual = places.usual();
     let usual = usual.max(LEAST_DISTANCE * deviation * f64::from(SIDE));
-    // The distances of the tile's squares, along each axis that repeats.
+    // Measure the distances of the tile's squares, along each axis that repeats.
     let mut most: f64 = 0.0;
     for (axis, _) in axes.iter().enumerate().filter(|(_, repeats)| **repeats) {
         let turned = match axis {
@@ -91,7 +92,7 @@ pub(super) fn strangeness(
     Ok(Some(most))
 }
 
-/// Means of `scale` × `scale` pixels. Remaining pixels of the last columns and rows are left out.
+/// Averages blocks of `scale` × `scale` pixels. Remaining pixels of the last columns and rows are left out.
 fn reduced(source: &Raster<f32>, scale: u32) -> Result<Raster<f32>, TileError> {
     let size = source.size().map(|side| side / scale);
     let wrap = [Wrap::Clamp; 2];
@@ -100,7 +101,7 @@ fn reduced(source: &Raster<f32>, scale: u32) -> Result<Raster<f32>, TileError> {
     })?)
 }
 
-/// The mean of `scale` × `scale` pixels with the given upper left corner.
+/// Returns the mean of `scale` × `scale` pixels with the given upper left corner.
 fn mean_at(image: &Raster<f32>, [x, y]: [i64; 2], scale: u32, wrap: [Wrap; 2]) -> f32 {
     let mut sum = 0.0;
     for row in 0..i64::from(scale) {
@@ -111,7 +112,8 @@ fn mean_at(image: &Raster<f32>, [x, y]: [i64; 2], scale: u32, wrap: [Wrap; 2]) -
     (sum / f64::from(scale * scale)) as f32
 }
 
-/// Squares across the wrap of the columns, and squares next to it; transposed back if the tile was transposed.
+/// Returns the squares across the wrap of the columns, and the squares next to it. If the tile was transposed, squares
+/// are transposed back.
 fn zones(tile: &Raster<f32>, is_turned: bool, scale: u32) -> [Vec<Square>; 2] {
     let [width, height] = tile.size();
     let beside = (width / scale / BESIDE).saturating_sub(SIDE).max(1);
@@ -131,14 +133,14 @@ fn zones(tile: &Raster<f32>, is_turned: bool, scale: u32) -> [Vec<Square>; 2] {
     ]
 }
 
-/// The position with the given index of a well-spread sequence along a side: multiples of the golden ratio.
+/// Returns a position along a side from a well-spread sequence, multiples of the golden ratio.
 fn spread(index: u32, side: u32) -> i64 {
     // The factor is 2^32 divided by the golden ratio.
     let part = u64::from(index.wrapping_mul(2_654_435_769));
     ((part * u64::from(side)) >> 32) as i64
 }
 
-/// The values of a square with the given corner, in a tile that repeats.
+/// Returns the values of the square with the given corner, in a tile that repeats.
 fn square(tile: &Raster<f32>, corner: [i64; 2], is_turned: bool, scale: u32) -> Square {
     core::array::from_fn(|index| {
         let (row, column) = (
@@ -156,24 +158,24 @@ fn square(tile: &Raster<f32>, corner: [i64; 2], is_turned: bool, scale: u32) -> 
     })
 }
 
-/// The largest absolute value.
+/// Returns the largest absolute value.
 fn largest(values: &[f32]) -> f32 {
     values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
-/// The mean of a quarter of a square.
+/// Returns the mean of one quarter of a square.
 fn mean(square: &Square, [column, row]: [usize; 2]) -> f32 {
     let rows = square.chunks_exact(SIDE as usize).skip(row).take(HALF);
     let values = rows.flat_map(|row| &row[column..column + HALF]);
     mean_of(values.map(|&value| f64::from(value)).sum())
 }
 
-/// The mean of a quarter with the given sum, which may exceed the range of single precision.
+/// Returns the mean of a quarter with the given sum, which may exceed the range of single precision.
 fn mean_of(sum: f64) -> f32 {
     (sum / (HALF * HALF) as f64) as f32
 }
 
-/// Means of one quarter of all squares of a lattice, row by row.
+/// Computes the means of one quarter of every square on a lattice, row by row.
 fn quarter_means(
     source: &Raster<f32>,
     size: [usize; 2],
@@ -199,18 +201,18 @@ fn at_most_largest<S: Simd>(simd: S, bounds: f32x16<S>) -> f32x16<S> {
     bounds.min(f32x16::splat(simd, f32::MAX))
 }
 
-/// Number of candidates in a row, padded for the last register.
+/// Returns the number of candidates in a row, padded for the last register.
 fn padded(columns: usize) -> usize {
     columns.next_multiple_of(LANES)
 }
 
-/// Squares of the source on a lattice, the candidates. The lattice is as fine as the maximum number of candidates
+/// The candidates: squares of the source on a lattice. The lattice is as fine as the maximum number of candidates
 /// allows.
 struct Places<'a> {
     source: &'a Raster<f32>,
     /// Distance of neighbors in the lattice, in pixels.
     step: usize,
-    /// Numbers of columns and rows of the lattice.
+    /// Number of columns and rows of the lattice.
     size: [usize; 2],
     /// Pixels of each row of the source, sorted into runs by the remainder of the column modulo `step`. So the pixels
     /// at one column of adjacent candidates are contiguous.
@@ -252,7 +254,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Mean distance of squares of the source to their nearest match elsewhere in it.
+    /// Returns the mean distance of the source's squares to their nearest match elsewhere in the source.
     fn usual(&self) -> f64 {
         let [columns, rows] = self.source.size().map(|side| side - SIDE + 1);
         self.mean(SQUARES as usize, |index| {
@@ -274,12 +276,13 @@ impl<'a> Places<'a> {
         parallel::map(count, distance).iter().sum::<f64>() / count as f64
     }
 
-    /// Distance of a square to the nearest candidate, except for candidates that overlap the square at `left_out`.
+    /// Returns the distance of a square to the nearest candidate, except for candidates that overlap the square at
+    /// `left_out`.
     fn distance(&self, square: &Square, left_out: Option<[usize; 2]>) -> f64 {
         simd::dispatch!(simd::level(), simd => self.search(simd, square, left_out)).sqrt()
     }
 
-    /// Squared distance of a square to the nearest candidate.
+    /// Returns the squared distance of a square to the nearest candidate.
     #[inline(always)]
     fn search<S: Simd>(&self, simd: S, square: &Square, left_out: Option<[usize; 2]>) -> f64 {
         let own = QUARTERS.map(|quarter| mean(square, quarter));
@@ -301,7 +304,7 @@ impl<'a> Places<'a> {
         // Visit the groups of candidates; compute exact distances only where the bounds allow a nearer one.
         let mut least = f64::INFINITY;
         for group in guess.into_iter().chain(groups) {
-            // Squares of smaller numbers are not exact.
+            // The squares of smaller numbers are not exact.
             let limit = f32x16::splat(simd, least as f32 + f32::MIN_POSITIVE);
             let bounds = self.bounds(simd, &own, error, group);
             if bounds.simd_lt(limit).any_true() && self.may_be_nearer(simd, square, group, limit) {
@@ -315,7 +318,7 @@ impl<'a> Places<'a> {
         least
     }
 
-    /// Whether the index is a candidate, and its square does not overlap the one at `left_out`.
+    /// Returns whether `place` is a candidate, and its square does not overlap the one at `left_out`.
     #[inline(always)]
     fn is_compared(&self, place: [usize; 2], left_out: Option<[usize; 2]>) -> bool {
         let meets = |axis: usize| {
@@ -326,7 +329,7 @@ impl<'a> Places<'a> {
         place[0] < self.size[0] && !(meets(0) && meets(1))
     }
 
-    /// Lower bounds on the squared distances of adjacent candidates.
+    /// Computes lower bounds on the squared distances of adjacent candidates.
     #[inline(always)]
     fn bounds<S: Simd>(
         &self,
@@ -347,7 +350,7 @@ impl<'a> Places<'a> {
         at_most_largest(simd, bounds * f32x16::splat(simd, factor))
     }
 
-    /// Whether the squared distance of any of some adjacent candidates may be below a limit.
+    /// Returns whether the squared distance of any of a group of adjacent candidates may be below a limit.
     #[inline(always)]
     fn may_be_nearer<S: Simd>(
         &self,
@@ -375,7 +378,7 @@ impl<'a> Places<'a> {
         true
     }
 
-    /// Squared distances of adjacent candidates.
+    /// Computes the squared distances of adjacent candidates.
     #[inline(always)]
     fn sums(&self, square: &Square, group: [usize; 2]) -> [f64; LANES] {
         let mut sums = [0.0; LANES];
@@ -395,7 +398,7 @@ impl<'a> Places<'a> {
         sums
     }
 
-    /// Pixels at one position within the squares of adjacent candidates.
+    /// Returns the pixels at one position within the squares of adjacent candidates.
     #[inline(always)]
     fn others(&self, [first, row]: [usize; 2], [x, y]: [usize; 2]) -> &[f32] {
         let run = (row * self.step + y) * self.step + x % self.step;
@@ -417,7 +420,7 @@ mod tests {
         strangeness(&source, &tile, [true; 2], 1).unwrap().unwrap()
     }
 
-    /// Distance of a square to the nearest of all candidates of a lattice.
+    /// Returns the distance of a square to the nearest of all candidates on a lattice.
     fn of_all(places: &Places<'_>, own: &Square, left_out: Option<[usize; 2]>) -> f64 {
         let meets = |at: [usize; 2]| {
             left_out

@@ -1,4 +1,4 @@
-//! A report as a text table.
+//! Formats a report as a text table.
 
 use super::{DetailKept, SeamRatio, SeamReport};
 use core::fmt;
@@ -53,7 +53,7 @@ impl SeamReport {
 }
 
 impl DetailKept {
-    /// Writes the measurements relative to the source. The first one continues the line of the tile's lowest local
+    /// Writes the measurements relative to the source. The first one continues the line with the tile's lowest local
     /// detail.
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let source = format!("of the source {:.3}", self.source_lowest_local_detail);
@@ -62,7 +62,7 @@ impl DetailKept {
             write!(f, "{NOTHING:>CELL$}")?;
         }
         for (index, kept) in self.octaves.iter().enumerate() {
-            // Three octaves per line, aligned with the columns of the ratios.
+            // Write three octaves per line, aligned with the columns of the ratios.
             if index > 0 && index % 3 == 0 {
                 write!(f, "\n{:<22}", "")?;
             }

@@ -1,34 +1,34 @@
-//! The verdict: the faults of a tile, derived from the measurements of its report.
+//! The verdict on a tile: its faults, derived from the measurements of its report.
 //!
-//! The limits were set on 2 × 2 copies of 16 photographs, made to repeat in 9 ways, which were judged by eye first. The
-//! README states how far the verdict agrees with eyes on other photographs.
+//! The limits were set on 2 × 2 copies of 16 photographs, which 9 methods made repeat, and which were first judged
+//! visually. The README states how far the verdict agrees with visual judgment on other photographs.
 
 use super::{DetailKept, SeamReport};
 use core::fmt;
 
-/// Maximum excess of a wrap's visibility over the most visible boundary inside, in standard deviations.
+/// Maximum of [`Seam::stands_out`](super::Seam::stands_out), in standard deviations.
 const STANDS_OUT: f64 = 2.5;
 
-/// Minimum detail of the softest band, as a fraction of that of the softest band of the source.
+/// Minimum detail of the softest band, as a fraction of the detail of the source's softest band.
 const SOFTEST: f64 = 0.85;
 
-/// Minimum power that the third octave must keep. The mean of two images keeps half of it.
+/// Minimum power in the third octave, as a fraction of the source's. The mean of two images has half of it.
 const THIRD_OCTAVE: f64 = 0.65;
 
 /// Minimum contrast of a tile whose third octave is weak. The mean of two images loses both contrast and octave,
-/// whereas a part of a pattern may lack only one octave.
+/// whereas a part of a pattern may lack only the octave.
 const CONTRAST: f64 = 0.9;
 
-/// Maximum [`strangeness`](DetailKept::strangeness).
+/// Maximum [`strangeness`](DetailKept::strangeness) of a tile that passes.
 const STRANGEST: f64 = 0.84;
 
-/// Maximum [`coarse_strangeness`](DetailKept::coarse_strangeness).
+/// Maximum [`coarse_strangeness`](DetailKept::coarse_strangeness) of a tile that passes.
 const COARSE_STRANGEST: f64 = 0.97;
 
-/// Maximum share of clipped samples.
+/// Maximum share of clipped samples of a tile that passes.
 const CLIPPED: f64 = 0.04;
 
-/// Width of the means at which a seam must have been measured, in pixels.
+/// Minimum [`Seam::width`](super::Seam::width) at which a seam must have been measured, in pixels.
 const LEAST_WIDTH: u32 = 4;
 
 /// A fault of a tile.
@@ -40,21 +40,21 @@ pub enum Fault {
     /// The step across the wrap is more visible than any boundary inside, by
     /// [`Seam::stands_out`](super::Seam::stands_out).
     Step {
-        /// Width of the means, in pixels, at which the step is most visible.
+        /// Width of the averaged pixel ranges, in pixels, at which the step is most visible.
         width: u32,
     },
     /// A band has lost its detail, typically in a crossfade.
     Soft,
     /// Contrast is lost at all scales, as in a blend of two images.
     Ghosts,
-    /// Pixels at the seam are unlike all pixels of the source.
+    /// Pixels at the seam are unlike any pixels of the source.
     Strange,
     /// Samples were clipped to 0 or 1.
     Clipped {
         /// Share of clipped samples, from 0 to 1.
         share: f64,
     },
-    /// Both sides of the wrap are mirror images, and the sides of the source are not.
+    /// The two sides of the wrap are mirror images, while the source's sides are not.
     Mirrored,
 }
 
@@ -75,7 +75,7 @@ impl fmt::Display for Fault {
 }
 
 impl SeamReport {
-    /// The faults of the tile; empty if it [passes](Self::passes).
+    /// Returns the faults of the tile; empty if it [passes](Self::passes).
     ///
     /// Without a source, only steps are tested. A wrap that is less visible than the boundaries inside is not a fault.
     #[must_use]
@@ -105,15 +105,15 @@ impl SeamReport {
         faults
     }
 
-    /// Whether the tile has no [fault](Self::faults).
+    /// Returns whether the tile has no [fault](Self::faults).
     #[must_use]
     pub fn passes(&self) -> bool {
         self.faults().is_empty()
     }
 
-    /// The worst measure of the tile, as a multiple of its limit: at most 1 for tiles that pass.
+    /// Returns the worst measure of the tile, as a multiple of its limit. It is at most 1 for tiles that pass.
     ///
-    /// It ranks tiles of one source. It is [`MOST`](Self::MOST) for a tile that is too small to be judged.
+    /// It ranks tiles with the same source. It is [`MOST`](Self::MOST) for a tile that is too small to be judged.
     #[must_use]
     pub fn badness(&self) -> f64 {
         if self.faults().contains(&Fault::TooSmall) {
@@ -129,7 +129,7 @@ impl SeamReport {
             .min(Self::MOST)
     }
 
-    /// The width of the means at which the wrap stands out most, and the excess of its visibility there.
+    /// Returns the width at which the wrap stands out most, and the excess of its visibility there.
     fn most_visible(&self) -> (u32, f64) {
         let measured = self
             .seams
@@ -143,7 +143,7 @@ impl SeamReport {
 }
 
 impl DetailKept {
-    /// Each measure as a multiple of its limit, with the fault that it indicates above 1.
+    /// Returns each measure as a multiple of its limit, with the fault that it indicates if it is above 1.
     fn measures(&self, lowest_local_detail: f64) -> [(f64, Fault); 5] {
         let over = |limit: f64, kept: f64| super::quotient(limit, kept);
         let power = self

@@ -1,8 +1,8 @@
-//! The visibility of the step across the wrap, compared with the boundaries inside.
+//! Measures the visibility of the step across the wrap, compared with the boundaries inside.
 //!
 //! A step is masked by changes around it, and visible on even ground (contrast masking). So each step is divided by the
 //! mean of the steps next to it on its line before lines are averaged. This distinguishes a cut through a brick from
-//! the joints between bricks, which the mean of plain steps does not.
+//! the joints between bricks, which a mean of the undivided steps does not.
 //!
 //! Reference: our own.
 
@@ -14,7 +14,7 @@ use dapple_raster::Raster;
 /// Number of steps on either side that can mask a step.
 const AROUND: usize = 8;
 
-/// Fraction of the mean step of a line that is added to the steps around, to avoid a division by zero.
+/// Fraction of a line's mean step that is added to the mean of the surrounding steps, to avoid a division by zero.
 const FLOOR: f64 = 0.1;
 
 /// Minimum standard deviation of the boundaries inside, as a fraction of their mean; smaller differences are invisible.
@@ -49,7 +49,8 @@ pub(super) fn stands_out(tile: &Raster<f32>, width: usize, lattice: usize) -> Op
     Some(above(wrap, inside))
 }
 
-/// Excess of a number over the largest of others, in standard deviations of these; at least 0.
+/// Returns the difference between `wrap` and the largest number of `inside`, in standard deviations of `inside`; at
+/// least 0.
 fn above(wrap: f64, inside: &[f64]) -> f64 {
     let mean = inside.iter().sum::<f64>() / inside.len() as f64;
     let squares = inside.iter().map(|shown| (shown - mean) * (shown - mean));
@@ -61,7 +62,8 @@ fn above(wrap: f64, inside: &[f64]) -> f64 {
     }
 }
 
-/// Steps between the means of `width` pixels before and after the left border of each pixel, on a circular line.
+/// Computes the steps between the means of `width` pixels before and after the left border of each pixel, on a circular
+/// line.
 fn steps(line: &[f32], width: usize) -> Vec<f64> {
     let n = line.len();
     let values: Vec<f64> = once_more(line, width).map(f64::from).collect();
@@ -78,7 +80,7 @@ fn steps(line: &[f32], width: usize) -> Vec<f64> {
         .collect()
 }
 
-/// For each step, the sum of the steps at some distances before and after it, on a circular line.
+/// Computes, for each step, the sum of the steps at the given distances before and after it, on a circular line.
 fn sums_beside(steps: &[f64], distances: Range<usize>) -> Vec<f64> {
     let (n, reach) = (steps.len(), distances.end);
     let before = &steps[n - reach..];
@@ -97,7 +99,7 @@ fn sums_beside(steps: &[f64], distances: Range<usize>) -> Vec<f64> {
     sums
 }
 
-/// Iterator over all values, and then the first `more` again.
+/// Iterates over all values, and then over the first `more` values again.
 fn once_more<T: Copy>(values: &[T], more: usize) -> impl Iterator<Item = T> {
     values.iter().chain(&values[..more]).copied()
 }
@@ -112,7 +114,7 @@ mod tests {
         unit_f32(hash2(Seed(3), [x.into(), y.into()], 0) as u32)
     }
 
-    /// Evenly spaced bricks of 32 × 32 pixels with bright joints, whose sides rise over 4 pixels.
+    /// Returns evenly spaced bricks of 32 × 32 pixels with bright joints, whose sides rise over 4 pixels.
     fn bricks(x: u32, y: u32) -> f32 {
         let [x, y] = [x, y].map(|at| (at % 32).min(32 - at % 32));
         0.2 + 0.15 * (4.0 - x.min(y) as f32).max(0.0)

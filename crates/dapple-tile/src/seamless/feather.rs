@@ -1,4 +1,4 @@
-//! Crossfades, common baselines.
+//! Crossfades, which serve as common baselines.
 //!
 //! [`Feather::HalfShift`] is the method of GIMP's filter "Tile Seamless" and similar tools. The image is blended with
 //! itself rolled by half of its size. The rolled image is continuous at the borders, the original in the middle, and
@@ -9,7 +9,7 @@
 //! As in those tools, weights rise linearly, and the half shift uses a plain average, which costs contrast. Widths are
 //! in pixels.
 //!
-//! Reference: our own, after these tools.
+//! Reference: our own, modeled on these tools.
 
 use crate::axis::each_axis;
 use crate::overlap::{check_margin, overlap};
@@ -24,24 +24,24 @@ use dapple_raster::Raster;
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
 pub enum Feather {
-    /// A crossfade with the image rolled by half of its size, up to the middle; the size does not change. A side must
-    /// have at least 4 pixels.
+    /// A crossfade with the image rolled by half of its size, up to the middle. The size does not change. A side must
+    /// be at least 4 pixels long.
     #[default]
     HalfShift,
-    /// A crossfade of the two ends over a margin; the tile is smaller by the margin.
+    /// A crossfade of the two ends over a margin. The tile is smaller than the image by the margin.
     Margin {
         /// Width of the crossfade, in pixels, from 1 to half of the side.
         margin: u32,
-        /// Weights of the blend; variance-preserving by default.
+        /// Weights of the blend. The default is variance-preserving.
         #[cfg_attr(feature = "serde", serde(default))]
         crossfade: Crossfade,
     },
 }
 
-/// Shortest side with two pixels on either side of its middle.
+/// Minimum side length, which leaves two pixels on either side of the middle.
 const LEAST_SIDE: u32 = 4;
 
-/// Makes the tiles of all planes.
+/// Makes tiles from all planes.
 pub(crate) fn tile(
     planes: &[Raster<f32>],
     feather: &Feather,
@@ -63,7 +63,7 @@ pub(crate) fn tile(
     }
 }
 
-/// Blends every row with itself rolled by half of its length.
+/// Blends every row with itself rolled by half of the row's length.
 fn half_shift(plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     let length = plane.width();
     if length < LEAST_SIDE {
@@ -85,7 +85,8 @@ fn half_shift(plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     })?)
 }
 
-/// Weight of the image itself: 0 at the first and last pixel, 1 at both pixels where the rolled image has its ends.
+/// Returns the weight of the original image: 0 at the first and last pixel, 1 at both pixels where the rolled image has
+/// its ends.
 fn tent(column: u32, length: u32) -> f32 {
     let left = length - length / 2;
     if column < left {

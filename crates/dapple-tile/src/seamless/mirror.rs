@@ -1,12 +1,12 @@
-//! The image next to its mirror image, as a tile.
+//! Makes a tile from an image and its mirror image.
 //!
-//! No pixel is lost, and the seam is exact: along each axis that repeats, the last pixel is adjacent to its own copy,
-//! and so is the first. The price is a tile twice as long with visible symmetry. It is a baseline for comparison.
+//! No pixel is lost, and there is no seam: along each axis that repeats, the last pixel is adjacent to its own copy,
+//! and so is the first. The cost is a tile twice as long with visible symmetry. It is a baseline for comparison.
 
 use crate::TileError;
 use dapple_raster::{Raster, Wrap};
 
-/// Makes the tiles of all planes, twice as large along each axis that repeats.
+/// Makes tiles from all planes, twice as large along each axis that repeats.
 ///
 /// Halves reflected along x are multiplied by the plane's first factor, halves reflected along y by its second.
 pub(crate) fn tile(

@@ -1,12 +1,12 @@
-//! The periodic part of an image: Moisan's periodic plus smooth decomposition.
+//! Computes the periodic part of an image by Moisan's periodic plus smooth decomposition.
 //!
 //! Source: Lionel Moisan, "Periodic plus smooth image decomposition", Journal of Mathematical Imaging and Vision 39,
 //! 2011, <https://doi.org/10.1007/s10851-010-0227-1>.
 //!
 //! An image is `u = p + s`. The smooth part solves `Δs = v` on the torus. `Δ` is the sum of the four neighbors minus
 //! four times the pixel. `v` is zero except at the borders, where it is the jump to the pixel across the wrap. The mean
-//! of `s` is zero, so `p = u − s` keeps the mean. It also keeps all detail, since `s` has none. `p` is the image whose
-//! differences are nearest, by least squares, to those of `u` inside and to zero across the wrap.
+//! of `s` is zero, so `p = u − s` has the same mean as `u`. `p` also retains all detail, since `s` has none. `p` is the
+//! image whose differences are nearest, by least squares, to those of `u` inside and to zero across the wrap.
 //!
 //! Differences from the paper: the jumps across x and the jumps across y are solved separately, and the solutions are
 //! added. With frequencies along the border only, the solution across it is a difference of two powers,
@@ -33,14 +33,15 @@ pub(crate) fn tile(planes: &[Raster<f32>], axes: [bool; 2]) -> Result<Vec<Raster
     planes.iter().map(tile).collect()
 }
 
-/// Jumps across the wrap of an axis: for each pixel of the first border, the pixel of the last border minus it.
+/// Returns the jumps across the wrap of an axis: for each pixel of the first border, the pixel of the last border minus
+/// it.
 pub(crate) fn jumps(plane: &Raster<f32>, axis: usize) -> Vec<f64> {
     let last = border(plane, axis, plane.size()[axis] - 1);
     let differences = last.zip(border(plane, axis, 0));
     differences.map(|(last, first)| last - first).collect()
 }
 
-/// The pixels of the column (axis 0) or row (axis 1) at `index`.
+/// Iterates over the pixels of the column (axis 0) or row (axis 1) at `index`.
 pub(crate) fn border(
     plane: &Raster<f32>,
     axis: usize,
@@ -55,7 +56,7 @@ pub(crate) fn border(
 
 /// Subtracts the smooth part from a plane.
 ///
-/// `jumps` has, for each axis that repeats, the jump at each pixel of the first border.
+/// For each axis that repeats, `jumps` holds the jump at each pixel of the first border.
 pub(crate) fn without_jumps(
     plane: &Raster<f32>,
     jumps: &[Option<Vec<f64>>; 2],
@@ -70,13 +71,13 @@ pub(crate) fn without_jumps(
     Ok(Raster::from_vec(plane.size(), pixels)?)
 }
 
-/// The image with mean zero whose Laplacian is zero except for the jumps at the first borders, and their negatives at
-/// the last ones.
+/// The smooth part: the image with mean zero whose Laplacian is zero except for the jumps at the first borders, and
+/// their negatives at the last ones.
 pub(crate) struct Smooth {
     size: [usize; 2],
-    /// Part from the jumps across x, in bands of columns.
+    /// Part caused by the jumps across x, in bands of columns.
     across_x: Vec<Vec<Element>>,
-    /// Part from the jumps across y.
+    /// Part caused by the jumps across y.
     across_y: Option<Layer>,
 }
 
@@ -128,9 +129,9 @@ fn add_columns(rows: &mut [f64], width: usize, first: usize, elements: &[Element
     }
 }
 
-/// The smooth image of the jumps across one axis.
+/// The smooth image for the jumps across one axis.
 struct Layer {
-    /// Number of pixels across the borders.
+    /// Number of pixels perpendicular to the borders.
     across: usize,
     /// Number of pixels along a border.
     along: usize,
@@ -141,7 +142,7 @@ struct Layer {
     modes: Vec<Mode>,
 }
 
-/// One frequency along the border.
+/// One frequency along the border, with its decay across the image.
 struct Mode {
     /// Decay ρ from one pixel to the next, away from the border.
     decay: f64,
@@ -150,7 +151,7 @@ struct Mode {
 }
 
 impl Layer {
-    /// Makes the layer of the jumps along a border that repeats, or that is mirrored at its ends.
+    /// Builds the layer for the jumps along a border that repeats, or that is mirrored at its ends.
     fn new(jumps: &[f64], repeats: bool, across: usize) -> Self {
         let mirrored = jumps.iter().rev().filter(|_| !repeats);
         let line = jumps.iter().chain(mirrored);
@@ -171,7 +172,7 @@ impl Layer {
         }
     }
 
-    /// Computes [`BAND`] lines along the border, starting at line `band * BAND`; lines past the last are unused.
+    /// Computes [`BAND`] lines along the border, starting at line `band * BAND`. Lines beyond the last are unused.
     fn band(&self, band: usize) -> Vec<Element> {
         let n = self.fourier.length();
         let first = band * BAND;
@@ -194,13 +195,14 @@ impl Layer {
 }
 
 impl Mode {
-    /// Frequency `k` of `n` along the border, with the spectrum of the jumps at this frequency.
+    /// Creates the mode of frequency `k` of `n` along the border. `jump` is the spectrum of the jumps at this
+    /// frequency.
     ///
     /// Since `ρ + 1/ρ = 4 − 2 cos φ`, every `ρ^x` is a solution away from the borders. The scale makes the difference
     /// of `ρ^(across − 1 − x)` and `ρ^x` correct at the borders.
     fn new(k: usize, n: usize, jump: [f64; 2], across: usize) -> Self {
         let sine = libm::sin(PI * (k as f64 / n as f64));
-        // 1 − cos φ, computed without cancellation.
+        // Compute 1 − cos φ without cancellation.
         let rise = 2.0 * sine * sine;
         let decay = 1.0 / (1.0 + rise + (rise * (2.0 + rise)).sqrt());
         let scale = decay / ((1.0 + decay) * (1.0 - power(decay, across)));
@@ -210,7 +212,7 @@ impl Mode {
         }
     }
 
-    /// The profile `ρ^(across − 1 − x) − ρ^x` for [`BAND`] positions, starting at `first`.
+    /// Returns the profile `ρ^(across − 1 − x) − ρ^x` for [`BAND`] positions, starting at `first`.
     fn profile(&self, first: usize, across: usize) -> Element {
         let mut profile = [0.0; BAND];
         let mut near = power(self.decay, first);
@@ -228,20 +230,20 @@ impl Mode {
     }
 }
 
-/// The solution for a constant jump of 1 along the border: linear from border to border.
+/// Returns the solution for a constant jump of 1 along the border. It is linear from border to border.
 fn ramp(first: usize, across: usize) -> Element {
     let middle = 0.5 * (across - 1) as f64;
     core::array::from_fn(|at| ((first + at) as f64 - middle) / across as f64)
 }
 
-/// An element with a real number in the first line and zeros in the others.
+/// Returns an element with a real number in the first line and zeros in the others.
 fn only_first(value: f64) -> Element {
     let mut element = [0.0; BAND];
     element[0] = value;
     element
 }
 
-/// The power `base^exponent` for a base from 0 to 1, or 0 if it is below [`NEGLIGIBLE`].
+/// Returns the power `base^exponent` for a base from 0 to 1, or 0 if it is below [`NEGLIGIBLE`].
 fn power(base: f64, exponent: usize) -> f64 {
     let (mut square, mut product, mut rest) = (base, 1.0, exponent);
     while rest > 0 && product > NEGLIGIBLE {

@@ -1,9 +1,9 @@
-//! A soft cut along the path of least difference, in a margin that overlaps the opposite side.
+//! Makes a tile by a soft cut along the path of least difference, in a margin that overlaps the opposite side.
 //!
-//! The last columns are laid over the first ones, and the tile changes from one to the other where they are most
-//! similar: the cut of Alexei A. Efros and William T. Freeman, "Image Quilting for Texture Synthesis and Transfer",
-//! SIGGRAPH 2001, <https://doi.org/10.1145/383259.383296>. Then rows are processed in the same way, on the result,
-//! which already repeats along x.
+//! The last columns overlap the first ones, and the tile changes from one to the other where they are most similar, as
+//! in Alexei A. Efros and William T. Freeman, "Image Quilting for Texture Synthesis and Transfer", SIGGRAPH 2001,
+//! <https://doi.org/10.1145/383259.383296>. Then rows are processed in the same way, on the result, which already
+//! repeats along x.
 //!
 //! * The difference is the sum of squares over all planes. Each plane is divided by its own variance, so a height in
 //!   meters counts as much as a color. All planes are cut along the same path.
@@ -21,7 +21,7 @@ use crate::overlap::{check_margin, ends, overlap};
 use crate::{Crossfade, TileError};
 use dapple_raster::Raster;
 
-/// Options of a soft cut. The tile is smaller than the image by the margin, along each axis that repeats.
+/// Options for a soft cut. The tile is smaller than the image by the margin, along each axis that repeats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -29,12 +29,11 @@ use dapple_raster::Raster;
     serde(default, deny_unknown_fields)
 )]
 pub struct SoftCut {
-    /// Width of the overlap of the two sides, in pixels, from 1 to half of the side. 32 by default.
+    /// Width of the overlap of the two sides, in pixels, from 1 to half of the side. The default is 32.
     pub margin: u32,
-    /// Half of the width of the ramp across the cut, in pixels, from 0 (a hard cut) to half of the margin. 4 by
-    /// default.
+    /// Half-width of the ramp across the cut, in pixels, from 0 (a hard cut) to half of the margin. The default is 4.
     pub half_width: f32,
-    /// Weights of the blend along the cut; variance-preserving by default.
+    /// Weights of the blend along the cut. The default is variance-preserving.
     pub crossfade: Crossfade,
 }
 
@@ -48,7 +47,7 @@ impl Default for SoftCut {
     }
 }
 
-/// Makes the tiles of all planes, with the same cut.
+/// Makes tiles from all planes, with the same cut.
 pub(crate) fn tile(
     planes: &[Raster<f32>],
     cut: &SoftCut,
@@ -72,7 +71,7 @@ pub(crate) fn tile(
     })
 }
 
-/// The difference of the two ends of the planes, in the columns that the cut may pass through.
+/// Returns the difference of the two ends of the planes, in the columns that the cut may pass through.
 fn differences(planes: &[Raster<f32>], cut: &SoftCut) -> Result<Raster<f64>, TileError> {
     let height = planes.first().map_or(1, Raster::height);
     let inset = inset(cut.half_width.into());
@@ -92,7 +91,7 @@ fn differences(planes: &[Raster<f32>], cut: &SoftCut) -> Result<Raster<f64>, Til
     Ok(sum)
 }
 
-/// Weights of the first columns: 0 to the left of the cut, 1 to the right, ½ on it.
+/// Returns the weights of the first columns: 0 to the left of the cut, 1 to the right, ½ on it.
 fn weights(path: &[u32], cut: &SoftCut) -> Result<Raster<f64>, TileError> {
     let half_width = f64::from(cut.half_width);
     let inset = inset(half_width);

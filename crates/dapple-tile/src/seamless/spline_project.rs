@@ -1,8 +1,8 @@
-//! The paper's blend tile: an image halved and doubled by filters that wrap around.
+//! Computes the paper's blend tile, an image halved and doubled by filters that wrap around.
 //!
 //! Source: Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", section 3. An image
 //! `R` becomes a smaller `R_d` by equation 12, and `R_d` becomes the tile `R_n` by equation 13. Only `R_d` needs to be
-//! stored: with one level it has a quarter of the pixels, and determines `R_n` exactly. The filters are those of Cook
+//! stored. With one level it has a quarter of the pixels, and determines `R_n` exactly. The filters are those of Cook
 //! and DeRose, "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005),
 //! <https://doi.org/10.1145/1073204.1073264>.
 //!
@@ -29,8 +29,8 @@ use dapple_wavelet::{Border, Degree, Fit, Phase, SplineFilter};
 pub enum Basis {
     /// B-splines.
     Spline(Degree),
-    /// Sines and cosines: the periodic Fourier projector, the paper's other refinable functions. Their phase matters
-    /// only along axes that repeat, where it is that of splines of even degree.
+    /// Sines and cosines, the paper's alternative refinable functions. The projector is a periodic Fourier projector.
+    /// The phase matters only along axes that repeat, where it has the same effect as for splines of even degree.
     Sines,
 }
 
@@ -54,13 +54,13 @@ dapple_raster::named! {
     serde(default, deny_unknown_fields)
 )]
 pub struct SplineProject {
-    /// Number of times that the image is halved; 1 by default.
+    /// Number of times that the image is halved. The default is 1.
     pub levels: u32,
-    /// Position of the coarse coefficients; centered by default.
+    /// Position of the coarse coefficients. The default is centered.
     pub phase: Phase,
-    /// Basis functions; quadratic B-splines by default.
+    /// Basis functions. The default is quadratic B-splines.
     pub basis: Basis,
-    /// Relation of pixels to the spline; coefficients by default.
+    /// Relation of pixels to the spline. By default, pixels are coefficients.
     pub pixels: Pixels,
 }
 
@@ -76,19 +76,18 @@ impl Default for SplineProject {
 }
 
 impl SplineProject {
-    /// Computes the small tile from which [`refine`](Self::refine) makes the full one: the paper's `R_d`.
+    /// Computes the small tile, the paper's `R_d`, from which [`refine`](Self::refine) computes the full tile.
     ///
-    /// It repeats along `axes`, x first. Along an axis that repeats, it has `1/2^levels` as many pixels; along another
-    /// axis, its length is defined by [`Border::Mirror`]. Its pixels relate to the coarse function as the pixels of the
-    /// image relate to the fine one.
+    /// The small tile repeats along `axes`, x first. Along an axis that repeats, it has `1/2^levels` as many pixels.
+    /// Along another axis, its length is defined by [`Border::Mirror`]. Its pixels relate to the coarse function as the
+    /// pixels of the image relate to the fine one.
     ///
     /// # Errors
     ///
-    /// * pixels that are not finite
-    /// * a side that repeats and is not a multiple of `2^levels`
-    /// * a side that has one pixel before the last level (or, mirrored, at the last level: samples of a spline need
-    ///   two)
-    /// * more than 32 levels
+    /// * If a pixel is not finite
+    /// * If a side that repeats is not a multiple of `2^levels`
+    /// * If a side has one pixel before the last level (or, mirrored, at the last level: samples of a spline need two)
+    /// * If there are more than 32 levels
     ///
     /// # Examples
     ///
@@ -122,14 +121,14 @@ impl SplineProject {
         }
     }
 
-    /// Computes the tile of `size` pixels from a small tile: the paper's `R_n`.
+    /// Computes the tile of `size` pixels, the paper's `R_n`, from a small tile.
     ///
-    /// With the result of [`coarse`](Self::coarse) and the size of the image, this is, bit for bit, the tile that
-    /// [`Seamless`](crate::Seamless) makes from the image.
+    /// Given the result of [`coarse`](Self::coarse) and the size of the image, the result is, bit for bit, the tile
+    /// that [`Seamless`](crate::Seamless) makes from the image.
     ///
     /// # Errors
     ///
-    /// The errors of [`coarse`](Self::coarse); also if the size of the small tile is not that of `size` after halving.
+    /// Same as [`coarse`](Self::coarse). Also if the small tile is not as large as an image of `size` is after halving.
     pub fn refine(
         &self,
         coarse: &Raster<f32>,
@@ -155,7 +154,7 @@ impl SplineProject {
         }
     }
 
-    /// The sizes of an image after each halving, from its own to the last.
+    /// Returns the sizes of an image after each halving, from its original size to the last.
     fn sizes(&self, size: [u32; 2], axes: [bool; 2]) -> Result<Vec<[u32; 2]>, TileError> {
         let filter = match self.basis {
             Basis::Spline(degree) => self.filter(degree),
@@ -173,7 +172,7 @@ impl SplineProject {
         }
     }
 
-    /// The coefficients of the spline for the pixels of a raster.
+    /// Computes the spline coefficients for the pixels of a raster.
     fn coefficients(
         &self,
         filter: &SplineFilter,
@@ -186,7 +185,7 @@ impl SplineProject {
         })
     }
 
-    /// The pixels for a spline with the given coefficients.
+    /// Computes the pixels for a spline with the given coefficients.
     fn pixels(
         &self,
         filter: &SplineFilter,
@@ -210,7 +209,7 @@ impl SplineProject {
     }
 }
 
-/// Makes the tiles of all planes.
+/// Makes tiles from all planes.
 pub(crate) fn tile(
     planes: &[Raster<f32>],
     project: &SplineProject,
@@ -223,7 +222,7 @@ pub(crate) fn tile(
     planes.iter().map(tile).collect()
 }
 
-/// Borders of the filters: periodic along the axes on which the tile repeats, mirrored along the others.
+/// Returns the borders of the filters: periodic along the axes on which the tile repeats, mirrored along the others.
 fn borders(axes: [bool; 2]) -> [Border; 2] {
     axes.map(|repeats| match repeats {
         true => Border::Periodic,
