@@ -178,7 +178,7 @@ impl Bins {
         (bin as u32 as usize).min(self.size[axis] - 1)
     }
 
-    /// Makes the records, sorted by strip, column and row. Returns the record of each instance.
+    /// Builds the records, sorted by strip, column and row. Returns the record index of each instance.
     fn place_records(&mut self, net: &Net) -> Vec<u32> {
         let key = |instance: &Instance| {
             let [column, row] = [0, 1].map(|axis| self.bin(axis, instance.center[axis]));
@@ -199,7 +199,7 @@ impl Bins {
         places
     }
 
-    /// Lists the candidates of every bin in the order of the instances. Those of bin `b` are
+    /// Lists the candidates of every bin, in the order of the instances. The candidates of bin `b` are
     /// `candidates[offsets[b]..offsets[b + 1]]`.
     fn list_candidates(&self, net: &Net, places: &[u32]) -> (Vec<u32>, Vec<u32>) {
         let mut entries = Vec::new();

@@ -99,7 +99,7 @@ fn axial(weight: AxialWeight, block: &AxisBlock, slot: usize, offset: DVec2) -> 
     (weight.value(u), axis * -weight.slope(u))
 }
 
-/// Converts an axial weight and its gradient to those of a fading axis.
+/// Applies fading to an axial weight and its gradient.
 fn faded((value, slope): (f64, DVec2), exponent: f64) -> (f64, DVec2) {
     if value <= 0.0 {
         return (0.0, DVec2::ZERO);

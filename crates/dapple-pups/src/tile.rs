@@ -77,8 +77,8 @@ const STRETCHES: usize = BLOCK + 2;
 const NOTHING: usize = BLOCK + 1;
 
 impl Tiles {
-    /// Computes the tiles of a control point, given its axes and center. `xs` are the coordinates of the columns from
-    /// the first tile on, with `width` for each tile, and `ys` those of the rows, with `H` for each tile.
+    /// Computes the tiles of a control point, given its axes and center. `xs` are the column coordinates, starting at
+    /// the first tile, with `width` columns for each tile. `ys` are the row coordinates, with `H` rows for each tile.
     #[inline(always)]
     pub(crate) fn enter<S: Simd, const H: usize>(
         &mut self,

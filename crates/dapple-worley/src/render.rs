@@ -7,7 +7,8 @@
 //! A block is divided into squares of up to 64 × 64 pixels, and a square into tiles ([`square`]). For each square, and
 //! then for each of its tiles, points that cannot be among the nearest are culled ([`cull`], [`flat`], then
 //! [`candidates`]); the rest are the candidates. The pixels of a tile are compared with its candidates only, sixteen
-//! pixels side by side ([`kernel`]; [`track`] also identifies the nearest points). Neighboring slices of a volume share
+//! adjacent pixels at once ([`kernel`]; [`track`] also identifies the nearest points). Neighboring slices of a volume
+//! share
 //! their candidates. Where a tile needs points beyond its neighborhood, the neighborhood grows; where coordinates in it
 //! would no longer be exact, each pixel is searched on its own.
 //!

@@ -48,7 +48,7 @@ pub enum Scatter {
     },
 }
 
-/// Range to which the paper clamps the number of points.
+/// Range of the number of points per cell to which the paper clamps it.
 const CLAMPED: RangeInclusive<u32> = 1..=9;
 
 /// Range of the density, in points per cell.

@@ -12,7 +12,7 @@ use dapple_points::{
 use dapple_raster::{Ramp, Varying};
 use glam::DVec2;
 
-/// How far apart control points are; they are always a maximal Poisson-disk set.
+/// Spacing of control points, which are always a maximal Poisson-disk set.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/spacing.md"))]
 ///
@@ -26,16 +26,16 @@ use glam::DVec2;
 /// # Ok::<(), dapple_pups::PupsError>(())
 /// ```
 ///
-/// As data it is a number, where the smallest distance is the same everywhere, or `{ distance = … }`, `{ density = … }` or
-/// `{ count = … }`.
+/// Serialized as a number if the smallest distance is the same everywhere, otherwise as `{ distance = … }`, `{ density
+/// = … }` or `{ count = … }`.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Spacing {
     /// The smallest distance between two points, in units of the domain.
     Distance(Varying),
-    /// Points per area, in units of the domain: a distance of sqrt(0.697 / density).
+    /// Points per unit of area, in units of the domain. Gives the smallest distance sqrt(0.697 / density).
     Density(Varying),
-    /// About this many points in the domain, equally dense everywhere.
+    /// Approximate number of points in the domain, equally dense everywhere.
     Count(u32),
 }
 

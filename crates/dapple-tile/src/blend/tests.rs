@@ -1,4 +1,4 @@
-//! Tests of blends: their formulas, and the contrast that they keep.
+//! Tests of blends: their formulas, and the contrast that they retain.
 
 use super::{Blend, Layer, Mixing, blend, blend_by_tile};
 use crate::gauss::blur;
@@ -9,7 +9,7 @@ use dapple_raster::{Raster, Wrap};
 use dapple_wavelet::Border;
 use proptest::prelude::*;
 
-/// Size of the images: a ramp of 128 pixels between margins of 32.
+/// Size of the images, with a ramp of 128 pixels between margins of 32.
 const SIZE: [u32; 2] = [192, 128];
 
 fn noise(size: [u32; 2], seed: u64) -> Raster<f32> {
@@ -19,12 +19,12 @@ fn noise(size: [u32; 2], seed: u64) -> Raster<f32> {
     .unwrap()
 }
 
-/// Noise of features some pixels wide, as ranks from 0 to 1.
+/// Returns noise with features some pixels wide, as ranks from 0 to 1.
 fn soft_noise(seed: u64, sigma: f64) -> Raster<f32> {
     rank_equalize(&blur(&noise(SIZE, seed), sigma, [Wrap::Repeat; 2]).unwrap()).unwrap()
 }
 
-/// The weights of two layers over a ramp.
+/// Returns the weights of two layers over a ramp.
 fn ramp() -> [Raster<f32>; 2] {
     let right = |column: u32| ((column as f32 + 0.5 - 32.0) / 128.0).clamp(0.0, 1.0);
     [
@@ -33,7 +33,7 @@ fn ramp() -> [Raster<f32>; 2] {
     ]
 }
 
-/// Root mean square of the difference of a pixel from its four neighbors, in the middle 32 columns.
+/// Returns the root mean square difference of a pixel from its four neighbors, in the middle 32 columns.
 fn fine_contrast(raster: &Raster<f32>) -> f64 {
     let mut sum = 0.0;
     for row in 1..i64::from(SIZE[1]) - 1 {
@@ -46,7 +46,7 @@ fn fine_contrast(raster: &Raster<f32>) -> f64 {
     (sum / (32.0 * f64::from(SIZE[1] - 2))).sqrt()
 }
 
-/// The fine contrast in the middle of a ramp between two different textures, as a fraction of the textures' own
+/// Returns the fine contrast in the middle of a ramp between two different textures, as a fraction of the textures' own
 /// contrast.
 fn contrast_kept(weighting: Weighting, mixing: Mixing) -> f64 {
     let weights = ramp();
@@ -54,7 +54,7 @@ fn contrast_kept(weighting: Weighting, mixing: Mixing) -> f64 {
     let kept = (0..trials).map(|trial| {
         let [grass, gravel] = [10, 20].map(|seed| noise(SIZE, seed + trial));
         let gravel = blur(&gravel, 0.8, [Wrap::Repeat; 2]).unwrap();
-        // Scaled to the contrast of the grass, so that the order of the two does not matter.
+        // Scale to the contrast of the grass, so that the order of the two textures does not matter.
         let contrast = fine_contrast(&grass);
         let scale = (contrast / fine_contrast(&gravel)) as f32;
         let gravel = gravel.map(|value| 0.4 + scale * (value - 0.5));
@@ -106,7 +106,7 @@ fn contrast_is_lost_and_kept_as_stated() {
     }
 }
 
-/// Maps of every kind.
+/// Returns one map of every kind.
 fn material(size: [u32; 2], seed: u64) -> Vec<Map> {
     let [height, r, g, b] = [0, 1, 2, 3].map(|part| noise(size, 10 * seed + part));
     let rg = r.zip_map(&g, |&r, &g| [r, g]).unwrap();
@@ -139,7 +139,7 @@ fn all_mixings() -> [Mixing; 3] {
     ]
 }
 
-/// Maximum difference of two lists of maps.
+/// Returns the maximum difference of two lists of maps.
 fn difference(a: &[Map], b: &[Map]) -> f32 {
     let planes = |maps: &[Map]| maps.iter().flat_map(Map::planes).collect::<Vec<_>>();
     let pairs = planes(a).into_iter().zip(planes(b));

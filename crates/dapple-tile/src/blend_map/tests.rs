@@ -14,11 +14,11 @@ const SIDE: u32 = 128;
 #[derive(Clone, Copy, Debug)]
 struct Stones {
     seed: u64,
-    /// Distance of the points, in pixels.
+    /// Distance between neighboring points, in pixels.
     cell: u32,
     /// Width of the cracks, in pixels.
     crack_width: f64,
-    /// Gray of the darkest and the lightest stone.
+    /// Gray values of the darkest and the lightest stone.
     grays: [f64; 2],
     crack_gray: f64,
     /// Amplitude of the noise on the stones.
@@ -35,7 +35,7 @@ const GRAY: Stones = Stones {
 };
 
 impl Stones {
-    /// The image, and the signed distance of each pixel from the border of its stone, negative in cracks.
+    /// Returns the image, and the signed distance of each pixel from the border of its stone, negative in cracks.
     fn render(&self) -> (Raster<f32>, Raster<f64>) {
         let places = Seed(self.seed).child("place", 0);
         let grain = Seed(self.seed).child("grain", 0);
@@ -68,7 +68,7 @@ impl Stones {
     }
 }
 
-/// The distance to the nearest border between two stones, and the gray of the stone.
+/// Returns the distance to the nearest border between two stones, and the stone's gray value.
 fn nearest(points: &[[f64; 3]], at: [f64; 2]) -> (f64, f64) {
     let side = f64::from(SIDE);
     let offset = |a: f64, b: f64| (a - b) - side * ((a - b) / side).round();
@@ -85,7 +85,7 @@ fn nearest(points: &[[f64; 3]], at: [f64; 2]) -> (f64, f64) {
     ((f2 - f1) / (2.0 * (x * x + y * y).sqrt()), gray)
 }
 
-/// Fraction of the lowest quarter of a map that is in cracks.
+/// Returns the fraction of the lowest quarter of a map that is in cracks.
 fn quarter_in_cracks(map: &Raster<f32>, inside: &Raster<f64>) -> f64 {
     let ranks = rank_equalize(map).unwrap();
     let pixels = ranks.pixels().iter().zip(inside.pixels());
@@ -94,7 +94,7 @@ fn quarter_in_cracks(map: &Raster<f32>, inside: &Raster<f64>) -> f64 {
     cracks as f64 / low.len() as f64
 }
 
-/// Mean of the map over the pixels whose distance from the border of their stone is in a range.
+/// Returns the mean of the map over the pixels whose distance from the border of their stone is in a range.
 fn mean_where(map: &Raster<f32>, inside: &Raster<f64>, range: Range<f64>) -> f64 {
     let pixels = map.pixels().iter().zip(inside.pixels());
     let chosen: Vec<f64> = pixels

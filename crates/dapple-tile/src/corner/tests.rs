@@ -9,7 +9,7 @@ use dapple_hash::Seed;
 use dapple_raster::Raster;
 use proptest::prelude::*;
 
-/// The tiles of sources with a single value map.
+/// Builds the tiles of sources that have a single value map each.
 fn of(sources: &[Raster<f32>]) -> Result<CornerTiles, TileError> {
     let maps = sources
         .iter()
@@ -22,7 +22,7 @@ fn tiles(count: u64, size: [u32; 2]) -> CornerTiles {
     of(&sources).unwrap()
 }
 
-/// The values of a single map.
+/// Returns the values of a single map.
 fn value(maps: Vec<Map>) -> Raster<f32> {
     match <[Map; 1]>::try_from(maps) {
         Ok([Map::Value(raster)]) => raster,

@@ -3,12 +3,12 @@
 use super::*;
 use proptest::prelude::*;
 
-/// Lengths with the factors 2, 3, 5 and 7, alone and combined, and primes that need the convolution.
+/// Iterates over lengths with the factors 2, 3, 5 and 7, alone and combined, and primes that need the convolution.
 fn lengths() -> impl Iterator<Item = usize> {
     (1..=40).chain([97, 100, 128, 343, 360])
 }
 
-/// Unstructured values between −1 and 1.
+/// Returns unstructured values between −1 and 1.
 fn noise(count: usize, seed: u64) -> Vec<f64> {
     let mut state = seed;
     let mut next = || {
@@ -26,7 +26,7 @@ fn random_lines(length: usize) -> Vec<Element> {
     (0..length).map(element).collect()
 }
 
-/// The transform of one line by definition.
+/// Transforms one line by the definition.
 fn naive(lines: &[Element], lane: usize) -> Vec<[f64; 2]> {
     let n = lines.len();
     let frequency = |k: usize| {
@@ -89,7 +89,7 @@ fn a_line_has_the_same_bits_in_whatever_company() {
     }
 }
 
-/// An element with zeros in all lines but one.
+/// Returns an element with zeros in all lines except `lane`.
 fn only(element: &Element, lane: usize) -> Element {
     let mut only = [0.0; BAND];
     only[lane] = element[lane];

@@ -12,7 +12,7 @@ fn matched(source: BorderSource, tiles: &[Raster<f32>]) -> Vec<Raster<f32>> {
     MatchBorders { width: 16, source }.apply(tiles).unwrap()
 }
 
-/// The mean seam ratio of each ordered pair of tiles, along both axes, over many sets of tiles.
+/// Returns the mean seam ratio of each ordered pair of tiles, along both axes, over many sets of tiles.
 fn pair_ratios(source: BorderSource, set: impl Fn(u64) -> [Raster<f32>; 3]) -> [f64; 9] {
     let n_sets = 12;
     let mut ratios = [0.0; 9];

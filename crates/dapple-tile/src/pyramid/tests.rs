@@ -14,7 +14,7 @@ fn noise(size: [u32; 2], seed: u64) -> Raster<f32> {
     .unwrap()
 }
 
-/// Two shares that sum to 1.
+/// Returns two shares that sum to 1.
 fn shares(size: [u32; 2], seed: u64) -> Vec<Raster<f32>> {
     let weights = [seed, seed + 1].map(|seed| noise(size, seed));
     weighting::normalize(&weights.each_ref()).unwrap()

@@ -8,7 +8,7 @@ use dapple_hash::{Seed, hash2, unit_f32};
 use dapple_raster::Raster;
 use proptest::prelude::*;
 
-/// Periodic white noise from 0 to 1.
+/// Returns periodic white noise from 0 to 1.
 fn noise(size: [u32; 2], seed: u64) -> Raster<f32> {
     let pixel = |x, y| unit_f32(hash2(Seed(seed), [i64::from(x), i64::from(y)], 0) as u32);
     Raster::from_fn(size, pixel).unwrap()
@@ -105,8 +105,8 @@ fn faults_name_what_crossfades_and_mirrors_do() {
     assert!(faults(&source, Method::Mirror).contains(&Fault::Mirrored));
 }
 
-/// A black disk with a radius of 60 pixels in noise from 0.3 to 0.7. No mean of two values of the noise is outside of
-/// it.
+/// Returns a black disk with a radius of 60 pixels in noise from 0.3 to 0.7. No mean of two noise values is outside of
+/// that range.
 fn disk_in_noise() -> Raster<f32> {
     let grain = noise([256; 2], 7);
     Raster::from_fn([256; 2], |x, y| {
@@ -179,7 +179,7 @@ fn a_good_cut_passes_where_the_source_is_clipped() {
     assert!(report.passes(), "{report}");
 }
 
-/// Upright bricks of 22 × 60 pixels whose joints lean more and more to the right, as in a view from one side.
+/// Returns upright bricks of 22 × 60 pixels whose joints lean more and more to the right, as in a view from one side.
 fn leaning_bricks() -> Raster<f32> {
     Raster::from_fn([192; 2], |x, y| {
         let [x, y] = [f64::from(x), f64::from(y)];

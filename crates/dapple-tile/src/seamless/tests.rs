@@ -14,7 +14,7 @@ fn ramp(size: [u32; 2]) -> Raster<f32> {
     .expect("the size is small and not empty")
 }
 
-/// Methods that process every plane separately, for any size.
+/// Returns methods that process every plane separately, for any size.
 fn methods() -> [Method; 3] {
     [
         Method::Periodic,
@@ -23,7 +23,7 @@ fn methods() -> [Method; 3] {
     ]
 }
 
-/// All methods, with margins of one pixel.
+/// Returns all methods, with margins of one pixel.
 fn every_method() -> Vec<Method> {
     let cut = SoftCut {
         margin: 1,
@@ -214,7 +214,7 @@ proptest! {
     }
 }
 
-/// Normals of heights on pixels with a side of one unit of the plane.
+/// Returns the normals of heights, for pixels with a side of one unit of the plane.
 fn normals_of(height: &Raster<f32>, wrap: Wrap) -> Raster<Normal> {
     let [width, height_px] = height.size().map(f64::from);
     let plane = HeightPlane {
@@ -225,7 +225,7 @@ fn normals_of(height: &Raster<f32>, wrap: Wrap) -> Raster<Normal> {
     normal_map(height, &plane.into()).expect("the plane is right")
 }
 
-/// The tile of heights and the tile of their normals, from one cut.
+/// Returns the tile of heights and the tile of their normals, from one cut.
 fn height_and_normals(seamless: &Seamless, height: &Raster<f32>) -> (Raster<f32>, Raster<Normal>) {
     let normals = normals_of(height, Wrap::Clamp);
     let maps = [Map::Value(height.clone()), Map::Normal(normals)];

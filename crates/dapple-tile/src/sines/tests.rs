@@ -14,7 +14,7 @@ fn axis(fine: u32, coarse: u32, repeats: bool, phase: Phase) -> Axis {
     }
 }
 
-/// Lines of a few dozen pixels, halved once to three times, that repeat or are mirrored.
+/// Iterates over lines of a few dozen pixels, halved one to three times, that repeat or are mirrored.
 fn axes() -> impl Iterator<Item = Axis> {
     let repeating = [
         (2, 1),
@@ -36,7 +36,7 @@ fn axes() -> impl Iterator<Item = Axis> {
     repeating.chain(mirrored)
 }
 
-/// An orthonormal basis of the functions of a coarse line.
+/// Returns an orthonormal basis of the functions of a coarse line.
 fn basis(axis: &Axis) -> Vec<Vec<f64>> {
     let [n, m] = [axis.fine as usize, axis.coarse as usize];
     let line = |function: &dyn Fn(f64) -> f64| {
@@ -61,7 +61,7 @@ fn basis(axis: &Axis) -> Vec<Vec<f64>> {
     basis
 }
 
-/// Position of the first coarse sample, in pixels.
+/// Returns the position of the first coarse sample, in pixels.
 fn first_sample(axis: &Axis) -> f64 {
     let middle = 0.5 * (f64::from(axis.fine) / f64::from(axis.coarse) - 1.0);
     if axis.phase == Phase::CookDeRose {
@@ -71,7 +71,7 @@ fn first_sample(axis: &Axis) -> f64 {
     }
 }
 
-/// Lines that are zero except for one pixel.
+/// Iterates over lines that are zero except for one pixel.
 fn unit_lines(length: usize) -> impl Iterator<Item = Vec<Element>> {
     (0..length).map(move |at| {
         let mut line = vec![[0.0; BAND]; length];

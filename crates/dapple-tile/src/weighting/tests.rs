@@ -15,7 +15,7 @@ fn noise(size: [u32; 2], seed: u64) -> Raster<f32> {
     .unwrap()
 }
 
-/// The shares of layers with the given weights and heights.
+/// Returns the shares of layers with the given weights and heights.
 fn shares(
     weighting: Weighting,
     weights: &[Raster<f32>],
@@ -187,7 +187,7 @@ fn heights_equal_the_formula_pixel_by_pixel() {
     }
 }
 
-/// The shares by height at a single pixel.
+/// Returns the shares by height at a single pixel.
 fn at_a_pixel(weights: &[f32], heights: &[f32], depth: f64) -> Vec<f32> {
     let rasters = |values: &[f32]| -> Vec<_> {
         let values = values.iter();

@@ -113,7 +113,7 @@ pub(super) struct Bins {
     n_halves: usize,
     /// Index of the first point of each bin; the last element is the number of points.
     starts: Vec<u32>,
-    /// Coordinates of the pixel columns in steps, including those of the tiles to the left and right of the block.
+    /// Coordinates of the pixel columns in steps. Includes the columns of the tiles to the left and right of the block.
     columns: Vec<i32>,
 }
 

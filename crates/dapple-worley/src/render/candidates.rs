@@ -13,7 +13,7 @@ use crate::metric::Measure;
 use fearless_simd::{Level, f32x16, i32x16, prelude::*};
 
 impl Memory {
-    /// Selects the candidates of a tile from those of its square, and computes their terms.
+    /// Selects the candidates of a tile from the candidates of its square, and computes their terms.
     pub(super) fn candidates(&mut self, level: Level, area: &Area, square: &Square) {
         let (plan, low) = (&square.plan, &square.pixels.low);
         // Remove dominated points from the candidates of the square.
@@ -135,7 +135,7 @@ impl Memory {
         let FlatPoints { y, z, rest, .. } = &self.tile;
         for start in (0..self.tile.len).step_by(LANES) {
             let at = start..start + LANES;
-            // Add the terms of the slice to those of the other axes, for sixteen candidates.
+            // Add the terms of the slice to the terms of the other axes, for sixteen candidates.
             let [terms] = measure.terms([place - f32x16::from_slice(simd, &z[at.clone()])]);
             let rest = measure.accumulate(terms, f32x16::from_slice(simd, &rest[at.clone()]));
             let mut rests = [0.0; LANES];

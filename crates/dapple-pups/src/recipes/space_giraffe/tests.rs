@@ -6,12 +6,12 @@ use dapple_points::{Domain, PointIdx, PointSet};
 use dapple_raster::{Raster, Window};
 use glam::DVec2;
 
-/// The window of `size` pixels in each direction over the paper's torus.
+/// Returns a window of `size` × `size` pixels over the paper's torus.
 fn paper_window(size: u32) -> Window {
     Window::new(DVec2::NEG_ONE, DVec2::splat(2.0), [size; 2]).unwrap()
 }
 
-/// The centers, and for each control point the index of its spot's center.
+/// Returns the centers and, for each control point, the index of its spot's center.
 fn owners(labels: &[u32], options: &SpaceGiraffeOptions, seed: Seed) -> (PointSet, Vec<usize>) {
     let (points, placed) = options.control_points(seed).unwrap();
     assert_eq!(
@@ -32,7 +32,8 @@ fn owners(labels: &[u32], options: &SpaceGiraffeOptions, seed: Seed) -> (PointSe
     (centers, owners)
 }
 
-/// Index of the nearest center, and the difference of the distances to the second nearest and the nearest center.
+/// Returns the index of the nearest center, and the difference of the distances to the second nearest and the nearest
+/// center.
 fn nearest(centers: &PointSet, position: DVec2) -> (usize, f64) {
     let mut best = (0, f64::INFINITY);
     let mut second = f64::INFINITY;
@@ -49,7 +50,7 @@ fn nearest(centers: &PointSet, position: DVec2) -> (usize, f64) {
     (best.0, second - best.1)
 }
 
-/// Number of spot pixels in the Voronoi cell of another center.
+/// Counts the spot pixels in the Voronoi cell of another spot's center.
 fn strays(options: &SpaceGiraffeOptions, seed: Seed, window: &Window) -> usize {
     let texture = space_giraffe(options, seed).unwrap();
     let (centers, owners) = owners(texture.labels(), options, seed);
@@ -114,7 +115,7 @@ fn separated_spots_stay_apart_with_longer_axes() {
     assert_eq!(strays(&options, Seed(1), &paper_window(256)), 0);
 }
 
-/// Number of connected components of spot pixels with two centers, on the torus.
+/// Counts the connected components of spot pixels that contain two centers, on the torus.
 fn merged(options: &SpaceGiraffeOptions, seed: Seed, size: u32) -> usize {
     let texture = space_giraffe(options, seed).unwrap();
     let labels = texture.label_raster(&paper_window(size)).unwrap();
@@ -162,7 +163,7 @@ fn no_component_of_spots_has_two_centers() {
 
 #[test]
 fn literal_spots_merge_now_and_then_where_separated_ones_do_not() {
-    // The seeds below 300 whose images, of some 70 spots each, have a merged pair in the literal form.
+    // These are the seeds below 300 whose images, of some 70 spots each, have a merged pair in the literal form.
     for seed in [77, 125, 271] {
         let [literal, separated] = [Spots::Literal, Spots::Separated].map(|spots| {
             let options = SpaceGiraffeOptions {
@@ -192,7 +193,7 @@ fn spots_at_open_borders_are_whole() {
     let wide = Window::new(DVec2::new(-1.5, -1.0), DVec2::new(3.0, 2.0), [192, 128]).unwrap();
     assert_eq!(strays(&options, Seed(1), &wide), 0);
 }
-/// Number of connected components of a label's pixels on the torus. Pixels that share an edge are connected.
+/// Counts the connected components of a label's pixels on the torus. Pixels that share an edge are connected.
 fn pieces(labels: &Raster<u32>, label: u32) -> usize {
     let [width, height] = labels.size();
     let mut seen: Vec<bool> = labels

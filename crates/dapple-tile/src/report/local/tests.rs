@@ -6,13 +6,13 @@ use dapple_raster::{Raster, Wrap};
 
 const REPEAT: [Wrap; 2] = [Wrap::Repeat; 2];
 
-/// White noise from -½ to ½, scaled by `gain` in each column.
+/// Returns white noise from -½ to ½, scaled by `gain` in each column.
 fn noise(size: [u32; 2], gain: impl Fn(u32) -> f32) -> Raster<f32> {
     let pixel = |x, y| unit_f32(hash2(Seed(3), [i64::from(x), i64::from(y)], 0) as u32) - 0.5;
     Raster::from_fn(size, |x, y| gain(x) * pixel(x, y)).unwrap()
 }
 
-/// The definition: a search over every band.
+/// Searches every band, by the definition.
 fn naive(image: &Raster<f32>, wrap: [Wrap; 2]) -> f64 {
     let [width, height] = image.size().map(i64::from);
     let at = |x, y| f64::from(*image.at(x, y, wrap));

@@ -5,13 +5,13 @@ use core::f64::consts::TAU;
 use dapple_hash::{Seed, hash2, unit_f32};
 use dapple_raster::Raster;
 
-/// A wave with the given cycles per pixel along each axis.
+/// Returns a wave with the given cycles per pixel along each axis.
 fn wave(size: [u32; 2], frequency: [f64; 2]) -> Raster<f32> {
     let turn = |x, y| f64::from(x) * frequency[0] + f64::from(y) * frequency[1];
     Raster::from_fn(size, |x, y| libm::sin(TAU * turn(x, y) + 0.3) as f32).unwrap()
 }
 
-/// White noise, with a variance of 1/12.
+/// Returns white noise with a variance of 1/12.
 fn noise(size: [u32; 2], seed: u64) -> Raster<f32> {
     let pixel = |x, y| unit_f32(hash2(Seed(seed), [i64::from(x), i64::from(y)], 0) as u32);
     Raster::from_fn(size, pixel).unwrap()
@@ -34,7 +34,7 @@ fn octaves_end_at_powers_of_a_half() {
     assert_eq!(octave(0, 128), usize::MAX);
 }
 
-/// The power spectrum by definition, along rows and then along columns.
+/// Computes the power spectrum by the definition, along rows and then along columns.
 fn naive_power_spectrum(values: &[f64], [width, height]: [usize; 2]) -> Vec<f64> {
     let mut plane: Vec<[f64; 2]> = values.iter().map(|&value| [value, 0.0]).collect();
     let lines = [(width, 1, height, width), (height, width, width, 1)];

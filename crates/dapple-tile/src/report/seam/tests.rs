@@ -6,7 +6,7 @@ use dapple_hash::{Seed, hash2, unit_f32};
 use dapple_raster::{Raster, Wrap};
 use dapple_wavelet::{Border, SplineFilter};
 
-/// White noise from 0 to 1.
+/// Returns white noise from 0 to 1.
 fn noise(size: [u32; 2], seed: u64) -> Raster<f32> {
     let pixel = |x, y| unit_f32(hash2(Seed(seed), [i64::from(x), i64::from(y)], 0) as u32);
     Raster::from_fn(size, pixel).unwrap()
@@ -19,7 +19,7 @@ fn with_lattice(lattice: u32) -> SeamOptions {
     }
 }
 
-/// The step across a boundary of columns, by definition.
+/// Computes the step across a boundary of columns by the definition.
 fn naive_step(tile: &Raster<f32>, boundary: i64, width: u32) -> f64 {
     let mean = |first: i64, row: u32| {
         let columns = first..first + i64::from(width);
@@ -30,7 +30,7 @@ fn naive_step(tile: &Raster<f32>, boundary: i64, width: u32) -> f64 {
     (0..tile.height()).map(step).sum::<f64>() / f64::from(tile.height())
 }
 
-/// The ratio along x and its spread, by definition.
+/// Computes the ratio along x and its spread by the definition.
 fn naive_ratio(tile: &Raster<f32>, width: u32, lattice: u32) -> Option<(f64, f64)> {
     let fits = |&at: &u32| at % lattice == 0 && at >= width && at + width <= tile.width();
     let inside: Vec<f64> = (1..tile.width())

@@ -6,7 +6,7 @@ use crate::{Method, Seamless};
 use core::f64::consts::TAU;
 use proptest::prelude::*;
 
-/// Noise between 0 and 1 over a ramp that causes a jump at every border.
+/// Returns noise between 0 and 1 over a ramp that causes a jump at every border.
 fn image(size: [u32; 2], seed: u32) -> Raster<f32> {
     Raster::from_fn(size, |column, row| {
         let mixed = (column + 977 * row + 31 * seed + 1).wrapping_mul(0x9E37_79B1);
@@ -29,7 +29,7 @@ fn smooth_of(plane: &Raster<f32>, axes: [bool; 2]) -> Vec<f64> {
         .collect()
 }
 
-/// Moisan's formula, with transforms by definition.
+/// Computes Moisan's formula, with transforms by the definition.
 fn moisan(plane: &Raster<f32>) -> Vec<f64> {
     let [width, height] = plane.size().map(|length| length as usize);
     let mut boundary = vec![0.0; width * height];
@@ -82,7 +82,8 @@ fn smooth_part_equals_moisans_formula() {
     }
 }
 
-/// The neighbor of a position one step along an axis: across the wrap or, at a free end, the position itself.
+/// Returns the neighbor of a position one step along an axis. At an end, it is across the wrap, or the position itself
+/// if the axis does not repeat.
 fn neighbor(at: usize, length: usize, forward: bool, repeats: bool) -> usize {
     match (forward, repeats) {
         (true, true) => (at + 1) % length,
@@ -92,7 +93,7 @@ fn neighbor(at: usize, length: usize, forward: bool, repeats: bool) -> usize {
     }
 }
 
-/// Maximum difference of the smooth part's Laplacian from the jumps, and of its mean from zero.
+/// Returns the maximum difference of the smooth part's Laplacian from the jumps, and of its mean from zero.
 fn largest_error(plane: &Raster<f32>, axes: [bool; 2]) -> f64 {
     let smooth = smooth_of(plane, axes);
     let [across_x, across_y] = axis_jumps(plane, axes);
@@ -205,11 +206,11 @@ fn periodic_keeps_the_power_of_the_top_octave() {
     let plane = image(size, 5);
     let tile = Seamless::default().apply(&plane).expect("all is finite");
     let ratio = top_octave(&tile) / top_octave(&plane);
-    // Research measured 1.000 on five sources; 0.1 % is the limit that was set.
+    // The ratio was measured as 1.000 on five sources. The limit is 0.1 %.
     assert!((ratio - 1.0).abs() < 1e-3, "{ratio} of the power is left");
 }
 
-/// The power at frequencies above a quarter per pixel along either axis, under a Hann window.
+/// Returns the power at frequencies above a quarter per pixel along either axis, under a Hann window.
 fn top_octave(plane: &Raster<f32>) -> f64 {
     let [width, height] = plane.size().map(|length| length as usize);
     let window = |at: usize, n: usize| 1.0 - libm::cos(TAU * (at as f64 + 0.5) / n as f64);

@@ -6,7 +6,7 @@ use crate::seamless::periodic::Smooth;
 use crate::{Method, Seamless};
 use proptest::prelude::*;
 
-/// Unstructured values of about 1, over a ramp.
+/// Returns unstructured values of about 1, over a ramp.
 fn image(size: [u32; 2], seed: u32) -> Raster<f32> {
     Raster::from_fn(size, |column, row| {
         let mixed = (column * 89 + row * 57 + seed * 7 + 3) * (column + 2 * row + 5);
@@ -20,7 +20,8 @@ fn tile_of(plane: &Raster<f32>, wrap: WrapGradient, axes: [bool; 2]) -> Raster<f
     seamless.apply(plane).expect("all is finite")
 }
 
-/// Least squares by definition: the whole field of differences, its divergence, and a dense solver.
+/// Solves the least-squares problem by the definition, with the whole field of differences, its divergence, and a dense
+/// solver.
 fn by_divergence(plane: &Raster<f32>, wrap: WrapGradient, axes: [bool; 2]) -> Vec<f64> {
     let n = plane.pixels().len();
     let mut matrix = vec![vec![0.0; n + 1]; n];
@@ -43,7 +44,7 @@ fn by_divergence(plane: &Raster<f32>, wrap: WrapGradient, axes: [bool; 2]) -> Ve
     solve(matrix)
 }
 
-/// All pairs of neighbors, and the target difference between them.
+/// Returns all pairs of neighbors, and the target difference between them.
 fn field(plane: &Raster<f32>, wrap: WrapGradient, axes: [bool; 2]) -> Vec<(usize, usize, f64)> {
     let [width, height] = plane.size().map(|length| length as usize);
     let value = |at: usize| f64::from(plane.pixels()[at]);
@@ -69,7 +70,7 @@ fn field(plane: &Raster<f32>, wrap: WrapGradient, axes: [bool; 2]) -> Vec<(usize
     field
 }
 
-/// Gaussian elimination with pivots; the last column is the right-hand side.
+/// Solves a linear system by Gaussian elimination with pivoting. The last column is the right-hand side.
 fn solve(mut matrix: Vec<Vec<f64>>) -> Vec<f64> {
     let n = matrix.len();
     for column in 0..n {

@@ -122,8 +122,8 @@ fn differences_are_squares_over_the_variance_of_each_plane() {
     );
 }
 
-/// Four ratios of 24 tiles to their sources: the mean seam at 1 and at 4 pixels, the power of the top octave, and the
-/// steps across the center of all cuts.
+/// Returns four ratios of 24 tiles to their sources: the mean seam at 1 and at 4 pixels, the power of the top octave,
+/// and the steps across the center of all cuts.
 fn quality(texture: fn(u64, [u32; 2], bool) -> Raster<f32>) -> [f64; 4] {
     let cut = SoftCut::default();
     let sums = (0..24).map(|seed| {

@@ -14,7 +14,7 @@ const DEGREES: [Degree; 4] = [
 
 const PHASES: [Phase; 2] = [Phase::Centered, Phase::CookDeRose];
 
-/// Unstructured values between 0 and 1.
+/// Returns unstructured values between 0 and 1.
 fn noise(size: [u32; 2], seed: u32) -> Raster<f32> {
     Raster::from_fn(size, |column, row| {
         let mixed = (column + 977 * row + 31 * seed + 1).wrapping_mul(0x9E37_79B1);
