@@ -21,8 +21,8 @@ impl Range {
     }
 }
 
-/// Builds a [`Range`] and its text from one of these forms: `finite`, `above 0`, `above 0 to 1`, `at least 1`, `from 1
-/// to 16` or `from 0 below 1`.
+/// Builds a [`Range`] and its text from one of these forms: `finite`, `above 0`, `above 0 to 1`, `at least 1`,
+/// `from 1 to 16` or `from 0 below 1`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! range {

@@ -40,8 +40,8 @@ pub enum Profile {
         /// Radius of a spot, in units of the value; above 0.
         radius: f32,
     },
-    /// A channel: height 0 at the value 0, rising to height 1 at the value `width`, by `3 t² − 2 t³` with `t = value /
-    /// width`. With F2 − F1, this gives channels between raised stones; with F1, round pits.
+    /// A channel: height 0 at the value 0, rising to height 1 at the value `width`, by `3 t² − 2 t³` with
+    /// `t = value / width`. With F2 − F1, this gives channels between raised stones; with F1, round pits.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/profile-channels.md"))]
     Channels {

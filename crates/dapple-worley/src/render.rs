@@ -8,9 +8,8 @@
 //! then for each of its tiles, points that cannot be among the nearest are culled ([`cull`], [`flat`], then
 //! [`candidates`]); the rest are the candidates. The pixels of a tile are compared with its candidates only, sixteen
 //! adjacent pixels at once ([`kernel`]; [`track`] also identifies the nearest points). Neighboring slices of a volume
-//! share
-//! their candidates. Where a tile needs points beyond its neighborhood, the neighborhood grows; where coordinates in it
-//! would no longer be exact, each pixel is searched on its own.
+//! share their candidates. Where a tile needs points beyond its neighborhood, the neighborhood grows; where coordinates
+//! in it would no longer be exact, each pixel is searched on its own.
 //!
 //! Where cells have few pixels, points are sorted into bins of pixels ([`bins`]), and each tile is compared with all
 //! points of the bins around it ([`splat`]). For the distance to the edge of the Voronoi cell, the cells are drawn one

@@ -97,8 +97,8 @@ impl NetOptions {
     }
 
     /// Builds the net of `graph`. If the points move, builds the net of the Delaunay triangulation of their positions
-    /// after motion instead. Orientations come from `seed.child("orientation", 0)`, orbits from `seed.child("orbit",
-    /// 0)`.
+    /// after motion instead. Orientations come from `seed.child("orientation", 0)`, orbits from
+    /// `seed.child("orbit", 0)`.
     ///
     /// # Errors
     ///

@@ -26,8 +26,8 @@ use glam::DVec2;
 /// # Ok::<(), dapple_pups::PupsError>(())
 /// ```
 ///
-/// Serialized as a number if the smallest distance is the same everywhere, otherwise as `{ distance = … }`, `{ density
-/// = … }` or `{ count = … }`.
+/// Serialized as a number if the smallest distance is the same everywhere, otherwise as `{ distance = … }`,
+/// `{ density = … }` or `{ count = … }`.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Spacing {
