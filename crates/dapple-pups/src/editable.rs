@@ -123,12 +123,12 @@ impl EditablePups {
     ///
     /// # Errors
     ///
-    /// * [`Graph`](PupsErrorKind::Graph) for a position outside of the domain or at another point
-    /// * [`ShortAxis`](PupsErrorKind::ShortAxis) for a position too close to another point
-    /// * [`Range`](PupsErrorKind::Range) for a value that is not finite or an orientation without a length
+    /// * [`Graph`](PupsErrorKind::Graph) if the position is outside of the domain or at another point
+    /// * [`ShortAxis`](PupsErrorKind::ShortAxis) if the position is too close to another point
+    /// * [`Range`](PupsErrorKind::Range) if the value is not finite or the orientation has no length
     /// * [`Conflict`](PupsErrorKind::Conflict) if only the new point or only the other points have an orientation, or
     ///   if the point does not have exactly one of value and label
-    /// * [`Count`](PupsErrorKind::Count) for a label without a value
+    /// * [`Count`](PupsErrorKind::Count) if the label has no value
     ///
     /// The texture is unchanged after an error.
     pub fn insert(&mut self, point: ControlPoint) -> Result<Vec<Changed>, PupsError> {
@@ -149,8 +149,8 @@ impl EditablePups {
     ///
     /// # Errors
     ///
-    /// [`Graph`](PupsErrorKind::Graph) for a position outside of the domain or at another point, or for an invalid
-    /// index, and [`ShortAxis`](PupsErrorKind::ShortAxis) for a position too close to another point. The texture is
+    /// [`Graph`](PupsErrorKind::Graph) if the index is invalid or the position is outside of the domain or at another
+    /// point, and [`ShortAxis`](PupsErrorKind::ShortAxis) if the position is too close to another point. The texture is
     /// unchanged after an error.
     pub fn move_to(&mut self, point: PointIdx, position: DVec2) -> Result<Vec<Changed>, PupsError> {
         let former = self.graph.star(point)?.center;
@@ -168,8 +168,8 @@ impl EditablePups {
     ///
     /// # Errors
     ///
-    /// [`Graph`](PupsErrorKind::Graph) for an invalid index, and [`NoPoints`](PupsErrorKind::NoPoints) for the only
-    /// remaining point. The texture is unchanged after an error.
+    /// [`Graph`](PupsErrorKind::Graph) if the index is invalid, and [`NoPoints`](PupsErrorKind::NoPoints) if the point
+    /// is the only remaining one. The texture is unchanged after an error.
     pub fn remove(&mut self, point: PointIdx) -> Result<Vec<Changed>, PupsError> {
         let at = self.graph.star(point)?.center;
         if self.options.points.len() == 1 {
@@ -186,7 +186,7 @@ impl EditablePups {
     ///
     /// # Errors
     ///
-    /// [`Graph`](PupsErrorKind::Graph) for an invalid index. If the value or the orientation is invalid, same as
+    /// [`Graph`](PupsErrorKind::Graph) if the index is invalid. If the value or the orientation is invalid, same as
     /// [`insert`](Self::insert). The texture is unchanged after an error.
     pub fn set(
         &mut self,

@@ -57,7 +57,7 @@ struct RampTable {
     end: f64,
 }
 
-/// Schema of a table with one entry.
+/// Returns the schema of a table with one entry.
 fn table(name: &str, inner: &Schema) -> Schema {
     json_schema!({
         "type": "object", "properties": { name: inner },

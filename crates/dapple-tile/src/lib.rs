@@ -44,8 +44,8 @@
 //!
 //! | method | use it for | cost |
 //! |---|---|---|
-//! | [`Periodic`](Method::Periodic) | smooth noise | no margin; keeps all fine detail |
-//! | [`Poisson`](Method::Poisson) | smooth noise, with gradients nearest to the source's | no margin; keeps all fine detail |
+//! | [`Periodic`](Method::Periodic) | smooth noise | no margin; retains all fine detail |
+//! | [`Poisson`](Method::Poisson) | smooth noise, with gradients nearest to the source's | no margin; retains all fine detail |
 //! | [`SoftCut`] | photographs, grains | a margin along each axis |
 //! | [`SplineProject`] | the blend tile of Du, Wang and Meng | with one level, two thirds to three quarters of the finest octave |
 //! | [`PeriodicThenProject`](Method::PeriodicThenProject) | the same blend tile without its seam | as `SplineProject` |

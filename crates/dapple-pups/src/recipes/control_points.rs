@@ -152,10 +152,10 @@ impl Default for ControlPoints {
 /// # Errors
 ///
 /// * [`NoPoints`](PupsErrorKind::NoPoints) without points
-/// * [`Points`](PupsErrorKind::Points) for a point outside of the domain
+/// * [`Points`](PupsErrorKind::Points) if a point is outside of the domain
 /// * [`Conflict`](PupsErrorKind::Conflict) if only some points have an orientation, if the options have orientations,
 ///   too, or if a point does not have exactly one of value and label
-/// * [`Count`](PupsErrorKind::Count) for a label without a value
+/// * [`Count`](PupsErrorKind::Count) if a label has no value
 /// * same as [`PupsOptions::check`](crate::PupsOptions::check) if the net options are invalid
 pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, PupsError> {
     let points = options.point_set()?;

@@ -97,7 +97,7 @@ impl Neighbors {
         n_there == 1
     }
 
-    /// Clears the list, and reserves memory for the points of some runs.
+    /// Clears the list, and reserves memory for the points of `runs`.
     fn clear(&mut self, n_axes: usize, runs: &[Range<usize>]) {
         (self.n_axes, self.len) = (n_axes, 0);
         let mut room = LANES;
