@@ -66,7 +66,7 @@ pub(crate) fn licenses(shell: &Shell, check: bool) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The output for a package: each license text once, preceded by the crates that use it.
+/// Returns the output for a package: each license text once, preceded by the crates that use it.
 fn texts(shell: &Shell, metadata: &Value, package: &str) -> anyhow::Result<String> {
     let mut texts: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for package in shipped(metadata, package)? {
@@ -93,7 +93,7 @@ fn texts(shell: &Shell, metadata: &Value, package: &str) -> anyhow::Result<Strin
     Ok(all)
 }
 
-/// The registry packages compiled into `root` on any platform, sorted by name and version.
+/// Returns the registry packages compiled into `root` on any platform, sorted by name and version.
 fn shipped<'a>(metadata: &'a Value, root: &str) -> anyhow::Result<Vec<&'a Value>> {
     let by_id = |list: &'a Value| -> BTreeMap<&str, &Value> {
         let items = list.as_array().into_iter().flatten();
@@ -131,7 +131,7 @@ fn shipped<'a>(metadata: &'a Value, root: &str) -> anyhow::Result<Vec<&'a Value>
     Ok(shipped)
 }
 
-/// The license text of a package.
+/// Returns the license text of a package.
 fn license(shell: &Shell, package: &Value) -> anyhow::Result<String> {
     let terms = package["license"].as_str().unwrap_or_default();
     let folder = Path::new(package["manifest_path"].as_str().unwrap_or_default());
@@ -166,7 +166,7 @@ fn license(shell: &Shell, package: &Value) -> anyhow::Result<String> {
     )))
 }
 
-/// The license and notice files in the root of a package.
+/// Returns the license and notice files in the root of a package.
 fn license_files(shell: &Shell, folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let starts = [
         "license",

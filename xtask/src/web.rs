@@ -41,7 +41,7 @@ pub(crate) fn web(shell: &Shell, out: Option<PathBuf>) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Whether the compiler has the standard library for WebAssembly.
+/// Returns whether the compiler has the standard library for WebAssembly.
 pub(crate) fn has_target(shell: &Shell) -> bool {
     let rustc = env::var("RUSTC").unwrap_or("rustc".into());
     let folder = cmd!(shell, "{rustc} --print target-libdir --target {TARGET}");
@@ -65,7 +65,7 @@ fn program(shell: &Shell) -> anyhow::Result<PathBuf> {
     Ok(target.join(TARGET).join("wasm/dapple_web.wasm"))
 }
 
-/// All files of a folder, sorted.
+/// Returns all files of a folder, sorted.
 fn files(shell: &Shell, folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for path in shell.read_dir(folder)? {

@@ -107,7 +107,7 @@ pub(crate) struct ImageArgs {
     pub(crate) ramp: Option<RampArg>,
 }
 
-/// The help text of `--ramp`, with the names of all palettes.
+/// Returns the help text of `--ramp`, with the names of all palettes.
 fn ramp_help() -> String {
     format!(
         "Color gray results: a palette ({}) or colors from low to high, such as `#123,#8ac,white`",
@@ -136,7 +136,7 @@ impl Axes {
         NamedValueParser::some(&[Self::X, Self::Y, Self::Both])
     }
 
-    /// For each axis, whether the image repeats along it.
+    /// Returns, for each axis, whether the image repeats along it.
     pub(crate) fn flags(self) -> [bool; 2] {
         [
             matches!(self, Self::X | Self::Both),
@@ -146,24 +146,24 @@ impl Axes {
 }
 
 impl ImageArgs {
-    /// The file extension of images whose names the command chooses.
+    /// Returns the file extension of images whose names the command chooses.
     pub(crate) fn ending(&self) -> &'static str {
         self.format.map_or("png", Format::ending)
     }
 }
 
 impl OutputArgs {
-    /// The output file of a run that writes a single file.
+    /// Returns the output file of a run that writes a single file.
     ///
     /// # Errors
     ///
-    /// The errors of [`targets`](Self::targets).
+    /// Same as [`targets`](Self::targets).
     pub(crate) fn target(&self, name: &str, ending: &str) -> Result<Target> {
         Ok(self.targets(name, &[""], ending)?.main)
     }
 
-    /// The output files of a run that writes a file for each part: `NAME_PART.EXTENSION`, and `NAME.EXTENSION` for a
-    /// part with an empty name.
+    /// Returns the output files of a run that writes a file for each part: `NAME_PART.EXTENSION`, and `NAME.EXTENSION`
+    /// for a part with an empty name.
     ///
     /// A single part is written to the output path itself, unless that is a directory. In a directory, NAME is given by
     /// `--name`, or else by `name`.
@@ -207,8 +207,8 @@ impl OutputArgs {
         Ok(Targets { main, files })
     }
 
-    /// The output path, if it means a directory for this number of files: an existing directory, a path with a trailing
-    /// slash, or, for several files, a path without an extension.
+    /// Returns the output path, if it means a directory for this number of files: an existing directory, a path with a
+    /// trailing slash, or, for several files, a path without an extension.
     pub(crate) fn folder(&self, n_files: usize) -> Option<&Path> {
         let output = self.output.as_deref()?;
         let ends_with_slash = output

@@ -76,7 +76,7 @@ pub(crate) fn parse() -> (Cli, Vec<GivenOption>) {
     parsed.unwrap_or_else(|error| advised(error.format(&mut command), &words).exit())
 }
 
-/// The options of the subcommand that were given on the command line.
+/// Returns the options of the subcommand that were given on the command line.
 fn given(command: &Command, matches: &ArgMatches) -> Vec<GivenOption> {
     let subcommand = matches.subcommand();
     let Some((command, matches)) =
@@ -130,14 +130,14 @@ fn option(text: &str) -> String {
     }
 }
 
-/// Whether a text begins like a negative number, such as `-1` or `-.5`.
+/// Returns whether a text begins like a negative number, such as `-1` or `-.5`.
 fn is_negative(text: &str) -> bool {
     let digits = text.strip_prefix('-').unwrap_or_default();
     let digits = digits.strip_prefix('.').unwrap_or(digits);
     digits.starts_with(|digit: char| digit.is_ascii_digit())
 }
 
-/// Whether an argument is a long option without its value.
+/// Returns whether an argument is a long option without its value.
 fn takes_more(word: &OsString) -> bool {
     let word = word.to_string_lossy();
     word.starts_with("--") && word.len() > 2 && !word.contains('=')

@@ -30,7 +30,7 @@ pub(crate) struct MapFile {
     pub(crate) sheet: Option<OutputIdx>,
 }
 
-/// The name, seed and scale of a recipe, for programs that read its maps. One unit of the plane is one meter.
+/// Returns the name, seed and scale of a recipe, for programs that read its maps. One unit of the plane is one meter.
 pub(crate) fn report(recipe: &Recipe) -> Value {
     json!({
         "name": recipe.name,
@@ -78,7 +78,7 @@ pub(crate) fn read_recipe(name: &str) -> Result<(Recipe, &Path)> {
     Ok((recipe, path.parent().unwrap_or(Path::new(""))))
 }
 
-/// Whether a recipe file is in JSON, by its extension.
+/// Returns whether a recipe file is in JSON, by its extension.
 pub(crate) fn is_json(path: &Path) -> bool {
     let ending = path.extension();
     ending.is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
@@ -225,11 +225,11 @@ fn for_each_band(
     Ok(())
 }
 
-/// The format of a map's file; 16-bit PNG by default.
+/// Returns the format of a map's file; 16-bit PNG by default.
 ///
 /// # Errors
 ///
-/// The errors of [`Format::choose`].
+/// Same as [`Format::choose`].
 pub(crate) fn format(asked: Option<Format>, target: &Target) -> Result<Format> {
     Format::choose(asked, target, Format::Png16)
 }

@@ -30,7 +30,7 @@ dapple::raster::named! {
 }
 
 impl Format {
-    /// The format for a target: the requested format, or else the format of the file extension.
+    /// Builds the format for a target: the requested format, or else the format of the file extension.
     ///
     /// # Errors
     ///
@@ -64,7 +64,7 @@ impl Format {
         Err(error.hint(format!("let it end in .{}", format.ending())))
     }
 
-    /// The encoding of numbers in this format.
+    /// Returns the encoding of numbers in this format.
     pub(crate) fn encoding(self) -> Encoding {
         match self {
             Self::Png8 => Encoding::Png(Depth::Eight),
@@ -75,12 +75,12 @@ impl Format {
         }
     }
 
-    /// Whether numbers are stored unchanged, including those below 0 and above 1.
+    /// Returns whether numbers are stored unchanged, including those below 0 and above 1.
     pub(crate) fn keeps_numbers(self) -> bool {
         matches!(self, Self::Exr | Self::Npy)
     }
 
-    /// The bytes of a number, and the bit depth as text.
+    /// Returns the bytes of a number, and the bit depth as text.
     pub(crate) fn depth(self) -> (u64, &'static str) {
         match self {
             Self::Png8 => (1, "8 bits"),
@@ -103,7 +103,7 @@ impl Format {
         Err(usage(message).hint("write a height as .r16, and this as .png, .exr or .npy"))
     }
 
-    /// The file extension of this format, without its dot.
+    /// Returns the file extension of this format, without its dot.
     pub(crate) fn ending(self) -> &'static str {
         match self {
             Self::Png8 | Self::Png16 => "png",
@@ -114,7 +114,7 @@ impl Format {
     }
 }
 
-/// The default format of a map: 8-bit PNG for colors unless `is_deep`, and 16-bit PNG for all other maps.
+/// Returns the default format of a map: 8-bit PNG for colors unless `is_deep`, and 16-bit PNG for all other maps.
 pub(crate) fn default_format(map: &Map, is_deep: bool) -> Format {
     match map {
         Map::Color(_) if !is_deep => Format::Png8,
@@ -130,7 +130,7 @@ pub(crate) fn ramped(map: Map, ramp: Option<&RampArg>) -> Map {
     }
 }
 
-/// A ramp node that colors an input of a recipe.
+/// Returns a ramp node that colors an input of a recipe.
 pub(crate) fn ramped_recipe(ramp: &RampArg, input: &Input) -> Node {
     Node::Ramp(Ramped {
         input: input.clone(),
@@ -192,7 +192,7 @@ pub(crate) struct Cover<'a> {
 }
 
 impl<'a> Cover<'a> {
-    /// The alpha of an image; `None` if it has no alpha.
+    /// Returns the alpha of an image; `None` if it has no alpha.
     pub(crate) fn of(
         alpha: Option<&'a Raster<f32>>,
         is_associated: bool,
@@ -206,7 +206,7 @@ impl<'a> Cover<'a> {
         })
     }
 
-    /// The alpha of straight colors, which are not multiplied by alpha.
+    /// Builds the alpha of straight colors, which are not multiplied by alpha.
     pub(crate) fn straight(alpha: &'a Raster<f32>, clear: Clear) -> Self {
         Self {
             alpha,
@@ -283,7 +283,7 @@ pub(crate) fn encode_packed(pixels: &Raster<[f32; 3]>, format: Format) -> Result
     Ok(rows.finish()?.into_inner())
 }
 
-/// The content type of the image of a map.
+/// Returns the content type of the image of a map.
 pub(crate) fn content(map: &Map) -> Content {
     match map {
         Map::Value(_) => Content::Gray,
@@ -292,7 +292,7 @@ pub(crate) fn content(map: &Map) -> Content {
     }
 }
 
-/// Number of pixels with a component below 0 or above 1 by more than half a 16-bit code.
+/// Returns the number of pixels with a component below 0 or above 1 by more than half a 16-bit code.
 pub(crate) fn n_clipped<T: Sync, const N: usize>(
     raster: &Raster<T>,
     parts: impl Fn(&T) -> [f32; N],
@@ -305,7 +305,7 @@ pub(crate) fn n_clipped<T: Sync, const N: usize>(
         .count() as u64
 }
 
-/// Number of pixels of a map that integer formats clip. Normals are never clipped.
+/// Returns the number of pixels of a map that integer formats clip. Normals are never clipped.
 pub(crate) fn n_clipped_of(map: &Map) -> u64 {
     match map {
         Map::Value(raster) => n_clipped(raster, |number| [*number]),
@@ -314,7 +314,8 @@ pub(crate) fn n_clipped_of(map: &Map) -> u64 {
     }
 }
 
-/// Minimum and maximum of the finite numbers of a map, over all channels. Components of normals are from -1 to 1.
+/// Returns the minimum and maximum of the finite numbers of a map, over all channels. Components of normals are from -1
+/// to 1.
 pub(crate) fn range(map: &Map) -> [f32; 2] {
     let fold = |range: [f32; 2], value: f32| {
         if value.is_finite() {

@@ -63,7 +63,7 @@ impl std::error::Error for Refusal {
     }
 }
 
-/// An error in the command line that clap does not detect.
+/// Returns an error in the command line that clap does not detect.
 pub(crate) fn usage(message: impl Into<String>) -> Error {
     Error::new(Refusal {
         error: Error::msg(message.into()),
@@ -140,7 +140,7 @@ pub(crate) fn report(error: &Error, options: &[GivenOption]) -> Exit {
     exit
 }
 
-/// The name of the quantity that a library reports as out of range.
+/// Returns the name of the quantity that a library reports as out of range.
 fn refused_number(error: &Error) -> Option<&'static str> {
     use PointsErrorKind::{NotDescending, NotPositive, OutOfRange, PeriodTooShort, Radius};
     error.chain().find_map(|cause| {
@@ -170,7 +170,7 @@ fn refused_number(error: &Error) -> Option<&'static str> {
     })
 }
 
-/// The first cause of an error that has this type.
+/// Returns the first cause of an error that has this type.
 pub(crate) fn cause<T: std::error::Error + 'static>(error: &Error) -> Option<&T> {
     let mut causes = error.chain();
     causes.find_map(|found| match found.downcast_ref() {
@@ -189,7 +189,8 @@ const OTHER_NAMES: [(&str, &str); 5] = [
     ("width", "width of the cuts"),
 ];
 
-/// The option, as typed, for the quantity that a library calls `what`; `None` unless exactly one given option matches.
+/// Returns the option, as typed, for the quantity that a library calls `what`; `None` unless exactly one given option
+/// matches.
 ///
 /// Options are matched by name only. Their values are not compared, since equal values would match unrelated options.
 fn option_of(what: &str, options: &[GivenOption]) -> Option<String> {
@@ -206,7 +207,7 @@ fn option_of(what: &str, options: &[GivenOption]) -> Option<String> {
     }
 }
 
-/// The exit code for an error.
+/// Returns the exit code for an error.
 fn exit(error: &Error) -> Exit {
     if is_broken_pipe(error) {
         // The reader of the pipe has closed it. This is not a failure of the command.
@@ -219,7 +220,7 @@ fn exit(error: &Error) -> Exit {
         .unwrap_or(Exit::Failed)
 }
 
-/// The text of an error: the option, the message, the causes that add information, and the hint.
+/// Returns the text of an error: the option, the message, the causes that add information, and the hint.
 fn text(error: &Error, option: Option<&str>) -> String {
     let mut said = error.to_string();
     let option = option.map_or(String::new(), |option| format!("{option}: "));

@@ -44,7 +44,7 @@ pub(crate) fn print_estimate(
     Ok(())
 }
 
-/// The time per pixel in seconds, measured with a small bake of the whole tile.
+/// Returns the time per pixel in seconds, measured with a small bake of the whole tile.
 #[expect(
     clippy::disallowed_methods,
     reason = "the time is told to the user, and no value depends on it"
@@ -62,7 +62,7 @@ fn probe(plan: &Plan, options: &BakeOptions) -> Result<f64> {
     Ok(start.elapsed().as_secs_f64() / n_pixels(PROBE) as f64)
 }
 
-/// The estimated work as text. `pace` is in seconds per pixel.
+/// Returns the estimated work as text. `pace` is in seconds per pixel.
 fn work([width, height]: [u32; 2], images: &[Image], pace: f64) -> String {
     let pixels = n_pixels([width, height]);
     let bytes = images.iter().map(n_bytes);

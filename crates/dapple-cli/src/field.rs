@@ -185,7 +185,7 @@ pub(crate) fn draw(
 }
 
 impl FieldArgs {
-    /// The number of sample spacings from one side of the image to the other, along each axis.
+    /// Returns the number of sample spacings from one side of the image to the other, along each axis.
     ///
     /// # Errors
     ///
@@ -211,7 +211,7 @@ struct FieldSidecar<'a, T> {
     recipe: &'a Recipe,
 }
 
-/// The recipe that renders a field: its node, mapped to the range, and colored by the ramp.
+/// Returns the recipe that renders a field: its node, mapped to the range, and colored by the ramp.
 fn recipe(field: &Field, args: &FieldArgs, image: &ImageArgs, format: Format) -> Result<Recipe> {
     let mut recipe = Recipe::of_node(field.command, field.node.clone(), Seed(args.seed));
     recipe.extent = field.extent;
@@ -253,14 +253,14 @@ fn recipe(field: &Field, args: &FieldArgs, image: &ImageArgs, format: Format) ->
     Ok(recipe)
 }
 
-/// The labels of the frames of a loop for file names, such as `001`; a single empty label for a still image.
+/// Returns the labels of the frames of a loop for file names, such as `001`; a single empty label for a still image.
 fn frames(count: Option<u32>) -> Vec<String> {
     let label = |frame: Option<Frame>| frame.map_or(String::new(), Frame::label);
     Frame::all(count).map(label).collect()
 }
 
-/// Width and height of an image with square pixels whose shorter side is `shorter` units of the plane. `spaces` is the
-/// number of sample spacings along each axis.
+/// Returns the width and height of an image with square pixels whose shorter side is `shorter` units of the plane.
+/// `spaces` is the number of sample spacings along each axis.
 pub(crate) fn extent_of(spaces: Size, shorter: f64) -> [f64; 2] {
     let [width, height] = spaces.0.map(f64::from);
     // Multiply before dividing, so that sides that are whole numbers of units are exact.

@@ -31,7 +31,7 @@ impl Faults {
         Self(faults)
     }
 
-    /// The faults within a region of the image.
+    /// Returns the faults within a region of the image.
     pub(crate) fn crop(&self, first: [u32; 2], size: [u32; 2]) -> Result<Self> {
         let planes = self.0.iter().map(|plane| {
             let values = plane.values.crop(first, size)?;
@@ -40,7 +40,7 @@ impl Faults {
         planes.collect::<Result<_>>().map(Self)
     }
 
-    /// Whether there are no faults.
+    /// Returns whether there are no faults.
     pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -113,7 +113,7 @@ fn filled(values: &Raster<f32>) -> Raster<f32> {
     values.map(|_| filled.next().unwrap_or_default())
 }
 
-/// The mean of the finite values; 0 without any.
+/// Returns the mean of the finite values; 0 without any.
 fn mean(values: impl Iterator<Item = f32>) -> f32 {
     let (mut sum, mut count) = (0.0_f64, 0.0_f64);
     for value in values.filter(|value| value.is_finite()) {

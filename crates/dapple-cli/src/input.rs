@@ -71,7 +71,7 @@ pub(crate) fn set_quiet(is_quiet: bool) {
     IS_QUIET.store(is_quiet, Ordering::Relaxed);
 }
 
-/// The limits of images that are read.
+/// Returns the limits of images that are read.
 fn limits() -> Limits {
     let default = Limits::default();
     let pixels = MAX_PIXELS.get().copied().unwrap_or(default.pixels);
@@ -151,7 +151,7 @@ impl Loaded {
         Ok(())
     }
 
-    /// The properties of this image with another map, such as one of its channels, and without alpha.
+    /// Returns the properties of this image with another map, such as one of its channels, and without alpha.
     pub(crate) fn with_map(&self, map: Map) -> Self {
         Self {
             map,
@@ -162,7 +162,7 @@ impl Loaded {
         }
     }
 
-    /// The color of a gray value of the image.
+    /// Returns the color of a gray value of the image.
     pub(crate) fn color_of(&self, value: f32) -> LinearRgb {
         if self.is_linear {
             LinearRgb::gray(value)
@@ -185,7 +185,7 @@ impl Loaded {
         }
     }
 
-    /// The luminance of a color as a gray value of the image, encoded as in the file.
+    /// Returns the luminance of a color as a gray value of the image, encoded as in the file.
     fn value_of(&self, color: LinearRgb) -> f32 {
         let lightness = color.luminance();
         if self.is_linear {
@@ -253,7 +253,7 @@ fn region_of(bytes: &[u8], Region { first, size }: Region) -> Result<Image, Imag
     }
 }
 
-/// The limit of pixels that an image exceeds, if this is the cause of the error.
+/// Returns the limit of pixels that an image exceeds, if this is the cause of the error.
 pub(crate) fn exceeded_limit(error: &Error) -> Option<u64> {
     match cause::<ImageError>(error)?.kind() {
         ImageErrorKind::TooManyPixels { limit, .. } => Some(*limit),
@@ -492,7 +492,7 @@ fn of_image(
     Ok(loaded)
 }
 
-/// The values of a gray image with alpha, from 0 to 1, without sRGB decoding; `None` for an image in color.
+/// Returns the values of a gray image with alpha, from 0 to 1, without sRGB decoding; `None` for an image in color.
 fn values_beside_alpha(image: &Image, pixels: &Raster<LinearRgba>) -> Option<Raster<f32>> {
     let png = match image {
         Image::Png(png) => png,
@@ -591,7 +591,7 @@ pub(crate) fn exr(path: &Path, size: [u32; 2]) -> Result<ExrImage> {
     }
 }
 
-/// The SHA-256 of a file, in hexadecimal.
+/// Returns the SHA-256 of a file, in hexadecimal.
 ///
 /// # Errors
 ///
@@ -656,7 +656,7 @@ mod tests {
     use dapple::tile::Map;
     use std::path::Path;
 
-    /// The bytes of a PNG image of one color, with a `cICP` chunk for Display P3.
+    /// Returns the bytes of a PNG image of one color, with a `cICP` chunk for Display P3.
     fn display_p3(color: [u8; 3]) -> Vec<u8> {
         let raster = Raster::filled([4, 4], color).unwrap();
         let mut bytes = encode_png(raster.view(), Transfer::Data).unwrap();

@@ -33,7 +33,7 @@ pub(crate) struct Context {
 
 #[cfg(feature = "studio")]
 impl Context {
-    /// The same settings without messages.
+    /// Returns the same settings without messages.
     pub(crate) fn silent(&self) -> Self {
         Self {
             quiet: true,
@@ -72,7 +72,7 @@ struct FileRecord {
     sha256: String,
 }
 
-/// Whether no pixel was clipped.
+/// Returns whether no pixel was clipped.
 fn is_zero(count: &u64) -> bool {
     *count == 0
 }
@@ -104,14 +104,14 @@ struct RawSize {
 const CLIPPED_MIN: f64 = 0.01;
 
 impl FileRecord {
-    /// The fraction of clipped pixels, from 0 to 1, if it is at least [`CLIPPED_MIN`].
+    /// Returns the fraction of clipped pixels, from 0 to 1, if it is at least [`CLIPPED_MIN`].
     fn clipped_share(&self) -> Option<f64> {
         let [width, height] = self.size?;
         let share = self.clipped as f64 / (f64::from(width) * f64::from(height));
         (share >= CLIPPED_MIN).then_some(share)
     }
 
-    /// The size for the sidecar, if the file has raw heights.
+    /// Returns the size for the sidecar, if the file has raw heights.
     fn raw_size(&self) -> Option<RawSize> {
         let [width, height] = self.size.filter(|_| self.format == Some(Format::R16))?;
         Some(RawSize {
@@ -139,7 +139,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// The errors of [`Outputs::claim`], and if the output is a terminal.
+    /// Same as [`Outputs::claim`], and if the output is a terminal.
     pub(crate) fn claim(&mut self, target: &Target) -> Result<OutputIdx> {
         if *target == Target::Stdout && io::stdout().is_terminal() {
             let error = usage("standard output is a terminal, which cannot show this file");
@@ -171,7 +171,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// The errors of [`Outputs::claim`].
+    /// Same as [`Outputs::claim`].
     pub(crate) fn claim_text(&mut self, target: &Target) -> Result<OutputIdx> {
         let output = self.claim_in_folder(target)?;
         let record = FileRecord {
@@ -211,7 +211,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// The errors of [`Outputs::write`].
+    /// Same as [`Outputs::write`].
     pub(crate) fn write(&self, output: OutputIdx, bytes: &[u8]) -> Result<()> {
         self.outputs.write(output, bytes)
     }
@@ -238,7 +238,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// The output options of the subcommand.
+    /// Returns the output options of the subcommand.
     pub(crate) fn args(&self) -> &'a OutputArgs {
         self.args
     }
@@ -250,21 +250,21 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// The target of a claimed file.
+    /// Returns the target of a claimed file.
     pub(crate) fn target(&self, output: OutputIdx) -> &Target {
         self.outputs.target(output)
     }
 
-    /// A writer for a claimed file, from its start. Flush it before [`finish`](Self::finish).
+    /// Returns a writer for a claimed file, from its start. Flush it before [`finish`](Self::finish).
     ///
     /// # Errors
     ///
-    /// The errors of [`Outputs::writer`].
+    /// Same as [`Outputs::writer`].
     pub(crate) fn writer(&self, output: OutputIdx) -> Result<BufWriter<Sink>> {
         self.outputs.writer(output)
     }
 
-    /// Whether a sidecar is written. [`note`](Self::note) records the properties of the images for it.
+    /// Returns whether a sidecar is written. [`note`](Self::note) records the properties of the images for it.
     pub(crate) fn has_sidecar(&self) -> bool {
         self.sidecar.is_some()
     }
@@ -306,7 +306,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// The errors of [`write_image`](Self::write_image).
+    /// Same as [`write_image`](Self::write_image).
     pub(crate) fn write_with_alpha(
         &mut self,
         output: OutputIdx,
@@ -348,7 +348,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// The errors of [`Outputs::commit`].
+    /// Same as [`Outputs::commit`].
     pub(crate) fn finish(self, options: &impl Serialize, report: Value) -> Result<()> {
         self.finish_with(&|| serde_json::to_value(options), report)
     }
@@ -402,7 +402,7 @@ impl<'a> Job<'a> {
         self.outputs.claim(target)
     }
 
-    /// The default path of the sidecar: the path of the output with the extension `.json`.
+    /// Returns the default path of the sidecar: the path of the output with the extension `.json`.
     fn beside(&self, main: &Target) -> Result<Target> {
         let Some(path) = main.path() else {
             return Err(
@@ -464,7 +464,7 @@ pub(crate) fn eprintln_if_possible(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", printable(text));
 }
 
-/// The message about a written file, as a line of JSON.
+/// Returns the message about a written file, as a line of JSON.
 fn told_as_json(record: &FileRecord) -> String {
     let mut line = serde_json::json!({
         "wrote": record.file, "size": record.size, "format": record.format
@@ -475,7 +475,7 @@ fn told_as_json(record: &FileRecord) -> String {
     line.to_string()
 }
 
-/// The message about a written file.
+/// Returns the message about a written file.
 fn told(record: &FileRecord) -> String {
     let FileRecord {
         file, size, format, ..

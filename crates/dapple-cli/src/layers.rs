@@ -45,7 +45,7 @@ pub(crate) enum LayerRows<'a> {
 }
 
 impl Layers {
-    /// The maps that the channels need.
+    /// Returns the maps that the channels need.
     pub(crate) fn kinds(&self) -> Vec<MapKind> {
         match self {
             Self::Map(kind) => vec![*kind],
@@ -53,7 +53,7 @@ impl Layers {
         }
     }
 
-    /// The content type of the image, which determines its encoding.
+    /// Returns the content type of the image, which determines its encoding.
     pub(crate) fn content(&self) -> Content {
         match self {
             Self::Map(kind) => kind.content(),
@@ -61,7 +61,7 @@ impl Layers {
         }
     }
 
-    /// Number of channels.
+    /// Returns the number of channels.
     pub(crate) fn n_channels(&self) -> u64 {
         match self.content() {
             Content::Gray => 1,
@@ -98,7 +98,7 @@ impl Channel {
         }
     }
 
-    /// The value of the channel for a number of its map.
+    /// Returns the value of the channel for a number of its map.
     fn value(self, number: Option<f32>) -> f32 {
         match self {
             Self::Of(_) => number.unwrap_or_default(),
@@ -162,7 +162,7 @@ impl LayerRows<'_> {
         }
     }
 
-    /// Number of pixels with a number below 0 or above 1, which integer formats clip.
+    /// Returns the number of pixels with a number below 0 or above 1, which integer formats clip.
     pub(crate) fn n_clipped(&self) -> u64 {
         match self {
             Self::Map(rows) => match rows.as_ref() {
@@ -176,7 +176,7 @@ impl LayerRows<'_> {
         }
     }
 
-    /// The rows repeated twice horizontally.
+    /// Returns the rows repeated twice horizontally.
     pub(crate) fn beside_themselves(&self) -> Result<LayerRows<'static>> {
         fn twice<T: Copy + Send + Sync>(raster: &Raster<T>) -> Result<Raster<T>> {
             let [width, height] = raster.size();
@@ -195,14 +195,14 @@ impl LayerRows<'_> {
     }
 }
 
-/// The rows of a map in a band.
+/// Returns the rows of a map in a band.
 fn map_of(kind: MapKind, band: &Band) -> Result<&MapRows> {
     let found = band.maps.iter().find(|(other, _)| *other == kind);
     let (_, rows) = found.ok_or_else(|| anyhow!("the map {} was not baked", kind.name()))?;
     Ok(rows)
 }
 
-/// The rows of a map with a single channel.
+/// Returns the rows of a map with a single channel.
 fn numbers_of(kind: MapKind, band: &Band) -> Result<&Raster<f32>> {
     match map_of(kind, band)? {
         MapRows::Gray(rows) => Ok(rows),

@@ -93,7 +93,7 @@ enum Place {
 }
 
 impl Target {
-    /// The path, or `None` for standard output.
+    /// Returns the path, or `None` for standard output.
     pub(crate) fn path(&self) -> Option<&Path> {
         match self {
             Self::Stdout => None,
@@ -101,13 +101,13 @@ impl Target {
         }
     }
 
-    /// The file name without its directory; empty for standard output.
+    /// Returns the file name without its directory; empty for standard output.
     pub(crate) fn name(&self) -> String {
         let name = self.path().and_then(Path::file_name);
         name.unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// The file extension in lower case, without its dot; empty if there is no extension.
+    /// Returns the file extension in lower case, without its dot; empty if there is no extension.
     pub(crate) fn ending(&self) -> String {
         let ending = self.path().and_then(Path::extension);
         ending
@@ -135,7 +135,7 @@ impl Target {
         }
     }
 
-    /// The file for a part of the output: `NAME_PART.EXTENSION`, or this file for a part with an empty name.
+    /// Returns the file for a part of the output: `NAME_PART.EXTENSION`, or this file for a part with an empty name.
     ///
     /// # Errors
     ///
@@ -161,7 +161,7 @@ impl Target {
 }
 
 impl Target {
-    /// The file of a UDIM tile: its number replaces `<UDIM>` in the name, or else precedes the extension, as in
+    /// Returns the file of a UDIM tile: its number replaces `<UDIM>` in the name, or else precedes the extension, as in
     /// `NAME.1001.EXTENSION`.
     ///
     /// # Errors
@@ -231,7 +231,7 @@ impl Outputs {
     ///
     /// # Errors
     ///
-    /// The errors of [`make_folder`](Self::make_folder).
+    /// Same as [`make_folder`](Self::make_folder).
     pub(crate) fn make_lasting_folder(folder: &Path) -> Result<()> {
         let failed = || format!("{}: the folder cannot be made", folder.display());
         let missing = missing_folders(folder)?;
@@ -271,7 +271,7 @@ impl Outputs {
         Ok(OutputIdx(self.files.len() - 1))
     }
 
-    /// A writer for a claimed file, from its start. Flush it before [`commit`](Self::commit).
+    /// Returns a writer for a claimed file, from its start. Flush it before [`commit`](Self::commit).
     ///
     /// # Errors
     ///
@@ -292,12 +292,12 @@ impl Outputs {
         written.with_context(|| cannot_be_written(self.target(output)))
     }
 
-    /// The target of a claimed file.
+    /// Returns the target of a claimed file.
     pub(crate) fn target(&self, output: OutputIdx) -> &Target {
         &self.files[output.0].target
     }
 
-    /// The size and checksum of a file that was written and flushed.
+    /// Returns the size and checksum of a file that was written and flushed.
     ///
     /// # Errors
     ///
@@ -369,7 +369,7 @@ impl Drop for Outputs {
 }
 
 impl Pending {
-    /// The sink that the bytes are written to and read back from.
+    /// Returns the sink that the bytes are written to and read back from.
     fn sink(&self) -> Result<Sink> {
         match &self.content {
             Bytes::File(temporary) => {
@@ -399,12 +399,12 @@ impl Pending {
     }
 }
 
-/// The parent directory of a path; an empty path means the current directory.
+/// Returns the parent directory of a path; an empty path means the current directory.
 fn parent(path: &Path) -> Option<PathBuf> {
     path.parent().map(Path::to_owned)
 }
 
-/// The directory and its parents that do not exist, innermost first.
+/// Returns the directory and its parents that do not exist, innermost first.
 fn missing_folders(folder: &Path) -> Result<Vec<&Path>> {
     let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
     let missing = folder.ancestors().take_while(is_missing);
@@ -416,7 +416,7 @@ fn missing_folders(folder: &Path) -> Result<Vec<&Path>> {
     Ok(missing)
 }
 
-/// The final destination of a target, resolved when it is claimed.
+/// Returns the final destination of a target, resolved when it is claimed.
 fn place(target: &Target) -> Result<Place> {
     let Target::Path(path) = target else {
         return Ok(Place::Stdout);
@@ -445,7 +445,7 @@ fn place(target: &Target) -> Result<Place> {
     }
 }
 
-/// The error message for a target that cannot be written.
+/// Returns the error message for a target that cannot be written.
 pub(crate) fn cannot_be_written(target: &Target) -> String {
     format!("{target} cannot be written")
 }
@@ -503,7 +503,7 @@ pub(crate) fn read_back(mut file: impl Read + Seek) -> io::Result<Content> {
     Ok(Content { bytes, sha256 })
 }
 
-/// The SHA-256 of bytes, in hexadecimal.
+/// Returns the SHA-256 of bytes, in hexadecimal.
 pub(crate) fn sha256(bytes: &[u8]) -> String {
     hexadecimal(Sha256::new_with_prefix(bytes))
 }

@@ -128,7 +128,7 @@ impl Maps {
         })
     }
 
-    /// The shading material at a point of the surface.
+    /// Returns the shading material at a point of the surface.
     fn material(&self, surface: &Surface) -> Material {
         let uv = surface.uv().unwrap_or_default() * self.tiles;
         let wrap = [Wrap::Repeat; 2];
@@ -147,7 +147,7 @@ impl Maps {
     }
 }
 
-/// The directions of right and up of the maps, at a point of a shape.
+/// Returns the directions of right and up of the maps, at a point of a shape.
 fn directions(surface: &Surface) -> [DVec3; 2] {
     let at = surface.position;
     let outward = DVec2::new(at.x, at.z).length();

@@ -56,7 +56,7 @@ pub(crate) struct Progress {
     stop: Option<Arc<AtomicBool>>,
 }
 
-/// Whether a stop was requested.
+/// Returns whether a stop was requested.
 #[cfg(feature = "studio")]
 fn is_set(stop: &Option<Arc<AtomicBool>>) -> bool {
     stop.as_ref()
@@ -96,7 +96,7 @@ impl Progress {
         Ok(())
     }
 
-    /// A progress callback that stops the work if a stop was requested.
+    /// Returns a progress callback that stops the work if a stop was requested.
     pub(crate) fn listener(
         &self,
     ) -> impl Fn(dapple::synth::Progress) -> ControlFlow<()> + Send + Sync + 'static {
@@ -173,7 +173,7 @@ impl Progress {
     }
 }
 
-/// The text of a progress line.
+/// Returns the text of a progress line.
 fn line(label: &str, done: u64, length: u64, is_json: bool) -> String {
     if is_json {
         return serde_json::json!({ "step": label, "done": done, "of": length }).to_string();

@@ -204,7 +204,7 @@ impl List {
         Err(error.hint("take another folder, or list the shards again with `dapple shards --force`; files of the other list stay"))
     }
 
-    /// The maps of the list.
+    /// Returns the maps of the list.
     ///
     /// # Errors
     ///
@@ -216,7 +216,7 @@ impl List {
         self.maps.iter().map(kind).collect()
     }
 
-    /// Columns and rows of the grid of shards.
+    /// Returns the columns and rows of the grid of shards.
     ///
     /// # Errors
     ///
@@ -225,7 +225,7 @@ impl List {
         Ok(self.shards()?.grid())
     }
 
-    /// All shards, frame by frame.
+    /// Returns all shards, frame by frame.
     ///
     /// # Errors
     ///
@@ -250,7 +250,7 @@ impl List {
         Ok(Frame::all(self.frames).flat_map(of_frame))
     }
 
-    /// Number of shards of all frames together.
+    /// Returns the number of shards of all frames together.
     ///
     /// # Errors
     ///
@@ -260,7 +260,7 @@ impl List {
         Ok(self.shards()?.len().saturating_mul(n_frames.into()))
     }
 
-    /// A row of shards of a frame, from left to right.
+    /// Returns a row of shards of a frame, from left to right.
     ///
     /// # Errors
     ///
@@ -283,7 +283,7 @@ impl List {
         (0..columns).map(task).collect()
     }
 
-    /// The path of a map of a shard, relative to the directory of `shards.json`. Each row of shards has its own
+    /// Returns the path of a map of a shard, relative to the directory of `shards.json`. Each row of shards has its own
     /// directory, which limits the number of files per directory.
     pub(crate) fn file(&self, frame: Option<Frame>, place: [u32; 2], kind: MapKind) -> PathBuf {
         let [column, row] = place;
@@ -299,7 +299,7 @@ impl List {
     }
 }
 
-/// Whether a value has its default, and so is left out of the list.
+/// Returns whether a value has its default, and so is left out of the list.
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }

@@ -17,7 +17,7 @@ pub(crate) fn with_dashes(word: &str) -> String {
     word.trim().to_lowercase().replace('_', "-")
 }
 
-/// The error message for an unknown word. It has the most similar name, or else all names, followed by `more`.
+/// Returns the error message for an unknown word. It has the most similar name, or else all names, followed by `more`.
 pub(crate) fn unknown(kind: &str, word: &str, names: &[&str], more: &str) -> String {
     slip(kind, word, names.iter().copied()).unwrap_or_else(|| {
         format!(
@@ -27,7 +27,7 @@ pub(crate) fn unknown(kind: &str, word: &str, names: &[&str], more: &str) -> Str
     })
 }
 
-/// The error message for a misspelled name; `None` if no name is similar to the word.
+/// Returns the error message for a misspelled name; `None` if no name is similar to the word.
 pub(crate) fn slip<'a>(
     kind: &str,
     word: &str,
@@ -79,7 +79,7 @@ impl<T> NamedValueParser<T> {
         )
     }
 
-    /// A parser that accepts no value, to which [`or`](Self::or) adds values.
+    /// Creates a parser that accepts no value, to which [`or`](Self::or) adds values.
     pub(crate) fn none() -> Self {
         Self(Vec::new())
     }
@@ -111,7 +111,7 @@ impl<T: Clone + Send + Sync + 'static> TypedValueParser for NamedValueParser<T> 
     }
 }
 
-/// The first sentence of a documentation in Markdown, without backticks and without its period.
+/// Returns the first sentence of a documentation in Markdown, without backticks and without its period.
 fn first_sentence(documentation: &str) -> String {
     let words: Vec<_> = documentation.split_whitespace().collect();
     let text = words.join(" ");

@@ -30,7 +30,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A camera at `eye` that looks at `target`, with +y up and a field of view of 0.7 radians.
+    /// Creates a camera at `eye` that looks at `target`, with +y up and a field of view of 0.7 radians.
     #[must_use]
     pub fn look_at(eye: DVec3, target: DVec3) -> Self {
         Self {
@@ -106,7 +106,7 @@ pub(crate) struct View {
 }
 
 impl View {
-    /// The ray through a point of the image, given in samples from the top left corner.
+    /// Returns the ray through a point of the image, given in samples from the top left corner.
     pub(crate) fn ray(&self, at: DVec2) -> Ray {
         let offset = at - self.middle;
         let direction = self.forward + self.right * offset.x + self.down * offset.y;

@@ -54,13 +54,13 @@ pub struct Sun {
 }
 
 impl<'a> Environment<'a> {
-    /// An environment defined by a function of a unit vector that points away from the scene.
+    /// Creates an environment defined by a function of a unit vector that points away from the scene.
     #[must_use]
     pub fn function(light: impl Fn(DVec3) -> LinearRgb + Send + Sync + 'a) -> Self {
         Self::Function(Box::new(light))
     }
 
-    /// The light that arrives from the direction of a unit vector.
+    /// Returns the light that arrives from the direction of a unit vector.
     #[must_use]
     pub fn light(&self, direction: DVec3) -> LinearRgb {
         match self {

@@ -80,7 +80,7 @@ pub enum Shadows {
 }
 
 impl Light {
-    /// A distant light in the direction `toward`, with hard shadows.
+    /// Creates a distant light in the direction `toward`, with hard shadows.
     #[must_use]
     pub fn directional(toward: DVec3, color: LinearRgb) -> Self {
         Self {
@@ -90,7 +90,7 @@ impl Light {
         }
     }
 
-    /// A point light without falloff, with hard shadows.
+    /// Creates a point light without falloff, with hard shadows.
     #[must_use]
     pub fn point(position: DVec3, color: LinearRgb) -> Self {
         let falloff = Falloff::None;
@@ -129,7 +129,7 @@ impl Light {
 }
 
 impl Shadows {
-    /// The targets of shadow rays on a disk: a Vogel spiral, which covers equal areas.
+    /// Returns the targets of shadow rays on a disk: a Vogel spiral, which covers equal areas.
     ///
     /// Reference: Helmut Vogel, "A better way to construct the sunflower head", Mathematical Biosciences 44, 1979.
     fn pattern(self) -> Result<Vec<DVec2>, PreviewError> {
@@ -180,7 +180,7 @@ pub(crate) struct Incoming {
 }
 
 impl Lamp {
-    /// The light at a point. Returns `None` at the position of the light.
+    /// Returns the light at a point. Returns `None` at the position of the light.
     pub(crate) fn incoming(&self, point: DVec3) -> Option<Incoming> {
         let color = self.color;
         match self.source {
@@ -205,8 +205,8 @@ impl Lamp {
         }
     }
 
-    /// The fraction of the light, from 0 to 1, that is not blocked. `blocked` receives the unit direction of a shadow
-    /// ray and its length.
+    /// Returns the fraction of the light, from 0 to 1, that is not blocked. `blocked` receives the unit direction of a
+    /// shadow ray and its length.
     pub(crate) fn visible(
         &self,
         incoming: &Incoming,

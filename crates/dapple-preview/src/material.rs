@@ -59,7 +59,7 @@ pub enum Mirror {
 }
 
 impl Material {
-    /// A surface that only scatters light.
+    /// Creates a surface that only scatters light.
     #[must_use]
     pub fn matte(color: LinearRgb) -> Self {
         Self {
@@ -118,7 +118,7 @@ impl Material {
 }
 
 impl Mirror {
-    /// The reflectance for a cosine between the normal and the direction to the eye.
+    /// Returns the reflectance for a cosine between the normal and the direction to the eye.
     pub(crate) fn part(self, cosine: f64) -> f32 {
         match self {
             Self::None => 0.0,

@@ -52,7 +52,7 @@ pub struct Scene<'a> {
 pub struct Supersampling(pub u32);
 
 impl<'a> Scene<'a> {
-    /// A scene with only a camera.
+    /// Creates a scene with only a camera.
     #[must_use]
     pub fn new(camera: Camera) -> Self {
         Self {

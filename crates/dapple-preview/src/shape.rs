@@ -47,13 +47,14 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// A sphere around the origin.
+    /// Creates a sphere around the origin.
     #[must_use]
     pub fn sphere(radius: f64) -> Self {
         Self::Sphere { radius }
     }
 
-    /// A torus around the y axis, from the radius of the circle in the middle of its tube and the radius of the tube.
+    /// Creates a torus around the y axis, from the radius of the circle in the middle of its tube and the radius of the
+    /// tube.
     #[must_use]
     pub fn torus(major_radius: f64, minor_radius: f64) -> Self {
         Self::Torus {
@@ -62,14 +63,14 @@ impl Shape {
         }
     }
 
-    /// A rectangle in the plane `y = 0`, centered at the origin, from half its side lengths along x and z.
+    /// Creates a rectangle in the plane `y = 0`, centered at the origin, from half its side lengths along x and z.
     #[must_use]
     pub fn rectangle(half_x: f64, half_z: f64) -> Self {
         let half_size = DVec2::new(half_x, half_z);
         Self::Rectangle { half_size }
     }
 
-    /// A triangle mesh. Pass an `Arc` to share it between objects.
+    /// Creates a triangle mesh. Pass an `Arc` to share it between objects.
     #[must_use]
     pub fn mesh(mesh: impl Into<Arc<Mesh>>) -> Self {
         Self::Mesh(mesh.into())
@@ -155,7 +156,7 @@ pub(crate) struct Detail {
 }
 
 impl Body<'_> {
-    /// The nearest intersection of a ray and the body, at a distance above zero and below `limit`.
+    /// Returns the nearest intersection of a ray and the body, at a distance above zero and below `limit`.
     pub(crate) fn hit(&self, ray: &Ray, limit: f64) -> Option<Hit> {
         let (distance, face) = match self {
             Body::Flat { half_size } => (flat_hit(ray, *half_size)?, HitFace::Flat),
@@ -171,7 +172,7 @@ impl Body<'_> {
         (distance < limit).then_some(Hit { distance, face })
     }
 
-    /// Whether a ray intersects the body at a distance above zero and below `limit`.
+    /// Returns whether a ray intersects the body at a distance above zero and below `limit`.
     pub(crate) fn blocks(&self, ray: &Ray, limit: f64) -> bool {
         match self {
             Body::Mesh(mesh) => mesh.is_blocked(ray, limit),
@@ -179,7 +180,7 @@ impl Body<'_> {
         }
     }
 
-    /// The position, normals and surface coordinates at a hit of this ray.
+    /// Returns the position, normals and surface coordinates at a hit of this ray.
     pub(crate) fn detail(&self, ray: &Ray, hit: &Hit) -> Detail {
         let position = ray.at(hit.distance);
         match (self, hit.face) {
@@ -198,7 +199,7 @@ impl Body<'_> {
 }
 
 impl Detail {
-    /// A point of a surface without interpolated normals.
+    /// Creates a point of a surface without interpolated normals.
     fn flat(position: DVec3, normal: DVec3, part: Part, chart: Chart) -> Self {
         Self {
             position,
@@ -211,7 +212,7 @@ impl Detail {
     }
 }
 
-/// The distance at which a ray hits the rectangle in the plane `y = 0`.
+/// Returns the distance at which a ray hits the rectangle in the plane `y = 0`.
 fn flat_hit(ray: &Ray, half_size: DVec2) -> Option<f64> {
     let distance = -ray.origin.y / ray.direction.y;
     // The condition also fails for NaN, which results from a ray within the plane.

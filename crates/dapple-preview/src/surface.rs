@@ -85,7 +85,7 @@ impl Surface {
         }
     }
 
-    /// The triangle of a mesh with barycentric weights; `None` on other shapes.
+    /// Returns the triangle of a mesh with barycentric weights; `None` on other shapes.
     #[must_use]
     pub fn triangle(&self) -> Option<Triangle> {
         match self.chart {

@@ -81,7 +81,7 @@ impl<'a> World<'a> {
         })
     }
 
-    /// The light along a path. The result is always finite.
+    /// Returns the light along a path. The result is always finite.
     pub(crate) fn light(&self, path: &Path) -> LinearRgb {
         let light = match self.nearest(&path.ray) {
             Some((object, hit, distance)) => self.surface_light(path, object, &hit, distance),
@@ -99,7 +99,7 @@ impl<'a> World<'a> {
         clean(self.environment.light(direction))
     }
 
-    /// The nearest object that a ray hits. Of several at equal distances, the first in the list.
+    /// Returns the nearest object that a ray hits. Of several at equal distances, the first in the list.
     fn nearest(&self, ray: &Ray) -> Option<(&Placed<'a>, Hit, f64)> {
         let mut best = None;
         let mut limit = f64::INFINITY;
@@ -118,7 +118,7 @@ impl<'a> World<'a> {
         best
     }
 
-    /// Whether an object blocks a ray before a distance.
+    /// Returns whether an object blocks a ray before a distance.
     fn blocked(&self, ray: &Ray, distance: f64) -> bool {
         self.objects.iter().any(|object| {
             let own_ray = object.placement.ray_to_object(ray);
@@ -187,7 +187,7 @@ impl<'a> World<'a> {
         light
     }
 
-    /// The scattered light from lights and ambient light, and the highlights.
+    /// Returns the scattered light from lights and ambient light, and the highlights.
     fn local_light(&self, lit: &Lit, material: &Material) -> [LinearRgb; 2] {
         let mut scattered = times(material.color, self.ambient);
         let mut highlights = LinearRgb::BLACK;
@@ -219,7 +219,7 @@ impl<'a> World<'a> {
     }
 }
 
-/// The detail with its normals turned to the side of the eye.
+/// Returns the detail with its normals turned to the side of the eye.
 fn seen(mut detail: Detail, to_eye: DVec3) -> Detail {
     if detail.geometric_normal.dot(to_eye) < 0.0 {
         detail.geometric_normal = -detail.geometric_normal;
@@ -231,7 +231,7 @@ fn seen(mut detail: Detail, to_eye: DVec3) -> Detail {
     detail
 }
 
-/// The strength of the highlight of a light, after Blinn.
+/// Returns the strength of the highlight of a light, after Blinn.
 fn highlight(lit: &Lit, incoming: &Incoming, material: &Material) -> f32 {
     if material.specular <= 0.0 {
         return 0.0;
@@ -242,7 +242,7 @@ fn highlight(lit: &Lit, incoming: &Incoming, material: &Material) -> f32 {
     material.specular * libm::pow(cosine, material.shininess.into()) as f32
 }
 
-/// The direction of a ray reflected by a bumped mirror. A reflection into the surface is reflected out again.
+/// Returns the direction of a ray reflected by a bumped mirror. A reflection into the surface is reflected out again.
 fn mirrored(direction: DVec3, normal: DVec3, geometric_normal: DVec3) -> DVec3 {
     // Reflect at the bumped normal, then reflect any part that points into the actual surface.
     let away = direction - normal * (2.0 * direction.dot(normal));
@@ -250,7 +250,7 @@ fn mirrored(direction: DVec3, normal: DVec3, geometric_normal: DVec3) -> DVec3 {
     (away - geometric_normal * (2.0 * depth)).normalize_or(geometric_normal)
 }
 
-/// The product of two colors, channel by channel.
+/// Returns the product of two colors, channel by channel.
 fn times(a: LinearRgb, b: LinearRgb) -> LinearRgb {
     LinearRgb::new(a.r * b.r, a.g * b.g, a.b * b.b)
 }

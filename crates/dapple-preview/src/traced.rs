@@ -46,7 +46,7 @@ impl Mesh {
     ///
     /// # Errors
     ///
-    /// The errors of [`smooth`](Self::smooth).
+    /// Same as [`smooth`](Self::smooth).
     pub fn flat(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Self, PreviewError> {
         let mesh = dapple_mesh::Mesh::new(positions.to_vec(), triangles)?;
         Ok(Self {
@@ -66,24 +66,24 @@ impl Mesh {
         }
     }
 
-    /// The number of triangles.
+    /// Returns the number of triangles.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.mesh.faces().len()
     }
 
-    /// The nearest triangle at a distance above zero and at most `limit`. Of several at equal distances, the one with
-    /// the lowest index.
+    /// Returns the nearest triangle at a distance above zero and at most `limit`. Of several at equal distances, the
+    /// one with the lowest index.
     pub(crate) fn first_hit(&self, ray: &Ray, limit: f64) -> Option<RayHit> {
         self.bvh.first_hit(ray, limit)
     }
 
-    /// Whether a ray hits a triangle at a distance above zero and below `limit`.
+    /// Returns whether a ray hits a triangle at a distance above zero and below `limit`.
     pub(crate) fn is_blocked(&self, ray: &Ray, limit: f64) -> bool {
         self.bvh.is_blocked(ray, limit)
     }
 
-    /// The normals of the surface at a hit, and the start of its shadow rays.
+    /// Returns the normals of the surface at a hit, and the start of its shadow rays.
     pub(crate) fn detail(&self, position: DVec3, hit: &RayHit) -> Detail {
         let corners = self.mesh.corners(hit.face);
         let [a, b, c] = corners;

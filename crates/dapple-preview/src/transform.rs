@@ -32,7 +32,7 @@ impl Default for Transform {
 }
 
 impl Transform {
-    /// A translation without rotation or scaling.
+    /// Creates a translation without rotation or scaling.
     #[must_use]
     pub fn from_translation(translation: DVec3) -> Self {
         Self {

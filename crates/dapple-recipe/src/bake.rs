@@ -159,7 +159,7 @@ impl<'a> Bake<'a> {
         })
     }
 
-    /// Columns and rows of the baked region.
+    /// Returns the columns and rows of the baked region.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.window.size
@@ -254,7 +254,7 @@ impl Iterator for Bake<'_> {
 }
 
 impl Region {
-    /// The window of the region within the tile.
+    /// Returns the window of the region within the tile.
     pub(crate) fn of(self, whole: &Window) -> Result<Window, RecipeError> {
         for axis in 0..2 {
             let end = u64::from(self.first[axis]) + u64::from(self.size[axis]);

@@ -36,7 +36,7 @@ const BUILTIN: [(&str, &str); 20] = [
 ];
 
 impl Recipe {
-    /// The built-in recipe with a name.
+    /// Builds the built-in recipe with a name.
     ///
     /// # Errors
     ///
@@ -45,11 +45,11 @@ impl Recipe {
         Self::from_toml(Self::builtin_text(name)?)
     }
 
-    /// The text of the built-in recipe with a name.
+    /// Returns the text of the built-in recipe with a name.
     ///
     /// # Errors
     ///
-    /// The errors of [`builtin`](Self::builtin).
+    /// Same as [`builtin`](Self::builtin).
     pub fn builtin_text(name: &str) -> Result<&'static str, RecipeError> {
         let found = BUILTIN.iter().find(|(known, _)| *known == name);
         found.map(|&(_, text)| text).ok_or_else(|| {
@@ -59,7 +59,7 @@ impl Recipe {
         })
     }
 
-    /// The names of the built-in recipes, in order.
+    /// Returns the names of the built-in recipes, in order.
     pub fn builtin_names() -> impl Iterator<Item = &'static str> {
         BUILTIN.iter().map(|&(name, _)| name)
     }

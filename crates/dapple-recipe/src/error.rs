@@ -190,25 +190,25 @@ impl RecipeError {
         self
     }
 
-    /// The cause of the error.
+    /// Returns the cause of the error.
     #[must_use]
     pub fn kind(&self) -> &RecipeErrorKind {
         &self.content.kind
     }
 
-    /// The position in the text, if known.
+    /// Returns the position in the text, if known.
     #[must_use]
     pub fn place(&self) -> Option<Place> {
         self.content.place
     }
 
-    /// The name of the node in which the error is, if any.
+    /// Returns the name of the node in which the error is, if any.
     #[must_use]
     pub fn node(&self) -> Option<&str> {
         self.content.node.as_deref()
     }
 
-    /// The valid word that is nearest to the written word, if one is similar.
+    /// Returns the valid word that is nearest to the written word, if one is similar.
     #[must_use]
     pub fn nearest(&self) -> Option<&str> {
         self.content.nearest.as_deref()

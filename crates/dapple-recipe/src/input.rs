@@ -31,7 +31,7 @@ impl From<&str> for Input {
 }
 
 impl Input {
-    /// The name of the node, if the input refers to one.
+    /// Returns the name of the node, if the input refers to one.
     pub(crate) fn node(&self) -> Option<&str> {
         match self {
             Self::Node(name) => Some(name),
@@ -40,7 +40,7 @@ impl Input {
     }
 }
 
-/// A color as sRGB in hexadecimal, rounded to 8 bits.
+/// Returns a color as sRGB in hexadecimal, rounded to 8 bits.
 pub(crate) fn hex_from_color(color: LinearRgb) -> String {
     let [r, g, b] = color.to_srgb::<u8>();
     format!("#{r:02x}{g:02x}{b:02x}")

@@ -64,27 +64,27 @@ use serde::{Deserialize, Serialize};
 ///
 /// A node has a number at every position, or a color if [`build`](Self::build) returns a step of colors.
 pub(crate) trait NodeKind {
-    /// The inputs of the node, in a fixed order.
+    /// Returns the inputs of the node, in a fixed order.
     fn inputs(&self) -> Vec<&Input> {
         Vec::new()
     }
 
-    /// The image files that the node reads.
+    /// Returns the image files that the node reads.
     fn images(&self) -> Vec<&str> {
         Vec::new()
     }
 
-    /// How the alpha of the image files is used, if the node sets it.
+    /// Returns how the alpha of the image files is used, if the node sets it.
     fn alpha(&self) -> Option<ImageAlpha> {
         None
     }
 
-    /// The layer of the image files to read, if the node sets it.
+    /// Returns the layer of the image files to read, if the node sets it.
     fn layer(&self) -> Option<&str> {
         None
     }
 
-    /// The partition-of-unity texture of a `pups` node; `None` for other kinds.
+    /// Returns the partition-of-unity texture of a `pups` node; `None` for other kinds.
     fn pups(&self) -> Option<&dyn pups::Texture> {
         None
     }
@@ -192,32 +192,32 @@ nodes! {
 }
 
 impl Node {
-    /// The image files in the options of the node.
+    /// Returns the image files in the options of the node.
     #[must_use]
     pub fn image_files(&self) -> Vec<&str> {
         self.kind().images()
     }
 
-    /// How the alpha of the image files is used, if the node sets it.
+    /// Returns how the alpha of the image files is used, if the node sets it.
     #[must_use]
     pub fn image_alpha(&self) -> Option<ImageAlpha> {
         self.kind().alpha()
     }
 
-    /// The layer of the image files to read, if the node sets it.
+    /// Returns the layer of the image files to read, if the node sets it.
     #[must_use]
     pub fn image_layer(&self) -> Option<&str> {
         self.kind().layer()
     }
 
-    /// The images that the node reads: its files, with their layer and the use of their alpha.
+    /// Returns the images that the node reads: its files, with their layer and the use of their alpha.
     pub fn image_sources(&self) -> impl Iterator<Item = ImageSource<'_>> {
         let (layer, alpha) = (self.image_layer(), self.image_alpha());
         let files = self.image_files().into_iter();
         files.map(move |file| ImageSource { file, layer, alpha })
     }
 
-    /// The inputs of the node, in a fixed order.
+    /// Returns the inputs of the node, in a fixed order.
     #[must_use]
     pub fn inputs(&self) -> Vec<&Input> {
         self.kind().inputs()

@@ -52,7 +52,7 @@ pub enum Picture {
 }
 
 impl Picture {
-    /// The numbers of columns and rows.
+    /// Returns the numbers of columns and rows.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         match self {
@@ -79,8 +79,8 @@ pub struct ImageSource<'a> {
 }
 
 impl ImageSource<'_> {
-    /// The key of the image in [`Images`]: the file name, followed by NUL and the layer if a layer is named. No file
-    /// name contains NUL.
+    /// Returns the key of the image in [`Images`]: the file name, followed by NUL and the layer if a layer is named. No
+    /// file name contains NUL.
     #[must_use]
     pub fn key(&self) -> String {
         match self.layer {
@@ -137,14 +137,14 @@ pub(crate) struct Channels {
 }
 
 impl Channels {
-    /// The four steps, in a fixed order.
+    /// Returns the four steps, in a fixed order.
     pub(crate) fn steps(&self) -> [usize; 4] {
         [self.height, self.albedo, self.roughness, self.metallic]
     }
 }
 
 impl Recipe {
-    /// The names of the images of the recipe, each once, in the order of its nodes.
+    /// Returns the names of the images of the recipe, each once, in the order of its nodes.
     #[must_use]
     pub fn image_files(&self) -> Vec<&str> {
         let mut files = Vec::new();
@@ -156,7 +156,8 @@ impl Recipe {
         files
     }
 
-    /// The images of the recipe, each once, in the order of its nodes. Several layers of a file are several images.
+    /// Returns the images of the recipe, each once, in the order of its nodes. Several layers of a file are several
+    /// images.
     ///
     /// # Errors
     ///
@@ -214,7 +215,7 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// The errors of [`new_within`](Self::new_within).
+    /// Same as [`new_within`](Self::new_within).
     ///
     /// # Examples
     ///
@@ -257,7 +258,7 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// The errors of [`new_within`](Self::new_within), and [`Cancelled`](RecipeErrorKind::Cancelled).
+    /// Same as [`new_within`](Self::new_within), and [`Cancelled`](RecipeErrorKind::Cancelled).
     ///
     /// # Examples
     ///
@@ -353,19 +354,20 @@ impl Plan {
         self
     }
 
-    /// The width and height of the tile, in units of the plane.
+    /// Returns the width and height of the tile, in units of the plane.
     #[must_use]
     pub fn extent(&self) -> DVec2 {
         self.extent
     }
 
-    /// Whether a node changes with time. Otherwise, all frames of a loop are equal.
+    /// Returns whether a node changes with time. Otherwise, all frames of a loop are equal.
     #[must_use]
     pub fn moves(&self) -> bool {
         self.moves
     }
 
-    /// The window that covers the tile with `size` columns and rows. It may have more pixels than a raster can have.
+    /// Returns the window that covers the tile with `size` columns and rows. It may have more pixels than a raster can
+    /// have.
     ///
     /// # Errors
     ///
@@ -388,7 +390,7 @@ impl Plan {
         })
     }
 
-    /// The height of the material.
+    /// Returns the height of the material.
     ///
     /// # Errors
     ///
@@ -399,7 +401,7 @@ impl Plan {
         Ok(NodeField::new(self.steps.clone(), self.channels.height))
     }
 
-    /// The number of a node at every position.
+    /// Returns the number of a node at every position.
     ///
     /// # Errors
     ///
@@ -413,7 +415,7 @@ impl Plan {
         Ok(NodeField::new(self.steps.clone(), step))
     }
 
-    /// The color of a node at every position; a number becomes a gray.
+    /// Returns the color of a node at every position; a number becomes a gray.
     ///
     /// # Errors
     ///
@@ -423,12 +425,12 @@ impl Plan {
         Ok(NodeColors::new(self.steps.clone(), self.find(node)?))
     }
 
-    /// The names of the nodes, each after its inputs.
+    /// Returns the names of the nodes, each after its inputs.
     pub fn node_names(&self) -> impl Iterator<Item = &str> {
         self.names.keys().map(String::as_str)
     }
 
-    /// Whether a node makes colors, not numbers; false for a node that does not exist.
+    /// Returns whether a node makes colors, not numbers; false for a node that does not exist.
     #[must_use]
     pub fn is_color(&self, node: &str) -> bool {
         self.names
@@ -436,21 +438,21 @@ impl Plan {
             .is_some_and(|&step| self.steps[step].is_color())
     }
 
-    /// Whether a node itself depends on the whole tile.
+    /// Returns whether a node itself depends on the whole tile.
     #[must_use]
     pub fn is_global(&self, node: &str) -> bool {
         let step = self.names.get(node).map(|&step| &self.steps[step]);
         matches!(step, Some(Step::Global(_)))
     }
 
-    /// The index of the step of a node; an error if the node has no value at a single position.
+    /// Returns the index of the step of a node; an error if the node has no value at a single position.
     fn find(&self, node: &str) -> Result<usize, RecipeError> {
         let step = self.step_of(node)?;
         self.local(step)?;
         Ok(step)
     }
 
-    /// The index of the step of a node.
+    /// Returns the index of the step of a node.
     fn step_of(&self, node: &str) -> Result<usize, RecipeError> {
         self.names.get(node).copied().ok_or_else(|| {
             let name = node.to_owned();
@@ -530,12 +532,13 @@ impl Plan {
         Ok(values)
     }
 
-    /// The steps that both `wanted` and the height depend on. Once their values are known, their inputs are not needed.
+    /// Returns the steps that both `wanted` and the height depend on. Once their values are known, their inputs are not
+    /// needed.
     pub(crate) fn shared_with_height(&self, wanted: &[usize]) -> Vec<usize> {
         step::shared(&self.steps, self.channels.height, wanted)
     }
 
-    /// For each axis, whether heights past the sides of the tile must be extrapolated.
+    /// Returns, for each axis, whether heights past the sides of the tile must be extrapolated.
     ///
     /// This is so if the recipe does not repeat along the axis and the height depends on an image, which ends at the
     /// sides. Heights computed from functions alone are known everywhere.
@@ -546,7 +549,7 @@ impl Plan {
         self.wrap.map(|repeats| is_picture && !repeats)
     }
 
-    /// A copy of the callback, with separate progress, for new work of the plan.
+    /// Returns a copy of the callback, with separate progress, for new work of the plan.
     pub(crate) fn watch(&self) -> Watch {
         self.watch.again()
     }
@@ -587,7 +590,7 @@ fn channels(recipe: &Recipe, builder: &mut Builder<'_>) -> Result<Channels, Reci
 }
 
 impl Input {
-    /// The input as written in the recipe, for error messages.
+    /// Returns the input as written in the recipe, for error messages.
     pub(crate) fn written(&self) -> String {
         match self {
             Self::Number(number) => number.to_string(),
@@ -597,7 +600,7 @@ impl Input {
     }
 }
 
-/// The error for a color where a number is needed.
+/// Returns the error for a color where a number is needed.
 pub(crate) fn not_a_number(input: &Input) -> RecipeError {
     RecipeError::new(RecipeErrorKind::NotANumber {
         input: input.written(),

@@ -146,7 +146,7 @@ impl Recipe {
         }
     }
 
-    /// The shorter side of the tile, in units of the plane.
+    /// Returns the shorter side of the tile, in units of the plane.
     #[must_use]
     pub fn shorter_side(&self) -> f64 {
         self.extent[0].min(self.extent[1])

@@ -8,7 +8,7 @@ impl Recipe {
     ///
     /// # Errors
     ///
-    /// The errors of [`to_toml`](Self::to_toml).
+    /// Same as [`to_toml`](Self::to_toml).
     pub fn to_rust(&self) -> Result<String, RecipeError> {
         let title = if self.name.is_empty() {
             "A material"

@@ -63,7 +63,7 @@ fn plain(schema: &mut Schema) {
     transform_subschemas(&mut (plain as fn(&mut Schema)), schema);
 }
 
-/// The schema of an alias: the option, marked as deprecated in favor of `name`.
+/// Returns the schema of an alias: the option, marked as deprecated in favor of `name`.
 fn deprecated(mut option: Value, name: &str) -> Value {
     if let Value::Object(option) = &mut option {
         option.remove("default");
@@ -76,7 +76,7 @@ fn deprecated(mut option: Value, name: &str) -> Value {
     option
 }
 
-/// The first paragraph of a description, with each intra-doc link replaced by its name in code style.
+/// Returns the first paragraph of a description, with each intra-doc link replaced by its name in code style.
 fn without_links(text: &str) -> String {
     let paragraph = text.split("\n\n").next().unwrap_or(text).replace('\n', " ");
     let mut plain = String::new();

@@ -41,7 +41,7 @@ impl Recipe {
     ///
     /// # Errors
     ///
-    /// The errors of [`from_toml`](Self::from_toml).
+    /// Same as [`from_toml`](Self::from_toml).
     pub fn from_json(text: &str) -> Result<Self, RecipeError> {
         let text = decoded(text)?;
         let content: Content = serde_json::from_str(text).map_err(|error| {
@@ -81,7 +81,7 @@ fn data(value: &impl Serialize) -> &dyn Serialize {
     value
 }
 
-/// Whether a node can be serialized. Nodes with functions cannot.
+/// Returns whether a node can be serialized. Nodes with functions cannot.
 pub(crate) fn is_data(node: &Node) -> bool {
     serde_json::to_string_pretty(data(node)).is_ok()
 }
@@ -210,7 +210,7 @@ fn plain(message: &str) -> String {
     format!("{found}, expected {expected}")
 }
 
-/// The line and column of a byte offset.
+/// Returns the line and column of a byte offset.
 fn place_of(text: &str, byte: usize) -> Place {
     let before = text.get(..byte).unwrap_or(text);
     let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);

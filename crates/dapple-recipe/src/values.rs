@@ -17,7 +17,7 @@ pub enum Values {
 }
 
 impl Values {
-    /// Number of positions.
+    /// Returns the number of positions.
     #[must_use]
     pub fn len(&self) -> usize {
         match self {
@@ -26,13 +26,13 @@ impl Values {
         }
     }
 
-    /// Whether there are no positions.
+    /// Returns whether there are no positions.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The numbers; empty for colors. A plan has checked that inputs which must be numbers are not colors.
+    /// Returns the numbers; empty for colors. A plan has checked that inputs which must be numbers are not colors.
     pub(crate) fn numbers(&self) -> &[f32] {
         match self {
             Self::Numbers(numbers) => numbers,
@@ -40,7 +40,7 @@ impl Values {
         }
     }
 
-    /// The numbers, or the luminance of colors.
+    /// Returns the numbers, or the luminance of colors.
     pub(crate) fn into_grays(self) -> Vec<f32> {
         match self {
             Self::Numbers(numbers) => numbers,
@@ -48,7 +48,7 @@ impl Values {
         }
     }
 
-    /// The colors; numbers become grays.
+    /// Returns the colors; numbers become grays.
     pub(crate) fn into_colors(self) -> Vec<LinearRgb> {
         match self {
             Self::Numbers(numbers) => numbers.into_iter().map(LinearRgb::gray).collect(),
@@ -56,7 +56,7 @@ impl Values {
         }
     }
 
-    /// The colors, borrowed if possible; numbers become grays.
+    /// Returns the colors, borrowed if possible; numbers become grays.
     pub(crate) fn colors(&self) -> Cow<'_, [LinearRgb]> {
         match self {
             Self::Numbers(_) => Cow::Owned(self.clone().into_colors()),
@@ -64,7 +64,7 @@ impl Values {
         }
     }
 
-    /// The values of a range of the positions.
+    /// Returns the values of a range of the positions.
     pub(crate) fn part(&self, range: Range<usize>) -> Self {
         match self {
             Self::Numbers(numbers) => Self::Numbers(numbers[range].to_vec()),
@@ -123,12 +123,12 @@ impl Values {
         inputs.iter().any(|input| matches!(input, Self::Colors(_)))
     }
 
-    /// The values as a raster of this size: numbers, or the luminance of colors.
+    /// Returns the values as a raster of this size: numbers, or the luminance of colors.
     pub(crate) fn raster(&self, size: [u32; 2]) -> Result<Raster<f32>, RasterError> {
         Raster::from_vec(size, self.clone().into_grays())
     }
 
-    /// The inputs as maps of this size: all in color if any input is in color.
+    /// Returns the inputs as maps of this size: all in color if any input is in color.
     pub(crate) fn maps(inputs: &[&Self], size: [u32; 2]) -> Result<Vec<Map>, RasterError> {
         let as_colors = Self::has_colors(inputs);
         let map = |values: &&Self| {
@@ -142,7 +142,7 @@ impl Values {
         inputs.iter().map(map).collect()
     }
 
-    /// The values of the first map of a result; an error for a map of normals, or without a map.
+    /// Builds the values of the first map of a result; an error for a map of normals, or without a map.
     pub(crate) fn of_map(maps: Vec<Map>) -> Result<Self, RecipeError> {
         match maps.into_iter().next() {
             Some(Map::Value(raster)) => Ok(Self::Numbers(raster.into_pixels())),

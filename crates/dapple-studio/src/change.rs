@@ -54,7 +54,7 @@ pub(crate) fn changes(old: &str, new: &str) -> Vec<Change> {
     changes
 }
 
-/// Lengths in bytes of the common prefix and of the common suffix of two texts. The two do not overlap.
+/// Returns the lengths in bytes of the common prefix and of the common suffix of two texts. The two do not overlap.
 fn ends_in_common(old: &str, new: &str) -> (usize, usize) {
     let pairs = old.chars().zip(new.chars());
     let before = pairs

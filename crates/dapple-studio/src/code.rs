@@ -36,7 +36,7 @@ impl Code<'_> {
         }
     }
 
-    /// A Python program that bakes the recipe.
+    /// Returns a Python program that bakes the recipe.
     fn python(&self, document: &Document) -> String {
         let text = document
             .text()
@@ -57,7 +57,7 @@ impl Code<'_> {
         )
     }
 
-    /// A shell command that bakes the recipe.
+    /// Returns a shell command that bakes the recipe.
     fn command(&self, document: &Document, recipe: &Recipe) -> String {
         // Name the recipe by its file, by its built-in name if the text is unchanged, or by a file to be saved.
         let builtin = Recipe::builtin_names()

@@ -163,7 +163,7 @@ pub(crate) fn remove_element(list: &mut Array, index: usize) {
     }
 }
 
-/// Whether the elements of an array are on separate lines. An array with comments counts as well.
+/// Returns whether the elements of an array are on separate lines. An array with comments counts as well.
 fn is_in_lines(list: &Array) -> bool {
     let is_broken = |text: Option<&str>| text.is_some_and(|text| text.contains('\n'));
     is_broken(list.trailing().as_str())

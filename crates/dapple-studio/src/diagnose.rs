@@ -86,8 +86,8 @@ fn byte_of(text: &str, place: Place) -> usize {
     before + column.map_or(line.trim_end().len(), |(byte, _)| byte)
 }
 
-/// The end of the word, string or array that begins at a byte. The range has at least one character, except at the
-/// end of the text.
+/// Returns the end of the word, string or array that begins at a byte. The range has at least one character, except at
+/// the end of the text.
 fn word_end(text: &str, start: usize) -> usize {
     let rest = &text[start..];
     let Some(first) = rest.chars().next() else {
@@ -103,7 +103,7 @@ fn word_end(text: &str, start: usize) -> usize {
     start + length.max(first.len_utf8())
 }
 
-/// The range of a plan's error: the value named by the error, or else the name of the node.
+/// Returns the range of a plan's error: the value named by the error, or else the name of the node.
 fn place(document: &Document, error: &RecipeError) -> Option<Range<usize>> {
     let root = document.table()?;
     let nodes = root.get("nodes").and_then(Item::as_table_like);
@@ -145,7 +145,7 @@ fn place(document: &Document, error: &RecipeError) -> Option<Range<usize>> {
     found.or_else(|| key?.span()).or_else(|| item.span())
 }
 
-/// The top-level entry that an error without a node refers to.
+/// Returns the top-level entry that an error without a node refers to.
 fn document_item<'a>(root: &'a toml_edit::Table, error: &RecipeError) -> Option<&'a Item> {
     match error.kind() {
         RecipeErrorKind::Range { what, .. } => root.get(what),
@@ -154,7 +154,7 @@ fn document_item<'a>(root: &'a toml_edit::Table, error: &RecipeError) -> Option<
     }
 }
 
-/// The range of a string value in an item.
+/// Returns the range of a string value in an item.
 fn text_in(item: &Item, text: &str) -> Option<Range<usize>> {
     values(item)
         .into_iter()
@@ -162,7 +162,8 @@ fn text_in(item: &Item, text: &str) -> Option<Range<usize>> {
         .and_then(|(_, value)| value.span())
 }
 
-/// The range of the value with the longest key that occurs in a sentence, such as `octaves` in "number of octaves".
+/// Returns the range of the value with the longest key that occurs in a sentence, such as `octaves` in "number of
+/// octaves".
 fn words_in(item: &Item, sentence: &str) -> Option<Range<usize>> {
     let words: Vec<_> = sentence
         .split(|c: char| !c.is_alphanumeric() && c != '_')

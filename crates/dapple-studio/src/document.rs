@@ -34,13 +34,13 @@ impl Document {
         }
     }
 
-    /// The text.
+    /// Returns the text.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// The parsed recipe.
+    /// Returns the parsed recipe.
     ///
     /// # Errors
     ///
@@ -49,13 +49,13 @@ impl Document {
         self.recipe.as_ref()
     }
 
-    /// The data of the text as written, if the text is valid TOML.
+    /// Returns the data of the text as written, if the text is valid TOML.
     #[must_use]
     pub fn data(&self) -> Option<Json> {
         self.table().map(json_of_table)
     }
 
-    /// The errors in the text. The list is empty if the text is a valid recipe.
+    /// Returns the errors in the text. The list is empty if the text is a valid recipe.
     #[must_use]
     pub fn diagnostics(&self) -> Vec<Diagnostic> {
         self.recipe()
@@ -71,8 +71,8 @@ impl Document {
         of_error(self, error)
     }
 
-    /// The range of a node in the text, in UTF-16 code units: from the first line of its header or key to its last
-    /// value.
+    /// Returns the range of a node in the text, in UTF-16 code units: from the first line of its header or key to its
+    /// last value.
     #[must_use]
     pub fn node_span(&self, name: &str) -> Option<[usize; 2]> {
         let (key, item) = self

@@ -35,13 +35,13 @@ impl StudioError {
         Self { reason, ..self }
     }
 
-    /// The reason code for programs, if the error has one.
+    /// Returns the reason code for programs, if the error has one.
     #[must_use]
     pub fn reason(&self) -> Option<&'static str> {
         self.reason
     }
 
-    /// The hint on how to avoid the error, if there is one.
+    /// Returns the hint on how to avoid the error, if there is one.
     #[must_use]
     pub fn hint(&self) -> Option<&str> {
         self.hint.as_deref()

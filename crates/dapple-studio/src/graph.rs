@@ -96,13 +96,13 @@ impl Graph {
         })
     }
 
-    /// The names of the nodes, in the order of the text.
+    /// Returns the names of the nodes, in the order of the text.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.nodes.iter().map(|node| node.name.as_str())
     }
 }
 
-/// The names of the nodes in the order of the text.
+/// Returns the names of the nodes in the order of the text.
 fn names_in_order(document: &Document, data: &Json) -> Vec<String> {
     let nodes = document
         .table()
@@ -135,7 +135,7 @@ fn input(found: &Found<'_>, skipped: usize) -> GraphInput {
     }
 }
 
-/// A short label of an input: its key, followed by its 1-based indices in nested arrays.
+/// Returns a short label of an input: its key, followed by its 1-based indices in nested arrays.
 fn label(path: &[Part]) -> String {
     let parts = if path.len() > 1 { &path[1..] } else { path };
     let words = parts.iter().map(|part| match part {

@@ -337,7 +337,7 @@ pub enum Reply {
 }
 
 impl Reply {
-    /// The refusal of a request of type `what`.
+    /// Builds the refusal of a request of type `what`.
     #[must_use]
     pub fn refused(what: &str, error: &StudioError) -> Self {
         Self::Refused {
@@ -442,7 +442,7 @@ impl Default for Hello {
     }
 }
 
-/// A one-sentence description of a map.
+/// Returns a one-sentence description of a map.
 fn about(kind: MapKind) -> &'static str {
     match kind {
         MapKind::Height => "How high the surface is",

@@ -24,7 +24,7 @@ pub enum Shown {
 }
 
 impl Shown {
-    /// The code of this content in messages.
+    /// Returns the code of this content in messages.
     #[must_use]
     pub fn code(self) -> u16 {
         match self {
@@ -112,7 +112,7 @@ impl Picture {
         bytes
     }
 
-    /// Whether all pixels are gray, which holds for maps of numbers.
+    /// Returns whether all pixels are gray, which holds for maps of numbers.
     #[cfg(feature = "server")]
     fn is_gray(&self) -> bool {
         matches!(
@@ -127,7 +127,7 @@ impl Picture {
         )
     }
 
-    /// The header, with capacity for the pixels of this format.
+    /// Returns the header, with capacity for the pixels of this format.
     ///
     /// Byte offsets: 0 version, 4 generation, 8 content code, 10 format (0 with alpha, 1 without, 2 gray), 12 first
     /// column, 16 first row, 20 columns, 24 rows, 28 scale, 30 flags (1 draft, 2 last part).
@@ -180,8 +180,8 @@ pub(crate) fn of_values(values: &recipe::Picture) -> (Vec<u8>, Option<[f32; 2]>)
     }
 }
 
-/// The range of a display of numbers: 0 to 1 if all numbers lie in that range and span at least a quarter of it or
-/// are equal. Otherwise the minimum and the maximum of the finite numbers.
+/// Returns the range of a display of numbers: 0 to 1 if all numbers lie in that range and span at least a quarter of it
+/// or are equal. Otherwise the minimum and the maximum of the finite numbers.
 fn range_of(numbers: &Raster<f32>) -> [f32; 2] {
     let finite = numbers
         .pixels()

@@ -53,7 +53,7 @@ pub(crate) fn report(
     })
 }
 
-/// The points of a net. Points that are written in the text keep their labels from the text.
+/// Returns the points of a net. Points that are written in the text keep their labels from the text.
 fn points(net: &ControlNet, written: Option<&ControlPoints>) -> Vec<ControlPoint> {
     let label = |index: usize| match written {
         Some(written) => written.points[index].label,

@@ -86,10 +86,10 @@ pub trait RenderHost {
         Err(StudioError::new("lit previews cannot be drawn here"))
     }
 
-    /// Milliseconds since an arbitrary moment.
+    /// Returns the milliseconds since an arbitrary moment.
     fn now(&self) -> f64;
 
-    /// Whether a job of this generation is still current.
+    /// Returns whether a job of this generation is still current.
     fn is_wanted(&self, generation: u32) -> bool;
 
     /// Receives an image or a message.
@@ -263,7 +263,7 @@ impl Renderer {
     }
 }
 
-/// Whether two sets share the same image data. Compares pointers, not pixels.
+/// Returns whether two sets share the same image data. Compares pointers, not pixels.
 fn is_same(a: &Images, b: &Images) -> bool {
     let is_same = |a: &Values, b: &Values| match (a, b) {
         (Values::Numbers(a), Values::Numbers(b)) => Arc::ptr_eq(a, b),
@@ -563,9 +563,9 @@ impl Pass<'_> {
 }
 
 impl Frame {
-    /// The frame of a draft whose longest side has at most `side` pixels. The scale is the smallest power of two from
-    /// 2 to 64 that divides all sizes and offsets, so that pixels of both frames are aligned. Returns `None` without
-    /// such a scale, or if the frame is small enough already.
+    /// Returns the frame of a draft whose longest side has at most `side` pixels. The scale is the smallest power of
+    /// two from 2 to 64 that divides all sizes and offsets, so that pixels of both frames are aligned. Returns `None`
+    /// without such a scale, or if the frame is small enough already.
     fn draft(self, side: u32) -> Option<Self> {
         let longest = self.region.size[0].max(self.region.size[1]);
         let numbers = [self.size, self.region.first, self.region.size].concat();
@@ -602,7 +602,7 @@ pub fn map_kinds(names: &[String]) -> Result<Vec<MapKind>, StudioError> {
     Ok(kinds)
 }
 
-/// The size in pixels of an image of a tile whose longer side has `longest` pixels.
+/// Returns the size in pixels of an image of a tile whose longer side has `longest` pixels.
 pub(crate) fn size_of(extent: [f64; 2], longest: u32) -> [u32; 2] {
     let longer = extent[0].max(extent[1]);
     extent.map(|side| (side / longer * f64::from(longest)).round().max(1.0) as u32)

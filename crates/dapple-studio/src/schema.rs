@@ -34,7 +34,7 @@ pub(crate) struct Kind {
     value: Json,
 }
 
-/// The schema of recipes.
+/// Returns the schema of recipes.
 pub(crate) fn schema() -> &'static Json {
     static SCHEMA: OnceLock<Json> = OnceLock::new();
     SCHEMA.get_or_init(Recipe::schema)
@@ -134,7 +134,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The role of a schema that is only a reference.
+/// Returns the role of a schema that is only a reference.
 fn role(schema: &Json) -> Option<Role> {
     match schema.get("$ref")?.as_str()? {
         "#/$defs/Input" => Some(Role::Input),
@@ -143,7 +143,7 @@ fn role(schema: &Json) -> Option<Role> {
     }
 }
 
-/// The role of an optional value.
+/// Returns the role of an optional value.
 fn optional_role(schema: &Json) -> Option<Role> {
     role(schema).or_else(|| schema.get("anyOf")?.as_array()?.iter().find_map(role))
 }
@@ -164,7 +164,7 @@ fn requirements(schema: &Json) -> impl Iterator<Item = &str> {
     all.into_iter().flatten().filter_map(Json::as_str)
 }
 
-/// All kinds of nodes, in the order in which recipes list them.
+/// Returns all kinds of nodes, in the order in which recipes list them.
 pub(crate) fn kinds() -> Vec<Kind> {
     let kind = |(name, (group, example))| Kind {
         name,

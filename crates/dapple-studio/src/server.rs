@@ -64,7 +64,7 @@ pub trait Host: Send + Sync {
     /// If the bake is refused.
     fn preview(&self, lit: &Lit<'_>) -> Result<Raster<LinearRgb>, StudioError>;
 
-    /// The presets of exports: the programs that the files can be made for.
+    /// Returns the presets of exports: the programs that the files can be made for.
     fn presets(&self) -> Vec<Named>;
 }
 
@@ -123,13 +123,13 @@ const MOST_PAGES: usize = 16;
 /// Time for a reloaded page to reconnect before a server with `once` ends.
 const GRACE: Duration = Duration::from_secs(2);
 
-/// Whether the page is built into this program. Otherwise the server sends a page that says how to build it.
+/// Returns whether the page is built into this program. Otherwise the server sends a page that says how to build it.
 #[must_use]
 pub fn has_page() -> bool {
     page::is_built()
 }
 
-/// The license texts of third-party code in the page. `None` if the page is not built into this program.
+/// Returns the license texts of third-party code in the page. `None` if the page is not built into this program.
 #[must_use]
 pub fn page_licenses() -> Option<&'static str> {
     page::licenses()
@@ -206,7 +206,7 @@ async fn run(
 }
 
 impl Shared {
-    /// The folder of a recipe's images. Refuses a recipe that names images outside of the folder.
+    /// Returns the folder of a recipe's images. Refuses a recipe that names images outside of the folder.
     fn of_images(&self, recipe: &Recipe) -> Result<&Path, StudioError> {
         self.folder.check_images(recipe)?;
         Ok(self.folder.path())

@@ -42,13 +42,13 @@ impl Session {
         }
     }
 
-    /// The current text.
+    /// Returns the current text.
     #[must_use]
     pub fn document(&self) -> &Arc<Document> {
         &self.document
     }
 
-    /// The images that the page shows.
+    /// Returns the images that the page shows.
     #[must_use]
     pub fn view(&self) -> &View {
         &self.view
@@ -240,7 +240,7 @@ impl Session {
     }
 }
 
-/// The name of a file without its extension.
+/// Returns the name of a file without its extension.
 fn stem(file: &str) -> &str {
     file.rsplit_once('.').map_or(file, |(stem, _)| stem)
 }

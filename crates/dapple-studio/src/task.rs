@@ -43,7 +43,7 @@ impl Session {
 }
 
 impl Task {
-    /// The type of the request.
+    /// Returns the type of the request.
     #[must_use]
     pub fn what(&self) -> &'static str {
         self.what

@@ -29,7 +29,7 @@ impl Positions {
         Self { known }
     }
 
-    /// The number of code units before a byte of the text.
+    /// Returns the number of code units before a byte of the text.
     pub(crate) fn units(&self, text: &str, byte: usize) -> usize {
         let byte = floor(text, byte);
         let Some(&before) = self.known.get(byte / STEP) else {

@@ -13,7 +13,7 @@ use std::cell::RefCell;
 
 #[link(wasm_import_module = "worker")]
 unsafe extern "C" {
-    /// Milliseconds since an arbitrary moment.
+    /// Returns the milliseconds since an arbitrary moment.
     safe fn now() -> f64;
 }
 
@@ -77,13 +77,13 @@ extern "C" fn poll() -> u32 {
     })
 }
 
-/// The address of the last result of [`poll`].
+/// Returns the address of the last result of [`poll`].
 #[unsafe(no_mangle)]
 extern "C" fn reply() -> *const u8 {
     with(|module| module.reply.as_ptr())
 }
 
-/// The number of bytes of the last result of [`poll`].
+/// Returns the number of bytes of the last result of [`poll`].
 #[unsafe(no_mangle)]
 extern "C" fn reply_length() -> usize {
     with(|module| module.reply.len())

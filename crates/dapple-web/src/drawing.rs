@@ -40,7 +40,7 @@ impl Pace {
         }
     }
 
-    /// The number of rows per step.
+    /// Returns the number of rows per step.
     fn rows(self, area: Area) -> u32 {
         (self.pixels / area.size[0].max(1)).max(16)
     }
@@ -247,7 +247,7 @@ impl Place<'_> {
     }
 }
 
-/// The images of a recipe. Recipes that name images are refused, since there is no folder to read them from.
+/// Returns the images of a recipe. Recipes that name images are refused, since there is no folder to read them from.
 pub(crate) fn images(recipe: &Recipe) -> Result<Images, StudioError> {
     if recipe.image_files().is_empty() {
         return Ok(Images::new());

@@ -46,7 +46,7 @@ pub(crate) fn files(
     maps.iter().zip(writers).map(file).collect()
 }
 
-/// The encoding of the files and their extension.
+/// Returns the encoding of the files and their extension.
 fn encoding(export: &Export) -> Result<(Encoding, &'static str), StudioError> {
     let Export {
         preset: None,

@@ -14,29 +14,29 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    /// All frames of a loop of `count` frames; a single `None` for a still image.
+    /// Returns all frames of a loop of `count` frames; a single `None` for a still image.
     pub(crate) fn all(count: Option<u32>) -> impl Iterator<Item = Option<Self>> {
         let pictures = 1..=count.unwrap_or(1);
         pictures.map(move |number| count.map(|count| Self { number, count }))
     }
 
-    /// Whether this is the first frame of the loop.
+    /// Returns whether this is the first frame of the loop.
     pub(crate) fn is_first(self) -> bool {
         self.number == 1
     }
 
-    /// The time of the frame as a fraction of the loop: 0 for the first frame, below 1 for the last.
+    /// Returns the time of the frame as a fraction of the loop: 0 for the first frame, below 1 for the last.
     pub(crate) fn time(self) -> f64 {
         f64::from(self.number - 1) / f64::from(self.count)
     }
 
-    /// The number of frames in the loop.
+    /// Returns the number of frames in the loop.
     pub(crate) fn count(self) -> u32 {
         self.count
     }
 
-    /// The number of the frame for file names, such as `001`. It has the digits of the last frame's number, at least
-    /// three.
+    /// Returns the number of the frame for file names, such as `001`. It has the digits of the last frame's number, at
+    /// least three.
     pub(crate) fn label(self) -> String {
         let digits = self.count.to_string().len().max(3);
         format!("{:0digits$}", self.number)

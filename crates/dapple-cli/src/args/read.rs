@@ -34,7 +34,7 @@ pub(crate) struct FiniteArgs {
 }
 
 impl FiniteArgs {
-    /// The option as an argument for a command line, if it differs from the default.
+    /// Returns the option as an argument for a command line, if it differs from the default.
     pub(crate) fn word(self) -> Option<String> {
         let is_default = self.nonfinite == NonFinite::default();
         (!is_default).then(|| format!("--nonfinite={}", self.nonfinite.name()))

@@ -20,8 +20,8 @@ pub(crate) struct SamplesArgs {
 }
 
 impl SamplesArgs {
-    /// The number of sample spacings from one side of the tile to the other, along each axis: for pixel centers the
-    /// number of samples, for corners one less.
+    /// Returns the number of sample spacings from one side of the tile to the other, along each axis: for pixel centers
+    /// the number of samples, for corners one less.
     ///
     /// # Errors
     ///
@@ -39,7 +39,7 @@ impl SamplesArgs {
         Ok(Size(size.0.map(|side| side - 1)))
     }
 
-    /// The option as an argument for a command line, if it differs from the default.
+    /// Returns the option as an argument for a command line, if it differs from the default.
     pub(crate) fn word(self) -> Option<String> {
         let is_default = self.samples == Samples::default();
         (!is_default).then(|| format!("--samples={}", self.samples.name()))

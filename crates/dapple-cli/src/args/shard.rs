@@ -21,7 +21,7 @@ pub(crate) struct Shard {
 }
 
 impl Shard {
-    /// The region of the shard in a map of a size, cropped at the border.
+    /// Returns the region of the shard in a map of a size, cropped at the border.
     ///
     /// # Errors
     ///

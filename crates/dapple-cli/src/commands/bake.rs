@@ -215,7 +215,7 @@ pub(super) fn bake_with(
     work.bake(&args, &files, context, &progress)
 }
 
-/// The names of the presets, with a sentence about each.
+/// Returns the names of the presets, with a sentence about each.
 #[cfg(feature = "studio")]
 pub(super) fn presets() -> impl Iterator<Item = (&'static str, &'static str)> {
     presets::PRESETS
@@ -348,7 +348,7 @@ impl Args {
         Ok(())
     }
 
-    /// The path of the only recipe, which must be a file.
+    /// Returns the path of the only recipe, which must be a file.
     ///
     /// # Errors
     ///
@@ -361,14 +361,14 @@ impl Args {
         }
     }
 
-    /// How NaN and infinite values of images are handled.
+    /// Returns how NaN and infinite values of images are handled.
     #[cfg(feature = "studio")]
     pub(super) fn finite(&self) -> crate::args::FiniteArgs {
         self.material.finite
     }
 
-    /// The sizes to bake one after another: the size of the options, preceded by the same size scaled down to `small`
-    /// pixels along its longer side, if it is larger than that.
+    /// Returns the sizes to bake one after another: the size of the options, preceded by the same size scaled down to
+    /// `small` pixels along its longer side, if it is larger than that.
     pub(super) fn sizes(&self, small: u32) -> Vec<Size> {
         let size = self.material.size;
         let longer = size.0[0].max(size.0[1]);
@@ -380,18 +380,18 @@ impl Args {
         vec![Size(size.0.map(side)), size]
     }
 
-    /// Whether an output was given.
+    /// Returns whether an output was given.
     #[cfg(feature = "studio")]
     pub(super) fn has_output(&self) -> bool {
         self.files.output.is_some()
     }
 
-    /// Whether existing files are replaced.
+    /// Returns whether existing files are replaced.
     pub(super) fn may_replace(&self) -> bool {
         self.files.force
     }
 
-    /// These options with another size, and with or without `--force`.
+    /// Returns these options with another size, and with or without `--force`.
     pub(super) fn at(&self, size: Size, may_replace: bool) -> Self {
         let mut args = self.clone();
         args.material.size = size;
@@ -399,7 +399,7 @@ impl Args {
         args
     }
 
-    /// These options for each frame of a loop; once, unchanged, without a loop.
+    /// Returns these options for each frame of a loop; once, unchanged, without a loop.
     fn pictures(&self) -> impl Iterator<Item = Self> {
         Frame::all(self.frames).map(move |frame| {
             let frame = frame.or(self.frame);
@@ -410,7 +410,7 @@ impl Args {
         })
     }
 
-    /// The output options for a number of recipes. Several recipes, and several frames, need a directory.
+    /// Returns the output options for a number of recipes. Several recipes, and several frames, need a directory.
     fn files_for(&self, n_recipes: usize) -> Result<OutputArgs> {
         let mut files = self.files.clone();
         // Another run may finish a shard first, with the same bytes, which this run may then replace.
@@ -439,7 +439,7 @@ impl Args {
         Ok(files)
     }
 
-    /// The region of the tile to bake: a shard, a region, or `None` for the whole tile.
+    /// Returns the region of the tile to bake: a shard, a region, or `None` for the whole tile.
     fn part(&self) -> Result<Option<dapple::recipe::Region>> {
         match self.shard {
             Some(shard) => shard.region(self.material.size).map(Some),
@@ -447,7 +447,7 @@ impl Args {
         }
     }
 
-    /// Number of rows that are baked for a recipe; a sheet is baked twice.
+    /// Returns the number of rows that are baked for a recipe; a sheet is baked twice.
     fn n_rows(&self) -> Result<u32> {
         let size = self.part()?.map_or(self.material.size.0, |part| part.size);
         Ok(if self.sheet { 2 * size[1] } else { size[1] })

@@ -125,7 +125,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// The names of the maps, height last. Fails unless all tiles have the same maps.
+/// Returns the names of the maps, height last. Fails unless all tiles have the same maps.
 fn names(args: &Args) -> Result<Vec<&str>> {
     let of = |tile: &LayerArg| -> Vec<String> {
         let height = tile.has_height().then_some(HEIGHT);

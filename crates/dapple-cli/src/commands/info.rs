@@ -127,7 +127,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 }
 
 impl Args {
-    /// The output; standard output by default.
+    /// Returns the output; standard output by default.
     fn target(&self) -> Result<Target> {
         let ending = match self.format {
             Some(Format::Text) => "txt",
@@ -140,7 +140,7 @@ impl Args {
     }
 }
 
-/// Seam reports as JSON, with their faults and whether they pass.
+/// Returns seam reports as JSON, with their faults and whether they pass.
 pub(super) fn seams_json(reports: &SeamReports) -> Value {
     let of_channel = |of: &ChannelReport| {
         let faults = of.report.faults().into_iter();

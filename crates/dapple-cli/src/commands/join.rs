@@ -165,7 +165,7 @@ impl Args {
         Ok(all)
     }
 
-    /// The format of a map. Fails for a format that cannot be made from shards.
+    /// Returns the format of a map. Fails for a format that cannot be made from shards.
     fn format_of(&self, kind: MapKind, target: &Target) -> Result<Format> {
         let asked = match target {
             Target::Stdout => self.format.or(Some(Format::Exr)),
@@ -274,8 +274,8 @@ fn finish(writer: RowWriter<BufWriter<Sink>>) -> Result<()> {
     Ok(writer.finish()?.flush()?)
 }
 
-/// The content type of a joined image. Normals are stored in shards as numbers from 0 to 1, and encoded to the same
-/// codes as normals.
+/// Returns the content type of a joined image. Normals are stored in shards as numbers from 0 to 1, and encoded to the
+/// same codes as normals.
 fn content(kind: MapKind) -> Content {
     match kind.content() {
         Content::Normal => Content::Packed,
@@ -283,7 +283,7 @@ fn content(kind: MapKind) -> Content {
     }
 }
 
-/// The names of the OpenEXR planes of a map's shard.
+/// Returns the names of the OpenEXR planes of a map's shard.
 fn planes(kind: MapKind) -> &'static [&'static str] {
     match content(kind) {
         Content::Gray => &["Y"],

@@ -130,7 +130,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// The requested format, or else the format of the file extension.
+/// Returns the requested format, or else the format of the file extension.
 fn format(args: &Args, target: &Target) -> Result<Format> {
     let by_ending = match target.ending().as_str() {
         "csv" | "txt" => Some(Format::Csv),
@@ -153,7 +153,7 @@ fn format(args: &Args, target: &Target) -> Result<Format> {
     }
 }
 
-/// The points as CSV: a header, and a line for each point.
+/// Returns the points as CSV: a header, and a line for each point.
 fn csv(scattered: &Scattered) -> String {
     let is_nested = scattered.lengths.len() > 1;
     let mut text = String::from(if is_nested { "x,y,level\n" } else { "x,y\n" });
@@ -168,7 +168,7 @@ fn csv(scattered: &Scattered) -> String {
     text
 }
 
-/// The points as JSON, with the seed, the domain, the radius, and the number of points up to each level.
+/// Returns the points as JSON, with the seed, the domain, the radius, and the number of points up to each level.
 fn json_text(args: &Args, scattered: &Scattered) -> Result<String> {
     let set: &PointSet = &scattered.points;
     let domain = set.domain();

@@ -158,19 +158,19 @@ const KINDS: [Kind; PupsNode::KINDS.len()] = {
 };
 
 impl Kind {
-    /// The name in recipes.
+    /// Returns the name in recipes.
     fn in_recipes(self) -> &'static str {
         PupsNode::KINDS[self.0].0
     }
 
-    /// The name on the command line.
+    /// Returns the name on the command line.
     fn name(self) -> String {
         let name = self.in_recipes();
         let short = SHORT_NAMES.iter().find(|(long, _)| *long == name);
         with_dashes(short.map_or(name, |(_, short)| short))
     }
 
-    /// The texture with its default options, as JSON.
+    /// Returns the texture with its default options, as JSON.
     fn defaults(self) -> Result<Value> {
         let texture = PupsNode::of_kind(self.in_recipes());
         Ok(texture.map_or(Ok(Value::Null), |texture| texture.to_json())?)
@@ -233,7 +233,7 @@ struct Given {
 }
 
 impl Args {
-    /// The texture with the options of the command line.
+    /// Returns the texture with the options of the command line.
     fn node(&self) -> Result<PupsNode> {
         // Set each given option in the default options of the texture.
         let kind = self.kind;
@@ -263,7 +263,7 @@ impl Args {
         Ok(PupsNode::from_json(&data)?)
     }
 
-    /// The options of textures that were given on the command line.
+    /// Returns the options of textures that were given on the command line.
     fn given(&self) -> Result<Vec<Given>> {
         let points = self.points.as_deref().map(points::read).transpose()?;
         let spacings = self.spacings.map(|Numbers(distances)| distances);
@@ -309,7 +309,8 @@ impl Args {
     }
 }
 
-/// The JSON pointer to an option with one of these names in the options of a texture; `None` if it has no such option.
+/// Returns the JSON pointer to an option with one of these names in the options of a texture; `None` if it has no such
+/// option.
 fn path(data: &Value, kind: Kind, names: &[&str]) -> Option<String> {
     let kind = kind.in_recipes();
     let parts = ["", "/options", "/net", "/options/net"];
@@ -321,7 +322,7 @@ fn path(data: &Value, kind: Kind, names: &[&str]) -> Option<String> {
     paths.find(|path| data.pointer(path).is_some())
 }
 
-/// The error for an option that a texture does not have. The hint lists the textures that have it.
+/// Returns the error for an option that a texture does not have. The hint lists the textures that have it.
 fn not_for(given: &Given, kind: Kind) -> Error {
     let has_it = |&kind: &Kind| {
         kind.defaults()

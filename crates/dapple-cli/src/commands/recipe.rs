@@ -137,7 +137,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 }
 
 impl Args {
-    /// The requested format, or JSON if the output has its extension; `None` otherwise.
+    /// Returns the requested format, or JSON if the output has its extension; `None` otherwise.
     fn format(&self) -> Option<Text> {
         let is_json = self.files.output.as_deref().is_some_and(is_json);
         self.to

@@ -235,7 +235,7 @@ impl Serialize for Entries<'_> {
     }
 }
 
-/// A path as text. Fails unless it is valid UTF-8.
+/// Returns a path as text. Fails unless it is valid UTF-8.
 fn text_of_path(path: &Path) -> Result<&str> {
     path.to_str().ok_or_else(|| {
         usage(format!(

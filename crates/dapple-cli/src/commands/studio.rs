@@ -144,7 +144,7 @@ fn advise(error: StudioError) -> Error {
     }
 }
 
-/// The name by which the page opens a recipe, and the directory of the recipe. Built-in recipes have an empty
+/// Returns the name by which the page opens a recipe, and the directory of the recipe. Built-in recipes have an empty
 /// directory.
 fn place(name: &str) -> Result<(Option<String>, PathBuf)> {
     let path = Path::new(name);
@@ -241,8 +241,8 @@ impl Bakes {
     }
 }
 
-/// The options of `dapple bake` for an export. Each option is one word, `--NAME=VALUE`, so that its value cannot be
-/// parsed as another option.
+/// Returns the options of `dapple bake` for an export. Each option is one word, `--NAME=VALUE`, so that its value
+/// cannot be parsed as another option.
 fn words(export: &Export) -> Vec<String> {
     let mut words = Vec::new();
     let mut add = |name: &str, value: Option<String>| {

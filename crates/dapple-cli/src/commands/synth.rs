@@ -195,7 +195,7 @@ impl Args {
         }
     }
 
-    /// The output path. In a directory, the file is named after `input`.
+    /// Returns the output path. In a directory, the file is named after `input`.
     fn target(&self, input: &Path, ending: &str) -> Result<Target> {
         let names = self.map_names();
         let parts: Vec<_> = [""].into_iter().chain(names).collect();
@@ -217,7 +217,7 @@ impl Args {
         Ok(outputs)
     }
 
-    /// The names of the maps, each once, in the order of the command line.
+    /// Returns the names of the maps, each once, in the order of the command line.
     fn map_names(&self) -> Vec<&str> {
         let mut names = Vec::new();
         for map in &self.map {
@@ -229,7 +229,7 @@ impl Args {
     }
 }
 
-/// A callback that shows the progress of a synthesis.
+/// Returns a callback that shows the progress of a synthesis.
 fn shown(progress: &Progress) -> impl FnMut(Steps) -> ControlFlow<()> + '_ {
     |steps: Steps| {
         // Give each pass an equal part of the bar.

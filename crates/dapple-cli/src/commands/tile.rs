@@ -212,7 +212,7 @@ fn claim(paths: &[&Path], args: &Args, job: &mut Job<'_>) -> Result<Vec<[Option<
     Ok(outputs)
 }
 
-/// The file name without its extension; `tile` for standard input.
+/// Returns the file name without its extension; `tile` for standard input.
 fn stem(path: &Path) -> String {
     match path.file_stem() {
         Some(stem) if path != Path::new("-") => stem.to_string_lossy().into_owned(),
@@ -220,7 +220,7 @@ fn stem(path: &Path) -> String {
     }
 }
 
-/// The name of the map in a file name: `normal` for `rock_normal`.
+/// Returns the name of the map in a file name: `normal` for `rock_normal`.
 fn map_of(stem: &str) -> &str {
     stem.rsplit_once('_').map_or(stem, |(_, map)| map)
 }
@@ -353,12 +353,12 @@ fn reports(
     Ok((Value::Array(all), passes))
 }
 
-/// A sheet of 2 × 2 copies of a map.
+/// Returns a sheet of 2 × 2 copies of a map.
 fn doubled(map: &Map) -> Result<Map> {
     Ok(map_raster!(map, raster => twice(raster)?))
 }
 
-/// A sheet of 2 × 2 copies of a raster.
+/// Returns a sheet of 2 × 2 copies of a raster.
 fn twice<T: Copy + Send + Sync>(raster: &Raster<T>) -> Result<Raster<T>> {
     let size = raster.size().map(|side| side.saturating_mul(2));
     Ok(repeat(raster, size)?)

@@ -78,7 +78,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     }
 }
 
-/// The files to watch: the recipe, and its images.
+/// Returns the files to watch: the recipe, and its images.
 fn files_of(recipe: &Path) -> Vec<PathBuf> {
     let mut files = vec![recipe.to_owned()];
     // Without a valid recipe, its images are unknown.

@@ -114,7 +114,7 @@ fn check_cells(cells: [f64; 2], repeats: [bool; 2], size: Size) -> Result<()> {
     Err(usage(message).hint(other_cells(cells, size)))
 }
 
-/// A hint with the nearest numbers of cells that can repeat.
+/// Returns a hint with the nearest numbers of cells that can repeat.
 fn other_cells(cells: [f64; 2], size: Size) -> String {
     // Multiples of `step` along the shorter side give whole even numbers along both sides.
     let [width, height] = size.0;

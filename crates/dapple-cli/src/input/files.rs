@@ -8,7 +8,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-/// The name of an input for messages.
+/// Returns the name of an input for messages.
 pub(crate) fn name(path: &Path) -> String {
     if path == Path::new("-") {
         "standard input".to_owned()
@@ -44,8 +44,8 @@ pub(super) fn check_file(path: &Path, what: &str) -> Result<()> {
     Ok(())
 }
 
-/// Whether a file is a device or a socket, from which reading may never end. Pipes are accepted, since the user has
-/// made them.
+/// Returns whether a file is a device or a socket, from which reading may never end. Pipes are accepted, since the user
+/// has made them.
 #[cfg(unix)]
 fn is_device(found: &fs::Metadata) -> bool {
     use std::os::unix::fs::FileTypeExt;

@@ -34,8 +34,8 @@ pub(crate) fn model(path: &Path) -> Result<Model> {
     })
 }
 
-/// A line that lists the parts of a model that are not used: parts that the reader left out, and unit squares of
-/// texture coordinates that share a texture.
+/// Returns a line that lists the parts of a model that are not used: parts that the reader left out, and unit squares
+/// of texture coordinates that share a texture.
 pub(crate) fn not_used(path: &Path, model: &Model) -> Option<String> {
     let mut parts = model.left_out.clone();
     parts.extend(unit_squares(model));
@@ -43,7 +43,7 @@ pub(crate) fn not_used(path: &Path, model: &Model) -> Option<String> {
     (!parts.is_empty()).then(|| format!("{}: not used: {parts}", name(path)))
 }
 
-/// A note on the unit squares of texture coordinates, if there are several and they share one texture.
+/// Returns a note on the unit squares of texture coordinates, if there are several and they share one texture.
 pub(crate) fn unit_squares(model: &Model) -> Option<String> {
     let squares = model.unit_squares();
     if squares.len() < 2 || !model.tiles.is_empty() {
@@ -60,7 +60,7 @@ pub(crate) fn unit_squares(model: &Model) -> Option<String> {
     ))
 }
 
-/// The file extensions of meshes, as a list for help texts.
+/// Returns the file extensions of meshes, as a list for help texts.
 pub(crate) fn mesh_endings() -> String {
     let endings: Vec<_> = readable_endings()
         .map(|ending| format!(".{ending}"))

@@ -34,7 +34,7 @@ pub(crate) struct Numbers {
 ///
 /// # Errors
 ///
-/// The errors of [`image`](super::image), and raw heights whose size is unknown.
+/// Same as [`image`](super::image), and raw heights whose size is unknown.
 pub(crate) fn numbers(path: &Path, region: Option<Region>) -> Result<Numbers> {
     let ending = path.extension().unwrap_or_default().to_string_lossy();
     let content = match ending.to_ascii_lowercase().as_str() {
@@ -59,7 +59,7 @@ pub(crate) fn numbers(path: &Path, region: Option<Region>) -> Result<Numbers> {
     Ok(Numbers { content, is_part })
 }
 
-/// The size of raw heights, from the sidecar: the file with the same name and the extension `.json`.
+/// Returns the size of raw heights, from the sidecar: the file with the same name and the extension `.json`.
 fn raw_size(path: &Path) -> Result<[u32; 2]> {
     #[derive(Deserialize)]
     struct Size {

@@ -26,7 +26,7 @@ impl Temporary {
         Ok(Self(file))
     }
 
-    /// The open file.
+    /// Returns the open file.
     pub(super) fn file(&self) -> &File {
         self.0.file()
     }
@@ -53,7 +53,7 @@ impl Temporary {
 pub(super) struct Spool(Arc<Mutex<SpooledTempFile>>);
 
 impl Spool {
-    /// An empty spool.
+    /// Creates an empty spool.
     pub(super) fn new() -> Self {
         Self(Arc::new(Mutex::new(SpooledTempFile::new(MEMORY))))
     }

@@ -13,7 +13,7 @@ use glam::{DQuat, DVec3};
 const RED: LinearRgb = LinearRgb::new(1.0, 0.0, 0.0);
 const WHITE: LinearRgb = LinearRgb::WHITE;
 
-/// A look that emits one color regardless of the lights.
+/// Returns a look that emits one color regardless of the lights.
 fn glowing(color: LinearRgb) -> impl Fn(&Surface) -> Material + Send + Sync {
     move |_| Material::matte(LinearRgb::BLACK).with_emission(color)
 }
@@ -22,12 +22,12 @@ fn matte(color: LinearRgb) -> impl Fn(&Surface) -> Material + Send + Sync {
     move |_| Material::matte(color)
 }
 
-/// A camera at z = 8 that looks at the origin, with y up.
+/// Returns a camera at z = 8 that looks at the origin, with y up.
 fn front() -> Camera {
     Camera::look_at(DVec3::Z * 8.0, DVec3::ZERO)
 }
 
-/// A camera above the origin that looks down, with -z up.
+/// Returns a camera above the origin that looks down, with -z up.
 fn above() -> Camera {
     Camera::look_at(DVec3::Y * 8.0, DVec3::ZERO).with_up(DVec3::NEG_Z)
 }
@@ -36,12 +36,12 @@ fn render(scene: &Scene<'_>, size: u32) -> Raster<LinearRgb> {
     scene.render([size; 2], Supersampling(1)).unwrap()
 }
 
-/// The color at the center of the image.
+/// Returns the color at the center of the image.
 fn middle(scene: &Scene<'_>) -> LinearRgb {
     render(scene, 1).pixels()[0]
 }
 
-/// A scene with every kind of shape, light and look.
+/// Returns a scene with every kind of shape, light and look.
 fn everything() -> Scene<'static> {
     let corners = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X];
     let mesh = Mesh::smooth(&corners, &[[0, 1, 2], [2, 1, 3], [1, 0, 3]]).unwrap();

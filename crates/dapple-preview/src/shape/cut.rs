@@ -90,7 +90,7 @@ impl Cut {
 }
 
 impl Wedge {
-    /// A wedge around the y axis, of at most half a turn.
+    /// Creates a wedge around the y axis, of at most half a turn.
     fn sector(start: f64, sweep: f64, keeps: Keeps) -> Self {
         // The unit vector a quarter turn ahead of an angle.
         let ahead = |angle: f64| DVec3::new(-libm::sin(angle), 0.0, -libm::cos(angle));
@@ -100,7 +100,7 @@ impl Wedge {
         }
     }
 
-    /// The normal of a face, which may point to either side.
+    /// Returns the normal of a face, which may point to either side.
     pub(crate) fn normal(&self, face: usize) -> DVec3 {
         self.faces[face].0
     }
@@ -126,7 +126,7 @@ impl Wedge {
         }
     }
 
-    /// The interval of a ray within all half-spaces, possibly infinite.
+    /// Returns the interval of a ray within all half-spaces, possibly infinite.
     fn stretch(&self, ray: &Ray) -> Option<Stretch> {
         let end = |distance| Boundary {
             distance,

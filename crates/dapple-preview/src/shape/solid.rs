@@ -56,7 +56,7 @@ impl Stretch {
         (self.enter.distance < self.exit.distance).then_some(self)
     }
 
-    /// The part before a boundary, if any.
+    /// Returns the part before a boundary, if any.
     pub(crate) fn before(mut self, end: Boundary) -> Option<Self> {
         if end.distance < self.exit.distance {
             self.exit = end;
@@ -64,7 +64,7 @@ impl Stretch {
         self.checked()
     }
 
-    /// The part after a boundary, if any.
+    /// Returns the part after a boundary, if any.
     pub(crate) fn after(mut self, start: Boundary) -> Option<Self> {
         if start.distance > self.enter.distance {
             self.enter = start;
@@ -72,14 +72,14 @@ impl Stretch {
         self.checked()
     }
 
-    /// The intersection of two intervals, if any.
+    /// Returns the intersection of two intervals, if any.
     pub(crate) fn and(self, other: Self) -> Option<Self> {
         self.after(other.enter)?.before(other.exit)
     }
 }
 
 impl Solid {
-    /// The first boundary at a distance above zero.
+    /// Returns the first boundary at a distance above zero.
     pub(crate) fn hit(&self, ray: &Ray) -> Option<Boundary> {
         let stretches = self.skin.stretches(ray);
         let stretches = match &self.wedge {
@@ -93,8 +93,8 @@ impl Solid {
             .find(|boundary| boundary.distance > 0.0)
     }
 
-    /// The unit normal, the part, and the chart at a point. The normal is outward on the skin and may point to either
-    /// side on a cut.
+    /// Returns the unit normal, the part, and the chart at a point. The normal is outward on the skin and may point to
+    /// either side on a cut.
     pub(crate) fn detail(&self, position: DVec3, face: Face) -> (DVec3, Part, Chart) {
         match (face, &self.wedge) {
             (Face::Cut(index), Some(wedge)) => (wedge.normal(index), Part::Cut, Chart::None),
@@ -107,7 +107,7 @@ impl Solid {
 }
 
 impl Skin {
-    /// The intervals of a ray inside the solid, in order, including those behind the origin.
+    /// Returns the intervals of a ray inside the solid, in order, including those behind the origin.
     fn stretches(&self, ray: &Ray) -> [Option<Stretch>; 2] {
         // Measure distances from the point of the ray nearest to the center, which keeps them small.
         let middle = -ray.origin.dot(ray.direction);
@@ -152,7 +152,7 @@ impl Skin {
     }
 }
 
-/// The intervals inside a torus of a ray that starts at its point nearest to the center.
+/// Returns the intervals inside a torus of a ray that starts at its point nearest to the center.
 fn torus_stretches(nearest: &Ray, major: f64, minor: f64) -> [Option<[f64; 2]>; 2] {
     let [origin, direction] = [nearest.origin, nearest.direction];
     // Scale lengths by the outer radius, the radius of the enclosing sphere.
@@ -207,7 +207,8 @@ struct Quartic {
 }
 
 impl Quartic {
-    /// The quartic that is negative where a ray is inside a torus. The ray starts at its point nearest to the center.
+    /// Builds the quartic that is negative where a ray is inside a torus. The ray starts at its point nearest to the
+    /// center.
     ///
     /// A point is inside if `(|p|² + R² - r²)² < 4 R² (x² + z²)`, and `|p|² = |o|² + t²` since o and d are
     /// perpendicular.
@@ -235,7 +236,7 @@ impl Quartic {
         (4.0 * t * t + 2.0 * c2) * t + c1
     }
 
-    /// Turning points between `-reach` and `reach`, sorted. The quartic is monotonic between them.
+    /// Returns the turning points between `-reach` and `reach`, sorted. The quartic is monotonic between them.
     fn turns(&self, reach: f64) -> [f64; 3] {
         let [_, _, c2] = self.c;
         // The slope has its extrema where 12 t² + 2 c2 is zero.
@@ -251,14 +252,14 @@ impl Quartic {
         turns
     }
 
-    /// The root in a bracket in which the quartic is monotonic, if any.
+    /// Returns the root in a bracket in which the quartic is monotonic, if any.
     fn root(&self, bracket: [f64; 2]) -> Option<f64> {
         bracketed_root(bracket, |t| (self.at(t), self.slope(t)))
     }
 }
 
-/// The root of a function in a bracket, or `None` without a change of sign. The function returns its value and its
-/// slope.
+/// Returns the root of a function in a bracket, or `None` without a change of sign. The function returns its value and
+/// its slope.
 ///
 /// Takes Newton steps. Bisects if a step would leave the bracket, and at every eighth step so that the bracket
 /// shrinks.

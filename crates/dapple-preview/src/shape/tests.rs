@@ -17,7 +17,7 @@ fn spread(index: u32) -> [f64; 5] {
     })
 }
 
-/// A ray from a point in a cube around the origin toward a point in a smaller cube.
+/// Returns a ray from a point in a cube around the origin toward a point in a smaller cube.
 fn ray(index: u32) -> Ray {
     let [a, b, c, d, e] = spread(index).map(|part| 2.0 * part - 1.0);
     let origin = DVec3::new(a, b, c) * 3.0;
@@ -26,7 +26,7 @@ fn ray(index: u32) -> Ray {
     Ray { origin, direction }
 }
 
-/// The signed distance of a point from a torus, negative inside.
+/// Returns the signed distance of a point from a torus, negative inside.
 fn torus_distance(point: DVec3, major: f64, minor: f64) -> f64 {
     let outward = (point.x * point.x + point.z * point.z).sqrt() - major;
     (outward * outward + point.y * point.y).sqrt() - minor

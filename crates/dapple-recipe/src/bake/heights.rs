@@ -147,7 +147,7 @@ impl Heights {
 }
 
 impl Rows {
-    /// An empty set of rows at the top of the window.
+    /// Creates an empty set of rows at the top of the window.
     fn none(window: &Window) -> Self {
         let [width, _] = window.size;
         Self {
@@ -159,7 +159,7 @@ impl Rows {
         }
     }
 
-    /// The rows starting at the row `first`; `None` if that row is not among these.
+    /// Returns the rows starting at the row `first`; `None` if that row is not among these.
     fn rows_from(&self, first: i64) -> Option<Self> {
         let [width, rows] = self.window.size;
         let above = u32::try_from(first.checked_sub(self.window.first[1])?).ok()?;

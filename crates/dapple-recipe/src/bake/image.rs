@@ -5,7 +5,7 @@ use dapple_image::{Content, ImageError, RowWriter};
 use std::io::{Seek, Write};
 
 impl MapKind {
-    /// The content type of the map's image file, which determines how its values are encoded.
+    /// Returns the content type of the map's image file, which determines how its values are encoded.
     #[must_use]
     pub fn content(self) -> Content {
         match self {
@@ -25,7 +25,7 @@ impl MapRows {
     ///
     /// # Errors
     ///
-    /// The errors of [`RowWriter`].
+    /// Same as [`RowWriter`].
     pub fn write<W: Write + Seek>(&self, writer: &mut RowWriter<W>) -> Result<(), ImageError> {
         match self {
             Self::Gray(rows) => writer.write_gray(rows.view()),

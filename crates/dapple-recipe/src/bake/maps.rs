@@ -66,8 +66,8 @@ impl MapKind {
         Self::Orm,
     ];
 
-    /// The map with a [name](Self::name), or with an alias: `basecolor` and `base_color` for `albedo`, `occlusion` for
-    /// `ao`.
+    /// Returns the map with a [name](Self::name), or with an alias: `basecolor` and `base_color` for `albedo`,
+    /// `occlusion` for `ao`.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         match name {
@@ -77,7 +77,7 @@ impl MapKind {
         }
     }
 
-    /// The name of the map in file names and on the command line.
+    /// Returns the name of the map in file names and on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -115,7 +115,7 @@ impl Side {
 }
 
 impl MapRows {
-    /// Columns and rows.
+    /// Returns the columns and rows.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         match self {
@@ -126,7 +126,7 @@ impl MapRows {
         }
     }
 
-    /// The bytes of a GPU texture: 4 bytes per pixel, row by row from the top. Colors are sRGB encoded
+    /// Returns the bytes of a GPU texture: 4 bytes per pixel, row by row from the top. Colors are sRGB encoded
     /// (`Rgba8UnormSrgb`); all other maps are linear (`Rgba8Unorm`).
     #[must_use]
     pub fn to_rgba8(&self) -> Vec<u8> {
@@ -138,11 +138,11 @@ impl MapRows {
         }
     }
 
-    /// The mip levels of a whole map: see [`mip_levels`](dapple_color::TextureRaster::mip_levels).
+    /// Returns the mip levels of a whole map: see [`mip_levels`](dapple_color::TextureRaster::mip_levels).
     ///
     /// # Errors
     ///
-    /// The errors of [`mip_levels`](dapple_color::TextureRaster::mip_levels).
+    /// Same as [`mip_levels`](dapple_color::TextureRaster::mip_levels).
     pub fn mip_levels(&self) -> Result<Vec<Self>, RecipeError> {
         fn levels<T: TexturePixel>(
             raster: &Raster<T>,
@@ -201,8 +201,8 @@ impl MapRows {
 /// Columns and rows at each side of a pixel on which its normal depends.
 pub(super) const NORMAL_HALO: [u32; 2] = [1; 2];
 
-/// The scale of the heights of a plan. `extent` is the width and height of all pixels of the tile, in units of the
-/// plane. The wrap has no effect, because the margin covers all pixels that are read.
+/// Returns the scale of the heights of a plan. `extent` is the width and height of all pixels of the tile, in units of
+/// the plane. The wrap has no effect, because the margin covers all pixels that are read.
 fn height_plane(plan: &Plan, extent: DVec2) -> HeightPlane {
     HeightPlane {
         strength: plan.material().relief,
@@ -211,7 +211,7 @@ fn height_plane(plan: &Plan, extent: DVec2) -> HeightPlane {
     }
 }
 
-/// The options of a plan for ambient occlusion.
+/// Returns the options of a plan for ambient occlusion.
 pub(super) fn occlusion_options(
     plan: &Plan,
     extent: DVec2,
@@ -234,7 +234,7 @@ pub(super) fn occlusion_options(
     })
 }
 
-/// The options of a plan for curvature.
+/// Returns the options of a plan for curvature.
 pub(super) fn curvature_options(
     plan: &Plan,
     extent: DVec2,
@@ -256,7 +256,7 @@ pub(super) fn curvature_options(
     })
 }
 
-/// The steps of the maps that are not computed from the height, in the order of the maps.
+/// Returns the steps of the maps that are not computed from the height, in the order of the maps.
 pub(super) fn beside_height(plan: &Plan, kinds: &[MapKind]) -> Vec<usize> {
     let channels = plan.channels();
     let of_kind = |kind: &MapKind| match kind {
@@ -341,12 +341,12 @@ struct Around<'a> {
 }
 
 impl Around<'_> {
-    /// The heights with the margin; an error if they have not been computed.
+    /// Returns the heights with the margin; an error if they have not been computed.
     fn margined(&self) -> Result<&Raster<f32>, RecipeError> {
         foreseen(self.heights.raster.as_ref())
     }
 
-    /// The occlusion; an error if it has not been computed.
+    /// Returns the occlusion; an error if it has not been computed.
     fn occlusion(&self) -> Result<&Raster<f32>, RecipeError> {
         foreseen(self.occlusion.as_ref())
     }
@@ -355,7 +355,7 @@ impl Around<'_> {
         self.within([0; 2])
     }
 
-    /// The heights with a margin of `margin` columns and rows at each side; at most the halo of all maps.
+    /// Returns the heights with a margin of `margin` columns and rows at each side; at most the halo of all maps.
     fn within(&self, margin: [u32; 2]) -> Result<Raster<f32>, RecipeError> {
         let first = [0, 1].map(|axis| self.heights.halo[axis] - margin[axis]);
         let size = [0, 1].map(|axis| self.size[axis] + 2 * margin[axis]);

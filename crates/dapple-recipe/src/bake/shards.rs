@@ -79,19 +79,19 @@ impl Shards {
         Ok(Self { overlap, ..self })
     }
 
-    /// Columns and rows of the map.
+    /// Returns the columns and rows of the map.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// Columns and rows of a shard, before cropping at the border.
+    /// Returns the columns and rows of a shard, before cropping at the border.
     #[must_use]
     pub fn shard(&self) -> [u32; 2] {
         self.shard
     }
 
-    /// Columns and rows of the grid of shards.
+    /// Returns the columns and rows of the grid of shards.
     #[must_use]
     pub fn grid(&self) -> [u32; 2] {
         let steps = self.steps();
@@ -101,13 +101,14 @@ impl Shards {
         })
     }
 
-    /// Distance from a shard to the next one along each axis, in pixels: the size of a shard less the overlap.
+    /// Returns the distance from a shard to the next one along each axis, in pixels: the size of a shard less the
+    /// overlap.
     #[must_use]
     pub fn steps(&self) -> [u32; 2] {
         self.shard.map(|side| side - self.overlap)
     }
 
-    /// The number of shards, at least 1.
+    /// Returns the number of shards, at least 1.
     #[must_use]
     #[expect(
         clippy::len_without_is_empty,
@@ -118,21 +119,21 @@ impl Shards {
         u64::from(columns) * u64::from(rows)
     }
 
-    /// The shard with an index, or `None` past the last one. Its column in the [`grid`](Self::grid) is the index modulo
-    /// the columns of the grid; its row is the quotient.
+    /// Returns the shard with an index, or `None` past the last one. Its column in the [`grid`](Self::grid) is the
+    /// index modulo the columns of the grid; its row is the quotient.
     #[must_use]
     pub fn get(&self, index: u64) -> Option<Region> {
         let columns = u64::from(self.grid()[0]);
         (index < self.len()).then(|| self.at([index % columns, index / columns]))
     }
 
-    /// All shards, in the order of their indices.
+    /// Returns all shards, in the order of their indices.
     pub fn iter(&self) -> impl Iterator<Item = Region> + use<> {
         let shards = *self;
         (0..shards.len()).map_while(move |index| shards.get(index))
     }
 
-    /// The shard at a column and row of the grid.
+    /// Returns the shard at a column and row of the grid.
     fn at(&self, place: [u64; 2]) -> Region {
         // Positions within the map fit in 32 bits.
         let steps = self.steps();

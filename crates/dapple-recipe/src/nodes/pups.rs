@@ -31,15 +31,15 @@ pub struct Referenced<T> {
 
 /// A texture of `dapple-pups` as a node.
 pub(crate) trait Texture {
-    /// The image file that guides the texture, and how its alpha is used.
+    /// Returns the image file that guides the texture, and how its alpha is used.
     fn image(&self) -> Option<(&str, Option<ImageAlpha>)> {
         None
     }
 
-    /// Whether the texture makes colors.
+    /// Returns whether the texture makes colors.
     fn is_color(&self) -> bool;
 
-    /// Estimated number of control points of the texture on a tile.
+    /// Returns the estimated number of control points of the texture on a tile.
     fn expected_points(&self, tile: Domain) -> f64;
 
     /// Builds the texture on the tile of a plan.
@@ -84,7 +84,8 @@ impl<T: PupsRecipe<ReferenceImage>> Texture for Referenced<T> {
     }
 }
 
-/// The options for a plan: on its tile, with its reusable parts and its callback, and at its time if the points move.
+/// Returns the options for a plan: on its tile, with its reusable parts and its callback, and at its time if the points
+/// move.
 fn now<T: PupsRecipe<Image>, Image>(options: &T, plan: &Builder<'_>) -> T {
     let mut options = placed(options, plan.domain());
     let net = options.net_mut();
@@ -96,8 +97,8 @@ fn now<T: PupsRecipe<Image>, Image>(options: &T, plan: &Builder<'_>) -> T {
     options
 }
 
-/// The options with the tile as their domain. The domain does not wrap along axes along which the default domain of the
-/// texture does not wrap, even if the tile does.
+/// Returns the options with the tile as their domain. The domain does not wrap along axes along which the default
+/// domain of the texture does not wrap, even if the tile does.
 fn placed<T: PupsRecipe<Image>, Image>(options: &T, tile: Domain) -> T {
     let usual = T::default().domain_mut().wrap;
     let mut options = options.clone();
@@ -134,7 +135,7 @@ macro_rules! node {
             /// The names of the textures, as recipes write them, with a sentence about each.
             pub const KINDS: [(&str, &str); [$($name),*].len()] = [$(($name, $about.trim_ascii())),*];
 
-            /// The texture with a name, with default options. Required options are empty.
+            /// Returns the texture with a name, with default options. Required options are empty.
             #[must_use]
             pub fn of_kind(name: &str) -> Option<Self> {
                 match name {
@@ -155,13 +156,13 @@ macro_rules! node {
 dapple_pups::recipes!(node);
 
 impl PupsNode {
-    /// Whether the texture makes colors, not numbers.
+    /// Returns whether the texture makes colors, not numbers.
     #[must_use]
     pub fn is_color(&self) -> bool {
         self.texture().is_color()
     }
 
-    /// The image file that guides the texture, if any.
+    /// Returns the image file that guides the texture, if any.
     #[must_use]
     pub fn image_file(&self) -> Option<&str> {
         Some(self.texture().image()?.0)
@@ -178,7 +179,7 @@ pub struct ControlNets {
 }
 
 impl Recipe {
-    /// The control points of the `pups` node with this name; `None` if the recipe has no such node.
+    /// Returns the control points of the `pups` node with this name; `None` if the recipe has no such node.
     ///
     /// A texture with one layer of numbers can be converted to a `points` texture. These are all textures except
     /// `octaves`, `turbulence` and `cellular_noise`, which have layers, and `color_noise`.

@@ -75,7 +75,7 @@ impl NodeKind for Ramped {
 }
 
 impl Ramped {
-    /// The color ramp of the palette, or of the node's colors.
+    /// Returns the color ramp of the palette, or of the node's colors.
     fn ramp(&self) -> Result<ColorRamp, RecipeError> {
         let conflict = |rule| Err(RecipeError::new(RecipeErrorKind::Conflict { rule }));
         let colors = match (self.palette, self.colors.is_empty()) {

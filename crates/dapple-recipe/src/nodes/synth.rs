@@ -124,7 +124,7 @@ impl NodeKind for SynthNode {
 }
 
 impl SynthNode {
-    /// The image file of the example, which neighborhoods are compared in.
+    /// Returns the image file of the example, which neighborhoods are compared in.
     fn example(&self) -> &str {
         self.example.as_ref().unwrap_or(&self.file)
     }

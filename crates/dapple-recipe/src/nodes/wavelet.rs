@@ -87,8 +87,8 @@ pub(super) fn work(plan: &Builder<'_>, frequency: f64) -> Result<Work, RecipeErr
     })
 }
 
-/// The number of cells of the tile of wavelet noise along each axis. Fails for an odd number, or one below 4, along an
-/// axis that repeats.
+/// Returns the number of cells of the tile of wavelet noise along each axis. Fails for an odd number, or one below 4,
+/// along an axis that repeats.
 fn cells(plan: &Builder<'_>, frequency: f64) -> Result<[u32; 2], RecipeError> {
     let periods = plan.periods([frequency; 2])?;
     for cells in periods.into_iter().flatten() {

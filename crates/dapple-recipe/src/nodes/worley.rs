@@ -134,7 +134,7 @@ impl WorleyNode {
             .with_scatter(self.scatter)?)
     }
 
-    /// The field of the node's value, for a cellular basis in the plane.
+    /// Returns the field of the node's value, for a cellular basis in the plane.
     fn plane_field(&self, worley: Worley2) -> Result<Arc<dyn Field>, RecipeError> {
         let worley = self.basis(worley)?;
         let combination = match self.value {
@@ -151,8 +151,8 @@ impl WorleyNode {
         })
     }
 
-    /// The field of the node's value, for a slice of a cellular basis in four dimensions. `place` is the position
-    /// along the third and fourth axis, in cells.
+    /// Returns the field of the node's value, for a slice of a cellular basis in four dimensions. `place` is the
+    /// position along the third and fourth axis, in cells.
     fn moving_field(
         &self,
         worley: Worley4,
@@ -252,7 +252,7 @@ pub(crate) const WORLEY_VALUES: [&str; 13] = [
 ];
 
 impl WorleyValue {
-    /// The value with a name.
+    /// Returns the value with a name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         let index = WORLEY_VALUES.iter().position(|&known| known == name)?;
@@ -263,7 +263,7 @@ impl WorleyValue {
         })
     }
 
-    /// The name of the value, if it has one.
+    /// Returns the name of the value, if it has one.
     #[must_use]
     pub fn name(self) -> Option<&'static str> {
         WORLEY_VALUES
@@ -271,7 +271,7 @@ impl WorleyValue {
             .find(|name| Self::from_name(name) == Some(self))
     }
 
-    /// All names, in the order of their definition.
+    /// Returns all names, in the order of their definition.
     #[must_use]
     pub fn names() -> [&'static str; 13] {
         WORLEY_VALUES

@@ -98,7 +98,8 @@ impl<'a> Builder<'a> {
         self.ids.extend(id);
     }
 
-    /// The id of a node's key in the cache, and whether the key includes the time. `None` for a node without a key.
+    /// Returns the id of a node's key in the cache, and whether the key includes the time. `None` for a node without a
+    /// key.
     fn id_in(&self, memory: &PlanCache, node: &Node) -> Option<(StepId, bool)> {
         // Options that cannot be written as data, such as functions, cannot be compared; such a node has no key.
         if !is_data(node) {
@@ -148,18 +149,18 @@ impl<'a> Builder<'a> {
         &self.shared_parts
     }
 
-    /// The time as a fraction of a loop, from 0 to 1. Notes that the current node reads it.
+    /// Returns the time as a fraction of a loop, from 0 to 1. Notes that the current node reads it.
     pub(crate) fn time(&self) -> f64 {
         self.asks_time.set(true);
         self.time
     }
 
-    /// For each axis, how the tile continues past its sides.
+    /// Returns, for each axis, how the tile continues past its sides.
     pub(crate) fn wrap(&self) -> [Wrap; 2] {
         wrap(self.recipe.wrap)
     }
 
-    /// The tile as a domain.
+    /// Returns the tile as a domain.
     pub(crate) fn domain(&self) -> Domain {
         Domain {
             origin: glam::DVec2::ZERO,
@@ -168,12 +169,12 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The image with a file name.
+    /// Returns the image with a file name.
     pub(crate) fn image(&self, file: &str) -> Result<&'a Picture, RecipeError> {
         self.layer_of(file, None)
     }
 
-    /// The image with a file name, or a layer of it.
+    /// Returns the image with a file name, or a layer of it.
     pub(crate) fn layer_of(
         &self,
         file: &str,
@@ -187,7 +188,7 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// The seed of the current node: derived from its name, unless `other` is given.
+    /// Returns the seed of the current node: derived from its name, unless `other` is given.
     pub(crate) fn seed(&self, other: Option<&NodeSeed>) -> Seed {
         match other {
             None => self.recipe.seed.child(self.node, 0),
@@ -196,7 +197,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// For each axis that repeats, the number of cells of the tile at a frequency; `None` for the other axes.
+    /// Returns, for each axis that repeats, the number of cells of the tile at a frequency; `None` for the other axes.
     pub(crate) fn periods(&self, frequency: [f64; 2]) -> Result<[Option<u32>; 2], RecipeError> {
         let mut periods = [None; 2];
         for axis in 0..2 {
@@ -214,7 +215,7 @@ impl<'a> Builder<'a> {
         Ok(periods)
     }
 
-    /// The index of the step of an input, which may make numbers or colors. Adds a step for a constant.
+    /// Returns the index of the step of an input, which may make numbers or colors. Adds a step for a constant.
     pub(crate) fn any(&mut self, input: &Input) -> Result<usize, RecipeError> {
         let step = match input {
             Input::Number(number) => {
@@ -233,7 +234,7 @@ impl<'a> Builder<'a> {
         Ok(self.steps.len() - 1)
     }
 
-    /// The index of the step of an input that must make numbers.
+    /// Returns the index of the step of an input that must make numbers.
     pub(crate) fn number(&mut self, input: &Input) -> Result<usize, RecipeError> {
         let step = self.any(input)?;
         if self.is_color(step) {
@@ -242,12 +243,12 @@ impl<'a> Builder<'a> {
         Ok(step)
     }
 
-    /// Whether a step makes colors.
+    /// Returns whether a step makes colors.
     pub(crate) fn is_color(&self, step: usize) -> bool {
         self.steps[step].is_color()
     }
 
-    /// A step that combines the values of the inputs at each position. It makes colors if any input does.
+    /// Returns a step that combines the values of the inputs at each position. It makes colors if any input does.
     pub(crate) fn local(
         &self,
         inputs: Vec<usize>,
@@ -260,8 +261,8 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// A step that combines the inputs over the whole tile. It makes colors if any input does. The inputs are rendered
-    /// at the size of the tile divided by `copies`.
+    /// Returns a step that combines the inputs over the whole tile. It makes colors if any input does. The inputs are
+    /// rendered at the size of the tile divided by `copies`.
     pub(crate) fn global(
         &self,
         inputs: Vec<usize>,
@@ -276,7 +277,7 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// A step that applies a function to a number.
+    /// Returns a step that applies a function to a number.
     pub(crate) fn each(
         &mut self,
         input: &Input,
@@ -291,7 +292,7 @@ impl<'a> Builder<'a> {
         }))
     }
 
-    /// A step that combines numbers pairwise, from the first to the last.
+    /// Returns a step that combines numbers pairwise, from the first to the last.
     pub(crate) fn fold(
         &mut self,
         inputs: &[Input],
@@ -304,7 +305,7 @@ impl<'a> Builder<'a> {
         }))
     }
 
-    /// A step that combines numbers or colors pairwise, from the first to the last.
+    /// Returns a step that combines numbers or colors pairwise, from the first to the last.
     pub(crate) fn fold_any(
         &mut self,
         inputs: &[Input],
@@ -319,7 +320,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// For each axis, how the tile continues past its sides: repeated, or clamped.
+/// Returns, for each axis, how the tile continues past its sides: repeated, or clamped.
 pub(super) fn wrap(repeats: [bool; 2]) -> [Wrap; 2] {
     repeats.map(|repeats| if repeats { Wrap::Repeat } else { Wrap::Clamp })
 }

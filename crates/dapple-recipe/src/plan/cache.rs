@@ -83,14 +83,14 @@ impl PlanCache {
         }
     }
 
-    /// Total size of the stored values, in bytes.
+    /// Returns the total size of the stored values, in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.lock().bytes
     }
 
-    /// Whether values of this number of steps at a window take at most half of the cache, so that they do not evict
-    /// most of the others.
+    /// Returns whether values of this number of steps at a window take at most half of the cache, so that they do not
+    /// evict most of the others.
     pub(super) fn has_room(&self, steps: usize, window: &Window) -> bool {
         let bytes = steps
             .saturating_mul(window.n_pixels())
@@ -112,7 +112,7 @@ impl PlanCache {
         kept.sources.retain(|_, (_, used)| *used + MAX_AGE >= now);
     }
 
-    /// The id of a key; a new id for a key that is not stored.
+    /// Returns the id of a key; a new id for a key that is not stored.
     pub(super) fn id(&self, description: String) -> StepId {
         let mut kept = self.lock();
         if let Some(&id) = kept.ids.get(&description) {
@@ -128,7 +128,7 @@ impl PlanCache {
         id
     }
 
-    /// Whether the step with this id is known to change with time.
+    /// Returns whether the step with this id is known to change with time.
     pub(super) fn is_timed(&self, id: StepId) -> bool {
         self.lock().timed.contains(&id)
     }
@@ -139,14 +139,14 @@ impl PlanCache {
         self.id(format!("{id} at {}", time.to_bits()))
     }
 
-    /// A new id without a key, for a step that cannot be cached.
+    /// Returns a new id without a key, for a step that cannot be cached.
     pub(super) fn new_id(&self) -> StepId {
         let mut kept = self.lock();
         kept.next += 1;
         kept.next - 1
     }
 
-    /// The number of an image. Two images have the same number if they share their pixels in memory.
+    /// Returns the number of an image. Two images have the same number if they share their pixels in memory.
     pub(super) fn picture_id(&self, picture: &Picture) -> usize {
         let mut kept = self.lock();
         if kept.pictures.len() >= MAX_PICTURES {
@@ -166,7 +166,7 @@ impl PlanCache {
         })
     }
 
-    /// A stored step without inputs.
+    /// Returns a stored step without inputs.
     pub(super) fn source(&self, id: StepId) -> Option<Step> {
         let mut kept = self.lock();
         let now = kept.n_plans;
@@ -190,7 +190,7 @@ impl PlanCache {
         kept.sources.insert(id, (source, now));
     }
 
-    /// The stored values of a step at the pixels of a window. Marks them as used.
+    /// Returns the stored values of a step at the pixels of a window. Marks them as used.
     pub(super) fn values(&self, id: StepId, window: &Window) -> Option<Arc<Values>> {
         let mut kept = self.lock();
         let key = (id, Pixels::of(window));
@@ -273,7 +273,7 @@ impl Pixels {
 }
 
 impl Values {
-    /// Size of the values, in bytes.
+    /// Returns the size of the values, in bytes.
     fn bytes(&self) -> usize {
         match self {
             Self::Numbers(numbers) => size_of_val(&numbers[..]),

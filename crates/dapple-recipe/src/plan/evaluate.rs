@@ -26,7 +26,7 @@ pub(super) enum At<'a> {
 }
 
 impl<'a> Places<'a> {
-    /// The pixels of a window, each with its area.
+    /// Builds the pixels of a window, each with its area.
     pub(super) fn pixels(window: &'a Window) -> Self {
         Self {
             at: At::Window(window),
@@ -34,7 +34,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// The points at the pixel centers of a window.
+    /// Builds the points at the pixel centers of a window.
     pub(super) fn centers(window: &'a Window) -> Self {
         Self {
             at: At::Window(window),
@@ -42,7 +42,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// A list of points without an area.
+    /// Creates a list of points without an area.
     pub(super) fn points(positions: &'a [DVec2]) -> Self {
         Self {
             at: At::Positions(positions),
@@ -57,7 +57,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// All positions, row by row.
+    /// Returns all positions, row by row.
     pub(super) fn positions(&self) -> Vec<DVec2> {
         match self.at {
             At::Positions(positions) => positions.to_vec(),
@@ -107,8 +107,8 @@ pub(super) fn evaluate(
     Ok(wanted.iter().map(value).collect())
 }
 
-/// For each step, the index of the last step of `order` that reads its values; `usize::MAX` for the steps `wanted`,
-/// whose values are kept.
+/// Returns, for each step, the index of the last step of `order` that reads its values; `usize::MAX` for the steps
+/// `wanted`, whose values are kept.
 fn last_uses(steps: &[Step], order: &[usize], wanted: &[usize]) -> Vec<usize> {
     let mut last_use = vec![usize::MAX; steps.len()];
     for &index in order {
@@ -258,7 +258,7 @@ fn step(
     }
 }
 
-/// The positions, displaced by `amount` times the vectors (x, y).
+/// Returns the positions, displaced by `amount` times the vectors (x, y).
 fn shifted(mut positions: Vec<DVec2>, x: &Values, y: &Values, amount: f64) -> Vec<DVec2> {
     let shifts = x.numbers().iter().zip(y.numbers());
     for (position, (&x, &y)) in positions.iter_mut().zip(shifts) {
@@ -292,7 +292,8 @@ mod tests {
     use crate::plan::step::{Local, Step, shared};
     use dapple_raster::glam::DVec2;
 
-    /// A step that sums the absolute values of some inputs. The tests use no plan, which would compile all nodes again.
+    /// Builds a step that sums the absolute values of some inputs. The tests use no plan, which would compile all nodes
+    /// again.
     fn sum(inputs: &[usize]) -> Step {
         Step::Local(Local {
             inputs: inputs.to_vec(),

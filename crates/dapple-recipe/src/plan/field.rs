@@ -73,7 +73,7 @@ impl NodeColors {
         Self { steps, step }
     }
 
-    /// The color at a position.
+    /// Returns the color at a position.
     ///
     /// # Errors
     ///
@@ -85,7 +85,7 @@ impl NodeColors {
         Ok(Arc::unwrap_or_clone(values).into_colors()[0])
     }
 
-    /// The colors at the pixel centers of a window.
+    /// Returns the colors at the pixel centers of a window.
     ///
     /// # Errors
     ///
@@ -101,7 +101,7 @@ impl NodeColors {
     }
 }
 
-/// The values of one step.
+/// Returns the values of one step.
 fn one(steps: &[Step], places: Places<'_>, step: usize) -> Result<Arc<Values>, RecipeError> {
     let mut values = evaluate(steps, None, places, &[step], &[])?;
     Ok(values.swap_remove(0))

@@ -5,7 +5,7 @@ use crate::{Node, Recipe, RecipeError, RecipeErrorKind};
 /// Maximum number of nodes of a recipe: more than people write, and few enough for recursion along a chain of nodes.
 const MAX_NODES: usize = 1024;
 
-/// The names of all nodes, each after its inputs; otherwise in the order of the recipe.
+/// Returns the names of all nodes, each after its inputs; otherwise in the order of the recipe.
 pub(crate) fn order(recipe: &Recipe) -> Result<Vec<&str>, RecipeError> {
     check_names(recipe)?;
     let mut order = Order {
@@ -93,7 +93,7 @@ impl<'a> Order<'a> {
             .ok_or_else(|| unknown(self.recipe, name))
     }
 
-    /// The error for a cycle: a node on the current path that is reached again.
+    /// Returns the error for a cycle: a node on the current path that is reached again.
     fn cycle(&self, index: usize) -> RecipeError {
         let start = self
             .path
@@ -106,7 +106,7 @@ impl<'a> Order<'a> {
     }
 }
 
-/// The error for a name that no node has.
+/// Returns the error for a name that no node has.
 pub(crate) fn unknown(recipe: &Recipe, name: &str) -> RecipeError {
     let names = recipe.nodes.keys().map(String::as_str);
     RecipeError::new(RecipeErrorKind::UnknownNode {

@@ -29,7 +29,8 @@ pub(crate) struct TileSamples {
 }
 
 impl Plan {
-    /// The distinct samples of a map of `size` columns and rows, which may have more pixels than a raster can have.
+    /// Returns the distinct samples of a map of `size` columns and rows, which may have more pixels than a raster can
+    /// have.
     ///
     /// # Errors
     ///

@@ -69,12 +69,12 @@ pub(crate) struct StretchedImage {
 }
 
 impl Tile<'_> {
-    /// Whether the caller asks to stop.
+    /// Returns whether the caller asks to stop.
     pub(crate) fn is_cancelled(&self) -> impl Fn() -> bool + Sync {
         || self.watch.is_cancelled()
     }
 
-    /// The inputs as maps: all in color if any input is in color.
+    /// Returns the inputs as maps: all in color if any input is in color.
     pub(crate) fn maps(&self) -> Result<Vec<Map>, RecipeError> {
         Ok(Values::maps(self.inputs, self.input_size)?)
     }
@@ -97,7 +97,7 @@ impl fmt::Debug for Step {
 }
 
 impl Step {
-    /// The step of a field of numbers.
+    /// Builds the step of a field of numbers.
     pub(crate) fn field(field: impl Field + 'static) -> Self {
         Self::Field(Arc::new(field))
     }
@@ -119,7 +119,7 @@ impl Step {
         self
     }
 
-    /// Whether the step makes colors, not numbers.
+    /// Returns whether the step makes colors, not numbers.
     pub(crate) fn is_color(&self) -> bool {
         match self {
             Self::Number(_) | Self::Field(_) => false,
@@ -131,7 +131,7 @@ impl Step {
         }
     }
 
-    /// The indices of the inputs of the step.
+    /// Returns the indices of the inputs of the step.
     pub(crate) fn inputs(&self) -> Vec<usize> {
         match self {
             Self::Local(Local { inputs, .. }) | Self::Global(Global { inputs, .. }) => {
@@ -143,7 +143,7 @@ impl Step {
     }
 }
 
-/// The steps to evaluate at the positions of `wanted`, in order.
+/// Returns the steps to evaluate at the positions of `wanted`, in order.
 ///
 /// The list continues neither to the displaced inputs of warps, which are evaluated at other positions, nor to the
 /// inputs of steps that depend on the whole tile, which are evaluated beforehand, nor to the inputs of known steps.
@@ -160,12 +160,12 @@ pub(super) fn needed(
     })
 }
 
-/// The steps that `wanted` depend on, including `wanted` themselves, in order.
+/// Returns the steps that `wanted` depend on, including `wanted` themselves, in order.
 pub(super) fn ancestors(steps: &[Step], wanted: &[usize]) -> Vec<usize> {
     reached(steps, wanted, |index| steps[index].inputs())
 }
 
-/// The steps reachable from `wanted`, in order. Each step leads to earlier steps only.
+/// Returns the steps reachable from `wanted`, in order. Each step leads to earlier steps only.
 fn reached(steps: &[Step], wanted: &[usize], leads_to: impl Fn(usize) -> Vec<usize>) -> Vec<usize> {
     let mut reached = vec![false; steps.len()];
     wanted.iter().for_each(|&index| reached[index] = true);
@@ -179,7 +179,7 @@ fn reached(steps: &[Step], wanted: &[usize], leads_to: impl Fn(usize) -> Vec<usi
     (0..steps.len()).filter(|&index| reached[index]).collect()
 }
 
-/// The steps that both `wanted` and `height` depend on, except steps that are cheap to recompute.
+/// Returns the steps that both `wanted` and `height` depend on, except steps that are cheap to recompute.
 pub(super) fn shared(steps: &[Step], height: usize, wanted: &[usize]) -> Vec<usize> {
     let of_height = needed(steps, &[height], |_| false);
     let is_shared = |index: usize| {

@@ -61,7 +61,8 @@ impl Watch {
         })))
     }
 
-    /// A watch with the callback of this one and separate progress, for other work that may run at the same time.
+    /// Returns a watch with the callback of this one and separate progress, for other work that may run at the same
+    /// time.
     pub(crate) fn again(&self) -> Self {
         let heard = self.0.as_ref();
         heard.map_or_else(Self::default, |heard| Self::of(heard.callback.clone()))
@@ -83,7 +84,7 @@ impl Watch {
         }
     }
 
-    /// The number of sites that are done.
+    /// Returns the number of sites that are done.
     pub(crate) fn done(&self) -> usize {
         self.0.as_ref().map_or(0, |heard| heard.done.load(Relaxed))
     }
@@ -117,7 +118,7 @@ impl Watch {
         }
     }
 
-    /// The callback in the form that options of textures take.
+    /// Returns the callback in the form that options of textures take.
     pub(crate) fn cancel(&self) -> Cancel {
         match &self.0 {
             None => Cancel::default(),
@@ -128,7 +129,7 @@ impl Watch {
         }
     }
 
-    /// The reason why work ended: [`Cancelled`](RecipeErrorKind::Cancelled) if the callback asked to stop, else
+    /// Returns the reason why work ended: [`Cancelled`](RecipeErrorKind::Cancelled) if the callback asked to stop, else
     /// `error`.
     pub(crate) fn reason(&self, error: RecipeError) -> RecipeError {
         let is_over = |heard: &Arc<Heard>| heard.is_over.load(Relaxed);

@@ -22,13 +22,13 @@ pub struct Whole {
 }
 
 impl Plan {
-    /// Whether a map of the material depends on the whole tile and so cannot be baked in bands.
+    /// Returns whether a map of the material depends on the whole tile and so cannot be baked in bands.
     #[must_use]
     pub fn sees_whole(&self) -> bool {
         !self.needed_globals(&self.channels().steps()).is_empty()
     }
 
-    /// The steps that depend on the whole tile and that `wanted` need, in order.
+    /// Returns the steps that depend on the whole tile and that `wanted` need, in order.
     fn needed_globals(&self, wanted: &[usize]) -> Vec<(usize, &Global)> {
         let needed = ancestors(self.steps(), wanted).into_iter();
         let global = |index: usize| match &self.steps()[index] {
@@ -145,7 +145,7 @@ impl Plan {
         )
     }
 
-    /// The image of a step that depends on the whole tile, from the cache if it is stored there.
+    /// Returns the image of a step that depends on the whole tile, from the cache if it is stored there.
     fn known_picture(
         &self,
         whole: &Whole,
@@ -187,7 +187,7 @@ impl Plan {
 }
 
 impl Values {
-    /// The values as an image of `size` columns and rows.
+    /// Returns the values as an image of `size` columns and rows.
     fn picture(self, size: [u32; 2]) -> Result<Picture, RecipeError> {
         Ok(match self {
             Self::Numbers(numbers) => Picture::Numbers(Arc::new(Raster::from_vec(size, numbers)?)),
@@ -197,8 +197,8 @@ impl Values {
 }
 
 impl Global {
-    /// The window at which the inputs are evaluated: the tile, or one of the copies in it if the step repeats its
-    /// inputs.
+    /// Returns the window at which the inputs are evaluated: the tile, or one of the copies in it if the step repeats
+    /// its inputs.
     fn window_of_inputs(&self, window: &Window) -> Result<Window, RecipeError> {
         let mut size = window.size;
         for (side, copies) in size.iter_mut().zip(self.copies) {
@@ -219,7 +219,8 @@ impl Global {
 }
 
 impl Whole {
-    /// The values of a step at some positions. Pixels of the tile have exact values; other positions are interpolated.
+    /// Returns the values of a step at some positions. Pixels of the tile have exact values; other positions are
+    /// interpolated.
     pub(super) fn at(&self, index: usize, places: Places<'_>) -> Result<Values, RecipeError> {
         let (Some(tile), Some(Some(picture))) = (self.window, self.pictures.get(index)) else {
             return Err(RecipeError::new(RecipeErrorKind::Global { during: "yet" }));
@@ -243,7 +244,7 @@ impl Whole {
         }
     }
 
-    /// The pixels of a window that may extend past the tile.
+    /// Returns the pixels of a window that may extend past the tile.
     fn pixels<T: Copy>(&self, raster: &Raster<T>, window: &Window) -> Vec<T> {
         let mut pixels = Vec::with_capacity(window.n_pixels());
         for row in 0..window.size[1] {

@@ -79,12 +79,12 @@ impl Reference<'_> {
         }
     }
 
-    /// The type that a schema refers to; the schema itself if it is not a reference.
+    /// Returns the type that a schema refers to; the schema itself if it is not a reference.
     fn followed<'b>(&'b self, schema: &'b Value) -> &'b Value {
         name_of(schema).map_or(schema, |name| self.followed(&self.types[name]))
     }
 
-    /// The options of a table by name, without deprecated ones.
+    /// Returns the options of a table by name, without deprecated ones.
     fn written<'b>(&'b self, table: &'b Value) -> impl Iterator<Item = (&'b str, &'b Value)> {
         let all = object(&table["properties"]);
         all.filter(|(_, option)| {
@@ -180,20 +180,20 @@ const SECTIONS: [(&str, &str); 3] = [
     ),
 ];
 
-/// The name of the type that a schema refers to.
+/// Returns the name of the type that a schema refers to.
 fn name_of(schema: &Value) -> Option<&str> {
     schema["$ref"].as_str()?.strip_prefix("#/$defs/")
 }
 
-/// The JSON type of a value. An option that may be left out has the types `null` and another one; this returns the
-/// other.
+/// Returns the JSON type of a value. An option that may be left out has the types `null` and another one; this returns
+/// the other.
 fn kind(schema: &Value) -> &str {
     let kinds = list(&schema["type"]).filter_map(Value::as_str);
     let beside_null = kinds.into_iter().find(|&kind| kind != "null");
     beside_null.or(schema["type"].as_str()).unwrap_or("table")
 }
 
-/// The range of a number, as text that follows its type.
+/// Returns the range of a number, as text that follows its type.
 fn range(schema: &Value) -> String {
     let part = |key: &str, word: &str| {
         let number = schema[key].as_f64()?;
@@ -205,13 +205,13 @@ fn range(schema: &Value) -> String {
     least.unwrap_or_default() + &most.unwrap_or_default()
 }
 
-/// The description of a schema, escaped for a Markdown table.
+/// Returns the description of a schema, escaped for a Markdown table.
 fn text(schema: &Value) -> String {
     let text = schema["description"].as_str().unwrap_or_default();
     text.replace('|', "\\|")
 }
 
-/// A default in TOML syntax.
+/// Returns a default in TOML syntax.
 fn in_toml(value: &Value) -> String {
     match value {
         Value::Array(all) => {

@@ -69,7 +69,8 @@ impl Error for Found {
     }
 }
 
-/// The schema of the value at the end of a path of field and variant indices through a type; `None` for a unit variant.
+/// Returns the schema of the value at the end of a path of field and variant indices through a type; `None` for a unit
+/// variant.
 fn explore<T: DeserializeOwned>(way: &mut Vec<usize>) -> Option<Value> {
     let Err(found) = T::deserialize(Probe { way }) else {
         return None;
@@ -100,7 +101,7 @@ fn explore<T: DeserializeOwned>(way: &mut Vec<usize>) -> Option<Value> {
     Some(schema)
 }
 
-/// The schema of a struct with these fields.
+/// Returns the schema of a struct with these fields.
 fn table(fields: Vec<(&str, Option<Value>)>) -> Value {
     let fields = fields.into_iter();
     let properties: Map<_, _> = fields
@@ -109,7 +110,7 @@ fn table(fields: Vec<(&str, Option<Value>)>) -> Value {
     json!({ "type": "object", "properties": properties, "additionalProperties": false })
 }
 
-/// The schema of an enum: a word for each unit variant, and a table with one entry for each other variant.
+/// Returns the schema of an enum: a word for each unit variant, and a table with one entry for each other variant.
 fn one_of(variants: Vec<(&str, Option<Value>)>) -> Value {
     let (words, tables): (Vec<_>, Vec<_>) = variants
         .into_iter()
@@ -141,7 +142,7 @@ struct Probe<'a> {
 }
 
 impl<'a> Probe<'a> {
-    /// The next index of the path, and a probe with the rest of the path.
+    /// Returns the next index of the path, and a probe with the rest of the path.
     fn fork(self) -> Option<(usize, Self)> {
         let (&index, way) = self.way.split_first()?;
         Some((index, Self { way }))

@@ -87,7 +87,7 @@ impl<'de> Visitor<'de> for ContentVisitor {
 }
 
 impl Content {
-    /// The value of a key; `None` if the value is not a table or lacks the key.
+    /// Returns the value of a key; `None` if the value is not a table or lacks the key.
     pub(super) fn get(&self, key: &str) -> Option<&Self> {
         let Self::Table(table) = self else {
             return None;
@@ -96,7 +96,7 @@ impl Content {
         Some(value)
     }
 
-    /// The value as serde names it in errors.
+    /// Returns the value as serde names it in errors.
     fn unexpected(&self) -> Unexpected<'_> {
         match self {
             Self::Null => Unexpected::Unit,

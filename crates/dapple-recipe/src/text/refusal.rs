@@ -55,7 +55,7 @@ impl Refusal {
         self.inside(Part::Key(key.to_owned()))
     }
 
-    /// Byte offset of the erroneous key or value in TOML text.
+    /// Returns the byte offset of the erroneous key or value in TOML text.
     pub(super) fn byte_in_toml(&self, text: &str) -> Option<usize> {
         let table = DeTable::parse(text).ok()?;
         let mut span = table.span();
@@ -79,7 +79,7 @@ impl Refusal {
         Some(span.start)
     }
 
-    /// Position in JSON text at which the parser has read the erroneous key or value.
+    /// Returns the position in JSON text at which the parser has read the erroneous key or value.
     pub(super) fn place_in_json(&self, text: &str) -> Option<Place> {
         // Parse again up to the erroneous value. The error that ends this pass has the position.
         let mut reader = serde_json::Deserializer::from_str(text);
@@ -103,7 +103,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// The rest of the path, if its next part leads to the value at hand.
+    /// Returns the rest of the path, if its next part leads to the value at hand.
     fn step(self, leads_there: impl FnOnce(&Part) -> bool) -> Option<Self> {
         let (next, parts) = self.parts.split_last()?;
         leads_there(next).then_some(Self { parts, ..self })

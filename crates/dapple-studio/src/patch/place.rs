@@ -107,7 +107,7 @@ impl<'a> Place<'a> {
         Ok(place)
     }
 
-    /// Whether this is a table that lacks the entry.
+    /// Returns whether this is a table that lacks the entry.
     fn lacks(&self, part: &Part) -> bool {
         match (self, part) {
             (Self::Table(table), Part::Key(key)) => !table.contains_key(key),

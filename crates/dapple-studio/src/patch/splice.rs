@@ -33,7 +33,7 @@ pub(crate) fn spliced(document: &Document, ops: &[Op]) -> Option<String> {
     Some(text)
 }
 
-/// The value at a path.
+/// Returns the value at a path.
 fn at<'a>(document: &'a Document, path: &[Part]) -> Option<&'a Value> {
     let mut parts = path.iter();
     let Part::Key(first) = parts.next()? else {

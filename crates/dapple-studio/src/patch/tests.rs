@@ -62,7 +62,7 @@ fn data(text: &str) -> Json {
     json_of_table(&text.parse::<DocumentMut>().unwrap())
 }
 
-/// The text with one line replaced.
+/// Returns the text with one line replaced.
 fn with_line(old: &str, new: &str) -> String {
     assert!(TEXT.contains(old), "{old}");
     TEXT.replacen(old, new, 1)
@@ -361,7 +361,7 @@ fn at<'a>(value: &'a mut Json, path: &[Part]) -> &'a mut Json {
     })
 }
 
-/// Whether values are equal. Integers and floating-point numbers are compared by value.
+/// Returns whether values are equal. Integers and floating-point numbers are compared by value.
 fn are_equal(a: &Json, b: &Json) -> bool {
     match (a, b) {
         (Json::Number(a), Json::Number(b)) => a.as_f64() == b.as_f64(),

@@ -62,8 +62,8 @@ fn create(folder: &Path) -> io::Result<NamedTempFile> {
         .tempfile_in(folder)
 }
 
-/// The home folder of a user who has snaps installed. Programs from snaps cannot read the temporary folder or hidden
-/// folders.
+/// Returns the home folder of a user who has snaps installed. Programs from snaps cannot read the temporary folder or
+/// hidden folders.
 fn home_of_snaps() -> Option<PathBuf> {
     let home = PathBuf::from(std::env::var_os("HOME")?);
     home.join("snap").is_dir().then_some(home)

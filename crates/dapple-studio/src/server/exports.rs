@@ -84,7 +84,7 @@ impl Exports {
     }
 }
 
-/// Whether a percent-encoded name of an address equals the name of a file.
+/// Returns whether a percent-encoded name of an address equals the name of a file.
 fn is_name(address: &str, name: &str) -> bool {
     super::files::decoded(address).as_deref() == Some(name)
 }

@@ -53,7 +53,7 @@ impl Folder {
         &self.path
     }
 
-    /// The names of the recipes in the folder, sorted.
+    /// Returns the names of the recipes in the folder, sorted.
     pub(super) fn recipes(&self) -> Vec<String> {
         let entries = fs::read_dir(&self.path).into_iter().flatten().flatten();
         let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
@@ -142,7 +142,7 @@ impl Folder {
         Ok(())
     }
 
-    /// The paths of a recipe's images with the stamps of their files, for detecting changes.
+    /// Returns the paths of a recipe's images with the stamps of their files, for detecting changes.
     pub(super) fn image_stamps(&self, recipe: &Recipe) -> Vec<(PathBuf, Option<FileStamp>)> {
         let files = self.image_paths(recipe).into_iter();
         files
@@ -153,7 +153,7 @@ impl Folder {
             .collect()
     }
 
-    /// The paths of the images of a recipe.
+    /// Returns the paths of the images of a recipe.
     pub(super) fn image_paths(&self, recipe: &Recipe) -> Vec<PathBuf> {
         let files = recipe.image_files().into_iter();
         files.map(|file| self.path.join(file)).collect()
@@ -176,12 +176,12 @@ impl Folder {
         }
     }
 
-    /// Whether a name is the recipe that the user named.
+    /// Returns whether a name is the recipe that the user named.
     fn is_named(&self, name: &str) -> bool {
         self.named.as_deref() == Some(name)
     }
 
-    /// The path of a recipe, with links resolved.
+    /// Returns the path of a recipe, with links resolved.
     fn recipe(&self, name: &str) -> Result<PathBuf, StudioError> {
         if self.is_named(name) {
             let path = self.path.join(name).canonicalize();
@@ -197,7 +197,8 @@ impl Folder {
         self.inside(Path::new(name))
     }
 
-    /// The path of a file in the folder, with links resolved. Hidden files and links to hidden files are rejected.
+    /// Returns the path of a file in the folder, with links resolved. Hidden files and links to hidden files are
+    /// rejected.
     fn inside(&self, file: &Path) -> Result<PathBuf, StudioError> {
         let outside = |why: &str| StudioError::new(format!("{} {why}", file.display()));
         let elsewhere = "is not in the folder of the recipe";
@@ -225,14 +226,14 @@ impl Folder {
     }
 }
 
-/// Whether a component of a path begins with a dot.
+/// Returns whether a component of a path begins with a dot.
 fn is_hidden(path: &Path) -> bool {
     path.components()
         .any(|part| part.as_os_str().as_encoded_bytes().starts_with(b"."))
 }
 
-/// Whether a text is a recipe. A recipe has the key `dapple`, which TOML files of other programs lack. A text that is
-/// not valid TOML, for example while it is being edited, needs a line with this key before its first table.
+/// Returns whether a text is a recipe. A recipe has the key `dapple`, which TOML files of other programs lack. A text
+/// that is not valid TOML, for example while it is being edited, needs a line with this key before its first table.
 fn is_recipe(text: &str) -> bool {
     if let Ok(document) = text.parse::<DocumentMut>() {
         return document.contains_key("dapple");

@@ -48,7 +48,7 @@ impl Guard {
         })
     }
 
-    /// The address to open. The token is in the fragment, which browsers do not send.
+    /// Returns the address to open. The token is in the fragment, which browsers do not send.
     pub(super) fn url(&self) -> String {
         let token = &self.token;
         match &self.public {
@@ -116,7 +116,7 @@ impl Guard {
         is_loopback(host) || self.public.as_ref().is_some_and(is_public)
     }
 
-    /// Whether an origin equals the host or the public URL. A proxy of the public URL may send another host.
+    /// Returns whether an origin equals the host or the public URL. A proxy of the public URL may send another host.
     fn is_origin_of(&self, origin: &str, host: &str) -> bool {
         let authority = ["http://", "https://"]
             .iter()
@@ -197,7 +197,7 @@ fn shortened(scheme: &str, host: &str) -> String {
     host.strip_suffix(default).unwrap_or(&host).to_owned()
 }
 
-/// Whether a host is a loopback name, which no DNS server can redirect, with or without a port.
+/// Returns whether a host is a loopback name, which no DNS server can redirect, with or without a port.
 fn is_loopback(host: &str) -> bool {
     let is_port = |port: &str| !port.is_empty() && port.bytes().all(|digit| digit.is_ascii_digit());
     let name = match host.rsplit_once(':') {
@@ -211,8 +211,8 @@ fn is_loopback(host: &str) -> bool {
     name.eq_ignore_ascii_case("localhost") || name == "[::1]" || is_address(name)
 }
 
-/// Whether the browser's fetch metadata says that a request comes from our page or from the user. The user may type
-/// an address or follow a link to the page itself, which shows nothing without the token.
+/// Returns whether the browser's fetch metadata says that a request comes from our page or from the user. The user may
+/// type an address or follow a link to the page itself, which shows nothing without the token.
 fn is_from_here(headers: &HeaderMap, path: &str) -> bool {
     let of = |name: &str| headers.get(name).map(HeaderValue::as_bytes);
     let opens_page = path == "/"
@@ -221,7 +221,7 @@ fn is_from_here(headers: &HeaderMap, path: &str) -> bool {
     opens_page || matches!(of("sec-fetch-site"), None | Some(b"same-origin" | b"none"))
 }
 
-/// The value of a header that occurs exactly once.
+/// Returns the value of a header that occurs exactly once.
 fn one(headers: &HeaderMap, name: HeaderName) -> Option<&str> {
     let mut all = headers.get_all(name).iter();
     let value = all.next()?;

@@ -12,12 +12,12 @@ const FILES: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/page.rs"));
 const MISSING: &str = "<!doctype html><html lang=en><title>dapple studio</title><p>The page of the studio is not part \
     of this program: build it with <code>cargo xtask studio</code> in the repository of dapple, which needs Node.</p>";
 
-/// Whether the page is embedded in the program.
+/// Returns whether the page is embedded in the program.
 pub(super) fn is_built() -> bool {
     found(FILES, "index.html").is_some()
 }
 
-/// The license texts of third-party code in the page.
+/// Returns the license texts of third-party code in the page.
 pub(super) fn licenses() -> Option<&'static str> {
     let (text, _) = found(FILES, "licenses.md")?;
     std::str::from_utf8(text).ok()
@@ -65,7 +65,7 @@ fn of_folder(name: &str, dist: &Path) -> Response {
     }
 }
 
-/// The MIME type of a file, by its extension.
+/// Returns the MIME type of a file, by its extension.
 pub(super) fn content_type(name: &str) -> &'static str {
     match name
         .rsplit_once('.')

@@ -267,7 +267,7 @@ impl Page {
         Ok(vec![Reply::Saved { file, hash }])
     }
 
-    /// The recipes of the gallery: the built-in recipes and the recipes in the folder.
+    /// Returns the recipes of the gallery: the built-in recipes and the recipes in the folder.
     fn samples(&self, side: u32) -> Vec<Sample> {
         let builtin = |(index, name): (u16, &str)| Sample {
             shown: Shown::Builtin(index),
@@ -288,7 +288,7 @@ impl Page {
             .collect()
     }
 
-    /// The open file and the images of its recipe.
+    /// Returns the open file and the images of its recipe.
     fn files(&self) -> Vec<PathBuf> {
         let folder = &self.shared.folder;
         let file = self.file.iter().map(|(name, _)| folder.path().join(name));
@@ -299,7 +299,7 @@ impl Page {
         files
     }
 
-    /// Whether the open file or an image of its recipe has changed on disk and is no longer being written.
+    /// Returns whether the open file or an image of its recipe has changed on disk and is no longer being written.
     fn looks_other(&mut self) -> bool {
         let files = self.files();
         self.changes.look(&files)

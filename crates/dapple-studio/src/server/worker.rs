@@ -118,7 +118,7 @@ impl Worker {
         self.inside.changed.notify_all();
     }
 
-    /// The images of a recipe.
+    /// Returns the images of a recipe.
     pub(super) fn images(&self, recipe: &Recipe) -> Result<Images, StudioError> {
         RenderHost::images(&*self.inside, recipe)
     }

@@ -84,8 +84,8 @@ pub(super) fn claim(
     Ok(claimed)
 }
 
-/// The paths of all files, in the order of [`claim`]: the document, each image with its sheet, and the preview. For a
-/// shard, the files of its maps.
+/// Returns the paths of all files, in the order of [`claim`]: the document, each image with its sheet, and the preview.
+/// For a shard, the files of its maps.
 fn targets(args: &Args, files: &OutputArgs, work: &Work) -> Result<Targets> {
     if let (Some(shard), Some(list)) = (args.shard, &work.list) {
         let folder = files.output.as_deref().ok_or_else(no_folder)?;
@@ -126,8 +126,8 @@ fn targets(args: &Args, files: &OutputArgs, work: &Work) -> Result<Targets> {
     Ok(targets)
 }
 
-/// The files of a shard. Their directory is created here and remains, since other runs may need it before this one is
-/// done.
+/// Returns the files of a shard. Their directory is created here and remains, since other runs may need it before this
+/// one is done.
 fn shard_targets(args: &Args, folder: &Path, shard: Shard, list: &List) -> Result<Targets> {
     list.check_folder(folder)?;
     let kinds = args.material.map_kinds().iter();
@@ -145,7 +145,7 @@ fn no_folder() -> Error {
     usage("missing output").hint("add -o DIR/, the folder of the shards")
 }
 
-/// An image in the format of its file, checked for its content.
+/// Returns an image in the format of its file, checked for its content.
 fn image(layers: Layers, asked: Option<Format>, target: &Target) -> Result<Image> {
     let format = baking::format(asked, target)?;
     format.check(layers.content(), target)?;
@@ -178,7 +178,8 @@ fn check_ending(target: &Target, document: Document) -> Result<()> {
 }
 
 impl Args {
-    /// Whether a file of a shard exists already. A file with the name of a shard is complete and belongs to its list.
+    /// Returns whether a file of a shard exists already. A file with the name of a shard is complete and belongs to its
+    /// list.
     fn is_finished(&self, target: &Target) -> bool {
         let is_there = |path: &Path| path.exists();
         self.shard.is_some() && !self.files.force && target.path().is_some_and(is_there)
@@ -186,7 +187,7 @@ impl Args {
 }
 
 impl Claimed {
-    /// The maps that the images need, each once.
+    /// Returns the maps that the images need, each once.
     pub(super) fn map_kinds(&self) -> Vec<MapKind> {
         let mut kinds: Vec<MapKind> = Vec::new();
         for kind in self.images.iter().flat_map(|image| image.layers.kinds()) {

@@ -133,7 +133,7 @@ pub(super) fn mtlx(recipe: &Recipe, files: &[(Layers, String)]) -> String {
 /// The displacement input of a material.
 const DISPLACEMENT_INPUT: &str = "    <input name=\"displacementshader\" type=\"displacementshader\" nodename=\"displacement\" />\n";
 
-/// The image node of a map; for normals, also the node that decodes them.
+/// Returns the image node of a map; for normals, also the node that decodes them.
 fn image_node(wire: &Wire, file: &str) -> String {
     let Wire {
         name,
@@ -163,7 +163,7 @@ fn image_node(wire: &Wire, file: &str) -> String {
     text
 }
 
-/// The displacement node. `relief` is the displacement of a height of 1, in meters.
+/// Returns the displacement node. `relief` is the displacement of a height of 1, in meters.
 fn displacement(relief: f64) -> String {
     format!(
         r#"  <displacement name="displacement" type="displacementshader">

@@ -11,19 +11,19 @@ use dapple::recipe::{MapKind, Samples};
 use std::path::Path;
 
 impl Args {
-    /// The preset, as given by `--preset` or by the extension of the output.
+    /// Returns the preset, as given by `--preset` or by the extension of the output.
     pub(super) fn preset(&self) -> Option<&'static Preset> {
         let ending = self.files.output.as_deref().and_then(Path::extension);
         let ending = ending.unwrap_or_default().to_string_lossy().to_lowercase();
         self.preset.or_else(|| Preset::of_ending(&ending))
     }
 
-    /// The document of the material, if the preset has one.
+    /// Returns the document of the material, if the preset has one.
     pub(super) fn document(&self) -> Option<Document> {
         self.preset().and_then(|preset| preset.document)
     }
 
-    /// Whether the document embeds the images, so that they have no separate files.
+    /// Returns whether the document embeds the images, so that they have no separate files.
     pub(super) fn has_images_in_it(&self) -> bool {
         self.document() == Some(Document::Glb)
     }
@@ -63,7 +63,7 @@ impl Args {
         }
     }
 
-    /// The images to bake: for each, its part of the file name, its channels, and its format if one was chosen.
+    /// Returns the images to bake: for each, its part of the file name, its channels, and its format if one was chosen.
     pub(super) fn images(&self) -> Vec<(&'static str, Layers, Option<Format>)> {
         if let Some(preset) = self.preset() {
             let images = preset.images.iter();

@@ -113,7 +113,7 @@ pub(in crate::commands) struct MaterialArgs {
 }
 
 impl MaterialArgs {
-    /// The requested maps, or the default ones.
+    /// Returns the requested maps, or the default ones.
     pub(in crate::commands) fn map_kinds(&self) -> &[MapKind] {
         self.maps.as_ref().map_or(&USUAL, |maps| &maps.0)
     }
@@ -156,7 +156,7 @@ impl MaterialArgs {
         }
     }
 
-    /// These options as arguments for a command line.
+    /// Returns these options as arguments for a command line.
     pub(in crate::commands) fn words(&self) -> Vec<String> {
         let maps = self.map_kinds().iter().map(|kind| kind.name());
         let maps = maps.collect::<Vec<_>>().join(",");

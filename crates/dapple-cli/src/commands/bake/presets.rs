@@ -41,7 +41,7 @@ pub(super) enum Document {
 }
 
 impl Document {
-    /// The file extension.
+    /// Returns the file extension.
     pub(super) fn ending(self) -> &'static str {
         match self {
             Self::Glb => "glb",
@@ -50,7 +50,7 @@ impl Document {
     }
 }
 
-/// An image with 8 bits per channel.
+/// Returns an image with 8 bits per channel.
 const fn eight(part: &'static str, layers: Layers) -> PresetImage {
     let format = Format::Png8;
     PresetImage {
@@ -59,7 +59,7 @@ const fn eight(part: &'static str, layers: Layers) -> PresetImage {
     }
 }
 
-/// An image with 16 bits per channel.
+/// Returns an image with 16 bits per channel.
 const fn sixteen(part: &'static str, layers: Layers) -> PresetImage {
     let format = Format::Png16;
     PresetImage {
@@ -191,13 +191,13 @@ pub(super) static PRESETS: [Preset; 7] = [
 ];
 
 impl Preset {
-    /// A sentence about the preset.
+    /// Returns a sentence about the preset.
     #[cfg(feature = "studio")]
     pub(super) fn about(&self) -> &'static str {
         self.about
     }
 
-    /// A parser of presets by their names.
+    /// Returns a parser of presets by their names.
     pub(super) fn parser() -> NamedValueParser<&'static Self> {
         let presets = PRESETS.iter();
         presets.fold(NamedValueParser::none(), |words, preset| {
@@ -205,7 +205,7 @@ impl Preset {
         })
     }
 
-    /// The preset of a document with this file extension.
+    /// Returns the preset of a document with this file extension.
     pub(super) fn of_ending(ending: &str) -> Option<&'static Self> {
         let writes = |document: Document| document.ending() == ending;
         PRESETS
@@ -220,7 +220,7 @@ impl Serialize for &'static Preset {
     }
 }
 
-/// A table of the images of all presets, for the help.
+/// Returns a table of the images of all presets, for the help.
 pub(super) fn table() -> String {
     let mut text = "Presets (see --preset):\n".to_owned();
     for preset in &PRESETS {

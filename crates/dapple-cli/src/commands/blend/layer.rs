@@ -93,22 +93,22 @@ impl FromStr for LayerArg {
 }
 
 impl LayerArg {
-    /// The file of the first map.
+    /// Returns the file of the first map.
     pub(in crate::commands) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Whether the layer has a weight.
+    /// Returns whether the layer has a weight.
     pub(in crate::commands) fn has_weight(&self) -> bool {
         self.weight.is_some()
     }
 
-    /// Whether the layer has a height.
+    /// Returns whether the layer has a height.
     pub(in crate::commands) fn has_height(&self) -> bool {
         self.maps.iter().any(|(name, _)| name == HEIGHT)
     }
 
-    /// The names of the maps, except the height.
+    /// Returns the names of the maps, except the height.
     pub(in crate::commands) fn map_names(&self) -> Vec<&str> {
         let others = self.maps.iter().map(|(name, _)| name.as_str());
         let others: Vec<_> = others.filter(|name| *name != HEIGHT).collect();
@@ -154,7 +154,7 @@ impl LayerArg {
         })
     }
 
-    /// The files of the maps, except the height, in the order of [`map_names`](Self::map_names).
+    /// Returns the files of the maps, except the height, in the order of [`map_names`](Self::map_names).
     fn map_paths(&self) -> impl Iterator<Item = &Path> {
         let others = self.maps.iter().filter(|(name, _)| name != HEIGHT);
         let others = others.map(|(_, path)| path.as_path());
@@ -217,7 +217,7 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     ///
-    /// The errors of [`read`](Self::read); and if the image is partly transparent and its alpha is kept.
+    /// Same as [`read`](Self::read), or if the image is partly transparent and its alpha is kept.
     pub(in crate::commands) fn read_opaque(&mut self, path: &Path, kind: Kind) -> Result<Loaded> {
         let loaded = self.read(path, kind)?;
         if loaded.alpha.is_some() {
@@ -257,7 +257,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The weight of each layer at every pixel. Layers without a weight share equally what the others leave of 1.
+/// Returns the weight of each layer at every pixel. Layers without a weight share equally what the others leave of 1.
 ///
 /// # Errors
 ///
@@ -286,7 +286,7 @@ pub(in crate::commands) fn weights(
         .collect())
 }
 
-/// The values of a map: for colors the luminance, for normals the z component.
+/// Returns the values of a map: for colors the luminance, for normals the z component.
 pub(in crate::commands) fn values(map: Map) -> Raster<f32> {
     match map {
         Map::Value(values) => values,
@@ -315,7 +315,7 @@ fn split(text: &str) -> (String, Vec<(String, String)>) {
     (path, pairs)
 }
 
-/// Whether a text has only the characters of a key: ASCII letters, `_` and `-`.
+/// Returns whether a text has only the characters of a key: ASCII letters, `_` and `-`.
 fn is_key(key: &str) -> bool {
     !key.is_empty()
         && key

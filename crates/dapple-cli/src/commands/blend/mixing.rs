@@ -68,8 +68,8 @@ pub(super) struct MixingArgs {
 }
 
 impl MixingArgs {
-    /// The options of the blend. The default weighting is mask with a blend tile, otherwise height if a layer has a
-    /// height, otherwise the given weights.
+    /// Returns the options of the blend. The default weighting is mask with a blend tile, otherwise height if a layer
+    /// has a height, otherwise the given weights.
     ///
     /// # Errors
     ///

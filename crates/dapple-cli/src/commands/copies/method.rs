@@ -74,7 +74,7 @@ pub(super) enum Method {
 }
 
 impl MethodArgs {
-    /// The method for `count` tiles, which writes a map or, with `writes_tiles`, the tiles themselves.
+    /// Returns the method for `count` tiles, which writes a map or, with `writes_tiles`, the tiles themselves.
     ///
     /// # Errors
     ///
@@ -132,7 +132,7 @@ impl MethodArgs {
 }
 
 impl Method {
-    /// The names of the tiles in the set that is made from `count` tiles, in the order of [`Tiles::tiles`].
+    /// Returns the names of the tiles in the set that is made from `count` tiles, in the order of [`Tiles::tiles`].
     pub(super) fn tile_names(self, count: usize) -> Vec<String> {
         let Self::Corners { .. } = self else {
             return (1..=count).map(|tile| tile.to_string()).collect();

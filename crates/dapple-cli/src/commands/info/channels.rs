@@ -29,12 +29,12 @@ pub(super) struct Channel {
 }
 
 impl Channel {
-    /// Number of pixels that are NaN or infinite.
+    /// Returns the number of pixels that are NaN or infinite.
     pub(super) fn n_not_finite(&self) -> usize {
         self.values.statistics().n_not_finite
     }
 
-    /// The statistics as JSON. NaN and infinite numbers become null.
+    /// Returns the statistics as JSON. NaN and infinite numbers become null.
     pub(super) fn to_json(&self) -> Value {
         let statistics = self.values.statistics();
         json!({
@@ -52,7 +52,7 @@ impl Channel {
             .count()
     }
 
-    /// Number of pixels in each bin, from the minimum to the maximum.
+    /// Returns the number of pixels in each bin, from the minimum to the maximum.
     fn histogram(&self) -> Vec<usize> {
         let statistics = self.values.statistics();
         let finite = self.values.pixels().iter().copied();
@@ -65,7 +65,7 @@ impl Channel {
         )
     }
 
-    /// The histogram as a line of bars.
+    /// Returns the histogram as a line of bars.
     fn bars(&self) -> String {
         let counts = self.histogram();
         let most = counts.iter().copied().max().unwrap_or(0).max(1);
@@ -77,7 +77,7 @@ impl Channel {
         counts.iter().map(bar).collect()
     }
 
-    /// The line of the channel in the table. `width` is the width of the column of names.
+    /// Returns the line of the channel in the table. `width` is the width of the column of names.
     fn line(&self, width: usize) -> String {
         let statistics = self.values.statistics();
         let [min, max] = [statistics.min, statistics.max].map(f64::from);
@@ -100,7 +100,7 @@ impl Channel {
     }
 }
 
-/// The channels of an image, with codes converted to 0 to 1 but no color space applied.
+/// Returns the channels of an image, with codes converted to 0 to 1 but no color space applied.
 ///
 /// # Errors
 ///
@@ -142,7 +142,7 @@ pub(super) fn channels(content: &Content) -> Result<Vec<Channel>> {
     })
 }
 
-/// The format of an image as text.
+/// Returns the format of an image as text.
 pub(super) fn format(content: &Content) -> String {
     let image = match content {
         Content::Raw(_) => return "raw heights of 16 bits".to_owned(),
@@ -190,7 +190,7 @@ impl fmt::Display for Transparency {
     }
 }
 
-/// The transparency of an image; `None` without an alpha channel.
+/// Returns the transparency of an image; `None` without an alpha channel.
 pub(super) fn transparency(channels: &[Channel]) -> Option<Transparency> {
     let alpha = channels
         .iter()
@@ -205,7 +205,7 @@ pub(super) fn transparency(channels: &[Channel]) -> Option<Transparency> {
     })
 }
 
-/// A table with a header and a line for each channel. Each line begins with a line feed.
+/// Returns a table with a header and a line for each channel. Each line begins with a line feed.
 pub(super) fn table(channels: &[Channel]) -> String {
     let names = channels.iter().map(|channel| channel.name.chars().count());
     let width = names.max().unwrap_or(0).max(NAME_MIN);

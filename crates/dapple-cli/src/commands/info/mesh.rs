@@ -62,7 +62,7 @@ pub(super) fn findings(path: &Path) -> Result<Findings> {
     })
 }
 
-/// The counts of a mesh report, with their names.
+/// Returns the counts of a mesh report, with their names.
 fn counts(report: &MeshReport) -> [(&'static str, usize); 12] {
     [
         ("vertices", report.vertices),
@@ -89,7 +89,7 @@ fn counts(report: &MeshReport) -> [(&'static str, usize); 12] {
     ]
 }
 
-/// The corners of the bounding box with the smallest and the largest coordinates; `None` without vertices.
+/// Returns the corners of the bounding box with the smallest and the largest coordinates; `None` without vertices.
 fn bounds(model: &Model) -> Option<[DVec3; 2]> {
     let positions = model.mesh.positions();
     let (&first, rest) = positions.split_first()?;
@@ -97,7 +97,7 @@ fn bounds(model: &Model) -> Option<[DVec3; 2]> {
     Some(rest.iter().fold([first; 2], grow))
 }
 
-/// The names of the attributes and textures of a model, except positions.
+/// Returns the names of the attributes and textures of a model, except positions.
 fn columns(model: &Model) -> Vec<&'static str> {
     let material = &model.material;
     let all = [

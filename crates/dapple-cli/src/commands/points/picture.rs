@@ -57,7 +57,7 @@ pub(super) fn picture(
     Ok(picture)
 }
 
-/// The color of the background, followed by the colors of the levels; at least one.
+/// Returns the color of the background, followed by the colors of the levels; at least one.
 fn colors(ramp: Option<&RampArg>, n_levels: usize) -> Vec<LinearRgb> {
     match ramp.map(|ramp| ramp.colors.as_slice()) {
         Some(colors) if colors.len() > 1 => colors.to_vec(),
@@ -67,7 +67,7 @@ fn colors(ramp: Option<&RampArg>, n_levels: usize) -> Vec<LinearRgb> {
     }
 }
 
-/// The shifts of the copies of a wrapping domain whose dots may reach into it.
+/// Returns the shifts of the copies of a wrapping domain whose dots may reach into it.
 fn shifts(domain: &Domain) -> impl Iterator<Item = DVec2> {
     let steps = |axis: usize| if domain.wrap[axis] { -1..=1 } else { 0..=0 };
     let (columns, rows, size) = (steps(0), steps(1), domain.size);

@@ -44,7 +44,7 @@ impl Report {
         })
     }
 
-    /// The measurements as JSON.
+    /// Returns the measurements as JSON.
     pub(super) fn to_json(&self) -> Value {
         let circle = self
             .empty_circle

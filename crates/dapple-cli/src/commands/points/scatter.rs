@@ -130,7 +130,7 @@ pub(super) struct Scattered {
 }
 
 impl Scattered {
-    /// The level of a point; 0 is the coarsest.
+    /// Returns the level of a point; 0 is the coarsest.
     pub(super) fn level(&self, index: usize) -> usize {
         self.lengths.partition_point(|&length| length <= index)
     }
@@ -203,7 +203,7 @@ impl ScatterArgs {
         })
     }
 
-    /// The radius as a function of position that gives the density of the options.
+    /// Returns the radius as a function of position that gives the density of the options.
     fn variable_radius(&self, domain: Domain, count: u32) -> Result<Varying> {
         let (from, end) = (domain.origin, domain.end());
         let path = match &self.density {
@@ -300,7 +300,7 @@ fn flat(points: PointSet, radius: Option<f64>) -> Scattered {
     }
 }
 
-/// Columns and rows of a grid of about `count` nearly square cells.
+/// Returns the columns and rows of a grid of about `count` nearly square cells.
 fn square_cells(domain: Domain, count: u32) -> [u32; 2] {
     let side = (domain.area() / f64::from(count)).sqrt();
     let along = |length: f64| ((length / side + 0.5).floor().max(1.0)) as u32;

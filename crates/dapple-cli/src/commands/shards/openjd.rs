@@ -135,7 +135,7 @@ fn range(name: &'static str, first: u32, last: u32) -> Range {
     }
 }
 
-/// The job parameter of the recipe: the path of a file, or the name of a built-in recipe.
+/// Returns the job parameter of the recipe: the path of a file, or the name of a built-in recipe.
 fn recipe(typed: &str) -> Result<Parameter> {
     match Path::new(typed).is_file() {
         true => path("Recipe", ["FILE", "IN"], Path::new(typed)),
@@ -143,9 +143,9 @@ fn recipe(typed: &str) -> Result<Parameter> {
     }
 }
 
-/// A job parameter with the path of a file or directory, which a farm may map to other machines. Templates allow such
-/// paths only below their own directory, which is assumed to be the current one. Other paths become absolute and are
-/// passed as strings, which must be valid on every machine.
+/// Returns a job parameter with the path of a file or directory, which a farm may map to other machines. Templates
+/// allow such paths only below their own directory, which is assumed to be the current one. Other paths become absolute
+/// and are passed as strings, which must be valid on every machine.
 fn path(name: &'static str, what: [&'static str; 2], path: &Path) -> Result<Parameter> {
     let is_below = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
     if path.components().all(is_below) {
@@ -161,7 +161,7 @@ fn path(name: &'static str, what: [&'static str; 2], path: &Path) -> Result<Para
     Ok(string(name, text_of_path(&path)?))
 }
 
-/// A job parameter of type string.
+/// Returns a job parameter of type string.
 fn string(name: &'static str, default: &str) -> Parameter {
     Parameter {
         name,

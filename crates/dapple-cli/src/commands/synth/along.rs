@@ -61,7 +61,7 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
 }
 
 impl Args {
-    /// Whether a texture in the plane follows images of directions or scales, as opposed to a plain texture.
+    /// Returns whether a texture in the plane follows images of directions or scales, as opposed to a plain texture.
     pub(super) fn is_along(&self) -> bool {
         self.surface.mesh.is_none()
             && (self.surface.directions.is_some() || self.guides.given_for_scales().is_some())
@@ -89,8 +89,8 @@ impl Args {
         Ok(())
     }
 
-    /// The angle of the direction at each pixel, in radians, and the scale at each pixel if an image of scales was
-    /// given.
+    /// Returns the angle of the direction at each pixel, in radians, and the scale at each pixel if an image of scales
+    /// was given.
     fn planes(&self) -> Result<(Raster<f32>, Option<Raster<f32>>)> {
         let scales = self.read_scale()?.map(Values::into_raster);
         let Some(first) = self.surface.directions.as_deref() else {

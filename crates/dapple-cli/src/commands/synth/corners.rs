@@ -5,7 +5,7 @@ use anyhow::{Result, anyhow};
 use dapple::mesh::{CREASE, FaceIdx, Model, Repair, Surface};
 use dapple::points::glam::{DVec2, DVec3};
 
-/// The mesh's own texture coordinates, for the faces of the repaired mesh.
+/// Returns the mesh's own texture coordinates, for the faces of the repaired mesh.
 pub(super) fn own_uvs(
     surface: &Surface,
     model: &Model,
@@ -22,8 +22,8 @@ pub(super) fn own_uvs(
     })
 }
 
-/// For each repaired face, the values that its corners had in `column` before the repair; `None` for a corner whose
-/// position the repair has changed.
+/// Returns, for each repaired face, the values that its corners had in `column` before the repair; `None` for a corner
+/// whose position the repair has changed.
 fn before_repair<'a, T: Copy>(
     surface: &'a Surface,
     model: &'a Model,
@@ -43,8 +43,8 @@ fn before_repair<'a, T: Copy>(
     })
 }
 
-/// The normals of the corners of all faces: the mesh's own normals, or computed ones if the mesh has none or `crease`
-/// is given. `crease` is the angle in radians above which an edge is a crease.
+/// Returns the normals of the corners of all faces: the mesh's own normals, or computed ones if the mesh has none or
+/// `crease` is given. `crease` is the angle in radians above which an edge is a crease.
 pub(super) fn shading(
     crease: Option<f64>,
     surface: &Surface,

@@ -65,7 +65,7 @@ impl Args {
         Ok(())
     }
 
-    /// The height at each site, transferred from the map of heights.
+    /// Returns the height at each site, transferred from the map of heights.
     fn heights(&self, texture: &SurfaceTexture, input: &Input) -> Result<Vec<f32>> {
         let mut maps = input.maps.iter();
         let found = maps.find(|(name, _)| is_of(name, MapKind::Height));

@@ -37,7 +37,7 @@ pub(super) struct ExampleMesh {
     pub(super) maps: Vec<(String, Loaded)>,
 }
 
-/// Whether a file is a mesh, by its extension.
+/// Returns whether a file is a mesh, by its extension.
 pub(super) fn is_mesh(path: &Path) -> bool {
     MeshFormat::of_path(path).is_some()
 }
@@ -152,7 +152,7 @@ impl Args {
         }))
     }
 
-    /// The maps in the material, except maps that were given with `--map`.
+    /// Returns the maps in the material, except maps that were given with `--map`.
     fn maps_of(&self, model: &Model, sheet: Option<&Sheet>) -> Result<Vec<(String, Loaded)>> {
         let path = &self.exemplar;
         let load = |of: ImageOf, kind| {
@@ -197,7 +197,7 @@ impl Args {
 }
 
 impl ExampleMesh {
-    /// Whether the material has a map of this kind.
+    /// Returns whether the material has a map of this kind.
     pub(super) fn has(&self, kind: MapKind) -> bool {
         self.maps.iter().any(|(name, _)| is_of(name, kind))
     }
@@ -206,8 +206,8 @@ impl ExampleMesh {
 /// Selects a texture of a material.
 type ImageOf = fn(&Material) -> &Option<EncodedImage>;
 
-/// The images of a texture of a model: one for each UDIM tile, or a single one without tiles; `None` if the material
-/// does not have this texture.
+/// Returns the images of a texture of a model: one for each UDIM tile, or a single one without tiles; `None` if the
+/// material does not have this texture.
 ///
 /// # Errors
 ///
@@ -229,7 +229,7 @@ fn images(model: &Model, of: ImageOf) -> Result<Option<Vec<&EncodedImage>>> {
     images.collect::<Result<_>>().map(Some)
 }
 
-/// A channel of a packed map as data: the stored codes, from 0 to 1, without sRGB decoding.
+/// Returns a channel of a packed map as data: the stored codes, from 0 to 1, without sRGB decoding.
 fn channel_of(map: &Map, channel: usize) -> Result<Map> {
     let Map::Color(colors) = map else {
         return Err(anyhow!("a packed map has no colors"));

@@ -89,7 +89,7 @@ pub(super) struct GuideArgs {
 const SCALES: [f32; 2] = [1.0, 2.0];
 
 impl GuideArgs {
-    /// The name of a given option that sets scales, if any.
+    /// Returns the name of a given option that sets scales, if any.
     pub(super) fn given_for_scales(&self) -> Option<&'static str> {
         first_given(&[
             ("scale", self.scale.is_some()),
@@ -97,7 +97,7 @@ impl GuideArgs {
         ])
     }
 
-    /// The name of a given option that requests a guide, if any.
+    /// Returns the name of a given option that requests a guide, if any.
     pub(super) fn given(&self) -> Option<&'static str> {
         first_given(&[
             ("which", self.which.is_some()),
@@ -130,7 +130,7 @@ pub(super) enum Values {
 }
 
 impl Values {
-    /// The values as a raster: an image, or one row of vertices.
+    /// Returns the values as a raster: an image, or one row of vertices.
     pub(super) fn raster(&self) -> &Raster<f32> {
         match self {
             Self::Image(values) | Self::Vertices(values) => values,
@@ -280,7 +280,7 @@ fn like(guide: &Values, example: &Raster<f32>, mask: &Raster<bool>) -> Values {
     guide.map(|&value| (mean + (f64::from(value) - own_mean) * scale) as f32)
 }
 
-/// The mean and the standard deviation of values.
+/// Returns the mean and the standard deviation of values.
 fn moments(values: impl Iterator<Item = f32> + Clone) -> [f64; 2] {
     let n = values.clone().count().max(1) as f64;
     let mean = values.clone().map(f64::from).sum::<f64>() / n;

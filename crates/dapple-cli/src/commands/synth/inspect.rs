@@ -77,7 +77,7 @@ impl Inspection {
     }
 }
 
-/// A pseudorandom color for a piece.
+/// Returns a pseudorandom color for a piece.
 fn color_of(piece: u32) -> LinearRgb {
     let bits = hash2(Seed(0), [i64::from(piece), 0], 0);
     LinearRgb::from_srgb([0, 8, 16].map(|shift| (bits >> shift) as u8))

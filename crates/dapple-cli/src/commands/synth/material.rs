@@ -25,12 +25,12 @@ pub(super) struct MaterialMaps {
     packed: [Option<Raster<f32>>; 3],
 }
 
-/// The kind of the map with a name; `None` for an unknown name.
+/// Returns the kind of the map with a name; `None` for an unknown name.
 fn kind_of(name: &str) -> Option<MapKind> {
     MapKind::from_name(&with_underscores(name))
 }
 
-/// Whether the map with this name is of this kind.
+/// Returns whether the map with this name is of this kind.
 pub(super) fn is_of(name: &str, kind: MapKind) -> bool {
     kind_of(name) == Some(kind)
 }

@@ -49,7 +49,8 @@ dapple::raster::named! {
 }
 
 impl Channel {
-    /// The values of the channel in an image, as stored codes from 0 to 1; `None` if the image has no such channel.
+    /// Returns the values of the channel in an image, as stored codes from 0 to 1; `None` if the image has no such
+    /// channel.
     pub(super) fn of(self, image: &Loaded) -> Option<Raster<f32>> {
         let at = match self {
             Self::Red => 0,
@@ -270,7 +271,7 @@ pub(super) struct MatchArgs {
     pub(super) paper: bool,
 }
 
-/// The name of the first option that was given.
+/// Returns the name of the first option that was given.
 pub(super) fn first_given(options: &[(&'static str, bool)]) -> Option<&'static str> {
     let given = options.iter().find(|(_, is_given)| *is_given);
     given.map(|&(name, _)| name)
@@ -318,7 +319,7 @@ fn angle(text: &str) -> Result<f64, String> {
 }
 
 impl PlaneArgs {
-    /// The name of an option for the plane that was given, if any.
+    /// Returns the name of an option for the plane that was given, if any.
     pub(super) fn given(&self) -> Option<&'static str> {
         first_given(&[
             ("size", self.size.is_some()),
@@ -335,7 +336,7 @@ impl PlaneArgs {
         ])
     }
 
-    /// For each axis, whether the texture wraps.
+    /// Returns, for each axis, whether the texture wraps.
     pub(super) fn edges(&self) -> [Edges; 2] {
         let wrap = self.wrap.unwrap_or(Axes::None);
         wrap.flags()
@@ -344,7 +345,7 @@ impl PlaneArgs {
 }
 
 impl SurfaceArgs {
-    /// The name of an option that was given and needs a mesh, if any.
+    /// Returns the name of an option that was given and needs a mesh, if any.
     pub(super) fn given(&self) -> Option<&'static str> {
         first_given(&[
             ("symmetry", self.symmetry.is_some()),
@@ -360,7 +361,7 @@ impl SurfaceArgs {
         ])
     }
 
-    /// The name of an option that was given and needs an example that is a mesh, if any.
+    /// Returns the name of an option that was given and needs an example that is a mesh, if any.
     pub(super) fn given_for_example(&self) -> Option<&'static str> {
         first_given(&[
             ("example-directions", self.example_directions.is_some()),
@@ -368,7 +369,7 @@ impl SurfaceArgs {
         ])
     }
 
-    /// The options of the sites on an example that is a mesh.
+    /// Returns the options of the sites on an example that is a mesh.
     pub(super) fn example_sites(&self, matching: &MatchArgs) -> HierarchyOptions {
         let sites = self.sites(matching);
         HierarchyOptions {
@@ -378,7 +379,7 @@ impl SurfaceArgs {
         }
     }
 
-    /// The side of the texture, in pixels.
+    /// Returns the side of the texture, in pixels.
     pub(super) fn side(&self) -> u32 {
         self.texture_size.unwrap_or(1024)
     }
@@ -391,12 +392,12 @@ impl SurfaceArgs {
         self.padding
     }
 
-    /// The angle above which an edge is a crease, in radians, if it was given.
+    /// Returns the angle above which an edge is a crease, in radians, if it was given.
     pub(super) fn crease(&self) -> Option<f64> {
         self.crease.map(f64::to_radians)
     }
 
-    /// The options of the sites on the mesh, with one level per level of matching.
+    /// Returns the options of the sites on the mesh, with one level per level of matching.
     pub(super) fn sites(&self, matching: &MatchArgs) -> HierarchyOptions {
         let default = HierarchyOptions::default();
         HierarchyOptions {
@@ -409,7 +410,7 @@ impl SurfaceArgs {
 }
 
 impl SurfaceArgs {
-    /// The options of the sites on a surface. With `--repeat`, the number of sites follows from the size of the
+    /// Returns the options of the sites on a surface. With `--repeat`, the number of sites follows from the size of the
     /// example, in pixels.
     ///
     /// # Errors
@@ -431,7 +432,7 @@ impl SurfaceArgs {
 }
 
 impl MatchArgs {
-    /// The weight of the map with a name in matching; 0 by default.
+    /// Returns the weight of the map with a name in matching; 0 by default.
     pub(super) fn weight_of(&self, name: &str) -> f32 {
         let given = self.weight.iter().find(|weight| weight.name == name);
         given.map_or(0.0, |given| given.weight)
@@ -456,7 +457,7 @@ impl MatchArgs {
         Ok(())
     }
 
-    /// The name of an option that was given and has no effect on an endless texture, if any.
+    /// Returns the name of an option that was given and has no effect on an endless texture, if any.
     pub(super) fn given_for_sweeps(&self) -> Option<&'static str> {
         first_given(&[
             ("coherence", self.coherence.is_some()),
@@ -465,13 +466,13 @@ impl MatchArgs {
         ])
     }
 
-    /// The number of levels of a sweep.
+    /// Returns the number of levels of a sweep.
     fn n_levels(&self) -> usize {
         self.levels
             .map_or(Options::default().n_levels, |levels| levels as usize)
     }
 
-    /// The options of an endless texture with this period, in pixels; `None` along axes without a period.
+    /// Returns the options of an endless texture with this period, in pixels; `None` along axes without a period.
     pub(super) fn endless(&self, period: [Option<u32>; 2]) -> EndlessOptions {
         EndlessOptions {
             seed: Seed(self.seed),
@@ -480,7 +481,7 @@ impl MatchArgs {
         }
     }
 
-    /// The options of a sweep.
+    /// Returns the options of a sweep.
     pub(super) fn options(&self, surface: &SurfaceArgs) -> Options {
         let default = if self.paper {
             Options::paper()

@@ -121,19 +121,19 @@ fn grow(args: &Args, exemplar: &Exemplar, progress: &Progress) -> Result<PlaneTe
 }
 
 impl PlaneArgs {
-    /// Whether endless synthesis was requested.
+    /// Returns whether endless synthesis was requested.
     pub(super) fn is_endless(&self) -> bool {
         self.method == Some(MethodName::Endless) || self.at.is_some()
     }
 }
 
 impl Args {
-    /// The name of an option that was given and has no effect on an endless texture, if any.
+    /// Returns the name of an option that was given and has no effect on an endless texture, if any.
     fn given_for_sweeps(&self) -> Option<&'static str> {
         self.matching.given_for_sweeps().or(self.guides.given())
     }
 
-    /// Whether a sweep was requested, or is needed by an option.
+    /// Returns whether a sweep was requested, or is needed by an option.
     fn is_swept(&self) -> bool {
         self.plane.method == Some(MethodName::Sweep) || self.given_for_sweeps().is_some()
     }

@@ -93,7 +93,8 @@ impl Args {
         })
     }
 
-    /// The input with a mesh as the example: its texture, the maps given by `--map`, and the maps of its material.
+    /// Returns the input with a mesh as the example: its texture, the maps given by `--map`, and the maps of its
+    /// material.
     pub(super) fn read_with(&self, example: &ExampleMesh) -> Result<Input> {
         let base = example.base.clone();
         let mut exemplar = exemplar_of(&base.map, self.matching.edges).map_err(advise)?;
@@ -343,7 +344,7 @@ impl Args {
     }
 }
 
-/// The lightness of the pixels of an image, as sRGB codes from 0 to 1. Gray images are unchanged.
+/// Returns the lightness of the pixels of an image, as sRGB codes from 0 to 1. Gray images are unchanged.
 pub(super) fn gray(image: &Loaded) -> Result<Raster<f32>> {
     match &image.map {
         Map::Value(values) => Ok(values.clone()),
@@ -352,7 +353,7 @@ pub(super) fn gray(image: &Loaded) -> Result<Raster<f32>> {
     }
 }
 
-/// The lightness of a color: the sRGB code, from 0 to 1, of the gray with the same luminance.
+/// Returns the lightness of a color: the sRGB code, from 0 to 1, of the gray with the same luminance.
 pub(super) fn lightness(color: &LinearRgb) -> f32 {
     let [code, ..] = LinearRgb::gray(color.luminance()).to_srgb::<u16>();
     f32::from(code) / f32::from(u16::MAX)
@@ -408,7 +409,7 @@ pub(super) fn joined(layout: &SideBySide, mut images: Vec<Loaded>) -> Result<Loa
     Ok(joined)
 }
 
-/// The rasters of all images, if all images are of the kind that `part` selects.
+/// Returns the rasters of all images, if all images are of the kind that `part` selects.
 fn all<'a, T>(images: &'a [Loaded], part: impl Fn(&'a Map) -> Option<&'a T>) -> Option<Vec<&'a T>> {
     images.iter().map(|image| part(&image.map)).collect()
 }

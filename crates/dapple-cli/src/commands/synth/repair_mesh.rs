@@ -142,7 +142,7 @@ fn claim_tiles(
         .collect()
 }
 
-/// The format of the output if it is a model; `None` for an image.
+/// Returns the format of the output if it is a model; `None` for an image.
 fn model_format(target: &Target) -> Result<Option<&'static MeshFormat>> {
     match Product::of(target)? {
         Product::Texture => Ok(None),
@@ -254,7 +254,7 @@ fn within_hole<T: Copy>(
     })?)
 }
 
-/// Pairs of the images of a material: the old image and its replacement.
+/// Returns pairs of the images of a material: the old image and its replacement.
 fn replaced(old: &Material, new: &Material) -> Vec<(EncodedImage, EncodedImage)> {
     let images = |material: &Material| {
         let Material {

@@ -81,7 +81,7 @@ fn read_target(
     Ok(model)
 }
 
-/// The UDIM tiles that get a texture each, with the mesh's own texture coordinates; empty for a single texture.
+/// Returns the UDIM tiles that get a texture each, with the mesh's own texture coordinates; empty for a single texture.
 fn squares(args: &Args, product: Product, model: &Model) -> Vec<TileMaterial> {
     let takes_several = match product {
         Product::Texture => true,
@@ -106,8 +106,8 @@ pub(super) fn announce(context: &Context, path: &Path, model: &Model) {
     }
 }
 
-/// The options of the sites on the mesh. For an example that is an image of `size` pixels, also a note with the number
-/// of times that it repeats across the mesh.
+/// Returns the options of the sites on the mesh. For an example that is an image of `size` pixels, also a note with the
+/// number of times that it repeats across the mesh.
 fn sites(
     args: &Args,
     is_mesh: bool,
@@ -237,7 +237,7 @@ fn grown(
     texture.map_err(advise)
 }
 
-/// The statistics of an atlas, for the sidecar.
+/// Returns the statistics of an atlas, for the sidecar.
 fn atlas_json(atlas: AtlasReport) -> serde_json::Value {
     json!({
         "pieces": atlas.pieces,
@@ -270,7 +270,7 @@ pub(super) struct Layouts {
 }
 
 impl From<Atlas> for Layouts {
-    /// The atlas of a single texture.
+    /// Builds the atlas of a single texture.
     fn from(atlas: Atlas) -> Self {
         Self {
             atlases: vec![atlas],
@@ -280,7 +280,7 @@ impl From<Atlas> for Layouts {
 }
 
 impl Layouts {
-    /// The atlas of a single texture, or the atlases of all UDIM tiles.
+    /// Builds the atlas of a single texture, or the atlases of all UDIM tiles.
     fn new(
         args: &Args,
         surface: &Surface,
@@ -294,7 +294,7 @@ impl Layouts {
         }
     }
 
-    /// The atlases of UDIM tiles, which use the mesh's own texture coordinates.
+    /// Builds the atlases of UDIM tiles, which use the mesh's own texture coordinates.
     fn of_tiles(args: &Args, surface: &Surface, model: &Model, repair: &Repair) -> Result<Self> {
         let numbers: Vec<_> = model.tiles.iter().map(|tile| tile.number).collect();
         let own_uvs = own_uvs(surface, model, repair)?;
@@ -312,7 +312,7 @@ impl Layouts {
         })
     }
 
-    /// The statistics of the atlases, for the sidecar: an object, or a list with an object for each UDIM tile.
+    /// Returns the statistics of the atlases, for the sidecar: an object, or a list with an object for each UDIM tile.
     fn report(&self, surface: &Surface) -> serde_json::Value {
         let reports = self.atlases.iter();
         let mut reports: Vec<_> = reports
@@ -338,7 +338,7 @@ pub(super) struct Covered {
 }
 
 impl Product {
-    /// The kind of output for the file extension of a target.
+    /// Builds the kind of output for the file extension of a target.
     pub(super) fn of(target: &Target) -> Result<Self> {
         let ending = match target {
             Target::Stdout if target.ending().is_empty() => DEFAULT_ENDING.to_owned(),
@@ -362,7 +362,7 @@ impl Product {
     }
 }
 
-/// The part of the help that lists the kind of output for each file extension.
+/// Returns the part of the help that lists the kind of output for each file extension.
 pub(super) fn endings() -> String {
     let mut text = "What the ending of the output gives for a mesh:".to_owned();
     for format in FORMATS {
@@ -411,7 +411,7 @@ impl Covered {
         Ok((Map::Color(baked.map(|pixel| pixel.color)), Some(alpha)))
     }
 
-    /// The colors of the sites.
+    /// Returns the colors of the sites.
     fn site_colors(&self, args: &Args) -> Result<Vec<LinearRgba>> {
         let map = ramped(self.input.base.map.clone(), args.image.ramp.as_ref());
         let colors: Vec<_> = match &map {
@@ -432,7 +432,7 @@ impl Covered {
     }
 }
 
-/// The output path, and its kind.
+/// Returns the output path, and its kind.
 fn output(args: &Args, mesh: &Path) -> Result<(Target, Product)> {
     let ending = args.image.format.map_or(DEFAULT_ENDING, Format::ending);
     let target = args.target(mesh, ending)?;
@@ -540,8 +540,8 @@ fn claim_tiles(
         .collect()
 }
 
-/// The names of the files that a format writes next to a mesh. They are found by writing an empty mesh with the same
-/// textures.
+/// Returns the names of the files that a format writes next to a mesh. They are found by writing an empty mesh with the
+/// same textures.
 fn names_beside(
     format: &MeshFormat,
     path: &Path,
@@ -614,7 +614,7 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
     write_model(format, claimed, &model, job)
 }
 
-/// The input mesh with its texture. A gray texture is converted to colors, which models need.
+/// Returns the input mesh with its texture. A gray texture is converted to colors, which models need.
 fn model(
     args: &Args,
     covered: &Covered,

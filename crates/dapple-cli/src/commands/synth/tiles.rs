@@ -57,7 +57,8 @@ impl Tiles {
         })
     }
 
-    /// The texture coordinates of the faces of one tile. All other faces have NaN, so that an atlas leaves them out.
+    /// Returns the texture coordinates of the faces of one tile. All other faces have NaN, so that an atlas leaves them
+    /// out.
     pub(super) fn uvs_of(&self, tile: usize) -> Vec<[DVec2; 3]> {
         let faces = self.of_face.iter().zip(&self.local);
         let corners = |(&of_face, &local): (&usize, &[DVec2; 3])| match of_face == tile {
@@ -67,7 +68,7 @@ impl Tiles {
         faces.map(corners).collect()
     }
 
-    /// The files of all tiles, for a name with a placeholder such as `<UDIM>`; `None` for other names.
+    /// Returns the files of all tiles, for a name with a placeholder such as `<UDIM>`; `None` for other names.
     fn paths(&self, path: &Path) -> Option<Vec<PathBuf>> {
         let name = path.file_name()?.to_str()?;
         let paths = self.numbers.iter().map(|&number| {
@@ -79,7 +80,7 @@ impl Tiles {
 }
 
 impl Sheet {
-    /// The sheet for tiles with textures of `size` columns and rows.
+    /// Builds the sheet for tiles with textures of `size` columns and rows.
     pub(super) fn new(tiles: Tiles, size: [u32; 2]) -> Result<Self> {
         let with_border = size.map(|side| side.saturating_add(2 * BORDER));
         let layout = SideBySide::new(&vec![with_border; tiles.numbers.len()])?;
@@ -90,7 +91,7 @@ impl Sheet {
         })
     }
 
-    /// The texture coordinates of all faces in the sheet.
+    /// Returns the texture coordinates of all faces in the sheet.
     pub(super) fn uvs(&self) -> Vec<[DVec2; 3]> {
         let all = DVec2::from(self.layout.size().map(f64::from));
         let size = DVec2::from(self.size.map(f64::from));
@@ -102,7 +103,7 @@ impl Sheet {
         faces.map(placed).collect()
     }
 
-    /// The first column and row of the texture of a tile, within the sheet.
+    /// Returns the first column and row of the texture of a tile, within the sheet.
     fn first(&self, tile: usize) -> [u32; 2] {
         // The layout leaves a column between two images.
         let width = self.size[0] + 2 * BORDER + 1;
@@ -184,7 +185,7 @@ impl Sheet {
         paths.iter().map(|path| read(path)).collect()
     }
 
-    /// Columns and rows of the texture of a tile.
+    /// Returns the columns and rows of the texture of a tile.
     pub(super) fn size(&self) -> [u32; 2] {
         self.size
     }

@@ -106,7 +106,7 @@ const AUTO: &str = "auto";
 /// The options of the spline methods.
 const PROJECT_OPTIONS: &[&str] = &["levels", "basis", "phase", "pixels"];
 
-/// A parser of the names of methods.
+/// Returns a parser of the names of methods.
 fn method() -> NamedValueParser<&'static str> {
     let auto = NamedValueParser::none().or(
         AUTO,
@@ -128,7 +128,7 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    /// Whether the candidate is tried only if no other candidate passes.
+    /// Returns whether the candidate is tried only if no other candidate passes.
     pub(super) fn is_last_resort(&self) -> bool {
         matches!(self.how, How::Synth(_))
     }
@@ -148,13 +148,13 @@ impl Candidate {
     }
 }
 
-/// A parser of the basis functions of spline tiles.
+/// Returns a parser of the basis functions of spline tiles.
 fn basis() -> NamedValueParser<Basis> {
     let splines = NamedValueParser::<Degree>::all().map(Basis::Spline);
     splines.or("sines", "Sines and cosines", Basis::Sines)
 }
 
-/// The default margin, in pixels: the default of the library, but at most a quarter of the shorter side.
+/// Returns the default margin, in pixels: the default of the library, but at most a quarter of the shorter side.
 fn default_margin(size: [u32; 2]) -> u32 {
     let shorter = size[0].min(size[1]);
     SoftCut::default().margin.min((shorter / 4).max(1))
@@ -211,8 +211,8 @@ pub(super) struct MethodArgs {
 }
 
 impl MethodArgs {
-    /// The method with its options, for images of a size. For `auto`, all methods to try; the last resort is the last
-    /// one.
+    /// Returns the method with its options, for images of a size. For `auto`, all methods to try; the last resort is
+    /// the last one.
     pub(super) fn candidates(&self, size: [u32; 2]) -> Vec<Candidate> {
         let candidates_of = |is_wanted: &dyn Fn(&str) -> bool| -> Vec<Candidate> {
             let wanted = METHODS.iter().filter(|row| is_wanted(row.name));
@@ -242,7 +242,7 @@ impl MethodArgs {
         candidates
     }
 
-    /// Whether the best method is chosen automatically.
+    /// Returns whether the best method is chosen automatically.
     pub(super) fn is_auto(&self) -> bool {
         self.method == AUTO
     }

@@ -50,7 +50,7 @@ pub(super) fn tiles(maps: &[Map], axes: [bool; 2], how: &Resynthesis) -> Result<
     maps.iter().map(tile).collect()
 }
 
-/// The exemplar of a material: the channels of all its maps.
+/// Returns the exemplar of a material: the channels of all its maps.
 fn exemplar(maps: &[Map]) -> Result<Exemplar> {
     let mut exemplars = maps.iter().map(|map| exemplar_of(map, Edges::Cut));
     let Some(first) = exemplars.next() else {
