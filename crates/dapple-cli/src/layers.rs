@@ -145,7 +145,7 @@ impl LayerRows<'_> {
         }
     }
 
-    /// Extends a range, as minimum and maximum, by the finite numbers of these rows.
+    /// Extends `range`, a minimum and a maximum, to include the finite numbers of these rows.
     pub(crate) fn range(&self, range: [f32; 2]) -> [f32; 2] {
         match self {
             Self::Map(rows) => rows.range(range),

@@ -15,7 +15,7 @@ use glam::DVec3;
 /// visible.
 const FACING_MIN: f64 = 1e-3;
 
-/// Returns the unit normal of a bumped surface, on the side of the eye.
+/// Returns the unit normal of a bumped surface. It faces the eye.
 ///
 /// `normal` is the unit normal of the smooth surface, `gradient` the gradient of the height, and `to_eye` the unit
 /// vector to the eye, all in the same space. A gradient that overflows has no effect.

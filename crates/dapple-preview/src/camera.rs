@@ -56,7 +56,7 @@ impl Camera {
         }
     }
 
-    /// Prepares rays from the camera for a grid of samples.
+    /// Prepares the camera for an image of `samples` columns and rows.
     pub(crate) fn prepare(&self, samples: [f64; 2]) -> Result<View, PreviewError> {
         PreviewError::check_vector("eye of the camera", self.eye)?;
         PreviewError::check_vector("target of the camera", self.target)?;
@@ -91,22 +91,22 @@ impl Camera {
     }
 }
 
-/// A camera, prepared for a grid of samples.
+/// A camera prepared for a grid of image samples.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     eye: DVec3,
     forward: DVec3,
-    /// The step of one sample to the right, at the distance 1.
+    /// Vector from one sample to the next one to the right, at distance 1 from the eye.
     right: DVec3,
-    /// The step of one sample down, at the distance 1.
+    /// Vector from one sample to the next one below, at distance 1 from the eye.
     down: DVec3,
     middle: DVec2,
-    /// Width of a sample at the center of the image, at distance 1.
+    /// Width of a sample at the center of the image, at distance 1 from the eye.
     pub(crate) sample: f64,
 }
 
 impl View {
-    /// Returns the ray through a point of the image, given in samples from the top left corner.
+    /// Returns the ray through `at`, a point of the image in samples from the top left corner.
     pub(crate) fn ray(&self, at: DVec2) -> Ray {
         let offset = at - self.middle;
         let direction = self.forward + self.right * offset.x + self.down * offset.y;

@@ -1,4 +1,4 @@
-//! The environment: distant light, visible in the background and in mirrors.
+//! Distant light, visible in the background and in mirrors.
 
 use crate::PreviewError;
 use core::fmt;
@@ -60,7 +60,7 @@ impl<'a> Environment<'a> {
         Self::Function(Box::new(light))
     }
 
-    /// Returns the light that arrives from the direction of a unit vector.
+    /// Returns the light that arrives from `direction`, a unit vector that points away from the scene.
     #[must_use]
     pub fn light(&self, direction: DVec3) -> LinearRgb {
         match self {

@@ -1,14 +1,14 @@
-//! Errors of rendering and of meshes.
+//! Errors from rendering and from building meshes.
 
 use dapple_mesh::MeshError;
 use dapple_raster::RasterError;
 use glam::DVec3;
 
-/// Maximum coordinate, length or scale in a scene. A quartic of such numbers is far from overflow.
+/// Maximum coordinate, length or scale in a scene. Quartics with coefficients of this size do not overflow.
 const SIZE_MAX: f64 = 1e30;
 
 dapple_raster::error! {
-    /// An error in rendering a scene or in creating a mesh.
+    /// An error from rendering a scene or creating a mesh.
     PreviewError,
     /// The cause of a [`PreviewError`], with the limit and the value.
     PreviewErrorKind with Range {
@@ -24,15 +24,15 @@ dapple_raster::error! {
         } => "a {shape} has no inside, so it cannot be cut";
     }
     from {
-        /// An error of the mesh.
+        /// The mesh is invalid.
         Mesh(MeshError),
-        /// An error of the raster: the image has an invalid size.
+        /// The image size is invalid.
         Raster(RasterError),
     }
 }
 
 impl PreviewError {
-    /// Checks that the components of a vector are finite and do not overflow in computations.
+    /// Returns an error unless the components of a vector are finite and at most [`SIZE_MAX`].
     pub(crate) fn check_vector(what: &'static str, vector: DVec3) -> Result<(), Self> {
         vector.to_array().into_iter().try_for_each(|value| {
             let holds = value.abs() <= SIZE_MAX;

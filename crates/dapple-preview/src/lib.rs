@@ -61,9 +61,9 @@
 //!
 //! # How it works
 //!
-//! One ray per sample of a regular grid finds the nearest shape: planes and spheres by a formula, tori by the roots
-//! of their quartic, meshes by a bounding volume hierarchy. A texture's gradient tilts the normal (Blinn 1978),
-//! shadow rays test the lights, and a mirror sends a ray that sees the other objects and the environment.
+//! One ray per sample of a regular grid finds the nearest shape. Planes and spheres are intersected in closed form,
+//! tori by the roots of their quartic, meshes by a bounding volume hierarchy. A texture's gradient tilts the normal
+//! (Blinn 1978), shadow rays test the lights, and a mirror sends a ray that sees the other objects and the environment.
 
 #![forbid(unsafe_code)]
 

@@ -101,7 +101,7 @@ impl Light {
         }
     }
 
-    /// Sets the shadows of the light.
+    /// Sets the method for shadows.
     #[must_use]
     pub fn with_shadows(self, shadows: Shadows) -> Self {
         Self { shadows, ..self }
@@ -129,7 +129,8 @@ impl Light {
 }
 
 impl Shadows {
-    /// Returns the targets of shadow rays on a disk: a Vogel spiral, which covers equal areas.
+    /// Returns the targets of shadow rays on the unit disk, placed along a Vogel spiral so that each stands for the
+    /// same area.
     ///
     /// Reference: Helmut Vogel, "A better way to construct the sunflower head", Mathematical Biosciences 44, 1979.
     fn pattern(self) -> Result<Vec<DVec2>, PreviewError> {
@@ -148,8 +149,7 @@ impl Shadows {
         let what = "number of shadow rays";
         let holds = (1..=1024).contains(&rays);
         PreviewError::check(holds, what, rays.into(), "from 1 to 1024")?;
-        // Vogel's spiral: the radius grows with the square root of the index, and each point turns by the golden
-        // angle.
+        // Vogel's spiral. The radius grows with the square root of the index, and each point turns by the golden angle.
         let golden_angle = PI * (3.0 - 5_f64.sqrt());
         let point = |ray: u32| {
             let out = radius * ((f64::from(ray) + 0.5) / f64::from(rays)).sqrt();
@@ -180,7 +180,7 @@ pub(crate) struct Incoming {
 }
 
 impl Lamp {
-    /// Returns the light at a point. Returns `None` at the position of the light.
+    /// Returns the light that arrives at `point`, or `None` at the light's own position.
     pub(crate) fn incoming(&self, point: DVec3) -> Option<Incoming> {
         let color = self.color;
         match self.source {

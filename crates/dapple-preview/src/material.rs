@@ -43,7 +43,7 @@ pub struct Material {
     pub mirror: Mirror,
 }
 
-/// The fraction of the light that is reflected as by a mirror. The rest is scattered.
+/// Fraction of the light that is reflected specularly. The rest is scattered.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/mirror.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -59,7 +59,7 @@ pub enum Mirror {
 }
 
 impl Material {
-    /// Creates a surface that only scatters light.
+    /// Creates a material that only scatters light.
     #[must_use]
     pub fn matte(color: LinearRgb) -> Self {
         Self {
@@ -118,7 +118,8 @@ impl Material {
 }
 
 impl Mirror {
-    /// Returns the reflectance for a cosine between the normal and the direction to the eye.
+    /// Returns the reflectance, from 0 to 1. `cosine` is that of the angle between the normal and the direction to the
+    /// eye.
     pub(crate) fn part(self, cosine: f64) -> f32 {
         match self {
             Self::None => 0.0,

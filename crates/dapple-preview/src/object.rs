@@ -28,11 +28,11 @@ pub struct Object<'a> {
     look: Look<'a>,
 }
 
-/// The function that returns the material of an object at a point.
+/// A function that returns an object's material at a surface point.
 type Look<'a> = Box<dyn Fn(&Surface) -> Material + Send + Sync + 'a>;
 
 impl<'a> Object<'a> {
-    /// Creates an object at the origin of the world, with the materials that `look` returns.
+    /// Creates an object at the origin of the world, with the material that `look` returns for each surface point.
     ///
     /// `look` is called from several threads, and must depend on the surface alone.
     #[must_use]
@@ -45,14 +45,14 @@ impl<'a> Object<'a> {
         }
     }
 
-    /// Moves the origin of the object to a position of the world.
+    /// Moves the object's origin to `translation`, a position in the world.
     #[must_use]
     pub fn at(mut self, translation: DVec3) -> Self {
         self.transform.translation = translation;
         self
     }
 
-    /// Sets the transform from the space of the object to the world.
+    /// Sets the transform from object space to the world.
     #[must_use]
     pub fn with_transform(self, transform: Transform) -> Self {
         Self { transform, ..self }

@@ -1,4 +1,4 @@
-//! Scenes and their rendering: every pixel is the mean of a regular grid of samples.
+//! Scenes, and their rendering to images. Every pixel is the mean of a regular grid of samples.
 //!
 //! Reference: our own. The lighting of a sample, after Whitted 1980, is in `trace`.
 
@@ -106,10 +106,10 @@ impl<'a> Scene<'a> {
     ///
     /// # Errors
     ///
-    /// [`Raster`](crate::PreviewErrorKind::Raster) for a size without pixels or past 2^31,
-    /// [`NoDirection`](crate::PreviewErrorKind::NoDirection) for a camera, a light or a cut that points nowhere,
-    /// [`NotSolid`](crate::PreviewErrorKind::NotSolid) for a cut through a plane or a mesh, and
-    /// [`Range`](crate::PreviewErrorKind::Range) for any number that is not finite or outside of its documented range.
+    /// [`Raster`](crate::PreviewErrorKind::Raster) if the image has no pixels or more than 2^31,
+    /// [`NoDirection`](crate::PreviewErrorKind::NoDirection) if a direction of the camera, a light or a cut is zero,
+    /// [`NotSolid`](crate::PreviewErrorKind::NotSolid) if a plane or a mesh is cut, and
+    /// [`Range`](crate::PreviewErrorKind::Range) if a number is not finite or outside its documented range.
     pub fn render(
         &self,
         size: [u32; 2],

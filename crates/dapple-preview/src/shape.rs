@@ -17,7 +17,7 @@ use glam::{DVec2, DVec3};
 use solid::{Boundary, Skin, Solid};
 use std::sync::Arc;
 
-/// The geometry of an object, in its own space.
+/// The geometry of an object, in object space.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/shape.md"))]
 #[derive(Clone, Debug)]
@@ -27,7 +27,7 @@ pub enum Shape {
     Plane,
     /// A rectangle in the plane `y = 0`, centered at the origin.
     Rectangle {
-        /// Half the side lengths along x and z, above zero.
+        /// Half-side lengths along x and z, above zero.
         half_size: DVec2,
     },
     /// A sphere around the origin.
@@ -53,8 +53,8 @@ impl Shape {
         Self::Sphere { radius }
     }
 
-    /// Creates a torus around the y axis, from the radius of the circle in the middle of its tube and the radius of the
-    /// tube.
+    /// Creates a torus around the y axis. `major_radius` is the radius of the circle along the middle of the tube,
+    /// `minor_radius` that of the tube.
     #[must_use]
     pub fn torus(major_radius: f64, minor_radius: f64) -> Self {
         Self::Torus {
@@ -63,14 +63,14 @@ impl Shape {
         }
     }
 
-    /// Creates a rectangle in the plane `y = 0`, centered at the origin, from half its side lengths along x and z.
+    /// Creates a rectangle in the plane `y = 0`, centered at the origin, from its half-side lengths along x and z.
     #[must_use]
     pub fn rectangle(half_x: f64, half_z: f64) -> Self {
         let half_size = DVec2::new(half_x, half_z);
         Self::Rectangle { half_size }
     }
 
-    /// Creates a triangle mesh. Pass an `Arc` to share it between objects.
+    /// Creates a shape from a triangle mesh. Pass an `Arc` to share it between objects.
     #[must_use]
     pub fn mesh(mesh: impl Into<Arc<Mesh>>) -> Self {
         Self::Mesh(mesh.into())
@@ -143,7 +143,7 @@ enum HitFace {
     Triangle(RayHit),
 }
 
-/// The position and normals of a body at a hit, in the space of the object. The normals may point to either side.
+/// The position and normals of a body at a hit, in object space. The normals may point to either side.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Detail {
     pub(crate) position: DVec3,
@@ -151,7 +151,8 @@ pub(crate) struct Detail {
     pub(crate) normal: DVec3,
     pub(crate) part: Part,
     pub(crate) chart: Chart,
-    /// The start of shadow rays: the position, or a point on the smooth surface that a triangle approximates.
+    /// Origin of shadow rays. On a mesh with vertex normals, it is a point on the smooth surface that the triangle
+    /// approximates; otherwise the position.
     pub(crate) lit_position: DVec3,
 }
 
@@ -180,7 +181,7 @@ impl Body<'_> {
         }
     }
 
-    /// Returns the position, normals and surface coordinates at a hit of this ray.
+    /// Returns the position, normals and surface coordinates at `hit`, an intersection with `ray`.
     pub(crate) fn detail(&self, ray: &Ray, hit: &Hit) -> Detail {
         let position = ray.at(hit.distance);
         match (self, hit.face) {
@@ -199,7 +200,7 @@ impl Body<'_> {
 }
 
 impl Detail {
-    /// Creates a point of a surface without interpolated normals.
+    /// Creates the detail of a point on a surface without interpolated normals.
     fn flat(position: DVec3, normal: DVec3, part: Part, chart: Chart) -> Self {
         Self {
             position,

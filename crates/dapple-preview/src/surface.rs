@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Surface {
-    /// The position of the point, in the space of the object.
+    /// The position of the point, in object space.
     pub position: DVec3,
     /// The position of the point, in the world.
     pub world_position: DVec3,
@@ -39,7 +39,7 @@ pub enum Part {
     Cut,
 }
 
-/// A point of a triangle of a mesh.
+/// A point on a triangle of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
     /// The index of the triangle.
@@ -59,11 +59,11 @@ pub(crate) enum Chart {
 }
 
 impl Surface {
-    /// Surface coordinates (u, v) on the skin of all shapes except meshes.
+    /// Returns the surface coordinates (u, v); `None` on meshes and on the faces of cuts.
     ///
     /// * Plane and rectangle: x and z, in units of the object. Seen from above with -z up, u goes right and v down.
-    /// * Sphere: the angle around y from +x toward -z in turns, and the angle from +y in half turns. Both are from 0
-    ///   to 1, with v = 0 at the top.
+    /// * Sphere: the angle around y in turns, counterclockwise from +x seen from above, and the angle from +y in half
+    ///   turns. Both are from 0 to 1, with v = 0 at the top.
     /// * Torus: the angle around y as on a sphere, and the angle around the tube from the outside toward +y. Both are
     ///   in turns, from 0 to 1.
     #[must_use]
@@ -85,7 +85,7 @@ impl Surface {
         }
     }
 
-    /// Returns the triangle of a mesh with barycentric weights; `None` on other shapes.
+    /// Returns the mesh triangle of the point with its barycentric weights; `None` on other shapes.
     #[must_use]
     pub fn triangle(&self) -> Option<Triangle> {
         match self.chart {

@@ -60,7 +60,7 @@ struct Lit {
     normal: DVec3,
     /// The position at which the light is evaluated.
     position: DVec3,
-    /// The start of shadow rays.
+    /// Origin of shadow rays.
     shadow_origin: DVec3,
 }
 
@@ -99,7 +99,7 @@ impl<'a> World<'a> {
         clean(self.environment.light(direction))
     }
 
-    /// Returns the nearest object that a ray hits. Of several at equal distances, the first in the list.
+    /// Returns the nearest object that a ray hits. If several are equally near, returns the first in the list.
     fn nearest(&self, ray: &Ray) -> Option<(&Placed<'a>, Hit, f64)> {
         let mut best = None;
         let mut limit = f64::INFINITY;
@@ -118,7 +118,7 @@ impl<'a> World<'a> {
         best
     }
 
-    /// Returns whether an object blocks a ray before a distance.
+    /// Returns whether an object blocks a ray at a distance below `distance`.
     fn blocked(&self, ray: &Ray, distance: f64) -> bool {
         self.objects.iter().any(|object| {
             let own_ray = object.placement.ray_to_object(ray);
@@ -219,7 +219,7 @@ impl<'a> World<'a> {
     }
 }
 
-/// Returns the detail with its normals turned to the side of the eye.
+/// Flips the normals of `detail` to the side of the eye.
 fn seen(mut detail: Detail, to_eye: DVec3) -> Detail {
     if detail.geometric_normal.dot(to_eye) < 0.0 {
         detail.geometric_normal = -detail.geometric_normal;
@@ -242,7 +242,8 @@ fn highlight(lit: &Lit, incoming: &Incoming, material: &Material) -> f32 {
     material.specular * libm::pow(cosine, material.shininess.into()) as f32
 }
 
-/// Returns the direction of a ray reflected by a bumped mirror. A reflection into the surface is reflected out again.
+/// Returns the direction of a ray reflected by a bumped mirror. A reflection that points into the surface is reflected
+/// out of it again.
 fn mirrored(direction: DVec3, normal: DVec3, geometric_normal: DVec3) -> DVec3 {
     // Reflect at the bumped normal, then reflect any part that points into the actual surface.
     let away = direction - normal * (2.0 * direction.dot(normal));

@@ -1,4 +1,4 @@
-//! Triangle meshes, prepared for ray tracing.
+//! Triangle meshes prepared for ray tracing.
 
 use crate::PreviewError;
 use crate::shape::Detail;
@@ -72,8 +72,8 @@ impl Mesh {
         self.mesh.faces().len()
     }
 
-    /// Returns the nearest triangle at a distance above zero and at most `limit`. Of several at equal distances, the
-    /// one with the lowest index.
+    /// Returns the nearest triangle at a distance above zero and at most `limit`. If several are equally near, returns
+    /// the one with the lowest index.
     pub(crate) fn first_hit(&self, ray: &Ray, limit: f64) -> Option<RayHit> {
         self.bvh.first_hit(ray, limit)
     }
@@ -83,7 +83,7 @@ impl Mesh {
         self.bvh.is_blocked(ray, limit)
     }
 
-    /// Returns the normals of the surface at a hit, and the start of its shadow rays.
+    /// Returns the surface normals at a hit, and the origin of its shadow rays.
     pub(crate) fn detail(&self, position: DVec3, hit: &RayHit) -> Detail {
         let corners = self.mesh.corners(hit.face);
         let [a, b, c] = corners;

@@ -2,7 +2,7 @@
 //!
 //! A band is a block of rows of all maps. Normals, occlusion and curvature depend on the neighborhood of a pixel. They
 //! are computed from the heights of the band and of a margin around it, so that bands, regions and the whole map have
-//! the same bits. Nodes that depend on the whole tile are evaluated beforehand; without such nodes, the memory of a
+//! the same bits. Nodes that depend on the whole tile are evaluated beforehand; without such nodes, the memory for a
 //! bake depends on its width alone.
 //!
 //! The scheme is our own. `dapple-color` has the references for occlusion, curvature and normals.
@@ -22,23 +22,23 @@ use dapple_raster::Window;
 use heights::Heights;
 use maps::Side;
 
-/// Options of a bake: the maps, their size, and the limit of memory.
+/// Bake options: the maps, their size, and the memory limit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BakeOptions {
     /// Columns and rows of the whole tile; 1024 × 1024 by default. The tile may have more pixels than a raster can
-    /// have.
+    /// hold.
     pub size: [u32; 2],
-    /// The positions of the samples; pixel centers by default.
+    /// Where the samples are placed; at pixel centers by default.
     pub samples: Samples,
     /// The region of the tile to bake; the whole tile by default.
     pub region: Option<Region>,
     /// The maps to bake; the height by default.
     pub maps: Vec<MapKind>,
-    /// The limit of memory.
+    /// The memory limit. Default: [`BakeMemory::Whole`].
     pub memory: BakeMemory,
-    /// Approximate maximum number of pixels of a band; 2^20 by default, which is enough for all cores, and few enough
-    /// that several values of each pixel fit in memory. Smaller maps have about eight bands, so that progress is
-    /// reported, but bands have at least 2^15 pixels and 16 rows. The bits do not depend on this option.
+    /// Approximate maximum number of pixels per band; 2^20 by default. That is enough to use all cores, and small
+    /// enough to hold several values per pixel in memory. Smaller maps are divided into about eight bands so that
+    /// progress is reported, but a band has at least 2^15 pixels and 16 rows. The bits do not depend on this option.
     pub band_pixels: u32,
 }
 
@@ -51,20 +51,20 @@ pub struct Region {
     pub size: [u32; 2],
 }
 
-/// The limit of memory of a bake.
+/// The memory limit for a bake.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BakeMemory {
-    /// Nodes that depend on the whole tile are evaluated for all its pixels, which are kept in memory.
+    /// Nodes that depend on the whole tile are evaluated for all of its pixels and held in memory.
     #[default]
     Whole,
-    /// Only the rows of a band are in memory; nodes that depend on the whole tile are errors.
+    /// Only the rows of a band are in memory; a node that depends on the whole tile is an error.
     Banded,
 }
 
-/// Minimum number of bands of a map, unless its bands would be smaller than [`LEAST_PIXELS`].
+/// Minimum number of bands per map, unless its bands would be smaller than [`LEAST_PIXELS`].
 const LEAST_BANDS: u32 = 8;
 
-/// Minimum number of pixels of a band, unless [`BakeOptions::band_pixels`] is smaller.
+/// Minimum number of pixels per band, unless [`BakeOptions::band_pixels`] is smaller.
 const LEAST_PIXELS: u32 = 1 << 15;
 
 impl Default for BakeOptions {
@@ -108,28 +108,28 @@ pub struct Bake<'a> {
     plan: &'a Plan,
     whole: Whole,
     maps: Vec<MapKind>,
-    /// The distinct samples of the tile.
+    /// The samples of the tile, without those that repeat another one.
     tile: TileSamples,
     /// The samples to bake. For samples on corners, the last column and row may be copies of the first ones.
     window: Window,
     band_pixels: u32,
     next_row: u32,
     heights: Heights,
-    /// The heights of the first column, for the copy of it at the right.
+    /// The heights around the first column, for its copy at the right side of the tile.
     first_heights: Heights,
 }
 
 impl<'a> Bake<'a> {
-    /// Prepares a bake. This evaluates the nodes that depend on the whole tile, which may be most of the work; the rest
-    /// is computed band by band, as the iterator advances. Both report to the callback of the plan for the
-    /// [progress](crate::Plan::new_with_progress).
+    /// Sets up a bake. Evaluates the nodes that depend on the whole tile, which may be most of the work. Everything
+    /// else is computed band by band as the iterator advances. Both steps report to the plan's
+    /// [progress](crate::Plan::new_with_progress) callback.
     ///
     /// # Errors
     ///
-    /// [`Range`](crate::RecipeErrorKind::Range) for a size of zero, a region that exceeds the tile, or a radius out of
-    /// range, [`Global`](crate::RecipeErrorKind::Global) for a node that depends on the whole tile under
-    /// [`BakeMemory::Banded`], [`Cancelled`](crate::RecipeErrorKind::Cancelled) if the callback of the plan asks to
-    /// stop, and the errors of such nodes.
+    /// [`Range`](crate::RecipeErrorKind::Range) if a size is zero, a region exceeds the tile, or a radius is out of
+    /// range, [`Global`](crate::RecipeErrorKind::Global) if a node depends on the whole tile under
+    /// [`BakeMemory::Banded`], [`Cancelled`](crate::RecipeErrorKind::Cancelled) if the plan's callback asks to stop, or
+    /// the error of a node that depends on the whole tile.
     pub fn new(plan: &'a Plan, options: &BakeOptions) -> Result<Self, RecipeError> {
         let tile = plan.tile_samples(options.size, options.samples)?;
         let all = Window {
@@ -165,11 +165,11 @@ impl<'a> Bake<'a> {
         self.window.size
     }
 
-    /// Bakes all remaining bands, and returns each map in one piece, in the order of [`BakeOptions::maps`].
+    /// Bakes all remaining bands, and returns each map as a single raster, in the order of [`BakeOptions::maps`].
     ///
     /// # Errors
     ///
-    /// The errors of a band, and [`Raster`](crate::RecipeErrorKind::Raster) if a map has more pixels than a raster can have.
+    /// If a band fails, or [`Raster`](crate::RecipeErrorKind::Raster) if a map has more pixels than a raster can hold.
     pub fn whole_maps(self) -> Result<Vec<(MapKind, MapRows)>, RecipeError> {
         let mut whole = Vec::new();
         for band in self {
@@ -231,7 +231,7 @@ impl<'a> Bake<'a> {
     }
 }
 
-/// Joins each map with its next part. Returns the parts alone if there are no maps yet.
+/// Appends `others` to `maps`, each map at `side`. Returns `others` if `maps` is empty.
 fn joined(
     maps: Vec<(MapKind, MapRows)>,
     others: Vec<(MapKind, MapRows)>,
@@ -254,7 +254,7 @@ impl Iterator for Bake<'_> {
 }
 
 impl Region {
-    /// Returns the window of the region within the tile.
+    /// Converts the region to a window within `whole`, the window of the tile.
     pub(crate) fn of(self, whole: &Window) -> Result<Window, RecipeError> {
         for axis in 0..2 {
             let end = u64::from(self.first[axis]) + u64::from(self.size[axis]);

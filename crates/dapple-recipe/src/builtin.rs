@@ -2,7 +2,7 @@
 
 use crate::{Recipe, RecipeError, RecipeErrorKind};
 
-/// The names and texts of the built-in recipes, in the order of the names.
+/// The names and texts of the built-in recipes, sorted by name.
 const BUILTIN: [(&str, &str); 20] = [
     ("clouds", include_str!("builtin/clouds.toml")),
     ("coastline", include_str!("builtin/coastline.toml")),
@@ -36,7 +36,7 @@ const BUILTIN: [(&str, &str); 20] = [
 ];
 
 impl Recipe {
-    /// Builds the built-in recipe with a name.
+    /// Returns the built-in recipe called `name`.
     ///
     /// # Errors
     ///
@@ -45,7 +45,7 @@ impl Recipe {
         Self::from_toml(Self::builtin_text(name)?)
     }
 
-    /// Returns the text of the built-in recipe with a name.
+    /// Returns the text of the built-in recipe called `name`.
     ///
     /// # Errors
     ///
@@ -59,7 +59,7 @@ impl Recipe {
         })
     }
 
-    /// Returns the names of the built-in recipes, in order.
+    /// Returns the names of the built-in recipes, sorted.
     pub fn builtin_names() -> impl Iterator<Item = &'static str> {
         BUILTIN.iter().map(|&(name, _)| name)
     }

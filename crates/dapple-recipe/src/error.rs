@@ -1,4 +1,4 @@
-//! Errors of recipes.
+//! Errors from reading, planning and baking recipes.
 
 use crate::words::similar_words;
 use core::fmt;
@@ -10,7 +10,7 @@ use dapple_tile::TileError;
 use dapple_wavelet::WaveletError;
 use dapple_worley::WorleyError;
 
-/// An error of a recipe, with its position in the text or its node, and the nearest valid word.
+/// An error in a recipe, with its position in the text or its node, and the nearest valid word.
 ///
 /// Programs match on [`kind`](Self::kind); the message is for people.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +32,7 @@ struct Content {
 pub struct Place {
     /// The line number.
     pub line: usize,
-    /// The number of the character within the line.
+    /// The position in the line, counted in characters.
     pub column: usize,
 }
 
@@ -40,14 +40,14 @@ pub struct Place {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RecipeErrorKind {
-    /// The text is not valid TOML or JSON, or has a key or value that recipes do not have.
+    /// The text is not valid TOML or JSON, or contains a key or value that recipes do not have.
     Text {
         /// The message of the parser.
         message: String,
     },
-    /// The recipe has another version of the schema than this crate.
+    /// The recipe has a schema version that this crate does not read.
     Schema {
-        /// The version of the recipe.
+        /// The recipe's schema version.
         version: u32,
     },
     /// No built-in recipe has this name.
@@ -60,7 +60,7 @@ pub enum RecipeErrorKind {
         /// The name.
         name: String,
     },
-    /// The name of a node does not begin with a letter, or has other characters than letters, digits, `_` and `-`.
+    /// The name of a node does not begin with a letter, or has characters other than letters, digits, `_` and `-`.
     Name {
         /// The name.
         name: String,
@@ -90,10 +90,10 @@ pub enum RecipeErrorKind {
         what: &'static str,
         /// The number.
         value: f64,
-        /// The range it must lie in, as text.
+        /// The allowed range, as text.
         range: &'static str,
     },
-    /// The recipe, up to this node, needs more work than the limits allow: see [`PlanLimits`](crate::PlanLimits).
+    /// The recipe, up to this node, exceeds a limit on work: see [`PlanLimits`](crate::PlanLimits).
     TooMuch {
         /// The name of the counted items.
         what: &'static str,
@@ -117,21 +117,21 @@ pub enum RecipeErrorKind {
         /// The operation that has only a part of the tile, as the end of a sentence.
         during: &'static str,
     },
-    /// The progress callback of the caller asked to stop.
+    /// The caller's progress callback asked to stop.
     Cancelled,
-    /// An error of the cellular basis.
+    /// An error from the cellular basis.
     Worley(WorleyError),
-    /// An error of a partition of unity.
+    /// An error from a partition-of-unity texture.
     Pups(PupsError),
-    /// An error of wavelet noise.
+    /// An error from wavelet noise.
     Wavelet(WaveletError),
-    /// An error of a method for tiles or blends.
+    /// An error from a tiling or blending method.
     Tile(TileError),
-    /// An error of a synthesis from an example.
+    /// An error from a synthesis.
     Synth(SynthError),
-    /// An error of a ramp or a map.
+    /// An error from a color ramp or a map.
     Color(ColorError),
-    /// An error of a raster or a window.
+    /// An error from a raster or a window.
     Raster(RasterError),
 }
 
@@ -167,19 +167,19 @@ impl RecipeError {
         Self::check(range.holds(value), what, value, range.text)
     }
 
-    /// Sets the position in the text.
+    /// Sets the error's position in the text.
     pub(crate) fn at(mut self, place: Option<Place>) -> Self {
         self.content.place = place;
         self
     }
 
-    /// Sets the node, unless one is set already.
+    /// Sets the name of the node that contains the error, unless one is set already.
     pub(crate) fn within(mut self, node: &str) -> Self {
         self.content.node.get_or_insert_with(|| node.to_owned());
         self
     }
 
-    /// Sets the nearest of the valid words, if one is similar to the written word.
+    /// Sets the valid word that is nearest to `written`, if one is similar enough.
     pub(crate) fn meant<'a>(
         mut self,
         written: &str,
@@ -202,7 +202,7 @@ impl RecipeError {
         self.content.place
     }
 
-    /// Returns the name of the node in which the error is, if any.
+    /// Returns the name of the node that contains the error, if any.
     #[must_use]
     pub fn node(&self) -> Option<&str> {
         self.content.node.as_deref()

@@ -40,7 +40,7 @@ impl Input {
     }
 }
 
-/// Returns a color as sRGB in hexadecimal, rounded to 8 bits.
+/// Formats a color as hexadecimal sRGB with 8 bits per channel.
 pub(crate) fn hex_from_color(color: LinearRgb) -> String {
     let [r, g, b] = color.to_srgb::<u8>();
     format!("#{r:02x}{g:02x}{b:02x}")

@@ -1,7 +1,6 @@
-//! The kinds of nodes, one file per kind: its options, and how its step in a plan is built.
+//! The kinds of nodes, one file per kind. Each file has the options of its kind, and builds its step in a plan.
 //!
-//! To add a kind, write a file that implements [`NodeKind`] for its options, and add a line with its name in recipes to
-//! the table below.
+//! To add a kind, write a file that implements [`NodeKind`] for its options, and add a line to the table below.
 
 mod alpha;
 mod arithmetic;
@@ -62,7 +61,7 @@ use serde::{Deserialize, Serialize};
 
 /// A kind of node.
 ///
-/// A node has a number at every position, or a color if [`build`](Self::build) returns a step of colors.
+/// A node has a number at every position, or a color if [`build`](Self::build) returns a color step.
 pub(crate) trait NodeKind {
     /// Returns the inputs of the node, in a fixed order.
     fn inputs(&self) -> Vec<&Input> {
@@ -89,12 +88,12 @@ pub(crate) trait NodeKind {
         None
     }
 
-    /// Estimates the work of building the node's step, rather too high than too low.
+    /// Estimates the work of building the node's step. The estimate is rather too high than too low.
     fn work(&self, _plan: &Builder<'_>) -> Result<Work, RecipeError> {
         Ok(Work::default())
     }
 
-    /// Builds the step of the node. Its inputs have steps in the plan already.
+    /// Builds the step of the node. The steps of its inputs must be in the plan already.
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError>;
 }
 
@@ -210,7 +209,7 @@ impl Node {
         self.kind().layer()
     }
 
-    /// Returns the images that the node reads: its files, with their layer and the use of their alpha.
+    /// Returns the images that the node reads. Each is a file with its layer and alpha handling.
     pub fn image_sources(&self) -> impl Iterator<Item = ImageSource<'_>> {
         let (layer, alpha) = (self.image_layer(), self.image_alpha());
         let files = self.image_files().into_iter();

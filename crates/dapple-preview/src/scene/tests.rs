@@ -13,7 +13,7 @@ use glam::{DQuat, DVec3};
 const RED: LinearRgb = LinearRgb::new(1.0, 0.0, 0.0);
 const WHITE: LinearRgb = LinearRgb::WHITE;
 
-/// Returns a look that emits one color regardless of the lights.
+/// Returns a material function that emits one color regardless of the lights.
 fn glowing(color: LinearRgb) -> impl Fn(&Surface) -> Material + Send + Sync {
     move |_| Material::matte(LinearRgb::BLACK).with_emission(color)
 }

@@ -1,4 +1,4 @@
-//! Cuts through solids, which show a solid texture inside.
+//! Cuts through solids, which reveal the solid texture inside.
 //!
 //! A cut is a convex wedge of at most two half-spaces. Either its inside or its outside is kept. A ray intersects a
 //! wedge in a single interval, so a cut is an operation on intervals. This is constructive solid geometry after Scott
@@ -11,8 +11,8 @@ use crate::ray::Ray;
 use core::f64::consts::{PI, TAU};
 use glam::DVec3;
 
-/// A cut that removes a part of a solid, in the space of the object. The solid remains closed: the faces of the cut
-/// belong to it.
+/// A cut that removes part of a solid, in object space. The solid remains closed, because the faces of the cut become
+/// part of its surface.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/cut.md"))]
 ///
@@ -90,7 +90,7 @@ impl Cut {
 }
 
 impl Wedge {
-    /// Creates a wedge around the y axis, of at most half a turn.
+    /// Creates a wedge around the y axis that spans at most half a turn.
     fn sector(start: f64, sweep: f64, keeps: Keeps) -> Self {
         // The unit vector a quarter turn ahead of an angle.
         let ahead = |angle: f64| DVec3::new(-libm::sin(angle), 0.0, -libm::cos(angle));
@@ -100,7 +100,7 @@ impl Wedge {
         }
     }
 
-    /// Returns the normal of a face, which may point to either side.
+    /// Returns the unit normal of a face of the cut. It may point to either side.
     pub(crate) fn normal(&self, face: usize) -> DVec3 {
         self.faces[face].0
     }

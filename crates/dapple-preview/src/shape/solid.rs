@@ -1,4 +1,4 @@
-//! Spheres and tori as solids: the intervals of a ray that are inside.
+//! Spheres and tori as solids, intersected with rays as intervals inside the solid.
 //!
 //! A ray intersects a torus at the roots of a quartic. Measured from the point of the ray nearest to the center, the
 //! quartic has no cubic term. The roots of its derivatives isolate its roots. Each root is found by Newton steps that
@@ -12,7 +12,8 @@ use crate::ray::Ray;
 use crate::surface::{Chart, Part};
 use glam::DVec3;
 
-/// Maximum number of steps. Bisection narrows any bracket of a torus to neighboring numbers in fewer steps.
+/// Maximum number of steps in the search for a root. Bisection narrows any bracket of a torus to neighboring numbers in
+/// fewer steps.
 const ROOT_STEPS_MAX: u32 = 128;
 
 /// A closed surface that bounds a solid.
@@ -56,7 +57,7 @@ impl Stretch {
         (self.enter.distance < self.exit.distance).then_some(self)
     }
 
-    /// Returns the part before a boundary, if any.
+    /// Returns the part of the interval before `end`, or `None` if it is empty.
     pub(crate) fn before(mut self, end: Boundary) -> Option<Self> {
         if end.distance < self.exit.distance {
             self.exit = end;
@@ -64,7 +65,7 @@ impl Stretch {
         self.checked()
     }
 
-    /// Returns the part after a boundary, if any.
+    /// Returns the part of the interval after `start`, or `None` if it is empty.
     pub(crate) fn after(mut self, start: Boundary) -> Option<Self> {
         if start.distance > self.enter.distance {
             self.enter = start;
@@ -72,7 +73,7 @@ impl Stretch {
         self.checked()
     }
 
-    /// Returns the intersection of two intervals, if any.
+    /// Returns the intersection of two intervals, or `None` if they are disjoint.
     pub(crate) fn and(self, other: Self) -> Option<Self> {
         self.after(other.enter)?.before(other.exit)
     }
@@ -93,8 +94,8 @@ impl Solid {
             .find(|boundary| boundary.distance > 0.0)
     }
 
-    /// Returns the unit normal, the part, and the chart at a point. The normal is outward on the skin and may point to
-    /// either side on a cut.
+    /// Returns the unit normal, the part of the shape, and the chart at `position`. The normal is outward on the skin
+    /// and may point to either side on a cut.
     pub(crate) fn detail(&self, position: DVec3, face: Face) -> (DVec3, Part, Chart) {
         match (face, &self.wedge) {
             (Face::Cut(index), Some(wedge)) => (wedge.normal(index), Part::Cut, Chart::None),
@@ -152,7 +153,7 @@ impl Skin {
     }
 }
 
-/// Returns the intervals inside a torus of a ray that starts at its point nearest to the center.
+/// Returns the intervals of a ray inside a torus. The ray starts at its point nearest to the center.
 fn torus_stretches(nearest: &Ray, major: f64, minor: f64) -> [Option<[f64; 2]>; 2] {
     let [origin, direction] = [nearest.origin, nearest.direction];
     // Scale lengths by the outer radius, the radius of the enclosing sphere.
@@ -207,8 +208,8 @@ struct Quartic {
 }
 
 impl Quartic {
-    /// Builds the quartic that is negative where a ray is inside a torus. The ray starts at its point nearest to the
-    /// center.
+    /// Returns the quartic that is negative where the ray `origin + t direction` is inside a torus. The ray starts at
+    /// its point nearest to the center.
     ///
     /// A point is inside if `(|p|² + R² - r²)² < 4 R² (x² + z²)`, and `|p|² = |o|² + t²` since o and d are
     /// perpendicular.
@@ -236,7 +237,8 @@ impl Quartic {
         (4.0 * t * t + 2.0 * c2) * t + c1
     }
 
-    /// Returns the turning points between `-reach` and `reach`, sorted. The quartic is monotonic between them.
+    /// Returns the turning points of the quartic between `-reach` and `reach`, sorted. The quartic is monotonic between
+    /// them.
     fn turns(&self, reach: f64) -> [f64; 3] {
         let [_, _, c2] = self.c;
         // The slope has its extrema where 12 t² + 2 c2 is zero.
@@ -252,14 +254,14 @@ impl Quartic {
         turns
     }
 
-    /// Returns the root in a bracket in which the quartic is monotonic, if any.
+    /// Returns the root in `bracket`, where the quartic must be monotonic, or `None` if there is no root.
     fn root(&self, bracket: [f64; 2]) -> Option<f64> {
         bracketed_root(bracket, |t| (self.at(t), self.slope(t)))
     }
 }
 
-/// Returns the root of a function in a bracket, or `None` without a change of sign. The function returns its value and
-/// its slope.
+/// Returns the root of `function` between `low` and `high`, or `None` if the sign does not change between them.
+/// `function` returns its value and its slope.
 ///
 /// Takes Newton steps. Bisects if a step would leave the bracket, and at every eighth step so that the bracket
 /// shrinks.

@@ -1,4 +1,4 @@
-//! The heights of a band with its margin, and the values that other maps share with the height.
+//! Computes the heights of a band with its margin, and the values that other maps share with the height.
 
 use super::maps::{NORMAL_HALO, beside_height, curvature_options, maps, occlusion_options};
 use super::{MapKind, MapRows};
@@ -8,17 +8,18 @@ use dapple_color::continue_heights;
 use dapple_raster::{Raster, RasterError, Window};
 use std::sync::Arc;
 
-/// Maximum number of pixels of a band with its margin at which the values of shared steps are stored in addition to the
-/// heights: eight times the pixels of a usual band, or 32 MiB for each step. Above it, the other maps recompute all
-/// their steps.
+/// Maximum number of pixels, in a band with its margin, at which the values of shared steps are stored in addition to
+/// the heights: eight times as many as in a default band, or 32 MiB for each step. Above it, the other maps recompute
+/// all their steps.
 const SHARED_PIXELS: usize = 1 << 23;
 
-/// Computes the heights of bands; rows that two bands share are computed once.
+/// Computes the heights of bands. Rows that two bands share are computed once.
 #[derive(Clone, Debug)]
 pub(super) struct Heights {
     /// Whether any map needs heights.
     wanted: bool,
-    /// The largest halo of all maps, in pixels: columns and rows at each side of a pixel on which its value depends.
+    /// The halo, as columns and rows: how far a pixel's value depends on its neighbors, in pixels. The maximum over all
+    /// maps.
     halo: [u32; 2],
     /// For each axis along which heights are extrapolated past the sides of the tile, the first pixel of the tile and
     /// the pixel after its last one.
@@ -29,7 +30,7 @@ pub(super) struct Heights {
     last: Option<Rows>,
 }
 
-/// The values of some steps at the pixels of a window.
+/// The values of several steps at the pixels of a window.
 #[derive(Clone, Debug)]
 struct Rows {
     window: Window,
@@ -147,7 +148,7 @@ impl Heights {
 }
 
 impl Rows {
-    /// Creates an empty set of rows at the top of the window.
+    /// Creates an empty set of rows that starts at the top of `window`.
     fn none(window: &Window) -> Self {
         let [width, _] = window.size;
         Self {
@@ -159,7 +160,7 @@ impl Rows {
         }
     }
 
-    /// Returns the rows starting at the row `first`; `None` if that row is not among these.
+    /// Returns the rows starting at the row `first`; `None` if that row is not stored.
     fn rows_from(&self, first: i64) -> Option<Self> {
         let [width, rows] = self.window.size;
         let above = u32::try_from(first.checked_sub(self.window.first[1])?).ok()?;

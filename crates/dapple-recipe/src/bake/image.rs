@@ -20,12 +20,12 @@ impl MapKind {
 }
 
 impl MapRows {
-    /// Writes the rows as the next rows of an image. The writer must have the [`content`](MapKind::content) of their
-    /// map.
+    /// Writes the rows as the next rows of an image. The writer must be created for the [`content`](MapKind::content)
+    /// of their map.
     ///
     /// # Errors
     ///
-    /// Same as [`RowWriter`].
+    /// If [`RowWriter`] fails to write.
     pub fn write<W: Write + Seek>(&self, writer: &mut RowWriter<W>) -> Result<(), ImageError> {
         match self {
             Self::Gray(rows) => writer.write_gray(rows.view()),

@@ -33,17 +33,17 @@ pub enum MapKind {
     Orm,
 }
 
-/// The side at which another part of a map is appended.
+/// The side of a map at which another part of it is appended.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Side {
     Below,
     Right,
 }
 
-/// Consecutive rows of a map.
+/// Consecutive rows of a map, by pixel type.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MapRows {
-    /// Numbers.
+    /// Numbers, one per pixel.
     Gray(Raster<f32>),
     /// Colors.
     Color(Raster<LinearRgb>),
@@ -54,7 +54,7 @@ pub enum MapRows {
 }
 
 impl MapKind {
-    /// All maps, in the order of their definition.
+    /// All map kinds, in the order of their definition.
     pub const ALL: [Self; 8] = [
         Self::Height,
         Self::Normal,
@@ -66,7 +66,7 @@ impl MapKind {
         Self::Orm,
     ];
 
-    /// Returns the map with a [name](Self::name), or with an alias: `basecolor` and `base_color` for `albedo`,
+    /// Returns the map called `name`: its [name](Self::name) or an alias, `basecolor` and `base_color` for `albedo`,
     /// `occlusion` for `ao`.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
@@ -115,7 +115,7 @@ impl Side {
 }
 
 impl MapRows {
-    /// Returns the columns and rows.
+    /// Returns the number of columns and rows.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         match self {
@@ -126,8 +126,8 @@ impl MapRows {
         }
     }
 
-    /// Returns the bytes of a GPU texture: 4 bytes per pixel, row by row from the top. Colors are sRGB encoded
-    /// (`Rgba8UnormSrgb`); all other maps are linear (`Rgba8Unorm`).
+    /// Converts the rows to the bytes of a GPU texture: 4 bytes per pixel, row by row from the top. Colors are sRGB
+    /// encoded (`Rgba8UnormSrgb`); all other maps are linear (`Rgba8Unorm`).
     #[must_use]
     pub fn to_rgba8(&self) -> Vec<u8> {
         match self {
@@ -138,7 +138,7 @@ impl MapRows {
         }
     }
 
-    /// Returns the mip levels of a whole map: see [`mip_levels`](dapple_color::TextureRaster::mip_levels).
+    /// Returns the mip levels of a whole map, as [`mip_levels`](dapple_color::TextureRaster::mip_levels).
     ///
     /// # Errors
     ///
@@ -158,7 +158,7 @@ impl MapRows {
         }
     }
 
-    /// Appends another part of the same kind of map at a side.
+    /// Appends `other`, a part of the same map, at `side`.
     pub(super) fn joined(self, other: Self, side: Side) -> Result<Self, RecipeError> {
         Ok(match (self, other) {
             (Self::Gray(map), Self::Gray(other)) => Self::Gray(side.join(map, &other)?),
@@ -170,7 +170,7 @@ impl MapRows {
         })
     }
 
-    /// Extends a range, as minimum and maximum, by the finite numbers of these rows.
+    /// Extends `range`, a minimum and a maximum, to include the finite numbers of these rows.
     #[must_use]
     pub fn range(&self, range: [f32; 2]) -> [f32; 2] {
         fn widened(range: [f32; 2], numbers: impl Iterator<Item = f32>) -> [f32; 2] {
@@ -198,11 +198,11 @@ impl MapRows {
     }
 }
 
-/// Columns and rows at each side of a pixel on which its normal depends.
+/// How far a pixel's normal depends on its neighbors: one column and one row at each side.
 pub(super) const NORMAL_HALO: [u32; 2] = [1; 2];
 
-/// Returns the scale of the heights of a plan. `extent` is the width and height of all pixels of the tile, in units of
-/// the plane. The wrap has no effect, because the margin covers all pixels that are read.
+/// Returns the scale of a plan's heights. `extent` is the width and height of all pixels of the tile, in units of the
+/// plane. The wrap has no effect, because the margin covers all pixels that are read.
 fn height_plane(plan: &Plan, extent: DVec2) -> HeightPlane {
     HeightPlane {
         strength: plan.material().relief,
@@ -211,7 +211,7 @@ fn height_plane(plan: &Plan, extent: DVec2) -> HeightPlane {
     }
 }
 
-/// Returns the options of a plan for ambient occlusion.
+/// Returns a plan's options for ambient occlusion.
 pub(super) fn occlusion_options(
     plan: &Plan,
     extent: DVec2,
@@ -234,7 +234,7 @@ pub(super) fn occlusion_options(
     })
 }
 
-/// Returns the options of a plan for curvature.
+/// Returns a plan's options for curvature.
 pub(super) fn curvature_options(
     plan: &Plan,
     extent: DVec2,
@@ -329,14 +329,14 @@ fn pack(
     Ok(two.zip_map(blue, |&[red, green], &blue| [red, green, blue])?)
 }
 
-/// Computes the maps of a band whose values depend on the neighborhood of a pixel.
+/// Computes those maps of a band that depend on the neighborhood of each pixel.
 struct Around<'a> {
     plan: &'a Plan,
     watch: &'a Watch,
     tile: &'a TileSamples,
     size: [u32; 2],
     heights: &'a Margined,
-    /// The occlusion; computed if a map shows it.
+    /// The occlusion; `None` if no map shows it.
     occlusion: Option<Raster<f32>>,
 }
 
@@ -393,7 +393,7 @@ impl Around<'_> {
     }
 }
 
-/// Unwraps a raster that is computed beforehand for several maps of a band; an error if it is missing.
+/// Unwraps a raster that was computed beforehand for several maps of a band. Fails if it is missing.
 fn foreseen(raster: Option<&Raster<f32>>) -> Result<&Raster<f32>, RecipeError> {
     raster.ok_or_else(|| {
         let rule = "a map was not foreseen";

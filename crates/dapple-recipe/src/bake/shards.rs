@@ -1,11 +1,11 @@
-//! Shards: the regions of a map for independent bakes on any number of machines.
+//! Divides a map into shards: regions that can be baked independently, on any number of machines.
 
 use crate::{RecipeError, Region};
 
-/// The shards of a map: regions of equal size, row by row from the top. The last column and row of shards are cropped
+/// The shards of a map, regions of equal size, row by row from the top. The last column and row of shards are cropped
 /// at the border of the map.
 ///
-/// Only sizes are stored, so that a list of any length takes no memory. A shard baked as the
+/// Only sizes are stored, so even a long list takes no memory. A shard baked as the
 /// [`region`](crate::BakeOptions::region) of a bake is, bit for bit, a crop of the whole map.
 ///
 /// # Examples
@@ -29,11 +29,11 @@ pub struct Shards {
 }
 
 impl Shards {
-    /// Divides a map of `size` columns and rows into shards of `shard` columns and rows.
+    /// Divides a map into shards. Both sizes are columns and rows, in pixels.
     ///
     /// # Errors
     ///
-    /// [`Range`](crate::RecipeErrorKind::Range) if a side of the map or of the shard has no pixel.
+    /// [`Range`](crate::RecipeErrorKind::Range) if a side of the map or of a shard is zero.
     pub fn new(size: [u32; 2], shard: [u32; 2]) -> Result<Self, RecipeError> {
         let names = [
             "number of pixels along a side of the picture",
@@ -51,12 +51,12 @@ impl Shards {
         })
     }
 
-    /// Sets the overlap: the number of columns and rows that neighboring shards share; 0 by default. They are part of
-    /// the size of a shard. Terrain tiles have an overlap of 1.
+    /// Sets the overlap, the number of columns and rows that neighboring shards share; 0 by default. They count as part
+    /// of a shard's size. Terrain tiles have an overlap of 1.
     ///
     /// # Errors
     ///
-    /// [`Range`](crate::RecipeErrorKind::Range) unless the overlap is less than both sides of a shard.
+    /// [`Range`](crate::RecipeErrorKind::Range) unless the overlap is less than both of a shard's sides.
     ///
     /// # Examples
     ///
@@ -101,7 +101,7 @@ impl Shards {
         })
     }
 
-    /// Returns the distance from a shard to the next one along each axis, in pixels: the size of a shard less the
+    /// Returns the distance from a shard to the next one along each axis, in pixels. It is the shard size minus the
     /// overlap.
     #[must_use]
     pub fn steps(&self) -> [u32; 2] {
@@ -119,8 +119,8 @@ impl Shards {
         u64::from(columns) * u64::from(rows)
     }
 
-    /// Returns the shard with an index, or `None` past the last one. Its column in the [`grid`](Self::grid) is the
-    /// index modulo the columns of the grid; its row is the quotient.
+    /// Returns the shard at `index`, or `None` past the last one. Its column in the [`grid`](Self::grid) is the index
+    /// modulo the columns of the grid; its row is the quotient.
     #[must_use]
     pub fn get(&self, index: u64) -> Option<Region> {
         let columns = u64::from(self.grid()[0]);
@@ -133,7 +133,7 @@ impl Shards {
         (0..shards.len()).map_while(move |index| shards.get(index))
     }
 
-    /// Returns the shard at a column and row of the grid.
+    /// Returns the shard at `place`, a column and row of the grid.
     fn at(&self, place: [u64; 2]) -> Region {
         // Positions within the map fit in 32 bits.
         let steps = self.steps();

@@ -1,4 +1,4 @@
-//! How an image with alpha becomes an opaque image.
+//! Converts an image with alpha to an opaque image.
 
 use crate::input::hex_from_color;
 use dapple_color::LinearRgb;

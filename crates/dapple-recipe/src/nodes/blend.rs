@@ -95,8 +95,8 @@ impl NodeKind for Blended {
     }
 }
 
-/// The structure of a blend's inputs. They are, in order: the textures of all layers, the weights of all layers, the
-/// heights of the layers that have one, and the mask if there is one.
+/// The layout of a blend's inputs: first the textures of all layers, then the weights of all layers, the heights of the
+/// layers that have one, and the mask if there is one.
 #[derive(Clone, Debug)]
 struct Layers {
     how: Blend,
@@ -107,7 +107,7 @@ struct Layers {
 }
 
 impl Layers {
-    /// Blends inputs of `size` columns and rows.
+    /// Blends `inputs`, which are images of `size` columns and rows.
     fn blend(&self, inputs: &[&Values], size: [u32; 2]) -> Result<Values, RecipeError> {
         let count = self.heights.len();
         let maps = Values::maps(&inputs[..count], size)?;

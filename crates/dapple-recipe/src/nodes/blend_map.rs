@@ -1,4 +1,4 @@
-//! Blend maps: low where another texture shows first, such as in cracks.
+//! Blend maps, which are low where another texture shows first, such as in cracks.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};

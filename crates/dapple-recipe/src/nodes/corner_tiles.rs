@@ -1,4 +1,4 @@
-//! Corner tiles: pieces of several textures, in random order.
+//! Corner tiles: pieces of several textures in random order.
 
 use super::disturb::check_copies;
 use super::{NodeKind, NodeSeed};

@@ -47,7 +47,7 @@ fn margin() -> u32 {
 
 pub(super) const COPIES: Range = range!(at least 1);
 
-/// Fails if a number of copies is 0.
+/// Returns an error if a number of copies is 0.
 pub(super) fn check_copies(copies: [u32; 2]) -> Result<(), RecipeError> {
     let mut counts = copies.into_iter();
     counts.try_for_each(|count| RecipeError::check_in(COPIES, "number of copies", count.into()))

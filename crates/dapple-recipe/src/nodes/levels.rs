@@ -1,4 +1,4 @@
-//! Linear maps between ranges of numbers.
+//! Maps a range of numbers to another.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};
@@ -67,7 +67,7 @@ impl NodeKind for Levels {
 }
 
 impl LevelsCurve {
-    /// Maps a fraction `t` of the range `from` to a fraction of the range `to`.
+    /// Maps `t`, a fraction of the range `from`, to a fraction of the range `to`.
     fn at(self, t: f32) -> f32 {
         match self {
             Self::Unclamped => t,

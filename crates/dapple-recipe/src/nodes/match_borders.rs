@@ -1,4 +1,4 @@
-//! Textures that take over the borders of another texture.
+//! Textures with the borders of another texture, so that both fit next to each other.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};

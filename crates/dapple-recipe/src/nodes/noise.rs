@@ -97,7 +97,7 @@ impl NodeKind for FractalNode {
 }
 
 impl FractalNode {
-    /// Returns the options of the octaves of PUPs noise.
+    /// Returns the options of PUPs noise with these octaves.
     fn pups(&self, plan: &Builder<'_>) -> OctavesOptions {
         OctavesOptions {
             domain: plan.domain(),
@@ -113,8 +113,8 @@ impl FractalNode {
         }
     }
 
-    /// Returns the weights of the octaves, normalized so that their sum has a standard deviation of 1/6 for noise with
-    /// this variance.
+    /// Returns the octave weights, scaled so that the sum has a standard deviation of 1/6. `variance` is that of the
+    /// noise of one octave.
     fn weights(&self, variance: f64) -> Vec<f32> {
         let weights = core::iter::successors(Some(1.0), |weight| Some(weight * self.gain));
         let weights: Vec<f64> = weights.take(self.octaves as usize).collect();

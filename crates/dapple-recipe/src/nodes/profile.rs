@@ -1,4 +1,4 @@
-//! Cross-sections of bumps.
+//! Cross-sections of bumps, as functions of a number.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};

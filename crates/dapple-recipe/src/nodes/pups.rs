@@ -1,4 +1,4 @@
-//! The textures of `dapple-pups` over the tile of a recipe.
+//! The textures of `dapple-pups` as nodes, with the recipe's tile as their domain.
 
 use super::{ImageAlpha, NodeKind};
 use crate::plan::{Builder, Images, Picture, PlanLimits, Step, TIME, Watch, Work};
@@ -29,20 +29,20 @@ pub struct Referenced<T> {
     pub options: T,
 }
 
-/// A texture of `dapple-pups` as a node.
+/// Builds a texture of `dapple-pups` for a node.
 pub(crate) trait Texture {
     /// Returns the image file that guides the texture, and how its alpha is used.
     fn image(&self) -> Option<(&str, Option<ImageAlpha>)> {
         None
     }
 
-    /// Returns whether the texture makes colors.
+    /// Returns whether the texture has colors instead of numbers.
     fn is_color(&self) -> bool;
 
     /// Returns the estimated number of control points of the texture on a tile.
     fn expected_points(&self, tile: Domain) -> f64;
 
-    /// Builds the texture on the tile of a plan.
+    /// Builds the texture on a plan's tile.
     fn build(&self, plan: &Builder<'_>) -> Result<PupsField, RecipeError>;
 }
 
@@ -84,8 +84,7 @@ impl<T: PupsRecipe<ReferenceImage>> Texture for Referenced<T> {
     }
 }
 
-/// Returns the options for a plan: on its tile, with its reusable parts and its callback, and at its time if the points
-/// move.
+/// Completes a texture's options with a plan's tile, reusable parts, progress callback and, if the points move, time.
 fn now<T: PupsRecipe<Image>, Image>(options: &T, plan: &Builder<'_>) -> T {
     let mut options = placed(options, plan.domain());
     let net = options.net_mut();
@@ -97,7 +96,7 @@ fn now<T: PupsRecipe<Image>, Image>(options: &T, plan: &Builder<'_>) -> T {
     options
 }
 
-/// Returns the options with the tile as their domain. The domain does not wrap along axes along which the default
+/// Sets the domain of a texture's options to the tile. The domain does not wrap along axes along which the default
 /// domain of the texture does not wrap, even if the tile does.
 fn placed<T: PupsRecipe<Image>, Image>(options: &T, tile: Domain) -> T {
     let usual = T::default().domain_mut().wrap;
@@ -109,7 +108,7 @@ fn placed<T: PupsRecipe<Image>, Image>(options: &T, tile: Domain) -> T {
     options
 }
 
-/// Fails for options that set a domain.
+/// Returns an error if the options set a domain.
 fn check_domain<T: PupsRecipe<Image>, Image>(options: &T) -> Result<(), RecipeError> {
     if options.clone().domain_mut() == T::default().domain_mut() {
         return Ok(());
@@ -135,7 +134,7 @@ macro_rules! node {
             /// The names of the textures, as recipes write them, with a sentence about each.
             pub const KINDS: [(&str, &str); [$($name),*].len()] = [$(($name, $about.trim_ascii())),*];
 
-            /// Returns the texture with a name, with default options. Required options are empty.
+            /// Returns the texture called `name`, with default options. Required options are empty.
             #[must_use]
             pub fn of_kind(name: &str) -> Option<Self> {
                 match name {
@@ -156,7 +155,7 @@ macro_rules! node {
 dapple_pups::recipes!(node);
 
 impl PupsNode {
-    /// Returns whether the texture makes colors, not numbers.
+    /// Returns whether the texture has colors instead of numbers.
     #[must_use]
     pub fn is_color(&self) -> bool {
         self.texture().is_color()
@@ -172,21 +171,21 @@ impl PupsNode {
 /// The control points of a `pups` node.
 #[derive(Clone, Debug)]
 pub struct ControlNets {
-    /// The net of each layer, coarsest first; a texture without layers has one net.
+    /// The control net of each layer, coarsest first. A texture without layers has one net.
     pub nets: Vec<ControlNet>,
-    /// The options of a `points` texture that equals this texture bit for bit, if one exists.
+    /// The options of the `points` texture that equals this texture bit for bit; `None` if there is no such texture.
     pub points: Option<ControlPoints>,
 }
 
 impl Recipe {
     /// Returns the control points of the `pups` node with this name; `None` if the recipe has no such node.
     ///
-    /// A texture with one layer of numbers can be converted to a `points` texture. These are all textures except
+    /// A texture with one layer of numbers can be converted to a `points` texture. This holds for all textures except
     /// `octaves`, `turbulence` and `cellular_noise`, which have layers, and `color_noise`.
     ///
     /// # Errors
     ///
-    /// The errors of [`Plan::new_within`](crate::Plan::new_within) that concern this node.
+    /// If [`Plan::new_within`](crate::Plan::new_within) fails because of this node.
     ///
     /// # Examples
     ///

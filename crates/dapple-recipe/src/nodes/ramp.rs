@@ -102,7 +102,7 @@ impl Ramped {
     }
 }
 
-/// Serialization of lists of colors, as sRGB in hexadecimal.
+/// Serializes lists of colors as hexadecimal sRGB.
 mod colors {
     use crate::ColorOf;
     use dapple_color::LinearRgb;

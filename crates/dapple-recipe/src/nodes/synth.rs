@@ -124,13 +124,13 @@ impl NodeKind for SynthNode {
 }
 
 impl SynthNode {
-    /// Returns the image file of the example, which neighborhoods are compared in.
+    /// Returns the image file in which neighborhoods are compared.
     fn example(&self) -> &str {
         self.example.as_ref().unwrap_or(&self.file)
     }
 }
 
-/// A synthesized texture, with the inputs that determine it.
+/// A synthesized texture with the inputs that determine it, for reuse.
 struct Grown {
     example: Picture,
     edges: Edges,

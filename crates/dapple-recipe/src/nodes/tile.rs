@@ -1,4 +1,4 @@
-//! Textures made to repeat.
+//! Makes textures repeat.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};

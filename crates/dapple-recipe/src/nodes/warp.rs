@@ -1,4 +1,4 @@
-//! Domain warping: nodes at displaced positions.
+//! Domain warping: evaluates a node at displaced positions.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};

@@ -1,4 +1,4 @@
-//! Waves of a number.
+//! Periodic functions of a number.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};

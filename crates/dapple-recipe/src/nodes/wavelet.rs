@@ -34,7 +34,7 @@ impl Default for WaveletNode {
     }
 }
 
-/// Number of cells of the tile of wavelet noise along axes on which the recipe does not repeat.
+/// Side of a wavelet noise tile, in cells, along axes on which the recipe does not repeat.
 const UNBOUND_TILE: u32 = 128;
 
 impl NodeKind for WaveletNode {
@@ -53,7 +53,7 @@ impl NodeKind for WaveletNode {
     }
 }
 
-/// Makes wavelet noise with these band weights. `frequency` is in cells of the coarsest band per unit of the plane.
+/// Builds wavelet noise with these band weights. `frequency` is in cells of the coarsest band per unit of the plane.
 pub(super) fn noise(
     plan: &Builder<'_>,
     seed: Seed,
@@ -72,13 +72,13 @@ pub(super) fn noise(
     Ok(noise.frequency(frequency))
 }
 
-/// Wavelet noise of a single band, with its seed. It is reused for other weights.
+/// Wavelet noise with a single band, stored with its seed for reuse with other weights.
 struct Tile {
     noise: WaveletNoise2,
     seed: Seed,
 }
 
-/// Estimates the work of making wavelet noise of a frequency.
+/// Estimates the work of building wavelet noise. `frequency` is in cells per unit of the plane.
 pub(super) fn work(plan: &Builder<'_>, frequency: f64) -> Result<Work, RecipeError> {
     let [across, down] = cells(plan, frequency)?.map(f64::from);
     Ok(Work {
@@ -87,8 +87,8 @@ pub(super) fn work(plan: &Builder<'_>, frequency: f64) -> Result<Work, RecipeErr
     })
 }
 
-/// Returns the number of cells of the tile of wavelet noise along each axis. Fails for an odd number, or one below 4,
-/// along an axis that repeats.
+/// Returns the number of cells of the wavelet noise tile along each axis. Fails if it is odd or below 4 along an axis
+/// that repeats.
 fn cells(plan: &Builder<'_>, frequency: f64) -> Result<[u32; 2], RecipeError> {
     let periods = plan.periods([frequency; 2])?;
     for cells in periods.into_iter().flatten() {

@@ -119,7 +119,7 @@ impl NodeKind for WorleyNode {
 }
 
 impl WorleyNode {
-    /// Sets the metric and the scatter of the node on a cellular basis.
+    /// Sets the node's metric and scatter on a cellular basis.
     fn basis<const N: usize>(&self, worley: Worley<N>) -> Result<Worley<N>, RecipeError>
     where
         Dimensions: Space<N>,
@@ -134,7 +134,7 @@ impl WorleyNode {
             .with_scatter(self.scatter)?)
     }
 
-    /// Returns the field of the node's value, for a cellular basis in the plane.
+    /// Builds the field of the node's value from a cellular basis in the plane.
     fn plane_field(&self, worley: Worley2) -> Result<Arc<dyn Field>, RecipeError> {
         let worley = self.basis(worley)?;
         let combination = match self.value {
@@ -151,8 +151,8 @@ impl WorleyNode {
         })
     }
 
-    /// Returns the field of the node's value, for a slice of a cellular basis in four dimensions. `place` is the
-    /// position along the third and fourth axis, in cells.
+    /// Builds the field of the node's value from a slice through a 4-D cellular basis. `place` is the slice's position
+    /// along the third and fourth axes, in cells.
     fn moving_field(
         &self,
         worley: Worley4,
@@ -174,8 +174,8 @@ impl WorleyNode {
         Ok(Arc::new(solid.slice(place)))
     }
 
-    /// Fails if a single value (`cell_value` or `edge_distance`) has options that only combinations of distances have,
-    /// or a metric that it does not support.
+    /// Returns an error if a single value (`cell_value` or `edge_distance`) is combined with options that apply to
+    /// combinations of distances only, or with a metric that it does not support.
     fn check_single(&self, has_metric: bool) -> Result<(), RecipeError> {
         let rule = if self.octaves.is_some() || self.range.is_some() {
             "`cell_value` and `edge_distance` have neither `octaves` nor a `range`"
@@ -252,7 +252,7 @@ pub(crate) const WORLEY_VALUES: [&str; 13] = [
 ];
 
 impl WorleyValue {
-    /// Returns the value with a name.
+    /// Returns the value called `name`.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         let index = WORLEY_VALUES.iter().position(|&known| known == name)?;
@@ -271,7 +271,7 @@ impl WorleyValue {
             .find(|name| Self::from_name(name) == Some(self))
     }
 
-    /// Returns all names, in the order of their definition.
+    /// Returns the names of all values, in the order of their definition.
     #[must_use]
     pub fn names() -> [&'static str; 13] {
         WORLEY_VALUES
