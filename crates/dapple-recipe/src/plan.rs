@@ -1,8 +1,8 @@
-//! Plans: recipes ready for evaluation, with all names resolved, and all seeds and fields made.
+//! Plans: recipes prepared for evaluation, with names resolved, seeds derived and fields built.
 //!
-//! Nodes become steps in topological order: the inputs of a step come before it. A window, or a list of positions, is
-//! evaluated step by step, each step once. The value of a pixel depends on its position alone. Steps that depend on the
-//! whole tile are the exception; they are evaluated beforehand for all pixels of the tile: see [`Plan::whole`].
+//! Nodes become steps in topological order: the inputs of a step come before it. To evaluate a window or a list of
+//! positions, each step runs once for all of it. The value of a pixel depends on its position alone, except for steps
+//! that depend on the whole tile. [`Plan::whole`] evaluates those beforehand, for all pixels of the tile.
 
 mod builder;
 mod cache;
@@ -42,12 +42,12 @@ use std::sync::Arc;
 use step::ancestors;
 use work::check_steps;
 
-/// An image in a recipe.
+/// An image that a recipe reads, or that a plan renders.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Picture {
-    /// Numbers, uncoded.
+    /// Numbers, without color encoding.
     Numbers(Arc<Raster<f32>>),
-    /// Colors, linear.
+    /// Linear colors.
     Colors(Arc<Raster<LinearRgb>>),
 }
 
@@ -62,7 +62,7 @@ impl Picture {
     }
 }
 
-/// The images of a recipe by file name. If nodes read several layers of one file, each layer has the key
+/// A recipe's images by file name. If nodes read several layers of one file, each layer has the key
 /// [`ImageSource::key`].
 pub type Images = std::collections::BTreeMap<String, Picture>;
 
@@ -74,7 +74,7 @@ pub struct ImageSource<'a> {
     pub file: &'a str,
     /// The layer of the OpenEXR file, if a node names one.
     pub layer: Option<&'a str>,
-    /// The use of the alpha, if a node sets it.
+    /// How the alpha is handled, if a node sets it.
     pub alpha: Option<ImageAlpha>,
 }
 
@@ -95,7 +95,7 @@ impl ImageSource<'_> {
     }
 }
 
-/// A recipe, ready for evaluation.
+/// A recipe prepared for evaluation.
 ///
 /// # Examples
 ///
@@ -144,7 +144,7 @@ impl Channels {
 }
 
 impl Recipe {
-    /// Returns the names of the images of the recipe, each once, in the order of its nodes.
+    /// Returns the names of the recipe's image files, each once, in the order of its nodes.
     #[must_use]
     pub fn image_files(&self) -> Vec<&str> {
         let mut files = Vec::new();
@@ -156,12 +156,11 @@ impl Recipe {
         files
     }
 
-    /// Returns the images of the recipe, each once, in the order of its nodes. Several layers of a file are several
-    /// images.
+    /// Returns the recipe's images, each once, in the order of its nodes. Each layer of a file counts as an image.
     ///
     /// # Errors
     ///
-    /// [`Conflict`](RecipeErrorKind::Conflict), if two nodes set different uses of alpha for one image.
+    /// [`Conflict`](RecipeErrorKind::Conflict) if two nodes handle the alpha of one image differently.
     pub fn image_sources(&self) -> Result<Vec<ImageSource<'_>>, RecipeError> {
         let mut sources: Vec<ImageSource<'_>> = Vec::new();
         for (name, node) in &self.nodes {
@@ -185,22 +184,22 @@ impl Recipe {
 }
 
 impl Plan {
-    /// Makes all nodes of the recipe. `time` is the elapsed part of a loop, from 0 to 1, for nodes that move.
+    /// Builds all nodes of the recipe. `time` is the phase of a looping animation, from 0 to 1, for nodes that move.
     ///
     /// # Errors
     ///
-    /// Mistakes of the recipe, with their node: unknown names, cycles, colors where numbers are needed, numbers out of
-    /// range, and the errors of the crates of the nodes; [`TooMuch`](RecipeErrorKind::TooMuch) past the default
-    /// [`PlanLimits`].
+    /// If the recipe is invalid: unknown names, cycles, colors where numbers are needed, numbers out of range, or an
+    /// error from a node's crate. The error names the node. [`TooMuch`](RecipeErrorKind::TooMuch) if the work exceeds
+    /// the default [`PlanLimits`].
     pub fn new(recipe: &Recipe, images: &Images, time: f64) -> Result<Self, RecipeError> {
         Self::new_within(recipe, images, time, &PlanLimits::default())
     }
 
-    /// Makes all nodes of the recipe, if the estimated work is within the limits.
+    /// Builds all nodes of the recipe if the estimated work is within `limits`.
     ///
     /// # Errors
     ///
-    /// The errors of [`new`](Self::new), with other limits.
+    /// Same as [`new`](Self::new), with `limits` instead of the default ones.
     pub fn new_within(
         recipe: &Recipe,
         images: &Images,
@@ -210,8 +209,8 @@ impl Plan {
         Self::make(recipe, images, time, limits, None, Watch::default())
     }
 
-    /// Makes all nodes of the recipe, and reuses parts of earlier plans from the cache. This is for programs that
-    /// redraw a recipe as it changes. Bakes and node images use the cache, too.
+    /// Builds all nodes of the recipe, and reuses parts of earlier plans from the cache `memory`. This is for programs
+    /// that redraw a recipe as it changes. Bakes and node images use the cache, too.
     ///
     /// # Errors
     ///
@@ -242,23 +241,24 @@ impl Plan {
         Self::make(recipe, images, time, limits, Some(memory), Watch::default())
     }
 
-    /// Makes all nodes of the recipe and reports to the callback `progress`, which can stop the work with
+    /// Builds all nodes of the recipe and reports to the callback `progress`, which can stop the work with
     /// [`Cancelled`](RecipeErrorKind::Cancelled). Games load recipes on a thread, show a progress bar and offer to
-    /// cancel. The plan keeps the callback for its bakes and node images.
+    /// cancel. The plan stores the callback for its bakes and node images.
     ///
-    /// The callback runs on any thread, possibly on several threads at once: at the start, and then at least once in
-    /// about 50 milliseconds of work of one core. Calls are further apart while wavelet noise is made, during a
+    /// The callback runs on any thread, possibly on several threads at once: at the start, and then at least once per
+    /// 50 milliseconds or so of single-core work. Calls are further apart while wavelet noise is built, during a
     /// Delaunay triangulation of points that do not repeat, and during a single pass of a `tile`, `blend` or
     /// `corner_tiles` node over an image of millions of pixels. Once the callback has asked to stop, only threads that
     /// are calling it at that moment still call it.
     ///
-    /// There are three passes. The first makes the nodes. The second, in [`Bake::new`](crate::Bake::new), evaluates the
-    /// nodes that depend on the whole tile. A node counts as a thousand sites. The third computes the bands of a bake,
-    /// where a row counts as a site. [`Progress::part`] is the fraction of all work that is done.
+    /// There are three passes. The first builds the nodes. The second, in [`Bake::new`](crate::Bake::new), evaluates
+    /// the nodes that depend on the whole tile. A node counts as a thousand sites. The third computes the bands of a
+    /// bake, where a row counts as a site. [`Progress::part`] is the completed fraction of all work.
     ///
     /// # Errors
     ///
-    /// Same as [`new_within`](Self::new_within), and [`Cancelled`](RecipeErrorKind::Cancelled).
+    /// Same as [`new_within`](Self::new_within), or [`Cancelled`](RecipeErrorKind::Cancelled) if `progress` asks to
+    /// stop.
     ///
     /// # Examples
     ///
@@ -285,7 +285,7 @@ impl Plan {
         Self::make(recipe, images, time, limits, memory, Watch::by(progress))
     }
 
-    /// Makes all nodes of the recipe, with an optional cache and callback.
+    /// Builds all nodes of the recipe, with an optional cache and callback.
     fn make(
         recipe: &Recipe,
         images: &Images,
@@ -329,7 +329,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Sets the callback for the progress of bakes and node images, in place of an earlier one: see
+    /// Sets the progress callback for bakes and node images, which replaces an earlier one: see
     /// [`new_with_progress`](Self::new_with_progress).
     ///
     /// # Examples
@@ -367,11 +367,11 @@ impl Plan {
     }
 
     /// Returns the window that covers the tile with `size` columns and rows. It may have more pixels than a raster can
-    /// have.
+    /// hold.
     ///
     /// # Errors
     ///
-    /// [`Range`](RecipeErrorKind::Range) if a side has no pixel.
+    /// [`Range`](RecipeErrorKind::Range) if a side is zero.
     pub fn window(&self, size: [u32; 2]) -> Result<Window, RecipeError> {
         for side in size {
             RecipeError::check(
@@ -390,23 +390,23 @@ impl Plan {
         })
     }
 
-    /// Returns the height of the material.
+    /// Returns the material's height as a field.
     ///
     /// # Errors
     ///
-    /// [`Global`](RecipeErrorKind::Global) if it depends on a node that needs the whole tile, so that it has no value
-    /// at a single position.
+    /// [`Global`](RecipeErrorKind::Global) if it depends on a node that needs the whole tile, which has no value at a
+    /// single position.
     pub fn height(&self) -> Result<NodeField, RecipeError> {
         self.local(self.channels.height)?;
         Ok(NodeField::new(self.steps.clone(), self.channels.height))
     }
 
-    /// Returns the number of a node at every position.
+    /// Returns the numbers of the node called `node` as a field.
     ///
     /// # Errors
     ///
     /// [`UnknownNode`](RecipeErrorKind::UnknownNode) if there is no such node,
-    /// [`NotANumber`](RecipeErrorKind::NotANumber) if it makes a color, and the errors of [`height`](Self::height).
+    /// [`NotANumber`](RecipeErrorKind::NotANumber) if it has colors, or the same errors as [`height`](Self::height).
     pub fn field(&self, node: &str) -> Result<NodeField, RecipeError> {
         let step = self.find(node)?;
         if self.steps[step].is_color() {
@@ -415,11 +415,11 @@ impl Plan {
         Ok(NodeField::new(self.steps.clone(), step))
     }
 
-    /// Returns the color of a node at every position; a number becomes a gray.
+    /// Returns the colors of the node called `node` as a function of position. Numbers are converted to grays.
     ///
     /// # Errors
     ///
-    /// [`UnknownNode`](RecipeErrorKind::UnknownNode) if there is no such node, and the errors of
+    /// [`UnknownNode`](RecipeErrorKind::UnknownNode) if there is no such node, or the same errors as
     /// [`height`](Self::height).
     pub fn colors(&self, node: &str) -> Result<NodeColors, RecipeError> {
         Ok(NodeColors::new(self.steps.clone(), self.find(node)?))
@@ -430,7 +430,7 @@ impl Plan {
         self.names.keys().map(String::as_str)
     }
 
-    /// Returns whether a node makes colors, not numbers; false for a node that does not exist.
+    /// Returns whether a node has colors instead of numbers; false if there is no such node.
     #[must_use]
     pub fn is_color(&self, node: &str) -> bool {
         self.names
@@ -438,21 +438,21 @@ impl Plan {
             .is_some_and(|&step| self.steps[step].is_color())
     }
 
-    /// Returns whether a node itself depends on the whole tile.
+    /// Returns whether a node itself depends on the whole tile, regardless of its inputs.
     #[must_use]
     pub fn is_global(&self, node: &str) -> bool {
         let step = self.names.get(node).map(|&step| &self.steps[step]);
         matches!(step, Some(Step::Global(_)))
     }
 
-    /// Returns the index of the step of a node; an error if the node has no value at a single position.
+    /// Returns the index of a node's step. Fails if the node has no value at a single position.
     fn find(&self, node: &str) -> Result<usize, RecipeError> {
         let step = self.step_of(node)?;
         self.local(step)?;
         Ok(step)
     }
 
-    /// Returns the index of the step of a node.
+    /// Returns the index of a node's step.
     fn step_of(&self, node: &str) -> Result<usize, RecipeError> {
         self.names.get(node).copied().ok_or_else(|| {
             let name = node.to_owned();
@@ -461,7 +461,7 @@ impl Plan {
         })
     }
 
-    /// Fails for a step that depends on the whole tile, directly or through an input.
+    /// Returns an error if a step depends on the whole tile, directly or through an input.
     fn local(&self, step: usize) -> Result<(), RecipeError> {
         let is_global = |&index: &usize| matches!(self.steps[index], Step::Global(_));
         let Some(global) = ancestors(&self.steps, &[step]).into_iter().find(is_global) else {
@@ -472,7 +472,7 @@ impl Plan {
     }
 
     /// Computes the values of the steps `wanted` at the pixels of a window, in the order of `wanted`. Runs on all cores
-    /// if the feature `rayon` is on. `known` has values of steps that the caller has computed already.
+    /// if the feature `rayon` is on. `known` holds the values of steps that the caller has computed already.
     pub(crate) fn values(
         &self,
         whole: &Whole,
@@ -486,7 +486,7 @@ impl Plan {
         }
     }
 
-    /// Computes the values of steps with the cache: reads the stored ones, and stores the new ones.
+    /// Computes the values of steps through the cache: reads stored values, and stores new ones.
     fn values_with(
         &self,
         memory: &PlanCache,
@@ -532,16 +532,16 @@ impl Plan {
         Ok(values)
     }
 
-    /// Returns the steps that both `wanted` and the height depend on. Once their values are known, their inputs are not
-    /// needed.
+    /// Returns the steps that both `wanted` and the height depend on. Callers that store the values of these steps need
+    /// not evaluate their inputs again.
     pub(crate) fn shared_with_height(&self, wanted: &[usize]) -> Vec<usize> {
         step::shared(&self.steps, self.channels.height, wanted)
     }
 
     /// Returns, for each axis, whether heights past the sides of the tile must be extrapolated.
     ///
-    /// This is so if the recipe does not repeat along the axis and the height depends on an image, which ends at the
-    /// sides. Heights computed from functions alone are known everywhere.
+    /// Extrapolation is needed if the recipe does not repeat along the axis and the height depends on an image, which
+    /// ends at the sides of the tile. Heights computed from functions alone are known everywhere.
     pub(crate) fn continues_heights(&self) -> [bool; 2] {
         let mut above = ancestors(&self.steps, &[self.channels.height]).into_iter();
         let is_picture =
@@ -549,7 +549,7 @@ impl Plan {
         self.wrap.map(|repeats| is_picture && !repeats)
     }
 
-    /// Returns a copy of the callback, with separate progress, for new work of the plan.
+    /// Returns a copy of the plan's callback with separate progress, for new work.
     pub(crate) fn watch(&self) -> Watch {
         self.watch.again()
     }
@@ -569,7 +569,8 @@ impl Plan {
 
 pub(crate) const TIME: Range = range!(finite);
 pub(crate) const EXTENT: Range = range!(above 0 to 1e6);
-/// The range of the relief. It is far larger than textures need, and slopes and their squares stay finite.
+/// The allowed range of the relief. It is far larger than textures need, and small enough that slopes and their squares
+/// stay finite.
 pub(crate) const RELIEF: Range = range!(from -1e6 to 1e6);
 
 /// Adds the steps that the material reads, after the steps of all nodes.
@@ -600,7 +601,7 @@ impl Input {
     }
 }
 
-/// Returns the error for a color where a number is needed.
+/// Returns the error for `input`, a color where a number is needed.
 pub(crate) fn not_a_number(input: &Input) -> RecipeError {
     RecipeError::new(RecipeErrorKind::NotANumber {
         input: input.written(),

@@ -6,7 +6,7 @@ use dapple_hash::Seed;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
-/// The version of the schema that this crate reads and writes.
+/// The schema version that this crate reads and writes.
 pub const SCHEMA: u32 = 1;
 
 /// A texture as data: named nodes, and the material that is made of them.
@@ -128,7 +128,8 @@ impl Default for Material {
 }
 
 impl Recipe {
-    /// Makes a recipe with a single node, which is the height. For commands that render a single field.
+    /// Creates a recipe with a single node, called `name`, as the material's height. It is for commands that render a
+    /// single field.
     #[must_use]
     pub fn of_node(name: &str, node: Node, seed: Seed) -> Self {
         Self {

@@ -48,7 +48,7 @@ const ALIASES: [(&str, &str); 3] = [
     ("albedo", "base_color"),
 ];
 
-/// Removes rustdoc markup from descriptions, and adds the aliases of options. Recurses into all subschemas.
+/// Removes rustdoc markup from descriptions and adds option aliases, in all subschemas.
 fn plain(schema: &mut Schema) {
     if let Some(Value::String(text)) = schema.get_mut("description") {
         *text = without_links(text);

@@ -21,9 +21,10 @@ impl Recipe {
     ///
     /// # Errors
     ///
-    /// [`Text`](RecipeErrorKind::Text) for text that is not valid TOML, or has a key or value that recipes do not have,
-    /// with the line and the nearest valid word; [`Schema`](RecipeErrorKind::Schema) for another version of the schema;
-    /// [`Count`](RecipeErrorKind::Count) for more than [`MAX_TEXT`] bytes.
+    /// [`Text`](RecipeErrorKind::Text) if the text is not valid TOML, or contains a key or value that recipes do not
+    /// have, with the line and the nearest valid word; [`Schema`](RecipeErrorKind::Schema) if the schema version
+    /// differs from [`SCHEMA`](crate::SCHEMA); [`Count`](RecipeErrorKind::Count) if the text has more than [`MAX_TEXT`]
+    /// bytes.
     pub fn from_toml(text: &str) -> Result<Self, RecipeError> {
         let text = decoded(text)?;
         let content: Content = toml::from_str(text).map_err(|error| {
@@ -86,7 +87,7 @@ pub(crate) fn is_data(node: &Node) -> bool {
     serde_json::to_string_pretty(data(node)).is_ok()
 }
 
-/// Removes the byte order mark of a text. Fails for more than [`MAX_TEXT`] bytes.
+/// Removes the byte order mark of a text. Fails if the text has more than [`MAX_TEXT`] bytes.
 fn decoded(text: &str) -> Result<&str, RecipeError> {
     if text.len() > MAX_TEXT {
         return Err(RecipeError::new(RecipeErrorKind::Count {
@@ -112,7 +113,7 @@ impl PupsNode {
     ///
     /// # Errors
     ///
-    /// [`Text`](RecipeErrorKind::Text) for keys and values that no texture has.
+    /// [`Text`](RecipeErrorKind::Text) if there are keys or values that no texture has.
     pub fn from_json(value: &Value) -> Result<Self, RecipeError> {
         let content =
             Content::deserialize(value).map_err(|error| text_error(&error.to_string()))?;
@@ -124,7 +125,8 @@ impl PupsNode {
 ///
 /// # Errors
 ///
-/// [`Text`](RecipeErrorKind::Text) for keys and values that the options do not have, with the nearest valid word.
+/// [`Text`](RecipeErrorKind::Text) if there are keys or values that the options do not have. The error has the nearest
+/// valid word.
 ///
 /// # Examples
 ///
@@ -144,7 +146,8 @@ pub fn read_options<T: serde::de::DeserializeOwned>(value: &Value) -> Result<T, 
     T::deserialize(&content).map_err(|refusal| text_error(&refusal.message))
 }
 
-/// Fails for a recipe of another schema version. It is checked first, because other errors may follow from it.
+/// Returns an error if the recipe has another schema version. This is checked first, because other errors may follow
+/// from it.
 fn check_version(content: &Content) -> Result<(), RecipeError> {
     let version = match content.get("dapple") {
         Some(Content::Signed(version)) => u32::try_from(*version),
@@ -159,7 +162,7 @@ fn check_version(content: &Content) -> Result<(), RecipeError> {
     }
 }
 
-/// Converts the message of a parser to an error, with the nearest of the words that the parser expected.
+/// Converts a parser's message to an error, with the nearest of the words that the parser expected.
 fn text_error(message: &str) -> RecipeError {
     let message = plain(&message.lines().collect::<Vec<_>>().join(" "));
     let error = RecipeError::new(RecipeErrorKind::Text {
@@ -173,7 +176,7 @@ fn text_error(message: &str) -> RecipeError {
     }
 }
 
-/// Rewrites the message of a parser in the terms of TOML and JSON, without names of Rust types and of serde.
+/// Rewrites a parser's message in the terms of TOML and JSON, without names of Rust types and of serde.
 fn plain(message: &str) -> String {
     if let Some(name) = message.strip_prefix("missing field ") {
         return format!("{name} is missing");
@@ -210,7 +213,7 @@ fn plain(message: &str) -> String {
     format!("{found}, expected {expected}")
 }
 
-/// Returns the line and column of a byte offset.
+/// Converts a byte offset to a line and a column.
 fn place_of(text: &str, byte: usize) -> Place {
     let before = text.get(..byte).unwrap_or(text);
     let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);

@@ -1,4 +1,4 @@
-//! The values of nodes at many positions.
+//! Stores the values of nodes at many positions.
 
 use crate::{RecipeError, RecipeErrorKind};
 use dapple_color::LinearRgb;
@@ -12,7 +12,7 @@ use std::ops::Range;
 pub enum Values {
     /// Numbers, one per pixel.
     Numbers(Vec<f32>),
-    /// Colors, linear.
+    /// Linear colors.
     Colors(Vec<LinearRgb>),
 }
 
@@ -32,7 +32,8 @@ impl Values {
         self.len() == 0
     }
 
-    /// Returns the numbers; empty for colors. A plan has checked that inputs which must be numbers are not colors.
+    /// Returns the numbers, or an empty slice for colors. Plans check beforehand that inputs which must be numbers are
+    /// not colors.
     pub(crate) fn numbers(&self) -> &[f32] {
         match self {
             Self::Numbers(numbers) => numbers,
@@ -40,7 +41,7 @@ impl Values {
         }
     }
 
-    /// Returns the numbers, or the luminance of colors.
+    /// Converts the values to numbers. Colors are converted to their luminance.
     pub(crate) fn into_grays(self) -> Vec<f32> {
         match self {
             Self::Numbers(numbers) => numbers,
@@ -48,7 +49,7 @@ impl Values {
         }
     }
 
-    /// Returns the colors; numbers become grays.
+    /// Converts the values to colors. Numbers are converted to grays.
     pub(crate) fn into_colors(self) -> Vec<LinearRgb> {
         match self {
             Self::Numbers(numbers) => numbers.into_iter().map(LinearRgb::gray).collect(),
@@ -56,7 +57,7 @@ impl Values {
         }
     }
 
-    /// Returns the colors, borrowed if possible; numbers become grays.
+    /// Returns the values as colors, borrowed if possible. Numbers are converted to grays.
     pub(crate) fn colors(&self) -> Cow<'_, [LinearRgb]> {
         match self {
             Self::Numbers(_) => Cow::Owned(self.clone().into_colors()),
@@ -64,7 +65,7 @@ impl Values {
         }
     }
 
-    /// Returns the values of a range of the positions.
+    /// Returns the values at a range of the positions.
     pub(crate) fn part(&self, range: Range<usize>) -> Self {
         match self {
             Self::Numbers(numbers) => Self::Numbers(numbers[range].to_vec()),
@@ -72,7 +73,7 @@ impl Values {
         }
     }
 
-    /// Concatenates values, which must be all numbers or all colors.
+    /// Concatenates `parts`, which must be all numbers or all colors.
     pub(crate) fn joined(parts: &[&Self]) -> Self {
         let n_values = parts.iter().map(|part| part.len()).sum();
         let mut all = match parts.first() {
@@ -85,7 +86,7 @@ impl Values {
         all
     }
 
-    /// Appends the values of more positions. Both must be numbers, or both colors.
+    /// Appends the values at more positions. Both lists must be numbers, or both colors.
     pub(crate) fn append(&mut self, more: &Self) {
         match self {
             Self::Numbers(numbers) => numbers.extend_from_slice(more.numbers()),
@@ -123,12 +124,12 @@ impl Values {
         inputs.iter().any(|input| matches!(input, Self::Colors(_)))
     }
 
-    /// Returns the values as a raster of this size: numbers, or the luminance of colors.
+    /// Converts the values to a raster of `size` columns and rows. Colors are converted to their luminance.
     pub(crate) fn raster(&self, size: [u32; 2]) -> Result<Raster<f32>, RasterError> {
         Raster::from_vec(size, self.clone().into_grays())
     }
 
-    /// Returns the inputs as maps of this size: all in color if any input is in color.
+    /// Converts the inputs to maps of `size` columns and rows. All of them are in color if any input is.
     pub(crate) fn maps(inputs: &[&Self], size: [u32; 2]) -> Result<Vec<Map>, RasterError> {
         let as_colors = Self::has_colors(inputs);
         let map = |values: &&Self| {
@@ -142,7 +143,7 @@ impl Values {
         inputs.iter().map(map).collect()
     }
 
-    /// Builds the values of the first map of a result; an error for a map of normals, or without a map.
+    /// Converts the first map of a result to values. Fails if it is a map of normals, or if there is no map.
     pub(crate) fn of_map(maps: Vec<Map>) -> Result<Self, RecipeError> {
         match maps.into_iter().next() {
             Some(Map::Value(raster)) => Ok(Self::Numbers(raster.into_pixels())),

@@ -1,4 +1,4 @@
-//! The builder of steps, which passes the tile, the seed and the inputs to nodes.
+//! Builds the steps of nodes, and gives the nodes access to the tile, the seed and their inputs.
 
 use super::cache::{PlanCache, StepId};
 use super::step::{Global, Local, Step, Tile};
@@ -25,11 +25,11 @@ pub(crate) struct Builder<'a> {
     work: WorkSum<'a>,
     memory: Option<&'a PlanCache>,
     watch: &'a Watch,
-    /// Reusable parts of steps of this plan, and of earlier plans if there is a cache.
+    /// Reusable parts of steps, from this plan and, if there is a cache, from earlier plans.
     shared_parts: Parts,
-    /// Whether the current node has used the time.
+    /// Whether the current node has read the time.
     asks_time: Cell<bool>,
-    /// Whether a node has used the time.
+    /// Whether any node has read the time.
     pub(super) moves: bool,
     pub(super) steps: Vec<Step>,
     /// The id of each step; empty without a cache.
@@ -37,7 +37,7 @@ pub(crate) struct Builder<'a> {
     pub(super) names: IndexMap<String, usize>,
 }
 
-/// The range of a frequency: cells or bumps per unit of the plane.
+/// The allowed range of a frequency, in cells or bumps per unit of the plane.
 pub(crate) const FREQUENCY: Range = range!(above 0 to 1e6);
 
 impl<'a> Builder<'a> {
@@ -66,7 +66,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Adds the step of a node. Its inputs must have steps already.
+    /// Adds a node's step. The steps of its inputs must have been added already.
     pub(super) fn add(&mut self, name: &'a str, node: &Node) -> Result<(), RecipeError> {
         self.enter(name, node)?;
         // Take the step from the cache, or build it and see whether it reads the time.
@@ -98,7 +98,7 @@ impl<'a> Builder<'a> {
         self.ids.extend(id);
     }
 
-    /// Returns the id of a node's key in the cache, and whether the key includes the time. `None` for a node without a
+    /// Returns the id of a node's key in the cache, and whether the key includes the time; `None` if the node has no
     /// key.
     fn id_in(&self, memory: &PlanCache, node: &Node) -> Option<(StepId, bool)> {
         // Options that cannot be written as data, such as functions, cannot be compared; such a node has no key.
@@ -126,30 +126,30 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// Makes a node current. Fails if its work exceeds the limits.
+    /// Sets the current node. Fails if its work exceeds the limits.
     pub(crate) fn enter(&mut self, name: &'a str, node: &Node) -> Result<(), RecipeError> {
         self.node = name;
         let work: Work = node.kind().work(self)?;
         self.work.add(&work)
     }
 
-    /// Progress reports to the callback of the caller.
+    /// Reports progress to the caller's callback.
     pub(crate) fn watch(&self) -> &'a Watch {
         self.watch
     }
 
-    /// Reusable parts of steps of earlier plans; without a cache, no parts are kept.
+    /// Returns the store of reusable parts of steps from earlier plans. Without a cache, it stores nothing.
     pub(crate) fn parts(&self) -> Parts {
         let parts = self.memory.map(|memory| memory.parts().clone());
         parts.unwrap_or_default()
     }
 
-    /// Reusable parts of steps of this plan, and of earlier plans if there is a cache.
+    /// Reusable parts of steps, from this plan and, if there is a cache, from earlier plans.
     pub(crate) fn shared_parts(&self) -> &Parts {
         &self.shared_parts
     }
 
-    /// Returns the time as a fraction of a loop, from 0 to 1. Notes that the current node reads it.
+    /// Returns the phase of the looping animation, from 0 to 1, and records that the current node reads it.
     pub(crate) fn time(&self) -> f64 {
         self.asks_time.set(true);
         self.time
@@ -169,12 +169,12 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Returns the image with a file name.
+    /// Returns the image called `file`.
     pub(crate) fn image(&self, file: &str) -> Result<&'a Picture, RecipeError> {
         self.layer_of(file, None)
     }
 
-    /// Returns the image with a file name, or a layer of it.
+    /// Returns the image called `file`, or one of its layers.
     pub(crate) fn layer_of(
         &self,
         file: &str,
@@ -188,7 +188,7 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// Returns the seed of the current node: derived from its name, unless `other` is given.
+    /// Returns the current node's seed, which is derived from its name unless `other` is given.
     pub(crate) fn seed(&self, other: Option<&NodeSeed>) -> Seed {
         match other {
             None => self.recipe.seed.child(self.node, 0),
@@ -197,7 +197,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Returns, for each axis that repeats, the number of cells of the tile at a frequency; `None` for the other axes.
+    /// Returns, for each axis that repeats, the number of cells across the tile at this frequency; `None` for the other
+    /// axes.
     pub(crate) fn periods(&self, frequency: [f64; 2]) -> Result<[Option<u32>; 2], RecipeError> {
         let mut periods = [None; 2];
         for axis in 0..2 {
@@ -215,7 +216,7 @@ impl<'a> Builder<'a> {
         Ok(periods)
     }
 
-    /// Returns the index of the step of an input, which may make numbers or colors. Adds a step for a constant.
+    /// Returns the index of an input's step, which may have numbers or colors. Adds a step if the input is a constant.
     pub(crate) fn any(&mut self, input: &Input) -> Result<usize, RecipeError> {
         let step = match input {
             Input::Number(number) => {
@@ -234,7 +235,7 @@ impl<'a> Builder<'a> {
         Ok(self.steps.len() - 1)
     }
 
-    /// Returns the index of the step of an input that must make numbers.
+    /// Returns the index of an input's step, which must have numbers.
     pub(crate) fn number(&mut self, input: &Input) -> Result<usize, RecipeError> {
         let step = self.any(input)?;
         if self.is_color(step) {
@@ -243,12 +244,12 @@ impl<'a> Builder<'a> {
         Ok(step)
     }
 
-    /// Returns whether a step makes colors.
+    /// Returns whether a step has colors.
     pub(crate) fn is_color(&self, step: usize) -> bool {
         self.steps[step].is_color()
     }
 
-    /// Returns a step that combines the values of the inputs at each position. It makes colors if any input does.
+    /// Builds a step that combines the values of the inputs at each position. It has colors if any input has colors.
     pub(crate) fn local(
         &self,
         inputs: Vec<usize>,
@@ -261,8 +262,8 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// Returns a step that combines the inputs over the whole tile. It makes colors if any input does. The inputs are
-    /// rendered at the size of the tile divided by `copies`.
+    /// Builds a step that combines the inputs over the whole tile. It has colors if any input has colors. The inputs
+    /// are rendered at the size of the tile divided by `copies`.
     pub(crate) fn global(
         &self,
         inputs: Vec<usize>,
@@ -277,7 +278,7 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// Returns a step that applies a function to a number.
+    /// Builds a step that applies a function to the numbers of an input.
     pub(crate) fn each(
         &mut self,
         input: &Input,
@@ -292,7 +293,7 @@ impl<'a> Builder<'a> {
         }))
     }
 
-    /// Returns a step that combines numbers pairwise, from the first to the last.
+    /// Builds a step that combines the numbers of the inputs pairwise, from the first to the last.
     pub(crate) fn fold(
         &mut self,
         inputs: &[Input],
@@ -305,7 +306,7 @@ impl<'a> Builder<'a> {
         }))
     }
 
-    /// Returns a step that combines numbers or colors pairwise, from the first to the last.
+    /// Builds a step that combines the numbers or colors of the inputs pairwise, from the first to the last.
     pub(crate) fn fold_any(
         &mut self,
         inputs: &[Input],
@@ -325,7 +326,7 @@ pub(super) fn wrap(repeats: [bool; 2]) -> [Wrap; 2] {
     repeats.map(|repeats| if repeats { Wrap::Repeat } else { Wrap::Clamp })
 }
 
-/// Fails if there is no input.
+/// Returns an error if there is no input.
 fn at_least_one(inputs: Vec<usize>) -> Result<Vec<usize>, RecipeError> {
     if inputs.is_empty() {
         let (what, count, needed) = ("inputs", 0, "at least 1");

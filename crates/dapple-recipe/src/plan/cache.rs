@@ -28,7 +28,7 @@ pub struct PlanCache {
 /// The id of the key of a step, unique for the lifetime of the cache.
 pub(crate) type StepId = u64;
 
-/// The pixels of a window as a map key: floats are compared by their bits.
+/// The pixels of a window as a map key, in which floats are compared by their bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Pixels {
     origin: [u64; 2],
@@ -73,7 +73,7 @@ const MAX_AGE: u64 = 4;
 const MAX_PICTURES: usize = 64;
 
 impl PlanCache {
-    /// Makes an empty cache for values of at most `max_bytes` bytes.
+    /// Creates an empty cache that holds at most `max_bytes` bytes of values.
     #[must_use]
     pub fn new(max_bytes: usize) -> Self {
         Self {
@@ -89,8 +89,8 @@ impl PlanCache {
         self.lock().bytes
     }
 
-    /// Returns whether values of this number of steps at a window take at most half of the cache, so that they do not
-    /// evict most of the others.
+    /// Returns whether the values of `steps` steps at a window take at most half of the cache. Larger ones would evict
+    /// most of the others.
     pub(super) fn has_room(&self, steps: usize, window: &Window) -> bool {
         let bytes = steps
             .saturating_mul(window.n_pixels())
@@ -98,12 +98,12 @@ impl PlanCache {
         bytes <= self.max_bytes / 2
     }
 
-    /// Reusable parts of steps without inputs, for steps with other options.
+    /// Returns the reusable parts of steps without inputs, for steps with other options.
     pub(super) fn parts(&self) -> &Parts {
         &self.parts
     }
 
-    /// Begins a plan, and drops steps and parts of steps that the last [`MAX_AGE`] plans did not use.
+    /// Begins a plan. Drops steps, and parts of steps, that the last [`MAX_AGE`] plans did not use.
     pub(super) fn begin(&self) {
         self.parts.begin(MAX_AGE);
         let mut kept = self.lock();
@@ -112,7 +112,7 @@ impl PlanCache {
         kept.sources.retain(|_, (_, used)| *used + MAX_AGE >= now);
     }
 
-    /// Returns the id of a key; a new id for a key that is not stored.
+    /// Returns the id of a key. A key that is not stored gets a new id.
     pub(super) fn id(&self, description: String) -> StepId {
         let mut kept = self.lock();
         if let Some(&id) = kept.ids.get(&description) {
@@ -133,7 +133,7 @@ impl PlanCache {
         self.lock().timed.contains(&id)
     }
 
-    /// Notes that a step changes with time, and returns its id at the given time.
+    /// Records that a step changes with time, and returns its id at `time`.
     pub(super) fn at_time(&self, id: StepId, time: f64) -> StepId {
         self.lock().timed.insert(id);
         self.id(format!("{id} at {}", time.to_bits()))
@@ -146,7 +146,7 @@ impl PlanCache {
         kept.next - 1
     }
 
-    /// Returns the number of an image. Two images have the same number if they share their pixels in memory.
+    /// Returns a number that identifies an image. Two images have the same number if they share their pixels in memory.
     pub(super) fn picture_id(&self, picture: &Picture) -> usize {
         let mut kept = self.lock();
         if kept.pictures.len() >= MAX_PICTURES {
@@ -166,7 +166,7 @@ impl PlanCache {
         })
     }
 
-    /// Returns a stored step without inputs.
+    /// Returns the stored step with this id; `None` if it is not stored. Only steps without inputs are stored.
     pub(super) fn source(&self, id: StepId) -> Option<Step> {
         let mut kept = self.lock();
         let now = kept.n_plans;
@@ -190,7 +190,8 @@ impl PlanCache {
         kept.sources.insert(id, (source, now));
     }
 
-    /// Returns the stored values of a step at the pixels of a window. Marks them as used.
+    /// Returns the stored values of a step at the pixels of a window, and marks them as used; `None` if they are not
+    /// stored.
     pub(super) fn values(&self, id: StepId, window: &Window) -> Option<Arc<Values>> {
         let mut kept = self.lock();
         let key = (id, Pixels::of(window));

@@ -1,4 +1,4 @@
-//! Evaluation of steps at many positions.
+//! Evaluates steps at many positions.
 
 use super::step::{Step, StretchedImage, needed};
 use super::{Picture, Values, Whole};
@@ -9,7 +9,7 @@ use dapple_raster::{Raster, RasterViewMut, Texel, Window, parallel};
 use glam::DVec2;
 use std::sync::Arc;
 
-/// The positions of an evaluation, and the area that each stands for.
+/// The positions of an evaluation, and the area that each one represents.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Places<'a> {
     pub(super) at: At<'a>,
@@ -26,7 +26,7 @@ pub(super) enum At<'a> {
 }
 
 impl<'a> Places<'a> {
-    /// Builds the pixels of a window, each with its area.
+    /// Creates the positions of a window's pixel centers, each with the area of its pixel.
     pub(super) fn pixels(window: &'a Window) -> Self {
         Self {
             at: At::Window(window),
@@ -34,7 +34,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Builds the points at the pixel centers of a window.
+    /// Creates the positions of a window's pixel centers, without an area.
     pub(super) fn centers(window: &'a Window) -> Self {
         Self {
             at: At::Window(window),
@@ -42,7 +42,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Creates a list of points without an area.
+    /// Creates a list of positions without an area.
     pub(super) fn points(positions: &'a [DVec2]) -> Self {
         Self {
             at: At::Positions(positions),
@@ -72,10 +72,10 @@ impl<'a> Places<'a> {
     }
 }
 
-/// Indices of steps with their values that were computed before.
+/// Steps whose values were computed beforehand, as pairs of step index and values.
 pub(crate) type Known = [(usize, Arc<Values>)];
 
-/// Computes the values of the steps `wanted` at some positions, in the order of `wanted`.
+/// Computes the values of the steps `wanted` at `places`, in the order of `wanted`.
 pub(super) fn evaluate(
     steps: &[Step],
     whole: Option<&Whole>,
@@ -122,7 +122,7 @@ fn last_uses(steps: &[Step], order: &[usize], wanted: &[usize]) -> Vec<usize> {
     last_use
 }
 
-/// Maximum and minimum number of pixels that a thread takes at a time.
+/// Maximum and minimum number of pixels that a thread evaluates at a time.
 const CHUNK_PIXELS: [u32; 2] = [1 << 16, 1 << 11];
 
 /// Number of positions that a warp evaluates at a time. Their values fit in the processor's cache.
@@ -175,7 +175,7 @@ pub(super) fn window(
 /// Minimum number of values that a parallel task joins; fewer are joined on the current thread.
 const JOINED_VALUES: usize = 1 << 14;
 
-/// Joins, for each step, the values of all chunks.
+/// Concatenates the values of all chunks, separately for each step.
 fn join(mut chunks: Vec<Vec<Arc<Values>>>) -> Vec<Values> {
     if chunks.len() == 1 {
         let only = chunks.swap_remove(0);
@@ -258,7 +258,7 @@ fn step(
     }
 }
 
-/// Returns the positions, displaced by `amount` times the vectors (x, y).
+/// Displaces `positions` by `amount` times the vectors (x, y).
 fn shifted(mut positions: Vec<DVec2>, x: &Values, y: &Values, amount: f64) -> Vec<DVec2> {
     let shifts = x.numbers().iter().zip(y.numbers());
     for (position, (&x, &y)) in positions.iter_mut().zip(shifts) {
@@ -268,7 +268,7 @@ fn shifted(mut positions: Vec<DVec2>, x: &Values, y: &Values, amount: f64) -> Ve
 }
 
 impl StretchedImage {
-    /// Samples the image at positions of the plane: the mean of its pixels over the area of each position.
+    /// Samples the image at positions of the plane. Each sample is the mean of the pixels over the position's area.
     pub(super) fn at(&self, places: Places<'_>) -> Values {
         match &self.picture {
             Picture::Numbers(raster) => Values::Numbers(self.read(raster, places)),

@@ -1,4 +1,4 @@
-//! Nodes as fields, for previews, seam tests and other programs.
+//! Exposes nodes as fields, for previews, seam tests and other programs.
 
 use super::evaluate::{Places, evaluate};
 use super::step::Step;
@@ -8,11 +8,11 @@ use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
 use dapple_tile::TileErrorKind;
 use std::sync::Arc;
 
-/// The values of a node that makes numbers, as a field: one number for every position of the plane.
+/// A node's numbers as a field: one number for every position of the plane.
 ///
-/// A position is a point: unlike in a [`Bake`](crate::Bake), images are not averaged over the pixels of a window.
+/// Samples are taken at points. Unlike in a [`Bake`](crate::Bake), images are not averaged over the pixels of a window.
 ///
-/// A node may fail for some inputs, such as a blend for weights below 0. Then sampling many positions or a window
+/// A node may fail for some inputs, such as a blend with weights below 0. Sampling many positions or a window then
 /// returns an error, and [`value`](Field::value), which cannot fail, returns NaN.
 #[derive(Clone, Debug)]
 pub struct NodeField {
@@ -22,7 +22,7 @@ pub struct NodeField {
 
 /// The colors of a node, as a function of the position in the plane.
 ///
-/// A position is a point: unlike in a [`Bake`](crate::Bake), images are not averaged over the pixels of a window.
+/// Samples are taken at points. Unlike in a [`Bake`](crate::Bake), images are not averaged over the pixels of a window.
 #[derive(Clone, Debug)]
 pub struct NodeColors {
     steps: Arc<[Step]>,
@@ -77,7 +77,7 @@ impl NodeColors {
     ///
     /// # Errors
     ///
-    /// The errors of the node and its inputs, such as a blend with weights below 0.
+    /// If the node or one of its inputs fails, such as a blend with weights below 0.
     pub fn sample(&self, position: impl Into<[f64; 2]>) -> Result<LinearRgb, RecipeError> {
         let position = position.into().into();
         let values = one(&self.steps, Places::points(&[position]), self.step)?;
@@ -89,7 +89,7 @@ impl NodeColors {
     ///
     /// # Errors
     ///
-    /// [`Raster`](RecipeErrorKind::Raster) for a window without pixels or with too many, and the errors of
+    /// [`Raster`](RecipeErrorKind::Raster) if the window has no pixels or too many, or the same errors as
     /// [`sample`](Self::sample).
     pub fn to_raster(&self, window: &Window) -> Result<Raster<LinearRgb>, RecipeError> {
         // Check the size before any values are computed.
@@ -101,7 +101,7 @@ impl NodeColors {
     }
 }
 
-/// Returns the values of one step.
+/// Computes the values of one step.
 fn one(steps: &[Step], places: Places<'_>, step: usize) -> Result<Arc<Values>, RecipeError> {
     let mut values = evaluate(steps, None, places, &[step], &[])?;
     Ok(values.swap_remove(0))

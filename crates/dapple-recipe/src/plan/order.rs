@@ -1,11 +1,12 @@
-//! Topological order of the nodes, by depth-first search: each node comes after its inputs.
+//! Sorts nodes topologically, by depth-first search, so that each node comes after its inputs.
 
 use crate::{Node, Recipe, RecipeError, RecipeErrorKind};
 
-/// Maximum number of nodes of a recipe: more than people write, and few enough for recursion along a chain of nodes.
+/// Maximum number of nodes in a recipe. It is more than people write, and small enough to recurse along a chain of
+/// nodes.
 const MAX_NODES: usize = 1024;
 
-/// Returns the names of all nodes, each after its inputs; otherwise in the order of the recipe.
+/// Returns the names of all nodes, each after its inputs, and otherwise in the order of the recipe.
 pub(crate) fn order(recipe: &Recipe) -> Result<Vec<&str>, RecipeError> {
     check_names(recipe)?;
     let mut order = Order {
@@ -93,7 +94,7 @@ impl<'a> Order<'a> {
             .ok_or_else(|| unknown(self.recipe, name))
     }
 
-    /// Returns the error for a cycle: a node on the current path that is reached again.
+    /// Returns the error for a cycle, which was found because the node at `index` is on the current path already.
     fn cycle(&self, index: usize) -> RecipeError {
         let start = self
             .path

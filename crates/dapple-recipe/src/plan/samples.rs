@@ -18,7 +18,7 @@ named! {
     }
 }
 
-/// The distinct sample positions of the tile.
+/// The sample positions of the tile, without those that repeat another one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TileSamples {
     /// The samples as a window. For corners along an axis that repeats, it lacks the last sample, which equals the
@@ -29,12 +29,12 @@ pub(crate) struct TileSamples {
 }
 
 impl Plan {
-    /// Returns the distinct samples of a map of `size` columns and rows, which may have more pixels than a raster can
-    /// have.
+    /// Returns the samples of a map of `size` columns and rows, without those that repeat another one. The map may have
+    /// more pixels than a raster can hold.
     ///
     /// # Errors
     ///
-    /// [`Range`](crate::RecipeErrorKind::Range) for a side without a pixel, or with a single corner.
+    /// [`Range`](crate::RecipeErrorKind::Range) if a side has no pixel, or only a single corner.
     pub(crate) fn tile_samples(
         &self,
         size: [u32; 2],

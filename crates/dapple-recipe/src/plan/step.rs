@@ -10,7 +10,7 @@ use glam::DVec2;
 use std::fmt;
 use std::sync::Arc;
 
-/// A source of values. Inputs are the indices of earlier steps.
+/// A source of values. Inputs are stored as indices of earlier steps.
 pub(crate) enum Step {
     Number(f32),
     Color(LinearRgb),
@@ -40,7 +40,7 @@ type LocalFunction = dyn Fn(&[&Values]) -> Result<Values, RecipeError> + Send + 
 pub(crate) struct Global {
     pub(crate) inputs: Vec<usize>,
     pub(crate) color: bool,
-    /// For each axis, the number of copies of the inputs' images in the tile.
+    /// For each axis, how many copies of the inputs' images fit in the tile.
     pub(crate) copies: [u32; 2],
     pub(crate) apply: Box<GlobalFunction>,
 }
@@ -50,11 +50,11 @@ type GlobalFunction = dyn Fn(&Tile<'_>) -> Result<Values, RecipeError> + Send + 
 /// The arguments of a step that depends on the whole tile.
 pub(crate) struct Tile<'a> {
     pub(crate) inputs: &'a [&'a Values],
-    /// The numbers of columns and rows of the inputs.
+    /// Columns and rows of the inputs.
     pub(crate) input_size: [u32; 2],
-    /// The window of all pixels of the tile.
+    /// The window that covers all pixels of the tile.
     pub(crate) window: &'a Window,
-    /// Progress reports to the callback of the caller.
+    /// Reports progress to the caller's callback.
     pub(crate) watch: &'a Watch,
 }
 
@@ -69,12 +69,12 @@ pub(crate) struct StretchedImage {
 }
 
 impl Tile<'_> {
-    /// Returns whether the caller asks to stop.
+    /// Returns a function that tells whether the caller's callback asks to stop.
     pub(crate) fn is_cancelled(&self) -> impl Fn() -> bool + Sync {
         || self.watch.is_cancelled()
     }
 
-    /// Returns the inputs as maps: all in color if any input is in color.
+    /// Converts the inputs to maps. All of them are in color if any input is.
     pub(crate) fn maps(&self) -> Result<Vec<Map>, RecipeError> {
         Ok(Values::maps(self.inputs, self.input_size)?)
     }
@@ -97,17 +97,17 @@ impl fmt::Debug for Step {
 }
 
 impl Step {
-    /// Builds the step of a field of numbers.
+    /// Creates a step that evaluates a field.
     pub(crate) fn field(field: impl Field + 'static) -> Self {
         Self::Field(Arc::new(field))
     }
 
-    /// Marks the step as one that makes colors, regardless of its inputs.
+    /// Marks the step as having colors, regardless of its inputs.
     pub(crate) fn with_colors(self) -> Self {
         self.with_color(true)
     }
 
-    /// Marks the step as one that makes numbers, regardless of its inputs.
+    /// Marks the step as having numbers, regardless of its inputs.
     pub(crate) fn with_numbers(self) -> Self {
         self.with_color(false)
     }
@@ -119,7 +119,7 @@ impl Step {
         self
     }
 
-    /// Returns whether the step makes colors, not numbers.
+    /// Returns whether the step has colors instead of numbers.
     pub(crate) fn is_color(&self) -> bool {
         match self {
             Self::Number(_) | Self::Field(_) => false,
@@ -145,8 +145,8 @@ impl Step {
 
 /// Returns the steps to evaluate at the positions of `wanted`, in order.
 ///
-/// The list continues neither to the displaced inputs of warps, which are evaluated at other positions, nor to the
-/// inputs of steps that depend on the whole tile, which are evaluated beforehand, nor to the inputs of known steps.
+/// Three kinds of inputs are excluded: the displaced inputs of warps, which are evaluated at other positions; the
+/// inputs of steps that depend on the whole tile, which are evaluated beforehand; and the inputs of known steps.
 pub(super) fn needed(
     steps: &[Step],
     wanted: &[usize],
@@ -165,7 +165,7 @@ pub(super) fn ancestors(steps: &[Step], wanted: &[usize]) -> Vec<usize> {
     reached(steps, wanted, |index| steps[index].inputs())
 }
 
-/// Returns the steps reachable from `wanted`, in order. Each step leads to earlier steps only.
+/// Returns the steps reachable from `wanted` by `leads_to`, in order. Each step leads to earlier steps only.
 fn reached(steps: &[Step], wanted: &[usize], leads_to: impl Fn(usize) -> Vec<usize>) -> Vec<usize> {
     let mut reached = vec![false; steps.len()];
     wanted.iter().for_each(|&index| reached[index] = true);
@@ -183,7 +183,7 @@ fn reached(steps: &[Step], wanted: &[usize], leads_to: impl Fn(usize) -> Vec<usi
 pub(super) fn shared(steps: &[Step], height: usize, wanted: &[usize]) -> Vec<usize> {
     let of_height = needed(steps, &[height], |_| false);
     let is_shared = |index: usize| {
-        // Making a constant is as fast as copying it, and steps that depend on the whole tile are stored already.
+        // Computing a constant is as fast as copying it, and steps that depend on the whole tile are stored already.
         let is_ready = matches!(
             steps[index],
             Step::Number(_) | Step::Color(_) | Step::Global(_)

@@ -1,4 +1,4 @@
-//! Progress reports to a callback of the caller, which can stop the work.
+//! Reports progress to the caller's callback, which can stop the work.
 
 use crate::{RecipeError, RecipeErrorKind};
 use core::fmt;
@@ -8,13 +8,13 @@ use dapple_points::Cancel;
 use dapple_synth::Progress;
 use std::sync::Arc;
 
-/// An optional callback, with the progress of the work that it reports. Clones share both.
+/// An optional progress callback with the progress that is reported to it. Clones share both.
 #[derive(Clone, Default)]
 pub(crate) struct Watch(Option<Arc<Heard>>);
 
 type Callback = dyn Fn(Progress) -> ControlFlow<()> + Send + Sync;
 
-/// A callback and the progress of one piece of work.
+/// A progress callback and the progress of one piece of work.
 struct Heard {
     callback: Arc<Callback>,
     pass: AtomicUsize,
@@ -27,7 +27,7 @@ struct Heard {
 /// The passes of the work, in order.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Pass {
-    /// Makes the nodes.
+    /// Builds the nodes.
     Nodes,
     /// Evaluates the nodes that depend on the whole tile.
     Whole,
@@ -38,11 +38,11 @@ pub(crate) enum Pass {
 /// The number of passes.
 const N_PASSES: usize = 3;
 
-/// Number of sites that a node counts as in the progress.
+/// Number of sites that a node counts as in progress reports.
 pub(crate) const OF_NODE: usize = 1000;
 
 impl Watch {
-    /// Reports to this callback.
+    /// Creates a watch that reports to `callback`.
     pub(super) fn by(
         callback: impl Fn(Progress) -> ControlFlow<()> + Send + Sync + 'static,
     ) -> Self {
@@ -61,8 +61,7 @@ impl Watch {
         })))
     }
 
-    /// Returns a watch with the callback of this one and separate progress, for other work that may run at the same
-    /// time.
+    /// Creates a watch with the same callback and separate progress, for other work that may run at the same time.
     pub(crate) fn again(&self) -> Self {
         let heard = self.0.as_ref();
         heard.map_or_else(Self::default, |heard| Self::of(heard.callback.clone()))
@@ -118,7 +117,7 @@ impl Watch {
         }
     }
 
-    /// Returns the callback in the form that options of textures take.
+    /// Converts the callback to the form that texture options take.
     pub(crate) fn cancel(&self) -> Cancel {
         match &self.0 {
             None => Cancel::default(),
@@ -129,8 +128,8 @@ impl Watch {
         }
     }
 
-    /// Returns the reason why work ended: [`Cancelled`](RecipeErrorKind::Cancelled) if the callback asked to stop, else
-    /// `error`.
+    /// Returns the reason why work ended, which is [`Cancelled`](RecipeErrorKind::Cancelled) if the callback asked to
+    /// stop, and otherwise `error`.
     pub(crate) fn reason(&self, error: RecipeError) -> RecipeError {
         let is_over = |heard: &Arc<Heard>| heard.is_over.load(Relaxed);
         match self.0.as_ref().is_some_and(is_over) {

@@ -1,4 +1,4 @@
-//! Steps that depend on the whole tile, evaluated beforehand at a given size.
+//! Evaluates the steps that depend on the whole tile, beforehand and at a given size.
 
 use super::builder::wrap;
 use super::evaluate::{At, Places};
@@ -9,7 +9,7 @@ use dapple_raster::{Raster, Window, Wrap};
 use glam::DVec2;
 use std::sync::Arc;
 
-/// The values of all steps that depend on the whole tile, at one size: one image for each such step.
+/// The values of all steps that depend on the whole tile, at one size. Each such step has one image.
 #[derive(Clone, Debug, Default)]
 pub struct Whole {
     /// The tile as a window; `None` if no step depends on the whole tile.
@@ -17,7 +17,7 @@ pub struct Whole {
     wrap: [Wrap; 2],
     extent: DVec2,
     pictures: Vec<Option<Picture>>,
-    /// Progress reports of the work that uses these values.
+    /// Reports the progress of work that uses these values.
     pub(crate) watch: Watch,
 }
 
@@ -42,7 +42,7 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// [`Global`](RecipeErrorKind::Global), with the node.
+    /// [`Global`](RecipeErrorKind::Global), with the node, if it does.
     pub fn check_local(&self) -> Result<(), RecipeError> {
         let globals = self.needed_globals(&self.channels().steps());
         let Some(&(index, _)) = globals.first() else {
@@ -54,7 +54,7 @@ impl Plan {
         Err(self.within(index, error))
     }
 
-    /// Adds the name of the node of a step to an error.
+    /// Adds the name of a step's node to an error.
     pub(super) fn within(&self, index: usize, error: RecipeError) -> RecipeError {
         match self.names.iter().find(|&(_, &step)| step == index) {
             Some((name, _)) => error.within(name),
@@ -66,9 +66,9 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// The errors of the crates of the nodes, [`Raster`](RecipeErrorKind::Raster) for a size that is too large, and
-    /// [`TooMuch`](RecipeErrorKind::TooMuch) if their images together have more pixels than the limits of the plan
-    /// allow.
+    /// If a node fails, [`Raster`](RecipeErrorKind::Raster) if the size is too large, and
+    /// [`TooMuch`](RecipeErrorKind::TooMuch) if the images of these steps together have more pixels than the plan's
+    /// limits allow.
     pub fn whole(&self, size: [u32; 2]) -> Result<Whole, RecipeError> {
         let tile = self.tile_samples(size, Samples::Centers)?;
         self.whole_of(&tile, &self.channels().steps(), self.watch())
@@ -118,12 +118,12 @@ impl Plan {
         Ok(whole)
     }
 
-    /// Renders a node at the pixels of the tile, or of a region of it. The material need not use the node.
+    /// Renders a node at the pixels of the tile, or of a region of it. The node need not contribute to the material.
     ///
     /// # Errors
     ///
-    /// [`UnknownNode`](RecipeErrorKind::UnknownNode) if there is no such node, and the errors of [`whole`](Self::whole)
-    /// and of [`Bake::new`](crate::Bake::new).
+    /// [`UnknownNode`](RecipeErrorKind::UnknownNode) if there is no such node, or the same errors as
+    /// [`whole`](Self::whole) and [`Bake::new`](crate::Bake::new).
     pub fn node_picture(
         &self,
         node: &str,
@@ -187,7 +187,7 @@ impl Plan {
 }
 
 impl Values {
-    /// Returns the values as an image of `size` columns and rows.
+    /// Converts the values to an image of `size` columns and rows.
     fn picture(self, size: [u32; 2]) -> Result<Picture, RecipeError> {
         Ok(match self {
             Self::Numbers(numbers) => Picture::Numbers(Arc::new(Raster::from_vec(size, numbers)?)),
@@ -219,7 +219,7 @@ impl Global {
 }
 
 impl Whole {
-    /// Returns the values of a step at some positions. Pixels of the tile have exact values; other positions are
+    /// Returns the values of a step at `places`. Pixels of the tile have exact values; other positions are
     /// interpolated.
     pub(super) fn at(&self, index: usize, places: Places<'_>) -> Result<Values, RecipeError> {
         let (Some(tile), Some(Some(picture))) = (self.window, self.pictures.get(index)) else {
@@ -244,7 +244,7 @@ impl Whole {
         }
     }
 
-    /// Returns the pixels of a window that may extend past the tile.
+    /// Returns the pixels of `window`, which may extend past the tile.
     fn pixels<T: Copy>(&self, raster: &Raster<T>, window: &Window) -> Vec<T> {
         let mut pixels = Vec::with_capacity(window.n_pixels());
         for row in 0..window.size[1] {

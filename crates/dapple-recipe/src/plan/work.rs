@@ -1,4 +1,4 @@
-//! Estimates of the work of a recipe, checked against limits before any of the work is done.
+//! Estimates the work for a recipe, and checks it against limits before any work is done.
 //!
 //! A few lines of a recipe can demand any number of control points, wavelet noise of any size, and nested warps. Each
 //! level of warps evaluates all its inputs once more.
@@ -6,7 +6,7 @@
 use super::step::{Global, Step, needed};
 use crate::{RecipeError, RecipeErrorKind};
 
-/// Limits of the work of a recipe.
+/// Limits on the work for a recipe.
 ///
 /// The defaults are far above the needs of textures, and the work that they allow fits in the memory of a small
 /// machine.
@@ -58,14 +58,14 @@ impl Default for PlanLimits {
 }
 
 impl PlanLimits {
-    /// Fails if this number of images of `size` columns and rows has more pixels than the limit.
+    /// Returns an error if `pictures` images of `size` columns and rows have more pixels than the limit.
     pub(super) fn check_pixels(&self, pictures: usize, size: [u32; 2]) -> Result<(), RecipeError> {
         let pixels = pictures as f64 * f64::from(size[0]) * f64::from(size[1]);
         check("pixels that are seen as a whole", pixels, self.pixels)
     }
 }
 
-/// Fails for a value above its limit.
+/// Returns an error if `value` is above its limit.
 fn check(what: &'static str, value: f64, limit: u64) -> Result<(), RecipeError> {
     if value > limit as f64 {
         return Err(RecipeError::new(RecipeErrorKind::TooMuch {
@@ -88,7 +88,7 @@ pub(crate) struct Work {
     pub(crate) synthesized_pixels: f64,
 }
 
-/// Sum of the work of all nodes so far, with its limits.
+/// The work of all nodes so far, with its limits.
 pub(super) struct WorkSum<'a> {
     limits: &'a PlanLimits,
     sum: Work,
@@ -122,7 +122,7 @@ impl<'a> WorkSum<'a> {
     }
 }
 
-/// Numbers of values computed for each pixel.
+/// For each step, counts of the values computed per pixel.
 struct Values {
     /// For each step, the number of values recomputed for it, in addition to its own value.
     under: Vec<f64>,
@@ -130,8 +130,8 @@ struct Values {
     warps: Vec<u64>,
 }
 
-/// Fails if the steps compute too many values for each pixel, or nest warps too deeply. The error has the index of the
-/// step at which the limit is exceeded.
+/// Returns an error if the steps compute too many values per pixel or nest warps too deeply. It comes with the index of
+/// the step at which the limit is exceeded.
 pub(super) fn check_steps(steps: &[Step], limits: &PlanLimits) -> Result<(), (usize, RecipeError)> {
     let what = "values for each pixel";
     let last = steps.len().saturating_sub(1);

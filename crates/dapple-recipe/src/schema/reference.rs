@@ -159,7 +159,7 @@ impl Reference<'_> {
     }
 }
 
-/// The types that have a section under "Forms".
+/// The types that the reference describes in the section "Forms".
 const FORMS: [&str; 7] = [
     "Input",
     "NodeSeed",

@@ -1,4 +1,4 @@
-//! Schemas of types of other crates, derived by tracing their `Deserialize` implementations.
+//! Derives schemas of other crates' types by tracing their `Deserialize` implementations.
 //!
 //! The type is deserialized from a probe instead of data. The probe answers the first value that the type requests with
 //! an error that contains the schema of this value. At a struct or an enum there are several ways to continue: the type
@@ -28,13 +28,13 @@ struct Found {
     lists: Vec<Option<usize>>,
 }
 
-/// A request of a type.
+/// A value that a type asks the deserializer for.
 #[derive(Debug)]
 enum Asked {
     Value(Value),
     Fields(&'static [&'static str]),
     Variants(&'static [&'static str]),
-    /// A unit variant of an enum, written as a word.
+    /// A unit variant of an enum, which is written as a word.
     Word,
 }
 
@@ -69,8 +69,8 @@ impl Error for Found {
     }
 }
 
-/// Returns the schema of the value at the end of a path of field and variant indices through a type; `None` for a unit
-/// variant.
+/// Returns the schema of the value at the end of `way`, a path of field and variant indices through a type; `None` for
+/// a unit variant.
 fn explore<T: DeserializeOwned>(way: &mut Vec<usize>) -> Option<Value> {
     let Err(found) = T::deserialize(Probe { way }) else {
         return None;
@@ -202,7 +202,7 @@ impl<'de> Deserializer<'de> for Probe<'_> {
         deserialize_unit => { "type": "null" },
     }
 
-    /// Passes an unknown word. A type that reads words lists all valid ones in its error.
+    /// Passes an unknown word to the type. Types that read words list all valid ones in their error.
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Found> {
         match visitor.visit_str::<Found>("\u{1}") {
             Err(found) => Err(found),

@@ -1,4 +1,4 @@
-//! The parsed data of a TOML or JSON text.
+//! A parsed TOML or JSON text.
 //!
 //! Recipes are deserialized from it, so that the deserializers of their many types are compiled once and not once per
 //! format.
@@ -251,7 +251,7 @@ impl<'de> MapAccess<'de> for Entries<'de> {
     }
 }
 
-/// A unit variant of an enum, written as a word.
+/// A unit variant of an enum, which is written as a word.
 struct Word<'de>(&'de str);
 
 impl<'de> EnumAccess<'de> for Word<'de> {
@@ -298,7 +298,7 @@ impl<'de> VariantAccess<'de> for Word<'de> {
     }
 }
 
-/// A variant of an enum with content, written as a table with one entry.
+/// A variant of an enum with content, which is written as a table with one entry.
 struct Variant<'de> {
     name: &'de str,
     value: &'de Content,

@@ -49,7 +49,7 @@ impl Refusal {
         self
     }
 
-    /// Marks the error as one of this key, and prepends the key to the path.
+    /// Marks the error as being about `key` instead of its value, and prepends the key to the path.
     pub(super) fn of_key(mut self, key: &str) -> Self {
         self.is_key = true;
         self.inside(Part::Key(key.to_owned()))
@@ -103,7 +103,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Returns the rest of the path, if its next part leads to the value at hand.
+    /// Returns the rest of the path if its first part leads to the current value; otherwise `None`.
     fn step(self, leads_there: impl FnOnce(&Part) -> bool) -> Option<Self> {
         let (next, parts) = self.parts.split_last()?;
         leads_there(next).then_some(Self { parts, ..self })
