@@ -11,10 +11,10 @@ use crate::tidy::workspace::{Member, Workspace};
 use anyhow::{Context, bail};
 use xshell::{Cmd, Shell, cmd};
 
-/// A step of CI.
+/// A step of the CI checks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step {
-    /// All tests, by the command in the README.
+    /// All tests, as run by the command in the README.
     Test,
     /// The formatting check.
     Fmt,
@@ -26,9 +26,9 @@ pub(crate) enum Step {
     Tidy,
     /// The license texts of third-party crates, as in `cargo xtask licenses --check`.
     Licenses,
-    /// Every published crate alone: without features, with each of its features, and tests without `rayon`.
+    /// Each published crate built alone, without features and with each of its features, and its tests without `rayon`.
     Features,
-    /// The package of every published crate, as uploaded to a registry.
+    /// The package of each published crate, as uploaded to a registry.
     Package,
     /// Baked materials, checked with other programs if these are installed.
     Exchange,
@@ -85,7 +85,7 @@ impl Step {
     }
 }
 
-/// Runs steps in order and stops at the first failure.
+/// Runs `steps` in order and stops at the first failure.
 pub(crate) fn ci(shell: &Shell, steps: &[Step]) -> anyhow::Result<()> {
     for &step in steps {
         crate::say(&format!("== {}", step.name()));

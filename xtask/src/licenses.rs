@@ -1,4 +1,5 @@
-//! `cargo xtask licenses`: the license texts of third-party crates, shipped with the command and the wheel.
+//! `cargo xtask licenses`: collects the license texts of third-party crates, which are shipped with the command and the
+//! wheel.
 //!
 //! The texts are copied from the packages in Cargo's local cache. This needs no network and no compilation, so CI can
 //! compare the complete files. cargo-about finds licenses in the same files, but takes minutes to compile.
@@ -66,7 +67,7 @@ pub(crate) fn licenses(shell: &Shell, check: bool) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Returns the output for a package: each license text once, preceded by the crates that use it.
+/// Returns the license file for a package. It has each license text once, preceded by the crates that use it.
 fn texts(shell: &Shell, metadata: &Value, package: &str) -> anyhow::Result<String> {
     let mut texts: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for package in shipped(metadata, package)? {

@@ -1,7 +1,7 @@
 //! Development commands of the workspace: `cargo xtask gallery`, `docs-images`, `bench`, `studio`, `web`, `golden`,
 //! `licenses`, `tidy` and `ci`.
 //!
-//! It depends on no crate of the workspace, so that it compiles quickly. Commands that need one run
+//! The binary depends on no other crate of the workspace, so that it compiles quickly. Commands that need one run
 //! `cargo run --release`.
 
 #![forbid(unsafe_code)]

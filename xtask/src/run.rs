@@ -1,4 +1,4 @@
-//! Commands that run programs of the workspace.
+//! Implements the commands that run programs of the workspace.
 
 use anyhow::bail;
 use std::ffi::OsString;

@@ -1,4 +1,4 @@
-//! `cargo xtask tidy`: the project rules that no compiler checks.
+//! `cargo xtask tidy`: checks the project rules that the compiler does not check.
 //!
 //! A rule is a function from the [`Workspace`] to a list of violations. Each rule has a test that shows it firing on
 //! a broken sample. `cargo test` runs all rules on the real workspace.
@@ -12,7 +12,7 @@ use anyhow::bail;
 use workspace::Workspace;
 use xshell::Shell;
 
-/// A rule: its statement, and the function that finds violations.
+/// A rule, as its statement and the function that finds violations.
 type Rule = (&'static str, fn(&Workspace) -> Vec<String>);
 
 /// All rules.

@@ -188,9 +188,9 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// If the recipe is invalid: unknown names, cycles, colors where numbers are needed, numbers out of range, or an
-    /// error from a node's crate. The error names the node. [`TooMuch`](RecipeErrorKind::TooMuch) if the work exceeds
-    /// the default [`PlanLimits`].
+    /// If the recipe has unknown names, cycles, colors where numbers are needed, or numbers out of range, or if a
+    /// node's crate reports an error. The error names the node. Also [`TooMuch`](RecipeErrorKind::TooMuch) if the work
+    /// exceeds the default [`PlanLimits`].
     pub fn new(recipe: &Recipe, images: &Images, time: f64) -> Result<Self, RecipeError> {
         Self::new_within(recipe, images, time, &PlanLimits::default())
     }

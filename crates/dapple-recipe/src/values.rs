@@ -10,7 +10,7 @@ use std::ops::Range;
 /// The values of a node: one number or one color for each position.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// Numbers, one per pixel.
+    /// Numbers, one per position.
     Numbers(Vec<f32>),
     /// Linear colors.
     Colors(Vec<LinearRgb>),

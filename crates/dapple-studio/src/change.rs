@@ -1,4 +1,4 @@
-//! The difference between two texts as a list of small changes.
+//! Computes the difference between two texts as a list of small changes.
 
 use crate::utf16::Positions;
 use serde::{Deserialize, Serialize};
@@ -14,8 +14,8 @@ pub struct Change {
     pub insert: String,
 }
 
-/// Returns the changes that turn `old` into `new`: one per changed line if both have the same number of lines,
-/// otherwise a single change.
+/// Returns the changes that turn `old` into `new`. There is one per changed line if both have the same number of lines,
+/// and otherwise a single one.
 pub(crate) fn changes(old: &str, new: &str) -> Vec<Change> {
     let positions = Positions::new(old);
     let change = |start: usize, old_part: &str, new_part: &str| {

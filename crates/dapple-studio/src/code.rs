@@ -1,10 +1,10 @@
-//! Converts a recipe to a program or to text.
+//! Converts a recipe to a program or to recipe text.
 
 use crate::message::CodeKind;
 use crate::{Document, StudioError};
 use dapple::recipe::Recipe;
 
-/// Options of a conversion to a program or to text.
+/// Options for converting a recipe to a program or to text.
 pub(crate) struct Code<'a> {
     pub(crate) kind: CodeKind,
     pub(crate) size: Option<[u32; 2]>,

@@ -1,4 +1,4 @@
-//! Conversion of values between TOML and JSON.
+//! Converts values between TOML and JSON.
 
 use crate::StudioError;
 use serde_json::{Map, Number, Value as Json};
@@ -107,7 +107,7 @@ pub(crate) fn rewrite(old: &mut Value, json: &Json) -> Result<(), StudioError> {
         _ => {}
     }
     let mut new = value_of(json)?;
-    // A number written with a decimal point keeps it: 2.0 does not become 2.
+    // A number written with a decimal point keeps it, so that 2.0 does not become 2.
     if let (Value::Float(_), Json::Number(number)) = (&*old, json)
         && let Some(number) = number.as_f64()
     {

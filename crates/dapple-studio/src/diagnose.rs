@@ -1,4 +1,4 @@
-//! Errors in a recipe and their positions in its text.
+//! Converts errors in a recipe to diagnostics with positions in its text.
 
 use crate::Document;
 use core::ops::Range;
@@ -23,7 +23,7 @@ pub struct Diagnostic {
     pub hint: Option<String>,
 }
 
-/// Returns the diagnostic of a text that is not a valid recipe.
+/// Creates the diagnostic for a text that is not a valid recipe.
 pub(crate) fn of_text(document: &Document, error: &RecipeError) -> Diagnostic {
     let text = document.text();
     let bytes = match error.place() {
@@ -45,7 +45,7 @@ pub(crate) fn of_text(document: &Document, error: &RecipeError) -> Diagnostic {
     diagnostic(document, bytes, node.map(str::to_owned), error)
 }
 
-/// Returns the diagnostic of a valid recipe that a plan or a bake refuses.
+/// Creates the diagnostic for a valid recipe that a plan or a bake refuses.
 pub(crate) fn of_error(document: &Document, error: &RecipeError) -> Diagnostic {
     if error.place().is_some() {
         return of_text(document, error);
@@ -86,8 +86,8 @@ fn byte_of(text: &str, place: Place) -> usize {
     before + column.map_or(line.trim_end().len(), |(byte, _)| byte)
 }
 
-/// Returns the end of the word, string or array that begins at a byte. The range has at least one character, except at
-/// the end of the text.
+/// Returns the end of the word, string or array that begins at the byte `start`. The range has at least one character,
+/// except at the end of the text.
 fn word_end(text: &str, start: usize) -> usize {
     let rest = &text[start..];
     let Some(first) = rest.chars().next() else {
@@ -103,7 +103,8 @@ fn word_end(text: &str, start: usize) -> usize {
     start + length.max(first.len_utf8())
 }
 
-/// Returns the range of a plan's error: the value named by the error, or else the name of the node.
+/// Returns the range that a plan's error refers to, which is the value named by the error, or else the name of the
+/// node.
 fn place(document: &Document, error: &RecipeError) -> Option<Range<usize>> {
     let root = document.table()?;
     let nodes = root.get("nodes").and_then(Item::as_table_like);

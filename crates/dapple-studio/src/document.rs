@@ -18,7 +18,7 @@ pub struct Document {
 }
 
 impl Document {
-    /// Creates the document of any text. The text need not be valid.
+    /// Creates a document from a text, which need not be a valid recipe.
     pub fn new(text: impl Into<String>) -> Self {
         let text = text.into();
         let toml = if text.len() > dapple::recipe::MAX_TEXT {
@@ -71,8 +71,8 @@ impl Document {
         of_error(self, error)
     }
 
-    /// Returns the range of a node in the text, in UTF-16 code units: from the first line of its header or key to its
-    /// last value.
+    /// Returns the range of a node in the text, in UTF-16 code units. It extends from the first line of the node's
+    /// header or key to its last value.
     #[must_use]
     pub fn node_span(&self, name: &str) -> Option<[usize; 2]> {
         let (key, item) = self

@@ -1,9 +1,9 @@
-//! Errors that a page shows.
+//! The error type for requests of a page.
 
 use core::fmt;
 use dapple::recipe::RecipeError;
 
-/// A refused request, as a sentence for people.
+/// An error message for a refused request, with an optional hint and reason code.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StudioError {
     message: String,
@@ -12,7 +12,7 @@ pub struct StudioError {
 }
 
 impl StudioError {
-    /// Creates an error with this message, which is lower case and has no full stop.
+    /// Creates an error with this message, which must be lower case and have no period at its end.
     pub fn new(message: impl Into<String>) -> Self {
         Self {
             message: message.into(),
@@ -21,7 +21,7 @@ impl StudioError {
         }
     }
 
-    /// Adds a hint: how to avoid the error.
+    /// Adds a hint on how to avoid the error.
     #[must_use]
     pub fn with_hint(mut self, hint: impl Into<String>) -> Self {
         self.hint = Some(hint.into());

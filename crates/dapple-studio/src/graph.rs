@@ -10,9 +10,9 @@ use serde_json::{Map, Value as Json};
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Graph {
     nodes: Vec<GraphNode>,
-    /// The inputs of the material, by name.
+    /// The material's inputs, by name.
     material: Map<String, Json>,
-    /// The names of the nodes in topological order: every node after its inputs. Without a plan, they are in the
+    /// The names of the nodes in topological order, with every node after its inputs. Without a plan, they are in the
     /// order of the text.
     order: Vec<String>,
 }
@@ -44,8 +44,8 @@ struct GraphInput {
 }
 
 impl Graph {
-    /// Returns the graph of a document. Without a plan, `is_color` and `is_global` are false and `order` is the order
-    /// of the text.
+    /// Builds the graph of a document. Without a plan, `is_color` and `is_global` are false and `order` is the order of
+    /// the text.
     #[must_use]
     pub fn new(document: &Document, plan: Option<&Plan>) -> Option<Self> {
         let data = document.data()?;
@@ -135,7 +135,7 @@ fn input(found: &Found<'_>, skipped: usize) -> GraphInput {
     }
 }
 
-/// Returns a short label of an input: its key, followed by its 1-based indices in nested arrays.
+/// Returns a short label for an input, its key followed by its 1-based indices in nested arrays.
 fn label(path: &[Part]) -> String {
     let parts = if path.len() > 1 { &path[1..] } else { path };
     let words = parts.iter().map(|part| match part {

@@ -1,9 +1,9 @@
-//! Recipe editor: the messages between a page and the studio, the session of a page, its renderer, and the local
-//! server.
+//! The back end of the recipe editor: the messages between a page and the studio, a page's session and renderer, and
+//! the local server.
 //!
-//! The document is the text of a recipe, in TOML. A [`Document`] holds this text together with the parsed recipe or
-//! its errors. An [`Op`] is a small edit of the recipe, and [`apply`] carries it out as a small edit of the text. A
-//! [`Graph`] lists the nodes and the inputs of each. A [`Session`] is the state of one page, and a [`Renderer`]
+//! The document is the text of a recipe, in TOML. A [`Document`] holds this text together with the parsed recipe or its
+//! errors. An [`Op`] is a small edit to the recipe, and [`apply`] carries it out as a small edit to the text. A
+//! [`Graph`] lists the nodes and the inputs of each. A [`Session`] holds the state of one page, and a [`Renderer`]
 //! renders the images that the page shows. None of these uses files, sockets or threads. Only [`serve`] does, behind
 //! the feature `server`.
 //!

@@ -23,18 +23,18 @@ pub enum Request {
     },
     /// The whole text after a change.
     Doc {
-        /// Revision of the text, counted by the page.
+        /// The text's revision number, counted by the page.
         rev: u64,
         /// The text.
         text: String,
     },
-    /// A small edit of the recipe.
+    /// A small edit to the recipe.
     Patch {
         /// Revision of the text that the edit applies to.
         rev: u64,
         /// The edits, applied in order.
         ops: Vec<Op>,
-        /// Whether the edit is part of a drag.
+        /// Whether the edit is part of a drag gesture, such as moving a slider.
         #[serde(default)]
         drag: bool,
     },
@@ -44,7 +44,7 @@ pub enum Request {
     Ack {
         /// The generation of the image.
         generation: u32,
-        /// The code of the map.
+        /// The code of the map, see [`Shown::code`](crate::Shown::code).
         map: u16,
     },
     /// Requests seam reports of the maps.
@@ -54,7 +54,7 @@ pub enum Request {
     },
     /// Requests thumbnails of the built-in recipes and of the recipes in the folder, rendered at low priority.
     Gallery {
-        /// The longer side of a thumbnail, in pixels.
+        /// A thumbnail's longer side, in pixels.
         size: u32,
     },
     /// Requests a strip of thumbnails that show the effect of edits, rendered at low priority. A new strip replaces
@@ -64,7 +64,7 @@ pub enum Request {
         node: Option<String>,
         /// The edits of each thumbnail.
         changes: Vec<Vec<Op>>,
-        /// The longer side of a thumbnail, in pixels.
+        /// A thumbnail's longer side, in pixels.
         size: u32,
     },
     /// Requests the control points of a node.
@@ -81,7 +81,7 @@ pub enum Request {
         /// The names of the maps.
         maps: Option<Vec<String>>,
     },
-    /// Requests the files of a bake.
+    /// Requests an export: the files of a bake.
     Export(Export),
     /// Stops all exports of the page.
     Stop,
@@ -94,7 +94,7 @@ pub enum Request {
         /// Whether to replace a file that has changed on disk.
         #[serde(default)]
         overwrite: bool,
-        /// The hash of the file when it was read. `None` for a new file.
+        /// The file's hash when it was read; `None` for a new file.
         seen: Option<String>,
     },
 }
@@ -111,7 +111,7 @@ pub struct View {
     pub region: Option<Area>,
     /// The node to show instead of maps.
     pub node: Option<String>,
-    /// Phase of the loop, from 0 to 1.
+    /// Phase of the looping animation, from 0 to 1.
     pub time: f64,
     /// Whether to send a draft (a smaller image) first.
     pub draft: bool,
@@ -185,7 +185,7 @@ pub enum CodeKind {
     Command,
 }
 
-/// Options of an export, which makes the files of a bake.
+/// Options for an export, which bakes the recipe to files.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Export {
@@ -199,7 +199,7 @@ pub struct Export {
     pub format: Option<String>,
     /// The direction of the green channel of normal maps.
     pub normal_y: Option<String>,
-    /// A frame of a loop: its number, starting at 1, and the number of frames.
+    /// The frame of a looping animation to export, as its number, starting at 1, and the number of frames.
     pub frame: Option<[u32; 2]>,
 }
 
@@ -222,13 +222,13 @@ pub enum Reply {
         /// The hash of the file.
         hash: Option<String>,
     },
-    /// An edit of the text.
+    /// An edit to the text.
     Edits {
         /// The revision of the text after the edit.
         rev: u64,
         /// The changes, sorted by position in the text before the edit.
         changes: Vec<Change>,
-        /// Whether the edit is part of a drag.
+        /// Whether the edit is part of a drag gesture, such as moving a slider.
         drag: bool,
     },
     /// An edit was rejected because the text is at another revision.
@@ -264,11 +264,11 @@ pub enum Reply {
         generation: u32,
         /// Columns and rows of the whole tile.
         size: [u32; 2],
-        /// The rectangle that is rendered. `None` for the whole tile.
+        /// The rectangle that is rendered; `None` for the whole tile.
         region: Option<Area>,
-        /// The node that is rendered. `None` for maps.
+        /// The node that is rendered; `None` for maps.
         node: Option<String>,
-        /// Phase of the loop, from 0 to 1.
+        /// Phase of the looping animation, from 0 to 1.
         time: f64,
         /// Whether drafts may come first.
         draft: bool,
@@ -283,7 +283,7 @@ pub enum Reply {
         ms: f64,
         /// Whether images of full size follow.
         draft: bool,
-        /// The nodes and the rendering time of their thumbnails, if thumbnails were requested.
+        /// The nodes with the rendering times of their thumbnails; `None` if no thumbnails were requested.
         nodes: Option<Vec<NodeTime>>,
     },
     /// Seam reports of the maps.
@@ -337,7 +337,7 @@ pub enum Reply {
 }
 
 impl Reply {
-    /// Builds the refusal of a request of type `what`.
+    /// Creates the refusal for a request of type `what`.
     #[must_use]
     pub fn refused(what: &str, error: &StudioError) -> Self {
         Self::Refused {
@@ -349,7 +349,7 @@ impl Reply {
     }
 }
 
-/// The recipes, kinds of nodes, maps and presets that this program offers.
+/// The recipes, node kinds, maps and presets that this program offers.
 #[derive(Clone, Debug, Serialize)]
 pub struct Hello {
     version: &'static str,
@@ -464,7 +464,7 @@ pub struct NodeTime {
     pub name: String,
     /// Rendering time of the thumbnail in milliseconds, without the node's inputs.
     pub ms: f64,
-    /// The values shown as black and as white. `None` for colors.
+    /// The values shown as black and white; `None` for colors.
     pub range: Option<[f32; 2]>,
 }
 
@@ -483,7 +483,7 @@ pub struct Points {
     pub(crate) node: String,
     /// Whether the points are part of the text.
     pub(crate) editable: bool,
-    /// Whether the op `make_points` can write the points into the text.
+    /// Whether the edit [`Op::MakePoints`] can write the points into the text.
     pub(crate) can_be_editable: bool,
     /// Number of layers of points in the texture. `points` belong to the coarsest layer.
     pub(crate) layers: usize,

@@ -1,4 +1,4 @@
-//! Small edits of a recipe as small edits of its text. Comments, order and number formats are preserved.
+//! Applies small edits to a recipe as small edits to its text. Comments, order and number formats are preserved.
 
 mod nodes;
 mod place;
@@ -34,7 +34,7 @@ impl From<usize> for Part {
     }
 }
 
-/// A small edit of a recipe. Paths are keys and indices as in JSON, such as `["nodes", "tint", "ramp", "colors", 2]`.
+/// A small edit to a recipe. Paths are keys and indices as in JSON, such as `["nodes", "tint", "ramp", "colors", 2]`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "op", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Op {

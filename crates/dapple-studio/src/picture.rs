@@ -1,4 +1,4 @@
-//! Images for pages: 8 bits each of red, green, blue and alpha.
+//! Images for pages, with 8 bits each of red, green, blue and alpha.
 
 use dapple::color::{Code as _, LinearRgb, Normal};
 use dapple::raster::{Raster, parallel};
@@ -24,7 +24,7 @@ pub enum Shown {
 }
 
 impl Shown {
-    /// Returns the code of this content in messages.
+    /// Returns the code that stands for this content in messages.
     #[must_use]
     pub fn code(self) -> u16 {
         match self {
@@ -54,7 +54,7 @@ pub struct Picture {
     pub first: [u32; 2],
     /// Columns and rows of the part.
     pub size: [u32; 2],
-    /// Reduction factor relative to the requested size.
+    /// Factor by which the image is smaller than the requested size.
     pub scale: u16,
     /// Whether the image is a draft, which a larger image follows.
     pub is_draft: bool,
@@ -180,8 +180,8 @@ pub(crate) fn of_values(values: &recipe::Picture) -> (Vec<u8>, Option<[f32; 2]>)
     }
 }
 
-/// Returns the range of a display of numbers: 0 to 1 if all numbers lie in that range and span at least a quarter of it
-/// or are equal. Otherwise the minimum and the maximum of the finite numbers.
+/// Returns the values to show as black and white. These are 0 and 1 if all numbers are in that range and are equal or
+/// span at least a quarter of it. Otherwise, they are the minimum and maximum of the finite numbers.
 fn range_of(numbers: &Raster<f32>) -> [f32; 2] {
     let finite = numbers
         .pixels()

@@ -53,7 +53,7 @@ pub(crate) fn report(
     })
 }
 
-/// Returns the points of a net. Points that are written in the text keep their labels from the text.
+/// Lists the control points of a net. Points that are written in the text have the labels given there.
 fn points(net: &ControlNet, written: Option<&ControlPoints>) -> Vec<ControlPoint> {
     let label = |index: usize| match written {
         Some(written) => written.points[index].label,

@@ -1,4 +1,5 @@
-//! Renders a job: the plan of the recipe, a draft, the maps or a node, then the thumbnails and the lit preview.
+//! Renders jobs. A job builds the recipe's plan, then renders a draft, the maps or a node, the thumbnails, and the lit
+//! preview.
 
 use crate::message::{NodeTime, Output, Reply, Shape, View};
 use crate::picture::{of_colors, of_values};
@@ -17,7 +18,8 @@ pub const MAX_SIDE: u32 = 4096;
 pub(crate) const MAX_TILE: u32 = 1 << 16;
 /// Maximum and minimum of the longer side of a draft, in pixels.
 const DRAFT_SIDES: [u32; 2] = [256, 64];
-/// Draft times in milliseconds. Above the first, the next draft is halved; below the second, it is doubled.
+/// Thresholds for a draft's rendering time, in milliseconds. Above the first, the size of the next draft is halved;
+/// below the second, it is doubled.
 const DRAFT_MS: [f64; 2] = [8.0, 2.5];
 /// Maximum side of a thumbnail, in pixels.
 const THUMBNAIL_SIDE: u32 = 64;
@@ -27,8 +29,8 @@ const MOST_THUMBNAILS: usize = 800;
 const BAND_PIXELS: u32 = 1 << 15;
 /// Pixels per sent part of a map. Parts are large because the page redraws its whole image for each.
 const SENT_PIXELS: usize = 1 << 20;
-/// Time in milliseconds after which smaller parts are sent, and the pixels of such a part. Where a page scales an
-/// image down, the boundaries between parts are slightly visible, so small images are never divided.
+/// Time in milliseconds after which smaller parts are sent, and the number of pixels in such a part. Where a page
+/// scales an image down, the boundaries between parts are slightly visible, so small images are never divided.
 const LATE: (f64, usize) = (100.0, 1 << 18);
 
 /// Work limits of a recipe in the studio.
@@ -61,7 +63,7 @@ pub struct Lit<'a> {
     pub recipe: &'a Recipe,
     /// The images that the recipe names.
     pub images: &'a Images,
-    /// Phase of the loop, from 0 to 1.
+    /// Phase of the looping animation, from 0 to 1.
     pub time: f64,
     /// The shape that carries the material.
     pub shape: Shape,
@@ -101,9 +103,9 @@ pub trait RenderHost {
 pub struct Renderer {
     pub(crate) memory: PlanCache,
     planned: Option<Planned>,
-    /// The longest side of the next draft, in pixels.
+    /// The longer side of the next draft, in pixels.
     draft_side: u32,
-    /// The last document that was reported as valid.
+    /// The last document that was reported to the page as valid.
     told: Option<Arc<Document>>,
 }
 
@@ -136,13 +138,13 @@ impl Default for Renderer {
     }
 }
 
-/// A cached plan with the document, the phase and the images it was made from.
+/// A cached plan with the document, phase and images from which it was built.
 #[derive(Debug)]
 struct Planned {
     document: Arc<Document>,
     time: f64,
     plan: Arc<Plan>,
-    /// The images of the plan.
+    /// The images that the plan was built with.
     images: Images,
 }
 
@@ -152,7 +154,7 @@ enum Stop {
     Outdated,
     /// The recipe was refused.
     Refused(RecipeError),
-    /// Another error occurred.
+    /// Something else failed, such as loading an image.
     Other(StudioError),
 }
 
@@ -263,7 +265,7 @@ impl Renderer {
     }
 }
 
-/// Returns whether two sets share the same image data. Compares pointers, not pixels.
+/// Returns whether two sets of images share the same pixel data in memory.
 fn is_same(a: &Images, b: &Images) -> bool {
     let is_same = |a: &Values, b: &Values| match (a, b) {
         (Values::Numbers(a), Values::Numbers(b)) => Arc::ptr_eq(a, b),
@@ -602,7 +604,7 @@ pub fn map_kinds(names: &[String]) -> Result<Vec<MapKind>, StudioError> {
     Ok(kinds)
 }
 
-/// Returns the size in pixels of an image of a tile whose longer side has `longest` pixels.
+/// Returns the size, in pixels, of an image of a tile. Its longer side has `longest` pixels.
 pub(crate) fn size_of(extent: [f64; 2], longest: u32) -> [u32; 2] {
     let longer = extent[0].max(extent[1]);
     extent.map(|side| (side / longer * f64::from(longest)).round().max(1.0) as u32)

@@ -60,7 +60,7 @@ pub(crate) fn lit(
     Ok((size, of_colors(&lit)))
 }
 
-/// Returns the brightness of a point with this normal, from 0.35 to 1.35.
+/// Returns the brightness of a surface point with this normal, from 0.35 to 1.35.
 fn light(normal: &Normal) -> f32 {
     let parts = normal.to_array().into_iter().zip(LIGHT);
     let facing: f32 = parts.map(|(a, b)| a * b).sum();

@@ -1,4 +1,4 @@
-//! Queries on the schema of recipes: the paths of inputs and seeds, and the kinds of nodes.
+//! Queries the schema of recipes for the paths of inputs and seeds, and for the kinds of nodes.
 
 use crate::Part;
 use dapple::recipe::{KINDS, NEW_NODES, Recipe};
@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde_json::Value as Json;
 use std::sync::OnceLock;
 
-/// The role of a value of a recipe.
+/// The role of a value in a recipe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
     /// An input: a number, a color or the name of a node.
@@ -134,7 +134,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Returns the role of a schema that is only a reference.
+/// Returns the role of a value whose schema is only a reference; `None` for other schemas.
 fn role(schema: &Json) -> Option<Role> {
     match schema.get("$ref")?.as_str()? {
         "#/$defs/Input" => Some(Role::Input),
@@ -143,7 +143,7 @@ fn role(schema: &Json) -> Option<Role> {
     }
 }
 
-/// Returns the role of an optional value.
+/// Returns the role of a value whose schema makes it optional; `None` for other schemas.
 fn optional_role(schema: &Json) -> Option<Role> {
     role(schema).or_else(|| schema.get("anyOf")?.as_array()?.iter().find_map(role))
 }

@@ -1,4 +1,4 @@
-//! Seam reports: measure how well the maps of a recipe tile.
+//! Seam reports, which measure how seamlessly a recipe's maps tile.
 
 use crate::StudioError;
 use crate::message::MapSeams;
@@ -15,7 +15,8 @@ const MAPS: [MapKind; 4] = [
     MapKind::Roughness,
 ];
 
-/// Returns a seam report for each map of a recipe, taken from the channel with the largest seam ratio.
+/// Returns a seam report for each map of a recipe. Of the map's channels, the one with the largest seam ratio is
+/// reported.
 pub(crate) fn report(
     recipe: &Recipe,
     images: &Images,

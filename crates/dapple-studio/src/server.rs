@@ -44,7 +44,7 @@ pub trait Host: Send + Sync {
     /// If an image cannot be read.
     fn images(&self, recipe: &Recipe, folder: &Path) -> Result<Images, StudioError>;
 
-    /// Renders the files of a bake and returns them with their names. It ends early once `stop` is true.
+    /// Bakes the recipe to files and returns them with their names. Stops early once `stop` is true.
     ///
     /// # Errors
     ///
@@ -80,21 +80,21 @@ pub struct ExportedFile {
 /// Options of the server.
 #[derive(Clone, Debug, Default)]
 pub struct ServeOptions {
-    /// The port. Default: 0, any free port.
+    /// The port to listen on. Default: 0, which means any free port.
     pub port: u16,
     /// The address of the page in browsers, for use behind a proxy that forwards to the port.
     pub public_url: Option<String>,
-    /// If true, no browser is opened.
+    /// Whether to leave the browser closed instead of opening it at the address of the page.
     pub no_open: bool,
     /// Whether the server ends when the last page is closed.
     pub once: bool,
-    /// The rights of pages.
+    /// The rights of every page.
     pub mode: Mode,
     /// The recipe to open in every page: the name of a built-in recipe or of a file in the folder.
     pub recipe: Option<String>,
     /// The folder of the recipes and their images. Default: the current folder.
     pub folder: PathBuf,
-    /// A folder with the files of the page, used instead of the built-in page, for developers of the page.
+    /// A folder with the page's files, which are served instead of the built-in page. It is for developers of the page.
     pub dist: Option<PathBuf>,
 }
 
@@ -109,7 +109,7 @@ struct Shared {
     memory: PlanCache,
     /// Cache of recipe thumbnails.
     gallery: Gallery,
-    /// Permits for pages.
+    /// Permits that limit the number of open pages.
     pages: Arc<Semaphore>,
     /// Lock that serializes exports of all pages, since each needs the memory of a bake.
     exporting: Mutex<()>,
@@ -206,7 +206,7 @@ async fn run(
 }
 
 impl Shared {
-    /// Returns the folder of a recipe's images. Refuses a recipe that names images outside of the folder.
+    /// Returns the folder of a recipe's images. Fails if the recipe names images outside of this folder.
     fn of_images(&self, recipe: &Recipe) -> Result<&Path, StudioError> {
         self.folder.check_images(recipe)?;
         Ok(self.folder.path())

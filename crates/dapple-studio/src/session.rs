@@ -1,4 +1,4 @@
-//! The state of one page: the text, the view, and the newest generation of images.
+//! The state of one page, which consists of the text, the view, and the newest generation of images.
 
 use crate::change::changes;
 use crate::message::{Reply, Request, View};
@@ -133,7 +133,7 @@ impl Session {
         replies
     }
 
-    /// Changes the view. A view that differs starts a new generation.
+    /// Sets the view. If it differs from the current one, a new generation starts.
     fn look(&mut self, view: View) {
         self.is_new |= self.view != view;
         self.view = view;

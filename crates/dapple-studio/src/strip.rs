@@ -1,4 +1,4 @@
-//! Strips: thumbnails that show the effect of edits, such as several values of one parameter.
+//! Strips of thumbnails that show the effect of edits, such as several values of one parameter.
 
 use crate::picture::of_values;
 use crate::render::{LIMITS, size_of};
@@ -22,7 +22,7 @@ pub struct Variant {
     pub changes: Vec<Op>,
     /// The node to show. Default: the lit material.
     pub node: Option<String>,
-    /// Phase of the loop, from 0 to 1.
+    /// Phase of the looping animation, from 0 to 1.
     pub time: f64,
     /// The index of the thumbnail in the strip.
     pub index: u16,

@@ -1,4 +1,4 @@
-//! Slow requests other than rendering: reports, programs and exports.
+//! Performs slow requests other than rendering: reports, programs and exports.
 
 use crate::code::Code;
 use crate::message::{Export, Reply, Request};
@@ -6,7 +6,7 @@ use crate::{Document, ImagesOf, Session, StudioError, points, seams};
 use dapple::recipe::Recipe;
 use std::sync::Arc;
 
-/// Makes the files of a bake and returns the message that lists them.
+/// Bakes a recipe to files and returns the message that lists them.
 pub type ExportOf<'a> = &'a dyn Fn(&Recipe, &Export) -> Result<Reply, StudioError>;
 
 /// A request for a report, a program or files, together with the document it refers to.

@@ -1,8 +1,8 @@
-//! Positions in a text in UTF-16 code units, as counted by JavaScript.
+//! Converts positions in a text to UTF-16 code units, which JavaScript counts.
 
 use core::ops::Range;
 
-/// Distance in bytes between cached positions.
+/// Distance between cached positions, in bytes.
 const STEP: usize = 1 << 10;
 
 /// Converts byte offsets of a text to UTF-16 code units.

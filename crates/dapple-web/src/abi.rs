@@ -1,4 +1,5 @@
-//! The C ABI of the WebAssembly module: functions of numbers that the worker calls, so that no bindings are generated.
+//! The C ABI of the WebAssembly module. The worker calls functions that take and return only numbers, so no bindings
+//! are generated.
 //!
 //! To send a message, the worker calls [`alloc`], writes the bytes there, and calls [`receive`]. It calls [`step`] while
 //! there is work, and [`poll`] until the queue of results is empty; [`reply`] and [`reply_length`] locate the bytes of
@@ -55,14 +56,14 @@ extern "C" fn receive() {
     });
 }
 
-/// Works for some milliseconds. Returns whether there is more to do.
+/// Works for some milliseconds, and returns whether there is more to do.
 #[unsafe(no_mangle)]
 extern "C" fn step() -> bool {
     with(|module| module.page.step())
 }
 
-/// Removes a result from the queue. Returns its kind: 1 for a message, 2 for an image, 3 for a file, 0 if the queue is
-/// empty.
+/// Removes a result from the queue, and returns its kind: 1 for a message, 2 for an image, 3 for a file, 0 if the queue
+/// is empty.
 #[unsafe(no_mangle)]
 extern "C" fn poll() -> u32 {
     with(|module| {

@@ -1,4 +1,4 @@
-//! Incremental rendering of a job: a draft, then some rows at a time, then the rest.
+//! Renders a job incrementally: a draft, then some rows at a time, then everything else.
 //!
 //! A worker has one thread and processes no messages while it renders, so each step must be short. Each step is a job
 //! of the [`Renderer`], which caches the plan and its values. The page receives the messages of a single job.
@@ -7,9 +7,10 @@ use dapple_recipe::{Images, Recipe};
 use dapple_studio::{Area, Job, Output, Picture, RenderHost, Renderer, Reply, StudioError, View};
 use std::cell::RefCell;
 
-/// Approximate maximum and minimum number of pixels per step.
+/// Maximum and minimum number of pixels per step, approximately.
 const PIECES: [u32; 2] = [1 << 16, 1 << 13];
-/// Step times in milliseconds. Above the first, the next step is halved; below the second, it is doubled.
+/// Thresholds for a step's time, in milliseconds. Above the first, the size of the next step is halved; below the
+/// second, it is doubled.
 const PIECE_MS: [f64; 2] = [32.0, 8.0];
 
 /// Minimum number of pixels per sent part of a map, except the last part. Few parts are better because a page that
@@ -247,7 +248,7 @@ impl Place<'_> {
     }
 }
 
-/// Returns the images of a recipe. Recipes that name images are refused, since there is no folder to read them from.
+/// Returns an empty set of images. Fails if the recipe names images, since there is no folder to read them from.
 pub(crate) fn images(recipe: &Recipe) -> Result<Images, StudioError> {
     if recipe.image_files().is_empty() {
         return Ok(Images::new());

@@ -1,4 +1,4 @@
-//! The files of an export, with the same bytes as the files of `dapple bake` with the same options.
+//! Bakes the files of an export. They have the same bytes as the files of `dapple bake` with the same options.
 
 use dapple_image::{Depth, Encoding, RowWriter};
 use dapple_recipe::{Bake, BakeOptions, Images, MapKind, Plan, Recipe};

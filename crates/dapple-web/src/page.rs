@@ -1,4 +1,4 @@
-//! One page: its session, pending work, and the queue of results.
+//! A page with its session, pending work, and queue of results.
 
 use crate::drawing::{Drawing, Pace, images};
 use crate::export;
@@ -13,7 +13,7 @@ use std::collections::VecDeque;
 /// Maximum size of the cached node values, in bytes.
 const MEMORY: usize = 1 << 28;
 
-/// A result for the page.
+/// A result to send to the page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Made {
     /// A message as JSON.
@@ -33,7 +33,7 @@ pub struct Page {
     tasks: VecDeque<Task>,
     drawing: Option<Drawing>,
     pace: Pace,
-    /// The variants of the strip that was requested last.
+    /// Variants still to render, of the strip that was requested last.
     variants: VecDeque<Variant>,
     /// Built-in recipes whose thumbnails are pending. `side` is the longer side of the thumbnails, in pixels.
     samples: VecDeque<(u16, &'static str)>,

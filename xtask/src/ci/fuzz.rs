@@ -59,7 +59,7 @@ fn run_together(shell: &Shell, folder: &Path, targets: &[String]) -> anyhow::Res
     })
 }
 
-/// Returns a command of cargo-fuzz for the targets of this workspace.
+/// Returns the command `cargo fuzz COMMAND` for the targets of this workspace.
 fn cargo_fuzz<'a>(shell: &'a Shell, command: &str, folder: &Path) -> Cmd<'a> {
     let built = folder.join("build");
     // The address sanitizer is off: the crates have no `unsafe` code of their own, and it would take half of the

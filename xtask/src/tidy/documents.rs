@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 const FIGURES: &str = "crates/dapple-gallery/src/figures/";
 const LOCK: &str = "crates/dapple-gallery/figures.lock";
 
-/// Every crate is listed in the code map.
+/// Checks that every crate is listed in the code map.
 pub(super) fn architecture(workspace: &Workspace) -> Vec<String> {
     let named = |name: &str| workspace.architecture.contains(&format!("`{name}`"));
     let missing = workspace
@@ -18,8 +18,8 @@ pub(super) fn architecture(workspace: &Workspace) -> Vec<String> {
         .collect()
 }
 
-/// Every figure has a file `figures/<paper>/fig_<number>.rs` and a line `<hash> <paper>-fig-<number>` in
-/// figures.lock. Every line has a file. Lines are sorted.
+/// Checks that every figure has a file `figures/<paper>/fig_<number>.rs` and a line `<hash> <paper>-fig-<number>` in
+/// figures.lock, that every line has a file, and that lines are sorted.
 pub(super) fn figures(workspace: &Workspace) -> Vec<String> {
     let lines = workspace
         .figures_lock
@@ -50,8 +50,7 @@ pub(super) fn figures(workspace: &Workspace) -> Vec<String> {
     found
 }
 
-/// Returns the name of a figure: `figures/pups/fig_03a.rs` is `pups-fig-03a`. Other files of the folder are not
-/// figures.
+/// Returns the name of a figure, such as `pups-fig-03a` for `figures/pups/fig_03a.rs`; `None` for other files.
 fn figure_name(path: &str) -> Option<String> {
     let (paper, file) = path
         .strip_prefix(FIGURES)?

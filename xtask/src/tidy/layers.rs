@@ -2,7 +2,7 @@
 
 use super::workspace::Workspace;
 
-/// A crate is in the folder `crates/<name>`. Only `tests` and `xtask` are at the root.
+/// Checks that each crate is in the folder `crates/<name>`. Only `tests` and `xtask` may be at the root.
 pub(super) fn folders(workspace: &Workspace) -> Vec<String> {
     let misplaced = workspace.members.iter().filter(|member| {
         let rooted = ["tests", "xtask"].contains(&member.folder.as_str());
@@ -18,8 +18,8 @@ pub(super) fn folders(workspace: &Workspace) -> Vec<String> {
         .collect()
 }
 
-/// Every crate has a layer, and its dependencies in the workspace have strictly lower layers. Dev-dependencies are
-/// exempt.
+/// Checks that every crate has a layer, and that its dependencies in the workspace have strictly lower layers.
+/// Dev-dependencies are exempt.
 pub(super) fn layers(workspace: &Workspace) -> Vec<String> {
     let mut found = Vec::new();
     for member in &workspace.members {
@@ -48,7 +48,7 @@ pub(super) fn layers(workspace: &Workspace) -> Vec<String> {
     found
 }
 
-/// `xtask` uses no crate of the workspace, so that it starts quickly, and no crate uses `xtask`.
+/// Checks that `xtask` uses no crate of the workspace, which keeps its build short, and that no crate uses `xtask`.
 pub(super) fn xtask_alone(workspace: &Workspace) -> Vec<String> {
     let is_member = |name: &String| workspace.members.iter().any(|member| member.name == *name);
     let mut found = Vec::new();
@@ -65,7 +65,7 @@ pub(super) fn xtask_alone(workspace: &Workspace) -> Vec<String> {
     found
 }
 
-/// Every crate has `[lints] workspace = true`; without it, a crate silently has no lints at all.
+/// Checks that every crate has `[lints] workspace = true`. Without it, a crate silently has no lints at all.
 pub(super) fn lints(workspace: &Workspace) -> Vec<String> {
     let without = workspace.members.iter().filter(|member| {
         let mut lines = member.manifest.lines().map(str::trim);
@@ -82,7 +82,8 @@ pub(super) fn lints(workspace: &Workspace) -> Vec<String> {
         .collect()
 }
 
-/// Every published package has keywords and categories, documentation of all features, the license texts and a README.
+/// Checks that every published package has keywords and categories, documentation of all features, the license texts
+/// and a README.
 pub(super) fn packages(workspace: &Workspace) -> Vec<String> {
     let mut found = Vec::new();
     for member in workspace.members.iter().filter(|member| member.published) {

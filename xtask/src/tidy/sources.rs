@@ -8,7 +8,7 @@ const LINES_MAX: usize = 800;
 /// The layers of algorithm libraries. Lower layers are foundations, higher layers are programs.
 const ALGORITHM_LAYERS: core::ops::RangeInclusive<u64> = 1..=4;
 
-/// Every file begins with a `//!` header.
+/// Checks that every file begins with a `//!` header.
 pub(super) fn headers(workspace: &Workspace) -> Vec<String> {
     let silent = workspace
         .sources
@@ -19,7 +19,7 @@ pub(super) fn headers(workspace: &Workspace) -> Vec<String> {
         .collect()
 }
 
-/// Files have at most [`LINES_MAX`] lines, except files of pure data, `tables.rs` and `data.rs`.
+/// Checks that files have at most [`LINES_MAX`] lines. Files of pure data, `tables.rs` and `data.rs`, are exempt.
 pub(super) fn lengths(workspace: &Workspace) -> Vec<String> {
     let long = workspace.sources.iter().filter(|source| {
         let is_table = ["/tables.rs", "/data.rs"]
@@ -37,7 +37,8 @@ pub(super) fn lengths(workspace: &Workspace) -> Vec<String> {
     .collect()
 }
 
-/// Lints are expected with a reason, never allowed. Tests are not ignored. No placeholder stands for missing code.
+/// Checks that lints are expected with a reason instead of allowed, that no test is ignored, and that no placeholder
+/// stands for missing code.
 pub(super) fn escapes(workspace: &Workspace) -> Vec<String> {
     let mut found = Vec::new();
     for source in &workspace.sources {
@@ -64,8 +65,8 @@ fn escape(line: &str) -> Option<&'static str> {
     }
 }
 
-/// A library file with a `value_stability_*` test contains an algorithm. The header of the file or of its module
-/// names the source of the algorithm.
+/// Checks that algorithms name their source. A library file with a `value_stability_*` test contains an algorithm, and
+/// the header of the file or of its module must name the source.
 pub(super) fn references(workspace: &Workspace) -> Vec<String> {
     let algorithms = workspace.sources.iter().filter(|source| {
         is_of_library(workspace, source) && source.text.contains("fn value_stability_")

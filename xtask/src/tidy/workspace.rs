@@ -1,4 +1,4 @@
-//! The workspace as checked by the rules: data from `cargo metadata` and the texts of files.
+//! Reads the data that the rules check: the output of `cargo metadata` and the texts of files.
 
 use anyhow::{Context, anyhow};
 use serde_json::Value;

@@ -1,4 +1,4 @@
-//! Edits of whole nodes.
+//! Applies edits to whole nodes.
 
 use super::{Op, Part, Place, apply_one};
 use crate::StudioError;

@@ -1,4 +1,4 @@
-//! Navigation and edits in a TOML document.
+//! Navigates and edits a TOML document.
 
 use super::Part;
 use crate::StudioError;

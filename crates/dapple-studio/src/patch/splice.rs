@@ -1,4 +1,4 @@
-//! Fast path for edits that only change numbers: replaces them in the text without serializing the document again.
+//! Fast path for edits that only change numbers, which are replaced in the text without serializing the document again.
 //! Dragging a slider or a point causes many such edits per second.
 
 use super::{Op, Part};
@@ -8,8 +8,8 @@ use core::ops::Range;
 use serde_json::Value as Json;
 use toml_edit::{Item, Value};
 
-/// Returns the text after edits of numbers that are written in it, equal to the result of [`apply`](super::apply).
-/// Returns `None` for other edits.
+/// Applies edits to numbers that are written in the text. The result equals that of [`apply`](super::apply). Returns
+/// `None` for other edits.
 pub(crate) fn spliced(document: &Document, ops: &[Op]) -> Option<String> {
     let mut parts = Vec::new();
     for op in ops {

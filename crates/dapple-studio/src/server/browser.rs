@@ -16,7 +16,7 @@ pub(super) struct Way {
     file: Mutex<Option<TempPath>>,
 }
 
-/// Maximum lifetime of the file.
+/// Maximum lifetime of the temporary file.
 pub(super) const LONGEST: Duration = Duration::from_secs(60);
 
 impl Way {
@@ -62,7 +62,7 @@ fn create(folder: &Path) -> io::Result<NamedTempFile> {
         .tempfile_in(folder)
 }
 
-/// Returns the home folder of a user who has snaps installed. Programs from snaps cannot read the temporary folder or
+/// Returns the user's home folder if snaps are installed. Programs from snaps cannot read the temporary folder or
 /// hidden folders.
 fn home_of_snaps() -> Option<PathBuf> {
     let home = PathBuf::from(std::env::var_os("HOME")?);

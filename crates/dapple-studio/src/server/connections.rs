@@ -1,4 +1,4 @@
-//! The connections of the server, with limits on their number and on their idle time.
+//! Accepts connections, with limits on their number and on their idle time.
 //!
 //! Every process on this machine can connect. The limits keep such connections from using up the file handles that
 //! saving and the pages need.

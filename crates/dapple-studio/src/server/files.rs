@@ -1,4 +1,4 @@
-//! File access, restricted to the recipes and images of one folder.
+//! Restricts file access to the recipes and images of one folder.
 
 #![expect(
     clippy::disallowed_methods,
@@ -142,7 +142,7 @@ impl Folder {
         Ok(())
     }
 
-    /// Returns the paths of a recipe's images with the stamps of their files, for detecting changes.
+    /// Returns the paths of a recipe's images with the stamps of their files, which reveal later changes.
     pub(super) fn image_stamps(&self, recipe: &Recipe) -> Vec<(PathBuf, Option<FileStamp>)> {
         let files = self.image_paths(recipe).into_iter();
         files
@@ -176,7 +176,7 @@ impl Folder {
         }
     }
 
-    /// Returns whether a name is the recipe that the user named.
+    /// Returns whether `name` is the recipe that the user named.
     fn is_named(&self, name: &str) -> bool {
         self.named.as_deref() == Some(name)
     }

@@ -1,4 +1,4 @@
-//! Access control: only a page of this server, opened with the token of this run, is served.
+//! Access control, which serves only a page of this server that was opened with the token of this run.
 //!
 //! A page of another site can send requests to 127.0.0.1. With a host name that resolves to 127.0.0.1 (DNS
 //! rebinding), it can even read the responses. So a request must name a loopback host, which nobody else can own, or
@@ -15,7 +15,7 @@ use axum::http::{HeaderMap, HeaderName, HeaderValue, Uri};
 use std::fmt::Write as _;
 use std::net::Ipv4Addr;
 
-/// The token of a run and the names of the server.
+/// Checks requests against the token of this run and the host names of the server.
 pub(super) struct Guard {
     port: u16,
     token: String,

@@ -1,4 +1,4 @@
-//! The socket of a page, which receives requests and sends replies and images.
+//! The WebSocket of a page, which receives requests and sends replies and images.
 
 use super::Shared;
 use super::files::decoded;
@@ -67,7 +67,7 @@ struct Page {
     changes: FileChanges,
 }
 
-/// The error of a closed socket.
+/// The socket was closed.
 struct Ended;
 
 impl From<axum::Error> for Ended {

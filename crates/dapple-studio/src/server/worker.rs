@@ -1,5 +1,5 @@
-//! The threads of one page. The first renders images, always for the newest state, after pending reports. The second
-//! runs exports, which take long.
+//! The two threads of a page. The first renders images, always for the newest state, after pending reports. The second
+//! runs exports, which take a long time.
 
 use super::Shared;
 use crate::message::{Export, Output, Reply};
@@ -23,7 +23,7 @@ struct Queue {
     job: Option<Job>,
     tasks: VecDeque<Task>,
     exports: VecDeque<Task>,
-    /// The variants of the strip that was requested last.
+    /// Variants still to render, of the strip that was requested last.
     variants: VecDeque<Variant>,
     /// Thumbnails of the gallery, rendered at the lowest priority.
     samples: VecDeque<Sample>,
@@ -48,7 +48,7 @@ struct Inside {
     changed: Condvar,
     /// The newest requested generation.
     newest: AtomicU32,
-    /// Whether to stop the running export.
+    /// Set to true to stop the running export.
     stop: Arc<AtomicBool>,
     start: Instant,
     output: UnboundedSender<Output>,
@@ -118,7 +118,7 @@ impl Worker {
         self.inside.changed.notify_all();
     }
 
-    /// Returns the images of a recipe.
+    /// Loads the images of a recipe.
     pub(super) fn images(&self, recipe: &Recipe) -> Result<Images, StudioError> {
         RenderHost::images(&*self.inside, recipe)
     }
