@@ -1,4 +1,4 @@
-//! Options shared by many subcommands: size, output, format.
+//! Defines options shared by many subcommands, such as size, output and format.
 
 mod alpha;
 mod frame;
@@ -85,7 +85,7 @@ pub(crate) struct Targets {
     /// The path `NAME.EXTENSION`, which may not be written itself. The sidecar has the same path with the extension
     /// `.json`.
     pub(crate) main: Target,
-    /// The file of each part, in the order of the parts.
+    /// The file for each part, in the order of the parts.
     pub(crate) files: Vec<Target>,
 }
 
@@ -131,7 +131,7 @@ dapple::raster::named! {
 }
 
 impl Axes {
-    /// Parses an axis or both, for options where `none` has no meaning.
+    /// Creates a parser of one or both axes, for options where `none` has no meaning.
     pub(crate) fn some() -> NamedValueParser<Self> {
         NamedValueParser::some(&[Self::X, Self::Y, Self::Both])
     }
@@ -146,7 +146,7 @@ impl Axes {
 }
 
 impl ImageArgs {
-    /// Returns the file extension of images whose names the command chooses.
+    /// Returns the file extension for images that the command names itself.
     pub(crate) fn ending(&self) -> &'static str {
         self.format.map_or("png", Format::ending)
     }
@@ -165,12 +165,12 @@ impl OutputArgs {
     /// Returns the output files of a run that writes a file for each part: `NAME_PART.EXTENSION`, and `NAME.EXTENSION`
     /// for a part with an empty name.
     ///
-    /// A single part is written to the output path itself, unless that is a directory. In a directory, NAME is given by
-    /// `--name`, or else by `name`.
+    /// A single part is written to the output path itself, unless that is a directory. In a directory, NAME is the
+    /// value of `--name`, or `name` without it.
     ///
     /// # Errors
     ///
-    /// If no output is given, or several files are written to standard output, or `--name` is given without a
+    /// If no output is given, if several files would go to standard output, or if `--name` is given without a
     /// directory.
     pub(crate) fn targets<S: AsRef<str>>(
         &self,
@@ -207,8 +207,8 @@ impl OutputArgs {
         Ok(Targets { main, files })
     }
 
-    /// Returns the output path, if it means a directory for this number of files: an existing directory, a path with a
-    /// trailing slash, or, for several files, a path without an extension.
+    /// Returns the output path if it means a directory, otherwise `None`. An existing directory and a path with a
+    /// trailing slash mean a directory, and so does, if `n_files` is above 1, a path without an extension.
     pub(crate) fn folder(&self, n_files: usize) -> Option<&Path> {
         let output = self.output.as_deref()?;
         let ends_with_slash = output
@@ -221,7 +221,7 @@ impl OutputArgs {
     }
 }
 
-/// Parses a seed.
+/// Parses a random seed.
 ///
 /// # Errors
 ///
@@ -244,8 +244,8 @@ fn plain_name(text: &str) -> Result<String, String> {
     Ok(text.to_owned())
 }
 
-/// Makes a name safe as a part of file names: characters other than letters, digits, `.` and `_` become `-`, and
-/// leading dots are removed. An empty result becomes `recipe`.
+/// Makes a name safe for use in file names. Characters other than letters, digits, `.` and `_` become `-`, and leading
+/// dots are removed. An empty result becomes `recipe`.
 pub(crate) fn file_name(name: &str) -> String {
     let plain = |c: char| {
         if c.is_alphanumeric() || c == '.' || c == '_' {

@@ -1,4 +1,4 @@
-//! Parsing of the command line.
+//! Parses the command line.
 //!
 //! Option names are case-insensitive, with `_` for `-`. A negative number after an option is its value. For an option
 //! name that other programs use, the error suggests the option of this command.
@@ -11,7 +11,8 @@ use clap::parser::ValueSource;
 use clap::{ArgMatches, Command, FromArgMatches};
 use std::ffi::{OsStr, OsString};
 
-/// Option names of other programs: the subcommands at which users try them, the name, and what to use instead.
+/// Option names that users know from other programs, as the subcommands where they try them, the name, and the option
+/// to use instead.
 const ELSEWHERE: [(&[&str], &str, &str); 9] = [
     (
         &["worley", "noise", "wavelet"],
@@ -102,8 +103,8 @@ fn given(command: &Command, matches: &ArgMatches) -> Vec<GivenOption> {
     options.collect()
 }
 
-/// Normalizes the arguments up to `--`: option names get the spelling of their definition, and negative numbers are
-/// joined to the option before them with `=`.
+/// Normalizes the arguments up to `--`. Option names get the spelling of their definition, and negative numbers are
+/// joined with `=` to the option before them.
 fn normalized(typed: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut words: Vec<OsString> = Vec::new();
     let mut are_options = true;
@@ -130,20 +131,20 @@ fn option(text: &str) -> String {
     }
 }
 
-/// Returns whether a text begins like a negative number, such as `-1` or `-.5`.
+/// Returns whether `text` begins like a negative number, such as `-1` or `-.5`.
 fn is_negative(text: &str) -> bool {
     let digits = text.strip_prefix('-').unwrap_or_default();
     let digits = digits.strip_prefix('.').unwrap_or(digits);
     digits.starts_with(|digit: char| digit.is_ascii_digit())
 }
 
-/// Returns whether an argument is a long option without its value.
+/// Returns whether `word` is a long option that is not joined to its value.
 fn takes_more(word: &OsString) -> bool {
     let word = word.to_string_lossy();
     word.starts_with("--") && word.len() > 2 && !word.contains('=')
 }
 
-/// Adds the option to use instead to the error about an option name of another program.
+/// Adds a suggestion to the error about an option name that belongs to another program.
 fn advised(mut error: clap::Error, words: &[OsString]) -> clap::Error {
     let unknown = match error.get(ContextKind::InvalidArg) {
         Some(ContextValue::String(option)) if error.kind() == ErrorKind::UnknownArgument => option,

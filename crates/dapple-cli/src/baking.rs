@@ -1,4 +1,4 @@
-//! Baking of recipes: the bands of a bake, written to an image file for each map.
+//! Bakes recipes band by band, and writes an image file for each map.
 
 use crate::args::{FiniteArgs, ReadArgs};
 use crate::encode::Format;
@@ -26,7 +26,7 @@ use std::sync::Arc;
 pub(crate) struct MapFile {
     pub(crate) image: Image,
     pub(crate) output: OutputIdx,
-    /// The file for a sheet of 2 × 2 copies of the image, if requested.
+    /// The file for a sheet of 2 × 2 copies of the image; `None` if not requested.
     pub(crate) sheet: Option<OutputIdx>,
 }
 
@@ -47,7 +47,7 @@ pub(crate) fn report(recipe: &Recipe) -> Value {
 ///
 /// # Errors
 ///
-/// If no recipe has this name, with the nearest name, or if it cannot be read.
+/// If no recipe has this name (the error suggests the nearest one), or if it cannot be read.
 pub(crate) fn read_recipe(name: &str) -> Result<(Recipe, &Path)> {
     let path = Path::new(name);
     let builtin = with_dashes(name);
@@ -110,7 +110,8 @@ pub(crate) fn read_images(recipe: &Recipe, folder: &Path, finite: FiniteArgs) ->
 ///
 /// # Errors
 ///
-/// If the image does not exist or cannot be read; and, with `hint`, if it is partly transparent and `alpha` is `None`.
+/// If the image does not exist or cannot be read, or if it is partly transparent and `alpha` is `None`. In the latter
+/// case, the error has the given `hint`.
 pub(crate) fn read_picture(
     path: &Path,
     alpha: Option<ImageAlpha>,
@@ -125,11 +126,11 @@ pub(crate) fn read_picture(
     })
 }
 
-/// Writes the maps of a bake to claimed files, and counts the rows in the progress.
+/// Writes the maps of a bake to claimed files, and reports progress in rows.
 ///
 /// # Errors
 ///
-/// Errors of the recipe or of the operating system.
+/// If the recipe or the operating system reports an error.
 pub(crate) fn write(
     job: &mut Job<'_>,
     bake: Bake<'_>,
@@ -161,11 +162,11 @@ pub(crate) fn write(
     Ok(())
 }
 
-/// Encodes the images of a bake in memory, and counts the rows in the progress.
+/// Encodes the images of a bake in memory, and reports progress in rows.
 ///
 /// # Errors
 ///
-/// Errors of the recipe.
+/// If the recipe cannot be baked.
 pub(crate) fn encode(
     bake: Bake<'_>,
     images: &[Image],
@@ -201,7 +202,7 @@ fn draw(
     })
 }
 
-/// Writes the bands of a bake, and counts their rows in the progress. A band is written while the next one is computed.
+/// Writes the bands of a bake, and reports progress in rows. Each band is written while the next one is computed.
 fn for_each_band(
     mut bake: Bake<'_>,
     progress: &Progress,
@@ -234,11 +235,11 @@ pub(crate) fn format(asked: Option<Format>, target: &Target) -> Result<Format> {
     Format::choose(asked, target, Format::Png16)
 }
 
-/// The note for a loop of a recipe in which no node changes with time.
+/// The note for a looping animation in which no node changes with time.
 pub(crate) const STILL: &str = "note: nothing in this recipe moves, so that all pictures of the loop are equal; \
     see `motion` in `dapple recipe --reference`";
 
-/// Adds a hint to an error of a recipe.
+/// Adds a hint to an error about a recipe.
 pub(crate) fn advise(error: RecipeError) -> Error {
     let hint = match error.kind() {
         RecipeErrorKind::Global { .. } => {
@@ -254,7 +255,7 @@ pub(crate) fn advise(error: RecipeError) -> Error {
     Error::new(error).hint(hint)
 }
 
-/// Adds a hint to an error of a recipe that is baked in shards.
+/// Adds a hint to an error about a recipe that is baked in shards.
 pub(crate) fn advise_shard(error: RecipeError) -> Error {
     match error.kind() {
         RecipeErrorKind::Global { .. } => Error::new(error)
@@ -275,11 +276,11 @@ struct Rows {
     layers: Layers,
     map: Writer,
     sheet: Option<Writer>,
-    /// Whether the range of the numbers is recorded.
+    /// Whether to record the range of the numbers.
     is_noted: bool,
     /// Minimum and maximum of the numbers written so far.
     range: [f32; 2],
-    /// Number of pixels written so far with a number that the format clips.
+    /// Number of pixels written so far that have a number clipped by the format.
     n_clipped: u64,
     /// Whether the format clips numbers to 0 to 1.
     clips: bool,

@@ -1,4 +1,4 @@
-//! The definition of the command line.
+//! Defines the command line.
 
 use crate::args::Common;
 use crate::commands::Command;

@@ -1,4 +1,4 @@
-//! The subcommands, one file for each.
+//! The subcommands, with one file for each.
 
 mod bake;
 mod blend;
@@ -57,7 +57,7 @@ pub(crate) enum Command {
 ///
 /// # Errors
 ///
-/// The error of the subcommand.
+/// If the subcommand fails.
 pub(crate) fn run(command: &Command, context: &Context) -> Result<Exit> {
     match command {
         Command::Bake(args) => bake::run(args, context),

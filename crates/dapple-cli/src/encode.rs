@@ -186,7 +186,7 @@ pub(crate) fn encode(map: &Map, format: Format) -> Result<Vec<u8>> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cover<'a> {
     alpha: &'a Raster<f32>,
-    /// Whether the colors are associated: multiplied by alpha.
+    /// Whether the alpha is associated, that is, the colors are multiplied by it.
     is_associated: bool,
     clear: Clear,
 }

@@ -105,7 +105,7 @@ pub(crate) struct Field {
 ///
 /// # Errors
 ///
-/// Errors of options out of range, and of writing.
+/// If an option is out of range, or writing fails.
 pub(crate) fn draw(
     field: &Field,
     args: &FieldArgs,

@@ -87,8 +87,8 @@ pub(crate) struct Loaded {
     pub(crate) map: Map,
     /// The alpha of the pixels, if it is kept and some pixels are not opaque.
     pub(crate) alpha: Option<Raster<f32>>,
-    /// Whether the colors are associated: multiplied by alpha, as in OpenEXR, where a pixel with alpha 0 may emit
-    /// light.
+    /// Whether the alpha is associated, that is, the colors are multiplied by it. This is so in OpenEXR, where a pixel
+    /// with alpha 0 may emit light.
     pub(crate) is_associated: bool,
     /// The NaN and infinite values of the file, which were replaced in `map`.
     pub(crate) faults: Faults,

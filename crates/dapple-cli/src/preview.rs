@@ -45,7 +45,7 @@ struct Maps {
 ///
 /// # Errors
 ///
-/// Errors of the recipe.
+/// If the recipe cannot be baked.
 pub(crate) fn picture(
     recipe: &Recipe,
     images: &Images,

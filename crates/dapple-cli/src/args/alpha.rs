@@ -1,4 +1,4 @@
-//! The option for alpha: keep it, drop it, or composite the image over a color.
+//! Defines the option that keeps alpha, drops it, or composites the image over a color.
 
 use super::ramp::color;
 use dapple::recipe::ImageAlpha;
@@ -13,14 +13,14 @@ pub(crate) struct AlphaArgs {
     pub(crate) alpha: Alpha,
 }
 
-/// How alpha is handled.
+/// How to handle alpha.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase", untagged)]
 pub(crate) enum Alpha {
-    /// Alpha is processed like the color channels.
+    /// Process alpha like the color channels.
     #[serde(serialize_with = "keep")]
     Keep,
-    /// Alpha is removed, and the result is opaque.
+    /// Remove alpha, so that the result is opaque.
     Without(ImageAlpha),
 }
 
@@ -49,7 +49,7 @@ impl FromStr for Alpha {
     }
 }
 
-/// Parses how alpha is handled for an image that is used without alpha: all values of [`Alpha`] except `keep`.
+/// Parses how to handle alpha where the image must be opaque. Accepts all values of [`Alpha`] except `keep`.
 ///
 /// # Errors
 ///

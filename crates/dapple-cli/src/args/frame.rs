@@ -1,10 +1,10 @@
-//! A frame of a loop on the command line: `3/24` is the third of 24 frames.
+//! Parses a frame of a looping animation on the command line. `3/24` is the third of 24 frames.
 
 use serde::{Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
 
-/// A frame of a loop in time.
+/// A frame of a looping animation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Frame {
     /// The number of the frame, counted from 1.
@@ -14,18 +14,19 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    /// Returns all frames of a loop of `count` frames; a single `None` for a still image.
+    /// Returns all frames of a looping animation of `count` frames. Without a count, returns a single `None`, which
+    /// means a still image.
     pub(crate) fn all(count: Option<u32>) -> impl Iterator<Item = Option<Self>> {
         let pictures = 1..=count.unwrap_or(1);
         pictures.map(move |number| count.map(|count| Self { number, count }))
     }
 
-    /// Returns whether this is the first frame of the loop.
+    /// Returns whether this is the first frame.
     pub(crate) fn is_first(self) -> bool {
         self.number == 1
     }
 
-    /// Returns the time of the frame as a fraction of the loop: 0 for the first frame, below 1 for the last.
+    /// Returns the frame's phase in the looping animation, from 0 for the first frame to below 1 for the last.
     pub(crate) fn time(self) -> f64 {
         f64::from(self.number - 1) / f64::from(self.count)
     }
@@ -35,8 +36,8 @@ impl Frame {
         self.count
     }
 
-    /// Returns the number of the frame for file names, such as `001`. It has the digits of the last frame's number, at
-    /// least three.
+    /// Returns the number of the frame for file names, such as `001`. It has as many digits as the number of the last
+    /// frame, and at least three.
     pub(crate) fn label(self) -> String {
         let digits = self.count.to_string().len().max(3);
         format!("{:0digits$}", self.number)

@@ -1,4 +1,4 @@
-//! Several numbers on the command line, separated by commas: `3,4`.
+//! Parses several comma-separated numbers on the command line, such as `3,4`.
 
 use serde::{Serialize, Serializer};
 use std::str::FromStr;

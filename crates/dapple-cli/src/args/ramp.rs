@@ -1,17 +1,17 @@
-//! Color ramps on the command line: the name of a palette, or colors separated by commas.
+//! Parses color ramps on the command line, given as the name of a palette or as comma-separated colors.
 
 use dapple::color::{ColorRamp, LinearRgb, Palette};
 use dapple::raster::Named;
 use serde::{Serialize, Serializer};
 use std::str::FromStr;
 
-/// A color ramp, with its text as typed.
+/// A color ramp with its text as typed.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RampArg {
     text: String,
     /// The colors from low to high; at least one.
     pub(crate) colors: Vec<LinearRgb>,
-    /// The ramp through the colors at equal distances, interpolated in Oklab.
+    /// The ramp, with the colors evenly spaced and interpolated in Oklab.
     pub(crate) ramp: ColorRamp,
 }
 

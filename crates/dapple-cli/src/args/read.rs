@@ -1,4 +1,4 @@
-//! Options for reading images: the layer, and how NaN and infinite values are handled.
+//! Defines options for reading images, such as the layer and the handling of NaN and infinite values.
 
 use crate::words::NamedValueParser;
 use dapple::raster::Named as _;
@@ -34,7 +34,7 @@ pub(crate) struct FiniteArgs {
 }
 
 impl FiniteArgs {
-    /// Returns the option as an argument for a command line, if it differs from the default.
+    /// Formats the option as a command-line argument; `None` if it has its default value.
     pub(crate) fn word(self) -> Option<String> {
         let is_default = self.nonfinite == NonFinite::default();
         (!is_default).then(|| format!("--nonfinite={}", self.nonfinite.name()))

@@ -1,4 +1,4 @@
-//! A region of an image on the command line: `x,y,w,h`, in pixels from the top left corner.
+//! Parses a region of an image on the command line, given as `x,y,w,h` in pixels from the top left corner.
 
 use super::Numbers;
 use serde::Serialize;
@@ -14,7 +14,7 @@ pub(crate) struct Region {
 }
 
 impl Region {
-    /// Converts the region to an option of a bake.
+    /// Converts the region to a bake option.
     pub(crate) fn of_recipe(self) -> dapple::recipe::Region {
         dapple::recipe::Region {
             first: self.first,

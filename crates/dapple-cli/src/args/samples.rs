@@ -1,4 +1,4 @@
-//! The option for the sample positions: pixel centers or grid corners.
+//! Defines the option for sample positions, which are pixel centers or grid corners.
 
 use super::Size;
 use crate::error::{Hint, usage};
@@ -20,8 +20,8 @@ pub(crate) struct SamplesArgs {
 }
 
 impl SamplesArgs {
-    /// Returns the number of sample spacings from one side of the tile to the other, along each axis: for pixel centers
-    /// the number of samples, for corners one less.
+    /// Returns the number of sample spacings from one side of the tile to the other, along each axis: the number of
+    /// samples for pixel centers, and one less for corners.
     ///
     /// # Errors
     ///
@@ -39,7 +39,7 @@ impl SamplesArgs {
         Ok(Size(size.0.map(|side| side - 1)))
     }
 
-    /// Returns the option as an argument for a command line, if it differs from the default.
+    /// Formats the option as a command-line argument; `None` if it has its default value.
     pub(crate) fn word(self) -> Option<String> {
         let is_default = self.samples == Samples::default();
         (!is_default).then(|| format!("--samples={}", self.samples.name()))

@@ -1,5 +1,5 @@
-//! A shard of a map on the command line: `COLUMN,ROW,WxH`, such as `3,7,2048`, or `3,7,1009+1` for shards that overlap
-//! by one pixel.
+//! Parses a shard of a map on the command line, given as `COLUMN,ROW,WxH`, such as `3,7,2048`, or `3,7,1009+1` for
+//! shards that overlap by one pixel.
 
 use super::Size;
 use crate::error::usage;
@@ -9,7 +9,7 @@ use serde::{Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
 
-/// A shard: its position in the grid of shards, and the size of a shard that is not cropped at the border.
+/// A shard, given by its position in the grid of shards and the size of shards before cropping at the border.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Shard {
     /// The column and row of the shard in the grid, counted from 0.
@@ -21,7 +21,7 @@ pub(crate) struct Shard {
 }
 
 impl Shard {
-    /// Returns the region of the shard in a map of a size, cropped at the border.
+    /// Returns the shard's region in a map of the size `picture`, cropped at the border.
     ///
     /// # Errors
     ///

@@ -1,5 +1,5 @@
-//! Sizes on the command line: columns and rows in pixels, `1024x512` or `1024`, and extents in units of the plane,
-//! `2x1.5`.
+//! Parses sizes on the command line, which are columns and rows in pixels, `1024x512` or `1024`, and extents in units
+//! of the plane, `2x1.5`.
 
 use serde::Serialize;
 use std::fmt;

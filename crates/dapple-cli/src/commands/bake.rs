@@ -127,11 +127,11 @@ pub(crate) struct Args {
     files: OutputArgs,
 }
 
-/// A recipe to bake, with the directory of its images.
+/// A recipe to bake, with the directory of its images and, for a shard, its list.
 struct Work {
     recipe: Recipe,
     folder: PathBuf,
-    /// The list of its shards, if a shard is baked.
+    /// The list of the recipe's shards; `None` unless a shard is baked.
     list: Option<List>,
 }
 
@@ -139,7 +139,7 @@ struct Work {
 ///
 /// # Errors
 ///
-/// Invalid options, recipes and files.
+/// If an option, a recipe or a file is invalid.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.check_document()?;
     args.check_samples()?;
@@ -180,12 +180,11 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(batch.exit())
 }
 
-/// Bakes a recipe from memory, with options as they are typed after `dapple bake RECIPE`. Stops when `stop` becomes
-/// true.
+/// Bakes a recipe from memory. `words` are options as typed after `dapple bake RECIPE`. Stops when `stop` becomes true.
 ///
 /// # Errors
 ///
-/// Invalid options and recipes, and a bake that was stopped.
+/// If an option or the recipe is invalid, or the bake was stopped.
 #[cfg(feature = "studio")]
 pub(super) fn bake_with(
     words: &[String],
@@ -223,15 +222,15 @@ pub(super) fn presets() -> impl Iterator<Item = (&'static str, &'static str)> {
         .map(|preset| (preset.name, preset.about()))
 }
 
-/// Images and values that the frames of a loop share.
+/// Images and values that the frames of a looping animation share.
 struct Made {
-    /// The images of the recipe, once a frame has needed them.
+    /// The recipe's images; `None` until a frame needs them.
     images: Option<Images>,
     /// The cache of node values; `None` for a single frame.
     memory: Option<PlanCache>,
 }
 
-/// Size of the cache of node values that the frames of a loop share, in bytes.
+/// Size of the cache for node values that the frames of a looping animation share, in bytes.
 const MEMORY: usize = 1 << 28;
 
 impl Work {
@@ -255,7 +254,8 @@ impl Work {
         })
     }
 
-    /// Bakes all frames of a loop, or the single frame. Nodes that do not change with time are evaluated once.
+    /// Bakes all frames of a looping animation, or a single image. Nodes that do not change with time are evaluated
+    /// once.
     fn bake(
         &self,
         args: &Args,
@@ -322,7 +322,7 @@ impl Work {
     }
 }
 
-/// The options, and the recipe that was baked with them, for the sidecar.
+/// The sidecar content: the options, and the recipe that was baked with them.
 #[derive(Serialize)]
 struct BakeSidecar<'a> {
     #[serde(flatten)]
@@ -332,11 +332,11 @@ struct BakeSidecar<'a> {
 }
 
 impl Args {
-    /// Refuses samples on corners together with a sheet of copies.
+    /// Refuses samples on corners together with `--sheet`.
     ///
     /// # Errors
     ///
-    /// If both were given, or if a side has a single sample on corners.
+    /// If both are given, or if a side has only a single corner sample.
     fn check_samples(&self) -> Result<()> {
         self.material.samples.spaces(self.material.size)?;
         if self.sheet && self.material.samples.samples == Samples::Corners {
@@ -361,14 +361,14 @@ impl Args {
         }
     }
 
-    /// Returns how NaN and infinite values of images are handled.
+    /// Returns how to handle NaN and infinite values in images.
     #[cfg(feature = "studio")]
     pub(super) fn finite(&self) -> crate::args::FiniteArgs {
         self.material.finite
     }
 
-    /// Returns the sizes to bake one after another: the size of the options, preceded by the same size scaled down to
-    /// `small` pixels along its longer side, if it is larger than that.
+    /// Returns the sizes to bake, in order. If the requested size is larger than `small` pixels along its longer side,
+    /// it is preceded by the same size scaled down to `small`.
     pub(super) fn sizes(&self, small: u32) -> Vec<Size> {
         let size = self.material.size;
         let longer = size.0[0].max(size.0[1]);
@@ -386,12 +386,12 @@ impl Args {
         self.files.output.is_some()
     }
 
-    /// Returns whether existing files are replaced.
+    /// Returns whether existing files may be replaced.
     pub(super) fn may_replace(&self) -> bool {
         self.files.force
     }
 
-    /// Returns these options with another size, and with or without `--force`.
+    /// Returns a copy of the options with another size, and with or without `--force`.
     pub(super) fn at(&self, size: Size, may_replace: bool) -> Self {
         let mut args = self.clone();
         args.material.size = size;
@@ -399,7 +399,7 @@ impl Args {
         args
     }
 
-    /// Returns these options for each frame of a loop; once, unchanged, without a loop.
+    /// Returns a copy of the options for each frame of a looping animation. For a still image, returns a single copy.
     fn pictures(&self) -> impl Iterator<Item = Self> {
         Frame::all(self.frames).map(move |frame| {
             let frame = frame.or(self.frame);
@@ -410,7 +410,7 @@ impl Args {
         })
     }
 
-    /// Returns the output options for a number of recipes. Several recipes, and several frames, need a directory.
+    /// Returns the output options for `n_recipes` recipes. Several recipes, and several frames, need a directory.
     fn files_for(&self, n_recipes: usize) -> Result<OutputArgs> {
         let mut files = self.files.clone();
         // Another run may finish a shard first, with the same bytes, which this run may then replace.
@@ -439,7 +439,7 @@ impl Args {
         Ok(files)
     }
 
-    /// Returns the region of the tile to bake: a shard, a region, or `None` for the whole tile.
+    /// Returns the region of the tile to bake, from `--shard` or `--region`; `None` for the whole tile.
     fn part(&self) -> Result<Option<dapple::recipe::Region>> {
         match self.shard {
             Some(shard) => shard.region(self.material.size).map(Some),
@@ -447,7 +447,7 @@ impl Args {
         }
     }
 
-    /// Returns the number of rows that are baked for a recipe; a sheet is baked twice.
+    /// Returns the number of rows to bake for a recipe. The rows of a sheet count twice, because they are baked twice.
     fn n_rows(&self) -> Result<u32> {
         let size = self.part()?.map_or(self.material.size.0, |part| part.size);
         Ok(if self.sheet { 2 * size[1] } else { size[1] })

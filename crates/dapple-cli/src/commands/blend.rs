@@ -93,7 +93,7 @@ pub(crate) struct Args {
 ///
 /// # Errors
 ///
-/// Invalid options, images and files.
+/// If an option, an image or another file is invalid.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "blend", &args.image.files);
     let outputs = claim(args, &mut job)?;
@@ -145,7 +145,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Claims an output for each map. In a directory, the heights get an output, too, if all layers have heights.
+/// Claims an output for each map. If the output is a directory and all layers have heights, the heights also get one.
 fn claim(args: &Args, job: &mut Job<'_>) -> Result<Vec<OutputIdx>> {
     let names = args.layers[0].map_names();
     for layer in &args.layers[1..] {
@@ -170,8 +170,8 @@ fn claim(args: &Args, job: &mut Job<'_>) -> Result<Vec<OutputIdx>> {
     job.claim_images(&targets, args.image.format)
 }
 
-/// Reads the blend tile, repeated or cropped to the size of the blend. Unless `--plain-tile` is given, its values
-/// become ranks.
+/// Reads the blend tile, repeated or cropped to the size of the blend. Without `--plain-tile`, its values are replaced
+/// by their ranks.
 fn tile(args: &Args, reader: &mut Reader<'_>) -> Result<Option<Raster<f32>>> {
     let Some(path) = &args.tile else {
         return Ok(None);

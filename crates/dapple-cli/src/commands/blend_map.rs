@@ -1,4 +1,4 @@
-//! `dapple blend-map`: makes a blend tile from the features of a texture.
+//! `dapple blend-map`: computes a blend tile from the features of a texture.
 
 use crate::args::{Axes, ImageArgs, ReadArgs, Region, image_alpha};
 use crate::error::{Exit, Hint};
@@ -69,7 +69,7 @@ pub(crate) struct Args {
 ///
 /// # Errors
 ///
-/// Invalid options, images and files.
+/// If an option, an image or another file is invalid.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "blend-map", &args.output.files);
     let (files, ending) = (&args.output.files, args.output.ending());

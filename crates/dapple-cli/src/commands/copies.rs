@@ -86,7 +86,7 @@ pub(crate) struct Args {
 ///
 /// # Errors
 ///
-/// Invalid options, images and files.
+/// If an option, an image or another file is invalid.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let method = args.method.method(args.images.len(), args.tiles)?;
     let names = names(args)?;
@@ -125,7 +125,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Returns the names of the maps, height last. Fails unless all tiles have the same maps.
+/// Returns the names of the maps, with the height last. Fails unless all tiles have the same maps.
 fn names(args: &Args) -> Result<Vec<&str>> {
     let of = |tile: &LayerArg| -> Vec<String> {
         let height = tile.has_height().then_some(HEIGHT);
@@ -180,8 +180,8 @@ fn claim(
     job.claim_images(&targets, args.image.format)
 }
 
-/// Reads the maps of all tiles, height and then alpha last. Also returns the form of alpha, and whether an image has
-/// more than 8 bits per channel.
+/// Reads the maps of all tiles, with the height and then the alpha last. Also returns the form of the alpha, and
+/// whether any image has more than 8 bits per channel.
 fn read(args: &Args) -> Result<(Vec<Vec<Map>>, AlphaForm, bool)> {
     let mut reader = Reader::new(
         None,

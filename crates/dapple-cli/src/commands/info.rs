@@ -83,7 +83,7 @@ pub(super) struct Findings {
     text: String,
     /// The description as JSON.
     json: Value,
-    /// Whether `--check` passes.
+    /// Whether the file passes `--check`.
     is_good: bool,
 }
 
@@ -140,7 +140,7 @@ impl Args {
     }
 }
 
-/// Returns seam reports as JSON, with their faults and whether they pass.
+/// Converts seam reports to JSON, with their faults and whether they pass.
 pub(super) fn seams_json(reports: &SeamReports) -> Value {
     let of_channel = |of: &ChannelReport| {
         let faults = of.report.faults().into_iter();
@@ -213,7 +213,7 @@ fn image_findings(path: &Path, args: &Args) -> Result<Findings> {
     })
 }
 
-/// Describes an image with too many pixels by its header. Returns `error` if it has another cause.
+/// Describes an image that has too many pixels by its header alone. Returns `error` if that is not its cause.
 fn header_findings(path: &Path, error: Error) -> Result<Findings> {
     let Some(limit) = input::exceeded_limit(&error) else {
         return Err(error);

@@ -30,7 +30,7 @@ Examples:
 The files are those that `dapple bake` writes of the whole picture, byte for byte. In memory is a row of shards of one map:
 of a picture that is 200000 pixels wide, shards of 2048 x 256 take an eighth of what those of 2048 x 2048 do.";
 
-/// Number of rows of an image that are joined at a time.
+/// Number of image rows that are joined at a time.
 const BAND: u32 = 64;
 /// Maximum number of missing files that a message names.
 const NAMED: usize = 5;
@@ -63,7 +63,7 @@ struct Joined {
 ///
 /// # Errors
 ///
-/// Errors of the list, of missing or damaged shards, and of writing.
+/// If the list is invalid, a shard is missing or damaged, or writing fails.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let folder = &args.folder;
     let list = List::read(folder)?.ok_or_else(|| {
@@ -97,7 +97,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Checks that no file of the list is missing.
+/// Checks that no file in the list is missing.
 fn check_whole(folder: &Path, list: &List, kinds: &[MapKind]) -> Result<()> {
     let mut named = Vec::new();
     let [mut n_missing, mut n_files] = [0_u64; 2];
@@ -165,7 +165,7 @@ impl Args {
         Ok(all)
     }
 
-    /// Returns the format of a map. Fails for a format that cannot be made from shards.
+    /// Returns the file format for a map. Fails if shards cannot be joined to that format.
     fn format_of(&self, kind: MapKind, target: &Target) -> Result<Format> {
         let asked = match target {
             Target::Stdout => self.format.or(Some(Format::Exr)),
@@ -283,7 +283,7 @@ fn content(kind: MapKind) -> Content {
     }
 }
 
-/// Returns the names of the OpenEXR planes of a map's shard.
+/// Returns the names of the OpenEXR planes in a map's shards.
 fn planes(kind: MapKind) -> &'static [&'static str] {
     match content(kind) {
         Content::Gray => &["Y"],

@@ -59,7 +59,7 @@ pub(crate) struct Args {
 ///
 /// # Errors
 ///
-/// Errors of options that conflict or are out of range, and of writing.
+/// If options conflict or are out of range, or writing fails.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let node = FractalNode {
         basis: FractalBasis::Gradient,
@@ -92,8 +92,8 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     draw(&field, &args.field, &args.image, args, context)
 }
 
-/// Returns the first octave whose cells have at most the size of a pixel, counted from 1; `None` if all cells are
-/// larger. `cells` is the number of cells of the first octave across `pixels`.
+/// Returns the number, starting at 1, of the first octave whose cells are not larger than a pixel; `None` if all cells
+/// are larger. `cells` is the number of cells of the first octave across `pixels`.
 fn first_below_a_pixel(cells: f64, octaves: u32, pixels: u32) -> Option<u32> {
     let mut cells_of_octave = cells;
     for octave in 1..=octaves {

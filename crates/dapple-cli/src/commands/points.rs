@@ -92,7 +92,7 @@ dapple::raster::named! {
 ///
 /// # Errors
 ///
-/// Invalid options, images and files.
+/// If an option, an image or another file is invalid.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let target = match &args.output.output {
         Some(_) => (args.output).target("points", args.format.map_or("csv", Format::name))?,
@@ -153,7 +153,7 @@ fn format(args: &Args, target: &Target) -> Result<Format> {
     }
 }
 
-/// Returns the points as CSV: a header, and a line for each point.
+/// Formats the points as CSV, with a header and a line for each point.
 fn csv(scattered: &Scattered) -> String {
     let is_nested = scattered.lengths.len() > 1;
     let mut text = String::from(if is_nested { "x,y,level\n" } else { "x,y\n" });
@@ -168,7 +168,8 @@ fn csv(scattered: &Scattered) -> String {
     text
 }
 
-/// Returns the points as JSON, with the seed, the domain, the radius, and the number of points up to each level.
+/// Formats the points as JSON, with the seed, the domain, the radius, and the number of points up to and including each
+/// level.
 fn json_text(args: &Args, scattered: &Scattered) -> Result<String> {
     let set: &PointSet = &scattered.points;
     let domain = set.domain();

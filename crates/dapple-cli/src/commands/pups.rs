@@ -136,11 +136,11 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// The kind of a texture, as an index into [`PupsNode::KINDS`].
+/// A kind of texture, as an index into [`PupsNode::KINDS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Kind(usize);
 
-/// Names of textures in recipes, with a shorter name on the command line.
+/// Textures that have a shorter name on the command line, as pairs of the name in recipes and the short name.
 const SHORT_NAMES: [(&str, &str); 3] = [
     ("space_giraffe", "giraffe"),
     ("label_ramp", "ramp"),
@@ -158,12 +158,12 @@ const KINDS: [Kind; PupsNode::KINDS.len()] = {
 };
 
 impl Kind {
-    /// Returns the name in recipes.
+    /// Returns the texture's name in recipes.
     fn in_recipes(self) -> &'static str {
         PupsNode::KINDS[self.0].0
     }
 
-    /// Returns the name on the command line.
+    /// Returns the texture's name on the command line.
     fn name(self) -> String {
         let name = self.in_recipes();
         let short = SHORT_NAMES.iter().find(|(long, _)| *long == name);
@@ -199,7 +199,7 @@ impl Serialize for Kind {
 ///
 /// # Errors
 ///
-/// Options that the texture does not have or that are out of range, and files that cannot be read or written.
+/// If an option does not apply to the texture or is out of range, or if a file cannot be read or written.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let node = args.node()?;
     let field = Field {
@@ -217,17 +217,17 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     draw(&field, &args.field, &args.image, args, context)
 }
 
-/// Default radius of the circles of a loop, as a fraction of the mean distance of neighbors. Points of a Poisson-disk
-/// set remain apart at this radius.
+/// Default radius of the circles on which points move, as a fraction of the mean distance between neighbors. Points of
+/// a Poisson-disk set remain apart at this radius.
 const MOTION: f64 = 0.25;
 
-/// Default shorter side of the image, in units of the plane: the side of the paper's torus.
+/// Default shorter side of the image, in units of the plane. It is the side of the paper's torus.
 const SIDE: f64 = 2.0;
 
 /// An option that was given on the command line, as JSON.
 struct Given {
     option: &'static str,
-    /// The names that the option may have in the options of a texture. A texture has at most one of them.
+    /// The names that the option may have in a texture's options. A texture has at most one of them.
     names: &'static [&'static str],
     value: Value,
 }
@@ -263,7 +263,7 @@ impl Args {
         Ok(PupsNode::from_json(&data)?)
     }
 
-    /// Returns the options of textures that were given on the command line.
+    /// Returns the texture options that were given on the command line.
     fn given(&self) -> Result<Vec<Given>> {
         let points = self.points.as_deref().map(points::read).transpose()?;
         let spacings = self.spacings.map(|Numbers(distances)| distances);
@@ -309,7 +309,7 @@ impl Args {
     }
 }
 
-/// Returns the JSON pointer to an option with one of these names in the options of a texture; `None` if it has no such
+/// Returns the JSON pointer to the option with one of these names in a texture's options; `None` if there is no such
 /// option.
 fn path(data: &Value, kind: Kind, names: &[&str]) -> Option<String> {
     let kind = kind.in_recipes();

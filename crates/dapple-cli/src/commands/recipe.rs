@@ -87,7 +87,7 @@ enum Text {
 ///
 /// # Errors
 ///
-/// Errors of the recipe, of conflicting options, and of writing.
+/// If the recipe is invalid, options conflict, or writing fails.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let Some(name) = args.recipe.as_deref() else {
         return match (args.schema, args.reference) {

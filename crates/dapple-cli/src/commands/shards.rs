@@ -100,7 +100,7 @@ pub(crate) struct Args {
 ///
 /// # Errors
 ///
-/// A recipe that cannot be baked in shards, and a directory with a list of other shards.
+/// If the recipe cannot be baked in shards, or the directory has a list of other shards.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     if args.recipe == "-" {
         let error = usage("shards need a recipe file, since every one of them reads it again");
@@ -152,7 +152,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Prepares the bake of a shard, and fails if this fails.
+/// Checks that the bake of a shard can be set up.
 fn check(plan: &Plan, args: &Args, region: Option<Region>) -> Result<()> {
     let options = BakeOptions {
         size: args.material.size.0,
@@ -167,7 +167,7 @@ fn check(plan: &Plan, args: &Args, region: Option<Region>) -> Result<()> {
     Ok(())
 }
 
-/// Writes a shell command for each shard. `options` are the options of all bakes.
+/// Writes a shell command for each shard. `options` are passed to every bake.
 fn lines(args: &Args, options: &[String], list: &List, out: &mut impl Write) -> Result<()> {
     let output = text_of_path(&args.output)?;
     for Task { frame, shard, .. } in list.tasks()? {
@@ -200,7 +200,7 @@ struct Document<'a> {
     shards: Entries<'a>,
 }
 
-/// The shards of a list, generated during serialization, so that a list of any length takes no memory.
+/// The shards of a list. They are generated during serialization, so that even a long list takes no memory.
 struct Entries<'a> {
     list: &'a List,
     maps: &'a [MapKind],
@@ -235,7 +235,7 @@ impl Serialize for Entries<'_> {
     }
 }
 
-/// Returns a path as text. Fails unless it is valid UTF-8.
+/// Converts a path to text. Fails unless it is valid UTF-8.
 fn text_of_path(path: &Path) -> Result<&str> {
     path.to_str().ok_or_else(|| {
         usage(format!(

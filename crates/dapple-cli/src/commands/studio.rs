@@ -134,7 +134,7 @@ impl PageArgs {
     }
 }
 
-/// Converts an error of the studio, with its hint.
+/// Converts an error from the studio, with its hint.
 fn advise(error: StudioError) -> Error {
     let hint = error.hint().map(str::to_owned);
     let error = Error::new(error);
@@ -144,7 +144,7 @@ fn advise(error: StudioError) -> Error {
     }
 }
 
-/// Returns the name by which the page opens a recipe, and the directory of the recipe. Built-in recipes have an empty
+/// Returns the name by which the page opens a recipe, and the recipe's directory. Built-in recipes have an empty
 /// directory.
 fn place(name: &str) -> Result<(Option<String>, PathBuf)> {
     let path = Path::new(name);
@@ -241,8 +241,8 @@ impl Bakes {
     }
 }
 
-/// Returns the options of `dapple bake` for an export. Each option is one word, `--NAME=VALUE`, so that its value
-/// cannot be parsed as another option.
+/// Converts an export to options of `dapple bake`. Each option is one word, `--NAME=VALUE`, so that its value cannot be
+/// parsed as another option.
 fn words(export: &Export) -> Vec<String> {
     let mut words = Vec::new();
     let mut add = |name: &str, value: Option<String>| {

@@ -96,7 +96,7 @@ struct Source {
 ///
 /// # Errors
 ///
-/// Invalid options, images and files.
+/// If an option, an image or another file is invalid.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.method.check_used()?;
     let mut job = Job::new(context, "tile", &args.image.files);

@@ -64,7 +64,7 @@ pub(crate) struct Args {
 ///
 /// # Errors
 ///
-/// Errors of options out of range, and of writing.
+/// If an option is out of range, or writing fails.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let weights = args.weights();
     let variance: f64 = weights

@@ -146,7 +146,7 @@ pub(crate) struct Args {
 ///
 /// # Errors
 ///
-/// Errors of options out of range, and of writing.
+/// If an option is out of range, or writing fails.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let node = args.node()?;
     let extent = match args.period {

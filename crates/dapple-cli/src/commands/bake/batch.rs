@@ -1,4 +1,4 @@
-//! A run over several recipes, with a summary at the end.
+//! Runs over several recipes, and prints a summary at the end.
 
 use crate::error::{Exit, report};
 use crate::job::{Context, eprintln_if_possible};
@@ -13,7 +13,7 @@ pub(super) struct Batch<'a> {
 }
 
 impl<'a> Batch<'a> {
-    /// Begins a run over a number of recipes.
+    /// Begins a run over `n_recipes` recipes.
     pub(super) fn new(n_recipes: usize, keep_going: bool, context: &'a Context) -> Self {
         Self {
             n_recipes,
@@ -27,7 +27,7 @@ impl<'a> Batch<'a> {
     ///
     /// # Errors
     ///
-    /// The error of the recipe, if it ends the run.
+    /// If the result is an error and `--keep-going` is not given.
     pub(super) fn checked<T>(&mut self, name: &str, result: Result<T>) -> Result<Option<T>> {
         if self.n_recipes == 1 {
             return result.map(Some);

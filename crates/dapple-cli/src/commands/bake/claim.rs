@@ -1,4 +1,4 @@
-//! The output files of a recipe: claimed before the work begins, and written when it is done.
+//! Claims a recipe's output files before the work begins, and writes them when it is done.
 
 use super::documents::{glb, mtlx};
 use super::presets::Document;
@@ -28,8 +28,8 @@ pub(super) struct Claimed {
     pub(super) preview: Option<(OutputIdx, Format)>,
 }
 
-/// Claims the document, a file for each image and its sheet, the preview, and the sidecar. A single file is the output
-/// itself, unless that is a directory; several files are `NAME_MAP.EXTENSION`.
+/// Claims the document, a file for each image and its sheet, the preview, and the sidecar. A single file has the output
+/// path itself, unless that is a directory. Several files are called `NAME_MAP.EXTENSION`.
 pub(super) fn claim(
     args: &Args,
     files: &OutputArgs,
@@ -85,7 +85,7 @@ pub(super) fn claim(
 }
 
 /// Returns the paths of all files, in the order of [`claim`]: the document, each image with its sheet, and the preview.
-/// For a shard, the files of its maps.
+/// For a shard, returns the paths of its maps.
 fn targets(args: &Args, files: &OutputArgs, work: &Work) -> Result<Targets> {
     if let (Some(shard), Some(list)) = (args.shard, &work.list) {
         let folder = files.output.as_deref().ok_or_else(no_folder)?;
@@ -126,8 +126,8 @@ fn targets(args: &Args, files: &OutputArgs, work: &Work) -> Result<Targets> {
     Ok(targets)
 }
 
-/// Returns the files of a shard. Their directory is created here and remains, since other runs may need it before this
-/// one is done.
+/// Returns the paths of a shard's files. Their directory is created here and remains, since other runs may need it
+/// before this one is done.
 fn shard_targets(args: &Args, folder: &Path, shard: Shard, list: &List) -> Result<Targets> {
     list.check_folder(folder)?;
     let kinds = args.material.map_kinds().iter();
@@ -145,14 +145,14 @@ fn no_folder() -> Error {
     usage("missing output").hint("add -o DIR/, the folder of the shards")
 }
 
-/// Returns an image in the format of its file, checked for its content.
+/// Chooses the format of an image, and checks that the format can store its content.
 fn image(layers: Layers, asked: Option<Format>, target: &Target) -> Result<Image> {
     let format = baking::format(asked, target)?;
     format.check(layers.content(), target)?;
     Ok(Image { layers, format })
 }
 
-/// Claims the lit preview. It is a PNG if the maps are neither PNG nor OpenEXR.
+/// Claims the file of the lit preview. It is a PNG if the maps are neither PNG nor OpenEXR.
 fn claim_preview(args: &Args, target: Target, job: &mut Job<'_>) -> Result<(OutputIdx, Format)> {
     let target = match target.ending().as_str() {
         "png" | "exr" => target,
@@ -165,7 +165,7 @@ fn claim_preview(args: &Args, target: Target, job: &mut Job<'_>) -> Result<(Outp
     Ok((job.claim(&target)?, format))
 }
 
-/// Refuses a name without the extension of the document.
+/// Returns an error unless the target has the document's file extension.
 fn check_ending(target: &Target, document: Document) -> Result<()> {
     let ending = document.ending();
     if *target == Target::Stdout || target.ending() == ending {
@@ -178,8 +178,7 @@ fn check_ending(target: &Target, document: Document) -> Result<()> {
 }
 
 impl Args {
-    /// Returns whether a file of a shard exists already. A file with the name of a shard is complete and belongs to its
-    /// list.
+    /// Returns whether a shard's file exists already. Such a file is complete and belongs to the shard's list.
     fn is_finished(&self, target: &Target) -> bool {
         let is_there = |path: &Path| path.exists();
         self.shard.is_some() && !self.files.force && target.path().is_some_and(is_there)

@@ -1,4 +1,4 @@
-//! Documents of a whole material: a textured plane in glTF, and a MaterialX document.
+//! Builds documents for a whole material: a textured plane in glTF, or a MaterialX document.
 //!
 //! References: The Khronos Group, *glTF 2.0 Specification*, 2021 (ISO/IEC 12113:2022); Smythe, Stone et al., *MaterialX
 //! Specification* and *MaterialX Standard Nodes*, version 1.38, 2021. One unit of the plane is one meter in both.
@@ -133,7 +133,7 @@ pub(super) fn mtlx(recipe: &Recipe, files: &[(Layers, String)]) -> String {
 /// The displacement input of a material.
 const DISPLACEMENT_INPUT: &str = "    <input name=\"displacementshader\" type=\"displacementshader\" nodename=\"displacement\" />\n";
 
-/// Returns the image node of a map; for normals, also the node that decodes them.
+/// Returns the XML of a map's image node. For normals, it includes the node that decodes them.
 fn image_node(wire: &Wire, file: &str) -> String {
     let Wire {
         name,
@@ -163,7 +163,7 @@ fn image_node(wire: &Wire, file: &str) -> String {
     text
 }
 
-/// Returns the displacement node. `relief` is the displacement of a height of 1, in meters.
+/// Returns the XML of the displacement node. `relief` is the displacement of a height of 1, in meters.
 fn displacement(relief: f64) -> String {
     format!(
         r#"  <displacement name="displacement" type="displacementshader">
@@ -174,13 +174,13 @@ fn displacement(relief: f64) -> String {
     )
 }
 
-/// Makes a name valid in MaterialX: characters other than ASCII letters and digits become `_`.
+/// Makes a name valid in MaterialX, by replacing characters other than ASCII letters and digits with `_`.
 fn identifier(name: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     name.chars().map(plain).collect()
 }
 
-/// Escapes a text as the value of an XML attribute.
+/// Escapes a text for use as the value of an XML attribute.
 fn escaped(text: &str) -> String {
     let text = text.replace('&', "&amp;").replace('<', "&lt;");
     text.replace('"', "&quot;")

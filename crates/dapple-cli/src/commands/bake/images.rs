@@ -1,4 +1,4 @@
-//! Selection of the images that are baked from a recipe.
+//! Selects the images that are baked from a recipe.
 
 use super::Args;
 use super::presets::{Document, Preset, PresetImage};
@@ -32,7 +32,7 @@ impl Args {
     ///
     /// # Errors
     ///
-    /// If such an option was given.
+    /// If such an option is given.
     pub(super) fn check_document(&self) -> Result<()> {
         let Some(document) = self.document() else {
             return Ok(());
@@ -63,7 +63,7 @@ impl Args {
         }
     }
 
-    /// Returns the images to bake: for each, its part of the file name, its channels, and its format if one was chosen.
+    /// Returns the images to bake. Each has its part of the file name, its channels, and the format if one was chosen.
     pub(super) fn images(&self) -> Vec<(&'static str, Layers, Option<Format>)> {
         if let Some(preset) = self.preset() {
             let images = preset.images.iter();

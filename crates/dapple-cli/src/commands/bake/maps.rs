@@ -1,4 +1,4 @@
-//! A list of maps on the command line.
+//! Parses a list of maps on the command line.
 
 use crate::words::{unknown, with_underscores};
 use dapple::recipe::MapKind;

@@ -1,5 +1,5 @@
-//! Options of the material, shared by `bake` and `shards`: size, maps, seed, relief, and the direction of green in
-//! normal maps.
+//! Defines the options for a material that `bake` and `shards` share: size, maps, seed, relief, and the direction of
+//! green in normal maps.
 
 use super::maps::Maps;
 use crate::args::{FiniteArgs, SamplesArgs, Size, seed};
@@ -24,7 +24,7 @@ const USUAL: [MapKind; 5] = [
     MapKind::Roughness,
 ];
 
-/// A replacement for a value of a recipe, as `PATH=VALUE`.
+/// A replacement for a value in a recipe, given as `PATH=VALUE`.
 #[derive(Clone, Debug, Serialize)]
 #[serde(into = "String")]
 pub(in crate::commands) struct Setting {
@@ -37,7 +37,7 @@ impl Setting {
     ///
     /// # Errors
     ///
-    /// The errors of [`Recipe::set`], as wrong usage.
+    /// Same as [`Recipe::set`], reported as wrong usage.
     pub(in crate::commands) fn apply(&self, recipe: &mut Recipe) -> Result<()> {
         recipe.set(&self.path, &self.value).map_err(|error| {
             let nearest = error.nearest().map(str::to_owned);
@@ -144,7 +144,7 @@ impl MaterialArgs {
         Ok(())
     }
 
-    /// Converts an error of a plan: to wrong usage if it is about the relief given by `--relief`.
+    /// Converts an error from a plan. If it is about the value of `--relief`, it is reported as wrong usage.
     pub(in crate::commands) fn blame(&self, error: RecipeError) -> Error {
         // Match the error by name, not by value: the given relief may be NaN, which equals nothing.
         let is_of_relief = matches!(error.kind(), RecipeErrorKind::Range { what: "relief", .. });
@@ -156,7 +156,7 @@ impl MaterialArgs {
         }
     }
 
-    /// Returns these options as arguments for a command line.
+    /// Formats the options as command-line arguments.
     pub(in crate::commands) fn words(&self) -> Vec<String> {
         let maps = self.map_kinds().iter().map(|kind| kind.name());
         let maps = maps.collect::<Vec<_>>().join(",");

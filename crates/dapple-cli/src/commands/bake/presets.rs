@@ -1,4 +1,4 @@
-//! Presets for programs: the images that they import, the maps in their channels, and their formats.
+//! Presets for other programs, with the images that they import, the maps in their channels, and their formats.
 //!
 //! References: the documentation of each program, cited at its entry in [`PRESETS`].
 
@@ -10,7 +10,7 @@ use dapple::recipe::MapKind;
 use serde::{Serialize, Serializer};
 use std::fmt::Write as _;
 
-/// The images of a material, as a program imports them.
+/// A preset: the images of a material, in the form in which a program imports them.
 #[derive(Debug, PartialEq)]
 pub(super) struct Preset {
     pub(super) name: &'static str,
@@ -31,7 +31,7 @@ pub(super) struct PresetImage {
     pub(super) image: Image,
 }
 
-/// A file that combines the images to a material.
+/// A file that combines the images into a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Document {
     /// A plane in glTF 2.0, with embedded images.
@@ -50,7 +50,7 @@ impl Document {
     }
 }
 
-/// Returns an image with 8 bits per channel.
+/// Defines an image with 8 bits per channel.
 const fn eight(part: &'static str, layers: Layers) -> PresetImage {
     let format = Format::Png8;
     PresetImage {
@@ -59,7 +59,7 @@ const fn eight(part: &'static str, layers: Layers) -> PresetImage {
     }
 }
 
-/// Returns an image with 16 bits per channel.
+/// Defines an image with 16 bits per channel.
 const fn sixteen(part: &'static str, layers: Layers) -> PresetImage {
     let format = Format::Png16;
     PresetImage {
@@ -91,7 +91,7 @@ const GLTF: &[PresetImage] = &[
     eight("normal", Layers::Map(MapKind::Normal)),
 ];
 
-/// Defaults of a preset: no images, no prefix, no document, and green up in normal maps.
+/// The default values of a preset: no images, no prefix, no document, and green pointing up in normal maps.
 const PLAIN: Preset = Preset {
     name: "",
     about: "",
@@ -197,7 +197,7 @@ impl Preset {
         self.about
     }
 
-    /// Returns a parser of presets by their names.
+    /// Creates a parser that recognizes presets by their names.
     pub(super) fn parser() -> NamedValueParser<&'static Self> {
         let presets = PRESETS.iter();
         presets.fold(NamedValueParser::none(), |words, preset| {

@@ -1,4 +1,4 @@
-//! Expansion of patterns such as `rocks/*.toml`, for shells that do not expand them and for built-in recipes.
+//! Expands patterns such as `rocks/*.toml`, for shells that do not expand them and for built-in recipes.
 
 use crate::error::{Hint, usage};
 use anyhow::{Context as _, Result};

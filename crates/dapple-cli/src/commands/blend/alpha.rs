@@ -1,4 +1,4 @@
-//! Alpha in a blend: colors are mixed premultiplied by alpha, so that transparent pixels contribute no color.
+//! Handles alpha in a blend. Colors are mixed premultiplied by alpha, so that transparent pixels contribute no color.
 
 use super::layer::Material;
 use crate::input::divided;
@@ -7,7 +7,7 @@ use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::tile::Map;
 
-/// The relation of the mixed colors to alpha.
+/// How the mixed colors relate to alpha.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::commands) enum AlphaForm {
     /// The image has no alpha.
@@ -18,7 +18,8 @@ pub(in crate::commands) enum AlphaForm {
     Associated,
 }
 
-/// If any layer has alpha, multiplies the first map of each layer by its alpha, and appends the alpha as the last map.
+/// Multiplies the first map of each layer by its alpha, and appends the alpha as the last map. Does nothing if no layer
+/// has alpha.
 pub(in crate::commands) fn multiply(materials: &mut [Material]) -> Result<AlphaForm> {
     if materials.iter().all(|material| material.alpha.is_none()) {
         return Ok(AlphaForm::None);
@@ -40,7 +41,7 @@ pub(in crate::commands) fn multiply(materials: &mut [Material]) -> Result<AlphaF
     Ok(form)
 }
 
-/// Removes the alpha from the end of the maps, and converts the first map to the form.
+/// Removes the alpha from the end of `maps` and returns it, and converts the first map to `form`.
 pub(in crate::commands) fn take(
     maps: &mut Vec<Map>,
     form: AlphaForm,

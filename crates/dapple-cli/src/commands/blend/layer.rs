@@ -1,4 +1,5 @@
-//! A layer on the command line: `grass.png,weight=mask.png,height=grass_height.png,normal=grass_normal.png`.
+//! Parses a layer on the command line, such as
+//! `grass.png,weight=mask.png,height=grass_height.png,normal=grass_normal.png`.
 
 use crate::args::{Alpha, ReadArgs, Size};
 use crate::encode::map_raster;
@@ -16,7 +17,7 @@ use std::str::FromStr;
 /// The name of the first map of a layer.
 const BASE: &str = "base";
 
-/// The name of the map with the height of a layer.
+/// The name of the map with a layer's height.
 pub(in crate::commands) const HEIGHT: &str = "height";
 
 /// A layer on the command line.
@@ -28,7 +29,7 @@ pub(in crate::commands) struct LayerArg {
     maps: Vec<(String, PathBuf)>,
 }
 
-/// The weight of a layer.
+/// The weight of a layer, a number or a mask.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 enum Weight {
@@ -41,11 +42,11 @@ enum Weight {
 pub(in crate::commands) struct Material {
     /// The maps, in the order of their names.
     pub(in crate::commands) maps: Vec<Map>,
-    /// The alpha of the first map, if it is kept.
+    /// The alpha of the first map; `None` if it is not kept.
     pub(in crate::commands) alpha: Option<Raster<f32>>,
-    /// Whether the first map is associated: multiplied by alpha.
+    /// Whether the first map has associated alpha, that is, colors multiplied by alpha.
     pub(in crate::commands) is_associated: bool,
-    /// The height of the layer.
+    /// The layer's height; `None` if it has no height.
     pub(in crate::commands) height: Option<Raster<f32>>,
     /// Whether an image has more than 8 bits per channel.
     pub(in crate::commands) is_deep: bool,
@@ -162,24 +163,24 @@ impl LayerArg {
     }
 }
 
-/// Reads the images of all layers, and brings them to one size.
+/// Reads the images of all layers, and repeats or crops them to the same size.
 #[derive(Debug)]
 pub(in crate::commands) struct Reader<'a> {
     /// The size to which images are repeated or cropped, if given.
     size: Option<Size>,
-    /// How alpha is handled.
+    /// How to handle alpha.
     alpha: Alpha,
     /// The options for reading images.
     read: &'a ReadArgs,
-    /// The path and size of the first image, for the check of sizes.
+    /// The path and size of the first image, with which the others are compared.
     first: Option<(PathBuf, [u32; 2])>,
-    /// The hint for images of different sizes.
+    /// The hint for the error about images of different sizes.
     hint: &'static str,
 }
 
 impl<'a> Reader<'a> {
-    /// Makes a reader that repeats or crops images to `size`. Without `size`, all images must have the size of the
-    /// first one; the error for another size has this hint.
+    /// Creates a reader that repeats or crops images to `size`. Without `size`, all images must be the same size as the
+    /// first one, and the error for another size has the hint `hint`.
     pub(in crate::commands) fn new(
         size: Option<Size>,
         alpha: Alpha,
@@ -199,7 +200,7 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     ///
-    /// If the image cannot be read, or has another size than the first one.
+    /// If the image cannot be read, or differs in size from the first one.
     pub(in crate::commands) fn read(&mut self, path: &Path, kind: Kind) -> Result<Loaded> {
         let mut loaded = input::map_with_alpha(path, kind, None, self.alpha, self.read)?;
         if let Some(size) = self.size {
@@ -257,11 +258,11 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Returns the weight of each layer at every pixel. Layers without a weight share equally what the others leave of 1.
+/// Returns the weight of each layer at every pixel. Layers without a weight equally share the rest, up to 1.
 ///
 /// # Errors
 ///
-/// If a mask has another size.
+/// If a mask differs in size.
 pub(in crate::commands) fn weights(
     materials: &[Material],
     size: [u32; 2],
@@ -286,7 +287,7 @@ pub(in crate::commands) fn weights(
         .collect())
 }
 
-/// Returns the values of a map: for colors the luminance, for normals the z component.
+/// Converts a map to numbers. Colors are converted to their luminance, normals to their z component.
 pub(in crate::commands) fn values(map: Map) -> Raster<f32> {
     match map {
         Map::Value(values) => values,
@@ -295,7 +296,7 @@ pub(in crate::commands) fn values(map: Map) -> Raster<f32> {
     }
 }
 
-/// Splits a text at each `,key=` into the image and the pairs of keys and values. Other commas are part of file names.
+/// Splits a text at each `,key=` into the image and key-value pairs. Other commas are part of file names.
 fn split(text: &str) -> (String, Vec<(String, String)>) {
     let mut parts = text.split(',');
     let mut path = parts.next().unwrap_or_default().to_owned();
@@ -315,7 +316,7 @@ fn split(text: &str) -> (String, Vec<(String, String)>) {
     (path, pairs)
 }
 
-/// Returns whether a text has only the characters of a key: ASCII letters, `_` and `-`.
+/// Returns whether `key` consists of the characters allowed in keys: ASCII letters, `_` and `-`.
 fn is_key(key: &str) -> bool {
     !key.is_empty()
         && key
@@ -323,13 +324,13 @@ fn is_key(key: &str) -> bool {
             .all(|byte| byte.is_ascii_alphabetic() || b"_-".contains(&byte))
 }
 
-/// Fails for a key that is similar to a known one; all other keys are names of maps.
+/// Returns an error if a key is a likely misspelling of a known one. All other keys are names of maps.
 fn check_key(key: &str) -> Result<(), String> {
     let maps = MapKind::ALL.into_iter().map(MapKind::name);
     slip("key", key, ["weight"].into_iter().chain(maps)).map_or(Ok(()), Err)
 }
 
-/// Parses a weight: a number, or the file of a mask.
+/// Parses a weight, which is a number or the file of a mask.
 fn weight(text: &str) -> Result<Weight, String> {
     match text.parse::<f32>() {
         Ok(number) if number >= 0.0 && number.is_finite() => Ok(Weight::Number(number)),
@@ -338,7 +339,7 @@ fn weight(text: &str) -> Result<Weight, String> {
     }
 }
 
-/// Repeats or crops a map to a size.
+/// Repeats or crops a map to `size`.
 fn repeated(map: &Map, size: Size) -> Result<Map> {
     let context = "the images cannot be repeated";
     Ok(map_raster!(map, raster => repeat(raster, size.0).context(context)?))

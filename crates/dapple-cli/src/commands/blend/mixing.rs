@@ -1,4 +1,4 @@
-//! The options for weighting and mixing of `dapple blend`.
+//! Defines the options for weighting and mixing in `dapple blend`.
 
 use crate::args::Axes;
 use crate::error::{Hint, usage};
@@ -68,8 +68,8 @@ pub(super) struct MixingArgs {
 }
 
 impl MixingArgs {
-    /// Returns the options of the blend. The default weighting is mask with a blend tile, otherwise height if a layer
-    /// has a height, otherwise the given weights.
+    /// Returns the blend options. The default weighting is mask with a blend tile, otherwise height if a layer has a
+    /// height, otherwise the given weights.
     ///
     /// # Errors
     ///

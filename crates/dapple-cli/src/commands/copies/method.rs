@@ -113,7 +113,7 @@ impl MethodArgs {
         }
     }
 
-    /// Fails for an option of another method, which would have no effect.
+    /// Returns an error if an option of another method is given, which would have no effect.
     fn check_used(&self, method: Name) -> Result<()> {
         for (option, is_given, used_by) in [
             ("frozen", self.frozen.is_some(), Name::Disturb),
@@ -132,7 +132,8 @@ impl MethodArgs {
 }
 
 impl Method {
-    /// Returns the names of the tiles in the set that is made from `count` tiles, in the order of [`Tiles::tiles`].
+    /// Returns the names of the tiles in the set that is generated from `count` tiles, in the order of
+    /// [`Tiles::tiles`].
     pub(super) fn tile_names(self, count: usize) -> Vec<String> {
         let Self::Corners { .. } = self else {
             return (1..=count).map(|tile| tile.to_string()).collect();
@@ -144,7 +145,7 @@ impl Method {
     }
 }
 
-/// A method, and the maps of its tiles; at least one tile.
+/// A method and the maps of its tiles. There is at least one tile.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tiles<'a> {
     pub(super) method: Method,
@@ -156,7 +157,7 @@ impl Tiles<'_> {
     ///
     /// # Errors
     ///
-    /// Errors of the method.
+    /// If the method fails, for example because the tiles are too small.
     pub(super) fn render(&self, seed: Seed, size: [u32; 2]) -> Result<Vec<Map>, TileError> {
         match self.method {
             Method::Disturb { frozen, margin } => {
@@ -186,11 +187,11 @@ impl Tiles<'_> {
         }
     }
 
-    /// Makes the tiles of a set, in the order of their names.
+    /// Generates the tiles of a set, in the order of their names.
     ///
     /// # Errors
     ///
-    /// Errors of the method.
+    /// If the method fails, for example because the tiles are too small.
     pub(super) fn tiles(&self) -> Result<Vec<Vec<Map>>, TileError> {
         match self.method {
             Method::Corners { share } => self.corners(share)?.all(),

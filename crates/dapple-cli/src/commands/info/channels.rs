@@ -11,10 +11,10 @@ use std::fmt;
 
 /// Number of bins of a histogram.
 const BINS: u32 = 24;
-/// The bars of a histogram, from an empty bin to the fullest.
+/// The characters for the bars of a histogram, from an empty bin to the fullest.
 const BARS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// Minimum width of the column of names, in characters.
+/// Minimum width of the name column, in characters.
 const NAME_MIN: usize = 9;
 
 const GRAY: [&str; 1] = ["gray"];
@@ -34,7 +34,7 @@ impl Channel {
         self.values.statistics().n_not_finite
     }
 
-    /// Returns the statistics as JSON. NaN and infinite numbers become null.
+    /// Converts the statistics to JSON. NaN and infinite numbers become null.
     pub(super) fn to_json(&self) -> Value {
         let statistics = self.values.statistics();
         json!({
@@ -52,7 +52,7 @@ impl Channel {
             .count()
     }
 
-    /// Returns the number of pixels in each bin, from the minimum to the maximum.
+    /// Returns the number of pixels in each bin of the histogram, which spans the minimum to the maximum.
     fn histogram(&self) -> Vec<usize> {
         let statistics = self.values.statistics();
         let finite = self.values.pixels().iter().copied();
@@ -65,7 +65,7 @@ impl Channel {
         )
     }
 
-    /// Returns the histogram as a line of bars.
+    /// Formats the histogram as a line of bars.
     fn bars(&self) -> String {
         let counts = self.histogram();
         let most = counts.iter().copied().max().unwrap_or(0).max(1);
@@ -77,7 +77,7 @@ impl Channel {
         counts.iter().map(bar).collect()
     }
 
-    /// Returns the line of the channel in the table. `width` is the width of the column of names.
+    /// Formats the channel as a line of the table. `width` is the width of the name column, in characters.
     fn line(&self, width: usize) -> String {
         let statistics = self.values.statistics();
         let [min, max] = [statistics.min, statistics.max].map(f64::from);
@@ -100,11 +100,11 @@ impl Channel {
     }
 }
 
-/// Returns the channels of an image, with codes converted to 0 to 1 but no color space applied.
+/// Returns the channels of an image. Codes are scaled to the range 0 to 1, without color space conversion.
 ///
 /// # Errors
 ///
-/// If an image of another format cannot be converted to colors.
+/// If the image is not OpenEXR and cannot be converted to colors.
 pub(super) fn channels(content: &Content) -> Result<Vec<Channel>> {
     Ok(match content {
         Content::Raw(codes) => split(&codes.map(|&code| [code]), GRAY),
@@ -142,7 +142,7 @@ pub(super) fn channels(content: &Content) -> Result<Vec<Channel>> {
     })
 }
 
-/// Returns the format of an image as text.
+/// Describes the format of an image as text.
 pub(super) fn format(content: &Content) -> String {
     let image = match content {
         Content::Raw(_) => return "raw heights of 16 bits".to_owned(),
@@ -205,7 +205,7 @@ pub(super) fn transparency(channels: &[Channel]) -> Option<Transparency> {
     })
 }
 
-/// Returns a table with a header and a line for each channel. Each line begins with a line feed.
+/// Formats a table with a header and a line for each channel. Each line begins with a line feed.
 pub(super) fn table(channels: &[Channel]) -> String {
     let names = channels.iter().map(|channel| channel.name.chars().count());
     let width = names.max().unwrap_or(0).max(NAME_MIN);

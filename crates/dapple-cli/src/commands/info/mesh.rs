@@ -62,7 +62,7 @@ pub(super) fn findings(path: &Path) -> Result<Findings> {
     })
 }
 
-/// Returns the counts of a mesh report, with their names.
+/// Returns the counts in a mesh report, with their names.
 fn counts(report: &MeshReport) -> [(&'static str, usize); 12] {
     [
         ("vertices", report.vertices),
@@ -97,7 +97,7 @@ fn bounds(model: &Model) -> Option<[DVec3; 2]> {
     Some(rest.iter().fold([first; 2], grow))
 }
 
-/// Returns the names of the attributes and textures of a model, except positions.
+/// Returns the names of a model's attributes and textures, except positions.
 fn columns(model: &Model) -> Vec<&'static str> {
     let material = &model.material;
     let all = [

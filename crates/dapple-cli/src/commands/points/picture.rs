@@ -1,4 +1,4 @@
-//! Images of point sets: a dot for each point, in the color of its level.
+//! Draws images of point sets. Each point is a dot in the color of its level.
 
 use super::scatter::Scattered;
 use crate::args::{RampArg, Size};
@@ -11,12 +11,12 @@ use dapple::raster::Raster;
 
 /// Maximum side of an image, in pixels.
 const SIDE_MAX: u32 = 1 << 14;
-/// Default radius of a dot, as a fraction of the mean distance of points.
+/// Default radius of a dot, as a fraction of the mean distance between points.
 const DOT: f64 = 0.25;
 /// Minimum default radius of a dot, in pixels, so that it is visible.
 const DOT_MIN: f64 = 0.6;
 
-/// Draws the points. The image is the largest that fits into `size` with square pixels.
+/// Draws the points. The image is the largest one that fits into `size` with square pixels.
 ///
 /// # Errors
 ///

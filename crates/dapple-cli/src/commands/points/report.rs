@@ -1,4 +1,4 @@
-//! Measurements of a point set, as text and as JSON.
+//! Measures a point set, and reports the result as text or JSON.
 
 use super::scatter::Scattered;
 use anyhow::Result;
@@ -6,7 +6,8 @@ use dapple::points::{EmptyCircle, PointSet, Spectrum, SpectrumOptions, spectrum}
 use serde_json::{Value, json};
 use std::fmt;
 
-/// Upper limit of low frequencies, in units of sqrt(N / area). A blue-noise set has hardly any power below it.
+/// Frequency below which frequencies count as low, in units of sqrt(N / area). A blue-noise set has hardly any power
+/// below it.
 const LOW: f64 = 0.5;
 
 /// The measurements of a point set.
@@ -16,7 +17,7 @@ pub(super) struct Report {
     radius: Option<f64>,
     least_distance: Option<f64>,
     empty_circle: Option<EmptyCircle>,
-    /// Number of points per square of the radius, if there is a radius.
+    /// Number of points per squared radius; `None` if the points have no radius.
     density: Option<f64>,
     spectrum: Option<Spectrum>,
 }
@@ -39,7 +40,7 @@ impl Report {
             density: scattered
                 .radius
                 .map(|radius| points.normalized_density(radius)),
-            // Leave out the spectrum of a set that is too large for it.
+            // Leave out the spectrum if the set is too large for it.
             spectrum: spectrum(core::slice::from_ref(points), &options).ok(),
         })
     }

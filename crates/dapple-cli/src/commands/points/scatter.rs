@@ -1,4 +1,4 @@
-//! The kinds of point sets, and their options.
+//! Defines the kinds of point sets and their options, and scatters the points.
 
 use crate::args::{Axes, Extent, Numbers, ReadArgs, Size, image_alpha, seed};
 use crate::error::{Hint, usage};
@@ -119,13 +119,13 @@ pub(super) struct ScatterArgs {
     wrap: Axes,
 }
 
-/// Points, with their levels and radius.
+/// Scattered points, with their levels and radius.
 #[derive(Debug)]
 pub(super) struct Scattered {
     pub(super) points: PointSet,
     /// For each level, the number of points up to this level; a single number for points without levels.
     pub(super) lengths: Vec<usize>,
-    /// Minimum distance of points, if there is one.
+    /// Minimum distance between points; `None` if there is no minimum.
     pub(super) radius: Option<f64>,
 }
 
@@ -203,7 +203,7 @@ impl ScatterArgs {
         })
     }
 
-    /// Returns the radius as a function of position that gives the density of the options.
+    /// Returns the radius as a function of position, chosen to give the requested density.
     fn variable_radius(&self, domain: Domain, count: u32) -> Result<Varying> {
         let (from, end) = (domain.origin, domain.end());
         let path = match &self.density {
@@ -245,7 +245,7 @@ impl ScatterArgs {
         radius.map_err(advise).with_context(|| input::name(path))
     }
 
-    /// Fails for an option of another kind, which would have no effect.
+    /// Returns an error if an option of another kind is given, which would have no effect.
     fn check_used(&self) -> Result<()> {
         let given = [
             ("radius", self.radius.is_some(), Kind::Poisson),
@@ -267,7 +267,7 @@ impl ScatterArgs {
     }
 }
 
-/// A density: an image, or a ramp with values at the left and at the right.
+/// A density, given as an image or as a ramp from the value at the left to that at the right.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 enum Density {

@@ -1,4 +1,4 @@
-//! Control points in files: CSV lines `x,y,value` or `x,y,value,ox,oy`, and JSON lists of objects.
+//! Reads control points from files, which have CSV lines `x,y,value` or `x,y,value,ox,oy`, or JSON lists of objects.
 
 use crate::input;
 use anyhow::{Context as _, Result, bail};

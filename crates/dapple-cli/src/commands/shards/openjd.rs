@@ -12,7 +12,7 @@ use std::path::{Component, Path, absolute};
 /// Maximum number of characters in the name of a job.
 const NAME_MAX: usize = 128;
 
-/// A job template: its parameters, and its step, which bakes.
+/// A job template with its parameters and a single step, which bakes.
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Template {
@@ -44,7 +44,7 @@ struct Step {
     script: Script,
 }
 
-/// The parameter space of a step: one task for each combination of the values.
+/// The parameter space of a step, which has one task for each combination of values.
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
 struct Space {
@@ -77,7 +77,7 @@ struct Action {
     args: Vec<String>,
 }
 
-/// Makes a job template with a task for each shard. `options` are the options of all bakes. The recipe, the output
+/// Builds a job template with a task for each shard. `options` are passed to every bake. The recipe, the output
 /// directory and the command are job parameters.
 ///
 /// # Errors
@@ -135,7 +135,7 @@ fn range(name: &'static str, first: u32, last: u32) -> Range {
     }
 }
 
-/// Returns the job parameter of the recipe: the path of a file, or the name of a built-in recipe.
+/// Returns the job parameter for the recipe, which is a file path or the name of a built-in recipe.
 fn recipe(typed: &str) -> Result<Parameter> {
     match Path::new(typed).is_file() {
         true => path("Recipe", ["FILE", "IN"], Path::new(typed)),

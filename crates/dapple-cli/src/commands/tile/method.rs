@@ -106,7 +106,7 @@ const AUTO: &str = "auto";
 /// The options of the spline methods.
 const PROJECT_OPTIONS: &[&str] = &["levels", "basis", "phase", "pixels"];
 
-/// Returns a parser of the names of methods.
+/// Creates a parser of method names.
 fn method() -> NamedValueParser<&'static str> {
     let auto = NamedValueParser::none().or(
         AUTO,
@@ -148,7 +148,7 @@ impl Candidate {
     }
 }
 
-/// Returns a parser of the basis functions of spline tiles.
+/// Creates a parser of basis functions for spline tiles.
 fn basis() -> NamedValueParser<Basis> {
     let splines = NamedValueParser::<Degree>::all().map(Basis::Spline);
     splines.or("sines", "Sines and cosines", Basis::Sines)
@@ -282,11 +282,11 @@ impl MethodArgs {
         }
     }
 
-    /// Fails for an option of another method, which would have no effect.
+    /// Returns an error if an option of another method is given, which would have no effect.
     ///
     /// # Errors
     ///
-    /// If such an option was given.
+    /// If such an option is given.
     pub(super) fn check_used(&self) -> Result<()> {
         let given = [
             ("margin", self.margin.is_some()),
