@@ -1,4 +1,4 @@
-//! Encoding of maps as image files.
+//! Encodes maps as image files.
 
 use crate::args::RampArg;
 use crate::error::{Hint, usage};
@@ -30,11 +30,11 @@ dapple::raster::named! {
 }
 
 impl Format {
-    /// Builds the format for a target: the requested format, or else the format of the file extension.
+    /// Chooses the format for a target, which is the requested one or else that of the file extension.
     ///
     /// # Errors
     ///
-    /// If the extension is not one of an image format, or conflicts with the requested format.
+    /// If no image format has this extension, or the extension conflicts with the requested format.
     pub(crate) fn choose(asked: Option<Self>, target: &Target, default: Self) -> Result<Self> {
         let by_ending = match (target, target.ending().as_str()) {
             (Target::Stdout, _) => return Ok(asked.unwrap_or(default)),
@@ -80,7 +80,7 @@ impl Format {
         matches!(self, Self::Exr | Self::Npy)
     }
 
-    /// Returns the bytes of a number, and the bit depth as text.
+    /// Returns the number of bytes per value, and the bit depth as text.
     pub(crate) fn depth(self) -> (u64, &'static str) {
         match self {
             Self::Png8 => (1, "8 bits"),
@@ -130,7 +130,7 @@ pub(crate) fn ramped(map: Map, ramp: Option<&RampArg>) -> Map {
     }
 }
 
-/// Returns a ramp node that colors an input of a recipe.
+/// Creates a node that colors an input of a recipe by a ramp.
 pub(crate) fn ramped_recipe(ramp: &RampArg, input: &Input) -> Node {
     Node::Ramp(Ramped {
         input: input.clone(),
@@ -182,7 +182,7 @@ pub(crate) fn encode(map: &Map, format: Format) -> Result<Vec<u8>> {
     Ok(sink.into_inner())
 }
 
-/// The alpha of an image, and how it is combined with the colors.
+/// The alpha of an image, and how it relates to the colors.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cover<'a> {
     alpha: &'a Raster<f32>,
@@ -192,7 +192,7 @@ pub(crate) struct Cover<'a> {
 }
 
 impl<'a> Cover<'a> {
-    /// Returns the alpha of an image; `None` if it has no alpha.
+    /// Describes the alpha of an image. Returns `None` if the image has no alpha.
     pub(crate) fn of(
         alpha: Option<&'a Raster<f32>>,
         is_associated: bool,
@@ -206,7 +206,7 @@ impl<'a> Cover<'a> {
         })
     }
 
-    /// Builds the alpha of straight colors, which are not multiplied by alpha.
+    /// Describes the alpha of straight colors, which are not multiplied by it.
     pub(crate) fn straight(alpha: &'a Raster<f32>, clear: Clear) -> Self {
         Self {
             alpha,
@@ -219,7 +219,7 @@ impl<'a> Cover<'a> {
 /// How the colors of pixels with alpha 0 are written to PNG.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Clear {
-    /// The color is unchanged.
+    /// Write the color unchanged.
     Keep,
     /// The color is copied from the nearest visible pixel, so that mip levels have no dark rims. `wraps` are the axes
     /// along which the image wraps.
@@ -227,7 +227,7 @@ pub(crate) enum Clear {
 }
 
 impl Clear {
-    /// Bleeding colors in an image that is not known to wrap.
+    /// Bleed colors in an image that is not known to wrap.
     pub(crate) const NOT_WRAPPED: Self = Self::Bleed { wraps: [false; 2] };
 }
 
@@ -283,7 +283,7 @@ pub(crate) fn encode_packed(pixels: &Raster<[f32; 3]>, format: Format) -> Result
     Ok(rows.finish()?.into_inner())
 }
 
-/// Returns the content type of the image of a map.
+/// Returns the content type of a map's image.
 pub(crate) fn content(map: &Map) -> Content {
     match map {
         Map::Value(_) => Content::Gray,

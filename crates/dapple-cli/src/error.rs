@@ -1,4 +1,4 @@
-//! Error reports for users: the message, its causes, a hint, and the exit code.
+//! Reports errors to users, with the message, its causes, a hint, and the exit code.
 
 use crate::arguments::GivenOption;
 use anyhow::Error;
@@ -63,7 +63,7 @@ impl std::error::Error for Refusal {
     }
 }
 
-/// Returns an error in the command line that clap does not detect.
+/// Creates an error for an invalid command line that clap does not detect.
 pub(crate) fn usage(message: impl Into<String>) -> Error {
     Error::new(Refusal {
         error: Error::msg(message.into()),
@@ -180,7 +180,7 @@ pub(crate) fn cause<T: std::error::Error + 'static>(error: &Error) -> Option<&T>
     })
 }
 
-/// Options and the name of their number in the errors of libraries, where the two names differ.
+/// Options whose number has another name in the errors of libraries, as pairs of both names.
 const OTHER_NAMES: [(&str, &str); 5] = [
     ("persistence", "gain"),
     ("radii", "radius"),
@@ -189,8 +189,8 @@ const OTHER_NAMES: [(&str, &str); 5] = [
     ("width", "width of the cuts"),
 ];
 
-/// Returns the option, as typed, for the quantity that a library calls `what`; `None` unless exactly one given option
-/// matches.
+/// Returns the option that sets the quantity `what`, as typed; `None` unless exactly one given option matches. `what`
+/// is a library's name for the quantity.
 ///
 /// Options are matched by name only. Their values are not compared, since equal values would match unrelated options.
 fn option_of(what: &str, options: &[GivenOption]) -> Option<String> {
@@ -220,7 +220,7 @@ fn exit(error: &Error) -> Exit {
         .unwrap_or(Exit::Failed)
 }
 
-/// Returns the text of an error: the option, the message, the causes that add information, and the hint.
+/// Formats an error as text, with the option, the message, the causes that add information, and the hint.
 fn text(error: &Error, option: Option<&str>) -> String {
     let mut said = error.to_string();
     let option = option.map_or(String::new(), |option| format!("{option}: "));

@@ -1,4 +1,4 @@
-//! Estimates the work of a bake before it begins: pixels, bytes, and time.
+//! Estimates the work for a bake before it begins, in pixels, bytes and time.
 
 use crate::baking::advise;
 use crate::error::Hint;
@@ -13,10 +13,10 @@ use std::time::{Duration, Instant};
 const MOST_PIXELS: u64 = 1 << 30;
 /// Minimum number of pixels for which the estimate is printed: 8192 × 8192.
 const TOLD_PIXELS: u64 = 1 << 26;
-/// Columns and rows of the small bake that is timed.
+/// Columns and rows of the small bake whose time is measured.
 const PROBE: [u32; 2] = [256; 2];
 
-/// Prints an estimate of the work of a large bake.
+/// Prints an estimate of the work for a large bake.
 ///
 /// # Errors
 ///
@@ -44,7 +44,7 @@ pub(crate) fn print_estimate(
     Ok(())
 }
 
-/// Returns the time per pixel in seconds, measured with a small bake of the whole tile.
+/// Measures the time per pixel, in seconds, with a small bake of the whole tile.
 #[expect(
     clippy::disallowed_methods,
     reason = "the time is told to the user, and no value depends on it"
@@ -62,7 +62,7 @@ fn probe(plan: &Plan, options: &BakeOptions) -> Result<f64> {
     Ok(start.elapsed().as_secs_f64() / n_pixels(PROBE) as f64)
 }
 
-/// Returns the estimated work as text. `pace` is in seconds per pixel.
+/// Formats the estimated work as text. `pace` is in seconds per pixel.
 fn work([width, height]: [u32; 2], images: &[Image], pace: f64) -> String {
     let pixels = n_pixels([width, height]);
     let bytes = images.iter().map(n_bytes);

@@ -1,4 +1,4 @@
-//! Maps as exemplars of a synthesis.
+//! Converts maps to exemplars for a synthesis.
 
 use dapple::synth::{Edges, Exemplar, SynthError};
 use dapple::tile::Map;

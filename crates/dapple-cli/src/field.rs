@@ -1,5 +1,4 @@
-//! Rendering of a single field, shared by the subcommands that render noise: each makes a recipe of one node and bakes
-//! it.
+//! Renders a single field, for the subcommands that render noise. Each creates a recipe with one node and bakes it.
 
 use crate::args::{Axes, Frame, ImageArgs, Region, SamplesArgs, Size, Targets, seed};
 use crate::baking::{self, MapFile, advise, report};
@@ -95,13 +94,13 @@ pub(crate) struct Field {
     pub(crate) extent: [f64; 2],
     /// The values that become black and white in integer formats.
     pub(crate) range: [f32; 2],
-    /// Number of frames of a loop; `None` for a still image.
+    /// Number of frames in a looping animation; `None` for a still image.
     pub(crate) frames: Option<u32>,
     /// The images that the node reads.
     pub(crate) images: Images,
 }
 
-/// Renders a field to a file, or each frame of a loop to a file.
+/// Renders a field to a file, or each frame of a looping animation to a separate file.
 ///
 /// # Errors
 ///
@@ -189,7 +188,7 @@ impl FieldArgs {
     ///
     /// # Errors
     ///
-    /// If the samples are on corners and a side has a single one.
+    /// If the samples are on corners and a side has only one.
     pub(crate) fn spaces(&self) -> Result<Size> {
         self.samples.spaces(self.size)
     }
@@ -202,7 +201,7 @@ fn refused(error: RecipeError) -> Error {
     Error::new(error).context(message).wrong_value()
 }
 
-/// The options and the recipe, for the sidecar.
+/// The sidecar content: the options and the recipe.
 #[derive(Serialize)]
 struct FieldSidecar<'a, T> {
     #[serde(flatten)]
@@ -211,7 +210,7 @@ struct FieldSidecar<'a, T> {
     recipe: &'a Recipe,
 }
 
-/// Returns the recipe that renders a field: its node, mapped to the range, and colored by the ramp.
+/// Builds the recipe that renders a field. It has the field's node, mapped to the range and colored by the ramp.
 fn recipe(field: &Field, args: &FieldArgs, image: &ImageArgs, format: Format) -> Result<Recipe> {
     let mut recipe = Recipe::of_node(field.command, field.node.clone(), Seed(args.seed));
     recipe.extent = field.extent;
@@ -253,7 +252,7 @@ fn recipe(field: &Field, args: &FieldArgs, image: &ImageArgs, format: Format) ->
     Ok(recipe)
 }
 
-/// Returns the labels of the frames of a loop for file names, such as `001`; a single empty label for a still image.
+/// Returns the frame labels for file names, such as `001`. A still image has a single empty label.
 fn frames(count: Option<u32>) -> Vec<String> {
     let label = |frame: Option<Frame>| frame.map_or(String::new(), Frame::label);
     Frame::all(count).map(label).collect()

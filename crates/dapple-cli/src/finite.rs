@@ -1,4 +1,4 @@
-//! NaN and infinite values in images: error messages, and replacement.
+//! Handles NaN and infinite values in images, by error messages or replacement.
 
 use crate::args::NonFinite;
 use crate::error::Hint;
@@ -6,13 +6,13 @@ use anyhow::{Result, anyhow};
 use dapple::image::ExrPlane;
 use dapple::raster::Raster;
 
-/// The planes of an image with values that are NaN or infinite, as stored in the file.
+/// The planes of an image that have NaN or infinite values, as stored in the file.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Faults(Vec<ExrPlane>);
 
 impl Faults {
-    /// Replaces all values of planes that are NaN or infinite. For [`NonFinite::Error`], returns the original planes
-    /// that have such values, so that [`check`](Self::check) can report them; otherwise returns no planes.
+    /// Replaces all NaN and infinite values in `planes`. For [`NonFinite::Error`], returns the original planes that
+    /// have such values, so that [`check`](Self::check) can report them; otherwise returns no planes.
     pub(crate) fn replace(planes: &mut [ExrPlane], how: NonFinite) -> Self {
         let mut faults = Vec::new();
         for plane in planes {
@@ -31,7 +31,7 @@ impl Faults {
         Self(faults)
     }
 
-    /// Returns the faults within a region of the image.
+    /// Crops the faults to a region of the image.
     pub(crate) fn crop(&self, first: [u32; 2], size: [u32; 2]) -> Result<Self> {
         let planes = self.0.iter().map(|plane| {
             let values = plane.values.crop(first, size)?;
@@ -45,11 +45,11 @@ impl Faults {
         self.0.is_empty()
     }
 
-    /// Fails for the first fault of an image at a pixel that is used.
+    /// Returns an error about the first fault at a pixel for which `is_used` returns true.
     ///
     /// # Errors
     ///
-    /// A message with the name of the image, the channel, the column, the row and the value.
+    /// If there is such a fault. The message has the name of the image, the channel, the column, the row and the value.
     pub(crate) fn check(&self, name: &str, is_used: impl Fn(u32, u32) -> bool) -> Result<()> {
         for plane in &self.0 {
             let width = plane.values.size()[0] as usize;

@@ -1,4 +1,4 @@
-//! Reading of input files: images, meshes and text. Errors have hints.
+//! Reads input files: images, meshes and text. Errors have hints.
 
 #![expect(
     clippy::disallowed_methods,
@@ -38,9 +38,9 @@ use std::path::Path;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Number of bytes at the beginning of a file from which the image format is recognized.
+/// Number of bytes at the beginning of a file that identify its image format.
 const SIGNATURE_MAX: u64 = 16;
-/// Maximum number of names in a message.
+/// Maximum number of file names in a message.
 const NAMES_MAX: usize = 3;
 
 /// The kind of map that an image is read as.
@@ -54,7 +54,7 @@ pub(crate) enum Kind {
     Normals,
 }
 
-/// Maximum number of pixels of an image that is read, if `--max-pixels` was given.
+/// Maximum number of pixels of images that are read; unset unless `--max-pixels` is given.
 static MAX_PIXELS: OnceLock<u64> = OnceLock::new();
 
 /// Sets the maximum number of pixels of images that are read, for the whole process.
@@ -71,7 +71,7 @@ pub(crate) fn set_quiet(is_quiet: bool) {
     IS_QUIET.store(is_quiet, Ordering::Relaxed);
 }
 
-/// Returns the limits of images that are read.
+/// Returns the limits for images that are read.
 fn limits() -> Limits {
     let default = Limits::default();
     let pixels = MAX_PIXELS.get().copied().unwrap_or(default.pixels);
@@ -85,7 +85,7 @@ fn limits() -> Limits {
 pub(crate) struct Loaded {
     /// The pixels of the image.
     pub(crate) map: Map,
-    /// The alpha of the pixels, if it is kept and some pixels are not opaque.
+    /// The alpha of the pixels; `None` if it is not kept or all pixels are opaque.
     pub(crate) alpha: Option<Raster<f32>>,
     /// Whether the alpha is associated, that is, the colors are multiplied by it. This is so in OpenEXR, where a pixel
     /// with alpha 0 may emit light.
@@ -111,11 +111,11 @@ impl Loaded {
         }
     }
 
-    /// Fails if the file has NaN or infinite values.
+    /// Returns an error if the file has NaN or infinite values.
     ///
     /// # Errors
     ///
-    /// The first such value, with its channel and its pixel.
+    /// If there is such a value. The message has the first one, with its channel and its pixel.
     pub(crate) fn check_finite(&self, path: &Path) -> Result<()> {
         self.faults.check(&name(path), |_, _| true)
     }
@@ -124,7 +124,7 @@ impl Loaded {
     ///
     /// # Errors
     ///
-    /// If alpha has another size than the colors.
+    /// If the alpha differs in size from the colors.
     pub(crate) fn associate(&mut self) -> Result<()> {
         if let (Map::Color(colors), Some(alpha), false) =
             (&mut self.map, &self.alpha, self.is_associated)
@@ -140,7 +140,7 @@ impl Loaded {
     ///
     /// # Errors
     ///
-    /// If alpha has another size than the colors.
+    /// If the alpha differs in size from the colors.
     pub(crate) fn divide(&mut self) -> Result<()> {
         if let (Map::Color(colors), Some(alpha), true) =
             (&mut self.map, &self.alpha, self.is_associated)
@@ -151,7 +151,8 @@ impl Loaded {
         Ok(())
     }
 
-    /// Returns the properties of this image with another map, such as one of its channels, and without alpha.
+    /// Returns an image with the properties of this one, but with another map, such as one of its channels, and without
+    /// alpha.
     pub(crate) fn with_map(&self, map: Map) -> Self {
         Self {
             map,
@@ -162,7 +163,7 @@ impl Loaded {
         }
     }
 
-    /// Returns the color of a gray value of the image.
+    /// Converts a gray value of the image to a color.
     pub(crate) fn color_of(&self, value: f32) -> LinearRgb {
         if self.is_linear {
             LinearRgb::gray(value)
@@ -171,8 +172,8 @@ impl Loaded {
         }
     }
 
-    /// One number for each pixel of a map derived from this image. Colors become their luminance, encoded as in the
-    /// file.
+    /// Converts `map`, which is derived from this image, to one number per pixel. Colors are converted to their
+    /// luminance, encoded as in the file.
     ///
     /// # Errors
     ///
@@ -185,7 +186,7 @@ impl Loaded {
         }
     }
 
-    /// Returns the luminance of a color as a gray value of the image, encoded as in the file.
+    /// Converts a color to a gray value of the image, which is its luminance encoded as in the file.
     fn value_of(&self, color: LinearRgb) -> f32 {
         let lightness = color.luminance();
         if self.is_linear {
@@ -253,7 +254,7 @@ fn region_of(bytes: &[u8], Region { first, size }: Region) -> Result<Image, Imag
     }
 }
 
-/// Returns the limit of pixels that an image exceeds, if this is the cause of the error.
+/// Returns the maximum number of pixels that an image exceeds, if this is the cause of the error.
 pub(crate) fn exceeded_limit(error: &Error) -> Option<u64> {
     match cause::<ImageError>(error)?.kind() {
         ImageErrorKind::TooManyPixels { limit, .. } => Some(*limit),
@@ -261,7 +262,7 @@ pub(crate) fn exceeded_limit(error: &Error) -> Option<u64> {
     }
 }
 
-/// Reads all bytes of a regular file, up to the limit of bytes of an image.
+/// Reads all bytes of a regular file, up to the maximum number of bytes for an image.
 fn whole(path: &Path, what: &str) -> Result<Vec<u8>> {
     check_file(path, what)?;
     let limit = limits().bytes;
@@ -275,8 +276,7 @@ fn whole(path: &Path, what: &str) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Decodes the image in a stream. A stream may never end, so reading continues only if its beginning is that of an
-/// image.
+/// Decodes the image in a stream. A stream may never end, so reading continues only if it begins like an image.
 fn of_stream(stream: &mut dyn Read, limits: &Limits) -> Result<Image> {
     let mut bytes = Vec::new();
     stream.take(SIGNATURE_MAX).read_to_end(&mut bytes)?;
@@ -297,8 +297,8 @@ pub(crate) const ALPHA_HINT: &str = "add --alpha drop or --alpha over:COLOR";
 ///
 /// # Errors
 ///
-/// The errors of [`image`]; channels that do not fit the kind; a region that exceeds the image; and, with `hint`,
-/// transparent pixels if `alpha` is `None`.
+/// Same as [`image`], or if the channels do not fit the kind, the region exceeds the image, or pixels are transparent
+/// and `alpha` is `None`. In the last case, the error has the given `hint`.
 pub(crate) fn map(
     path: &Path,
     kind: Kind,
@@ -328,8 +328,8 @@ pub(crate) fn map(
 ///
 /// # Errors
 ///
-/// The errors of [`image`]; channels that do not fit the kind; a region that exceeds the image; NaN or infinite values
-/// in it.
+/// Same as [`image`], or if the channels do not fit the kind, the region exceeds the image, or it has NaN or infinite
+/// values.
 pub(crate) fn map_with_alpha(
     path: &Path,
     kind: Kind,
@@ -347,7 +347,7 @@ pub(crate) fn map_with_alpha(
 ///
 /// # Errors
 ///
-/// The errors of [`map_with_alpha`], except for NaN and infinite values.
+/// Same as [`map_with_alpha`], except for NaN and infinite values.
 pub(crate) fn map_with_faults(
     path: &Path,
     kind: Kind,
@@ -492,7 +492,7 @@ fn of_image(
     Ok(loaded)
 }
 
-/// Returns the values of a gray image with alpha, from 0 to 1, without sRGB decoding; `None` for an image in color.
+/// Returns the gray values of an image with alpha, from 0 to 1 and without sRGB decoding; `None` for an image in color.
 fn values_beside_alpha(image: &Image, pixels: &Raster<LinearRgba>) -> Option<Raster<f32>> {
     let png = match image {
         Image::Png(png) => png,
@@ -520,7 +520,7 @@ fn opaque(image: &Image, kind: Kind) -> Result<Map> {
     }
 }
 
-/// Collects a map of an image and its properties, cropped to a region if one is given.
+/// Combines a map of an image with the image's properties, cropped to a region if one is given.
 fn part(
     path: &Path,
     image: &Image,
@@ -553,11 +553,11 @@ fn part(
     })
 }
 
-/// Checks that an image has the size of the first one.
+/// Checks that an image is the same size as the first one.
 ///
 /// # Errors
 ///
-/// If the sizes differ, with both names and sizes.
+/// If the sizes differ. The error has both names and sizes.
 pub(crate) fn check_size(
     path: &Path,
     size: [u32; 2],
@@ -575,7 +575,7 @@ pub(crate) fn check_size(
     )))
 }
 
-/// Reads the planes of an OpenEXR image with at most the number of pixels of `size`.
+/// Reads the planes of an OpenEXR image that has at most as many pixels as an image of `size`.
 ///
 /// # Errors
 ///
@@ -591,7 +591,7 @@ pub(crate) fn exr(path: &Path, size: [u32; 2]) -> Result<ExrImage> {
     }
 }
 
-/// Returns the SHA-256 of a file, in hexadecimal.
+/// Computes the SHA-256 of a file, in hexadecimal.
 ///
 /// # Errors
 ///

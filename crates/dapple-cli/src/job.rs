@@ -1,4 +1,4 @@
-//! A run of a subcommand: its output files, its messages, and its sidecar, a JSON file next to the output.
+//! Manages a run of a subcommand, with its output files, its messages, and its sidecar, a JSON file next to the output.
 
 use crate::args::{ImageArgs, OutputArgs, Targets};
 use crate::arguments::GivenOption;
@@ -16,14 +16,14 @@ use serde_json::Value;
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::Path;
 
-/// Settings of the whole process.
+/// Settings for the whole process.
 #[derive(Clone, Debug)]
 pub(crate) struct Context {
     /// Whether only errors and requested reports are printed.
     pub(crate) quiet: bool,
     /// The style of the progress display.
     pub(crate) progress: Style,
-    /// The number of threads; 0 for one per core.
+    /// Number of threads; 0 means one per core.
     pub(crate) threads: u16,
     /// The command line.
     pub(crate) arguments: Vec<String>,
@@ -33,7 +33,7 @@ pub(crate) struct Context {
 
 #[cfg(feature = "studio")]
 impl Context {
-    /// Returns the same settings without messages.
+    /// Returns a copy of the settings that suppresses messages.
     pub(crate) fn silent(&self) -> Self {
         Self {
             quiet: true,
@@ -54,7 +54,7 @@ pub(crate) struct Job<'a> {
     sidecar: Option<OutputIdx>,
 }
 
-/// The entry of an output in the sidecar.
+/// An output's entry in the sidecar.
 #[derive(Clone, Debug, Default, Serialize)]
 struct FileRecord {
     file: String,
@@ -62,17 +62,17 @@ struct FileRecord {
     format: Option<Format>,
     #[serde(skip_serializing_if = "Option::is_none")]
     size: Option<[u32; 2]>,
-    /// Minimum and maximum of the numbers, before they were clamped and rounded for the file.
+    /// Minimum and maximum of the numbers, before they are clamped and rounded for the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     range: Option<[f32; 2]>,
-    /// Number of pixels with a number that the format clips.
+    /// Number of pixels that have a number clipped by the format.
     #[serde(skip_serializing_if = "is_zero")]
     clipped: u64,
     bytes: u64,
     sha256: String,
 }
 
-/// Returns whether no pixel was clipped.
+/// Returns whether no pixel was clipped, in which case the count is left out.
 fn is_zero(count: &u64) -> bool {
     *count == 0
 }
@@ -104,14 +104,14 @@ struct RawSize {
 const CLIPPED_MIN: f64 = 0.01;
 
 impl FileRecord {
-    /// Returns the fraction of clipped pixels, from 0 to 1, if it is at least [`CLIPPED_MIN`].
+    /// Returns the fraction of clipped pixels, from 0 to 1; `None` if it is below [`CLIPPED_MIN`].
     fn clipped_share(&self) -> Option<f64> {
         let [width, height] = self.size?;
         let share = self.clipped as f64 / (f64::from(width) * f64::from(height));
         (share >= CLIPPED_MIN).then_some(share)
     }
 
-    /// Returns the size for the sidecar, if the file has raw heights.
+    /// Returns the size for the sidecar; `None` unless the file has raw heights.
     fn raw_size(&self) -> Option<RawSize> {
         let [width, height] = self.size.filter(|_| self.format == Some(Format::R16))?;
         Some(RawSize {
@@ -139,7 +139,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// Same as [`Outputs::claim`], and if the output is a terminal.
+    /// Same as [`Outputs::claim`], or if the output is a terminal.
     pub(crate) fn claim(&mut self, target: &Target) -> Result<OutputIdx> {
         if *target == Target::Stdout && io::stdout().is_terminal() {
             let error = usage("standard output is a terminal, which cannot show this file");
@@ -152,7 +152,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// The errors of [`Format::choose`], [`claim`](Self::claim) and [`claim_sidecar`](Self::claim_sidecar).
+    /// Same as [`Format::choose`], [`claim`](Self::claim) and [`claim_sidecar`](Self::claim_sidecar).
     pub(crate) fn claim_images(
         &mut self,
         targets: &Targets,
@@ -187,7 +187,8 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// The errors of [`Outputs::claim`]; a sidecar without a name for standard output, or with the name of an output.
+    /// Same as [`Outputs::claim`], or if the output is standard output and the sidecar has no name, or if the sidecar
+    /// has the name of an output.
     pub(crate) fn claim_sidecar(&mut self, main: &Target) -> Result<()> {
         let target = match &self.args.json {
             None => {
@@ -216,11 +217,11 @@ impl<'a> Job<'a> {
         self.outputs.write(output, bytes)
     }
 
-    /// Writes a map as an image in a format, and records its size, its range and the number of clipped pixels.
+    /// Writes a map as an image in `format`, and records its size, its range and the number of clipped pixels.
     ///
     /// # Errors
     ///
-    /// The errors of [`encode`] and [`Outputs::write`].
+    /// Same as [`encode`] and [`Outputs::write`].
     pub(crate) fn write_map(&mut self, output: OutputIdx, map: &Map, format: Format) -> Result<()> {
         format.check(content(map), self.target(output))?;
         self.write(output, &encode(map, format)?)?;
@@ -288,7 +289,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// The errors of [`Format::choose`] and [`write_map`](Self::write_map).
+    /// Same as [`Format::choose`] and [`write_map`](Self::write_map).
     pub(crate) fn write_image(
         &mut self,
         output: OutputIdx,
@@ -302,7 +303,7 @@ impl<'a> Job<'a> {
         self.write_map(output, &map, format)
     }
 
-    /// Writes an image like [`write_image`](Self::write_image); a color image with the given alpha.
+    /// Writes an image like [`write_image`](Self::write_image). A color image is written with the given alpha.
     ///
     /// # Errors
     ///
@@ -464,7 +465,7 @@ pub(crate) fn eprintln_if_possible(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", printable(text));
 }
 
-/// Returns the message about a written file, as a line of JSON.
+/// Formats the message about a written file as a line of JSON.
 fn told_as_json(record: &FileRecord) -> String {
     let mut line = serde_json::json!({
         "wrote": record.file, "size": record.size, "format": record.format
@@ -475,7 +476,7 @@ fn told_as_json(record: &FileRecord) -> String {
     line.to_string()
 }
 
-/// Returns the message about a written file.
+/// Formats the message about a written file.
 fn told(record: &FileRecord) -> String {
     let FileRecord {
         file, size, format, ..

@@ -1,4 +1,4 @@
-//! The assignment of maps to the channels of an image: one map, or several maps packed into one image.
+//! Assigns maps to the channels of an image, which has one map or several packed ones.
 
 use crate::encode::Format;
 use crate::encode::n_clipped;
@@ -98,7 +98,7 @@ impl Channel {
         }
     }
 
-    /// Returns the value of the channel for a number of its map.
+    /// Returns the channel's value for `number`, a number of its map; `None` for a constant channel.
     fn value(self, number: Option<f32>) -> f32 {
         match self {
             Self::Of(_) => number.unwrap_or_default(),
@@ -176,7 +176,7 @@ impl LayerRows<'_> {
         }
     }
 
-    /// Returns the rows repeated twice horizontally.
+    /// Returns the rows twice, side by side.
     pub(crate) fn beside_themselves(&self) -> Result<LayerRows<'static>> {
         fn twice<T: Copy + Send + Sync>(raster: &Raster<T>) -> Result<Raster<T>> {
             let [width, height] = raster.size();
@@ -202,7 +202,7 @@ fn map_of(kind: MapKind, band: &Band) -> Result<&MapRows> {
     Ok(rows)
 }
 
-/// Returns the rows of a map with a single channel.
+/// Returns the rows of a map in a band, which must have a single channel.
 fn numbers_of(kind: MapKind, band: &Band) -> Result<&Raster<f32>> {
     match map_of(kind, band)? {
         MapRows::Gray(rows) => Ok(rows),

@@ -1,5 +1,5 @@
-//! The output files of a run: claimed before the work starts, written under temporary names, and renamed together at
-//! the end.
+//! Manages the output files of a run. They are claimed before the work starts, written under temporary names, and
+//! renamed together at the end.
 //!
 //! Each file is written under a temporary name in its directory. When all files are complete, they are flushed to disk
 //! and renamed in immediate succession. Then their directories are flushed. A reader finds the old file or the complete
@@ -116,7 +116,7 @@ impl Target {
             .to_ascii_lowercase()
     }
 
-    /// This file with another extension.
+    /// Replaces the file extension.
     pub(crate) fn with_ending(self, ending: &str) -> Self {
         match self {
             Self::Stdout => Self::Stdout,
@@ -124,8 +124,8 @@ impl Target {
         }
     }
 
-    /// Order of renaming: images and other files first, then material libraries, then documents that name them, and
-    /// last the sidecar with the checksums.
+    /// Returns the rank of the file in the order of renaming. Images and other files come first, then material
+    /// libraries, then documents that name them, and last the sidecar with the checksums.
     fn turn(&self) -> u8 {
         match self.ending().as_str() {
             "mtl" => 1,
@@ -135,7 +135,7 @@ impl Target {
         }
     }
 
-    /// Returns the file for a part of the output: `NAME_PART.EXTENSION`, or this file for a part with an empty name.
+    /// Returns the file for a part of the output, which is `NAME_PART.EXTENSION`, or this file if `part` is empty.
     ///
     /// # Errors
     ///
@@ -161,8 +161,8 @@ impl Target {
 }
 
 impl Target {
-    /// Returns the file of a UDIM tile: its number replaces `<UDIM>` in the name, or else precedes the extension, as in
-    /// `NAME.1001.EXTENSION`.
+    /// Returns the file for a UDIM tile. Its number replaces `<UDIM>` in the name, or else precedes the extension, as
+    /// in `NAME.1001.EXTENSION`.
     ///
     /// # Errors
     ///
@@ -200,7 +200,7 @@ impl fmt::Display for Target {
 }
 
 impl Outputs {
-    /// Begins a run without files. With `force`, existing files are replaced.
+    /// Creates an empty set of files. With `force`, existing files are replaced.
     pub(crate) fn new(force: bool) -> Self {
         Self {
             force,
@@ -275,7 +275,7 @@ impl Outputs {
     ///
     /// # Errors
     ///
-    /// If the operating system has no file handle left.
+    /// If the operating system has no file handles left.
     pub(crate) fn writer(&self, output: OutputIdx) -> Result<BufWriter<Sink>> {
         let sink = self.files[output.0].sink()?;
         Ok(BufWriter::with_capacity(1 << 18, sink))
@@ -503,7 +503,7 @@ pub(crate) fn read_back(mut file: impl Read + Seek) -> io::Result<Content> {
     Ok(Content { bytes, sha256 })
 }
 
-/// Returns the SHA-256 of bytes, in hexadecimal.
+/// Computes the SHA-256 of `bytes`, in hexadecimal.
 pub(crate) fn sha256(bytes: &[u8]) -> String {
     hexadecimal(Sha256::new_with_prefix(bytes))
 }

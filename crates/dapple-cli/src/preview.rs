@@ -15,7 +15,7 @@ const SIDE: u32 = 512;
 /// Pixels along the longer side of the baked maps.
 const TILE: u32 = 512;
 
-/// Radii of the torus: of the ring, and of its tube.
+/// Major and minor radius of the torus: those of the ring and of its tube.
 const RING: [f64; 2] = [0.9, 0.4];
 
 dapple::raster::named! {
@@ -128,7 +128,7 @@ impl Maps {
         })
     }
 
-    /// Returns the shading material at a point of the surface.
+    /// Returns the material for shading a surface point.
     fn material(&self, surface: &Surface) -> Material {
         let uv = surface.uv().unwrap_or_default() * self.tiles;
         let wrap = [Wrap::Repeat; 2];
@@ -147,7 +147,7 @@ impl Maps {
     }
 }
 
-/// Returns the directions of right and up of the maps, at a point of a shape.
+/// Returns the directions in which the maps' right and up point at a surface point.
 fn directions(surface: &Surface) -> [DVec3; 2] {
     let at = surface.position;
     let outward = DVec2::new(at.x, at.z).length();

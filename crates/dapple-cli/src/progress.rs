@@ -1,4 +1,4 @@
-//! Progress display on standard error: a bar on a terminal, and lines elsewhere, for work that takes a while.
+//! Displays progress on standard error, as a bar on a terminal and as lines elsewhere, for work that takes a while.
 
 #![expect(
     clippy::disallowed_methods,
@@ -49,7 +49,7 @@ pub(crate) struct Progress {
     bar: ProgressBar,
     label: &'static str,
     style: Style,
-    /// The time at which the next line is printed, if lines are printed.
+    /// The time at which to print the next line; `None` if no lines are printed.
     next_line: Option<Mutex<Instant>>,
     /// Set to true to request that the work stops.
     #[cfg(feature = "studio")]
@@ -70,7 +70,7 @@ impl Progress {
         Self::new(ProgressBar::no_length(), style, label, context)
     }
 
-    /// Shows a bar for work of a given length.
+    /// Shows a bar for work of `length` steps.
     pub(crate) fn bar(label: &'static str, length: u64, context: &Context) -> Self {
         let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} % {eta}");
         Self::new(ProgressBar::new(length), style, label, context)
@@ -83,11 +83,11 @@ impl Progress {
         self
     }
 
-    /// Fails if a stop was requested.
+    /// Returns an error if a stop was requested.
     ///
     /// # Errors
     ///
-    /// An error that says that the work was stopped.
+    /// If a stop was requested. The error says that the work was stopped.
     pub(crate) fn check(&self) -> Result<()> {
         #[cfg(feature = "studio")]
         if is_set(&self.stop) {
@@ -173,7 +173,7 @@ impl Progress {
     }
 }
 
-/// Returns the text of a progress line.
+/// Formats a progress line.
 fn line(label: &str, done: u64, length: u64, is_json: bool) -> String {
     if is_json {
         return serde_json::json!({ "step": label, "done": done, "of": length }).to_string();

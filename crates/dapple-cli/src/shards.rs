@@ -1,4 +1,4 @@
-//! The list of the shards of a recipe: its description, its files, and its identity.
+//! Manages the list of a recipe's shards, with its description, its files, and its identity.
 //!
 //! The files of a list are in a directory whose name has the first digits of the list's checksum. The checksum covers
 //! the version of dapple, the recipe as it is baked, the content of its images, and the sizes. A file with the name of
@@ -39,12 +39,12 @@ pub(crate) struct List {
     samples: Samples,
     /// Columns and rows of a shard.
     pub(crate) shard: [u32; 2],
-    /// Overlap: the columns and rows that neighboring shards share, as a part of their size.
+    /// Overlap: the number of columns and rows that neighboring shards share. They count as part of a shard's size.
     #[serde(default, skip_serializing_if = "is_default")]
     pub(crate) overlap: u32,
     /// The names of the maps.
     maps: Vec<String>,
-    /// Number of frames of a loop; `None` for still maps.
+    /// Number of frames in a looping animation; `None` for still maps.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) frames: Option<u32>,
 }
@@ -72,7 +72,7 @@ pub(crate) struct Wanted<'a> {
 }
 
 impl List {
-    /// Makes the list for a recipe, as it is baked, with its images in `folder`. `typed` is the recipe as given on the
+    /// Creates the list for a recipe as it is baked, with images in `folder`. `typed` is the recipe as given on the
     /// command line.
     ///
     /// # Errors
@@ -155,7 +155,7 @@ impl List {
         Ok(self)
     }
 
-    /// Fails for a list of more than [`FILES_MAX`] files.
+    /// Returns an error if the list has more than [`FILES_MAX`] files.
     fn check_count(&self) -> Result<()> {
         let n_files = self.n_tasks()?.saturating_mul(self.maps.len() as u64);
         if n_files <= FILES_MAX {
@@ -184,7 +184,7 @@ impl List {
         outputs.commit()
     }
 
-    /// Fails if a directory has a list of other shards.
+    /// Returns an error if a directory has a list of other shards.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! Words on the command line. They are case-insensitive, with `-` or `_`.
+//! Parses words on the command line. They are case-insensitive, and `-` and `_` are equivalent.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
@@ -17,7 +17,8 @@ pub(crate) fn with_dashes(word: &str) -> String {
     word.trim().to_lowercase().replace('_', "-")
 }
 
-/// Returns the error message for an unknown word. It has the most similar name, or else all names, followed by `more`.
+/// Returns the error message for an unknown word. It suggests the most similar name, or else lists all names followed
+/// by `more`.
 pub(crate) fn unknown(kind: &str, word: &str, names: &[&str], more: &str) -> String {
     slip(kind, word, names.iter().copied()).unwrap_or_else(|| {
         format!(
@@ -43,12 +44,12 @@ pub(crate) fn slip<'a>(
 pub(crate) struct NamedValueParser<T>(Vec<(PossibleValue, T)>);
 
 impl<T: Named> NamedValueParser<T> {
-    /// Parses all values of a type. The help of each value is the first sentence of its documentation.
+    /// Creates a parser of all values of a type. The help of each value is the first sentence of its documentation.
     pub(crate) fn all() -> Self {
         Self::some(T::ALL)
     }
 
-    /// Parses some values of a type.
+    /// Creates a parser of some values of a type.
     pub(crate) fn some(values: &[T]) -> Self {
         let named = |&value: &T| {
             let aliases = value.aliases().iter().map(|alias| with_dashes(alias));
@@ -69,7 +70,7 @@ impl<T: Named> NamedValueParser<T> {
 }
 
 impl<T> NamedValueParser<T> {
-    /// Parses the given values, by the given names, without help for each.
+    /// Creates a parser of `values`, which are pairs of a name and a value without help text.
     pub(crate) fn of(values: impl IntoIterator<Item = (&'static str, T)>) -> Self {
         let values = values.into_iter();
         Self(
@@ -111,7 +112,7 @@ impl<T: Clone + Send + Sync + 'static> TypedValueParser for NamedValueParser<T> 
     }
 }
 
-/// Returns the first sentence of a documentation in Markdown, without backticks and without its period.
+/// Returns the first sentence of a documentation text in Markdown, without backticks and without its period.
 fn first_sentence(documentation: &str) -> String {
     let words: Vec<_> = documentation.split_whitespace().collect();
     let text = words.join(" ");

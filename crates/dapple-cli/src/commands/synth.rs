@@ -129,7 +129,7 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// A map given as `NAME=FILE`.
+/// A map of the example, given as `NAME=FILE`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct MapArg {
     name: String,
@@ -160,7 +160,7 @@ impl FromStr for MapArg {
 ///
 /// # Errors
 ///
-/// Invalid options, images, meshes and files.
+/// If an option, an image, a mesh or another file is invalid.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.check_used()?;
     match &args.surface.mesh {
@@ -195,7 +195,7 @@ impl Args {
         }
     }
 
-    /// Returns the output path. In a directory, the file is named after `input`.
+    /// Returns the output path. If the output is a directory, the file in it is named after `input`.
     fn target(&self, input: &Path, ending: &str) -> Result<Target> {
         let names = self.map_names();
         let parts: Vec<_> = [""].into_iter().chain(names).collect();
@@ -217,7 +217,7 @@ impl Args {
         Ok(outputs)
     }
 
-    /// Returns the names of the maps, each once, in the order of the command line.
+    /// Returns the names of the maps without duplicates, in the order of the command line.
     fn map_names(&self) -> Vec<&str> {
         let mut names = Vec::new();
         for map in &self.map {
@@ -240,7 +240,7 @@ fn shown(progress: &Progress) -> impl FnMut(Steps) -> ControlFlow<()> + '_ {
     }
 }
 
-/// The length of the progress bar.
+/// The length of the progress bar, in steps.
 const STEPS: u32 = 1000;
 
 /// Adds a hint to frequent errors.

@@ -85,7 +85,7 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// An image, its name, and the outputs of its tile and of the sheet.
+/// An input image with its name and the outputs for its tile and for the sheet.
 struct Source {
     name: String,
     loaded: Loaded,
@@ -176,7 +176,7 @@ fn sources(args: &Args, job: &mut Job<'_>) -> Result<Vec<Source>> {
     Ok(sources)
 }
 
-/// Claims the outputs of tiles and their sheets; none if only a report was requested.
+/// Claims the outputs for tiles and their sheets, or none if only a report was requested.
 fn claim(paths: &[&Path], args: &Args, job: &mut Job<'_>) -> Result<Vec<[Option<OutputIdx>; 2]>> {
     let files = &args.image.files;
     if files.output.is_none() && (args.report || args.check) {
@@ -212,7 +212,7 @@ fn claim(paths: &[&Path], args: &Args, job: &mut Job<'_>) -> Result<Vec<[Option<
     Ok(outputs)
 }
 
-/// Returns the file name without its extension; `tile` for standard input.
+/// Returns the file name without its extension, or `tile` for standard input.
 fn stem(path: &Path) -> String {
     match path.file_stem() {
         Some(stem) if path != Path::new("-") => stem.to_string_lossy().into_owned(),
@@ -225,7 +225,7 @@ fn map_of(stem: &str) -> &str {
     stem.rsplit_once('_').map_or(stem, |(_, map)| map)
 }
 
-/// The tiles of all maps, made by one method.
+/// The tiles of all maps, computed by one method.
 struct Made {
     candidate: Candidate,
     tiles: Vec<Map>,
@@ -233,8 +233,8 @@ struct Made {
     reports: Vec<SeamReports>,
 }
 
-/// Makes the tiles by a single candidate, or by each candidate, and returns the tiles with the best [`Rank`].
-/// Candidates that fail are skipped, unless all fail.
+/// Computes the tiles with each candidate, and returns those with the best [`Rank`]. Candidates that fail are skipped,
+/// unless all fail.
 fn best(args: &Args, maps: &[Map], mut candidates: Vec<Candidate>) -> Result<Made> {
     let axes = args.wrap.flags();
     let make = |candidate: Candidate| -> Result<Made> {
@@ -280,11 +280,11 @@ fn best(args: &Args, maps: &[Map], mut candidates: Vec<Candidate>) -> Result<Mad
     }
 }
 
-/// The quality of tiles; smaller is better. Tiles that pass come before tiles that fail.
+/// The quality of tiles, where smaller is better. Tiles that pass come before tiles that fail.
 #[derive(PartialEq, PartialOrd)]
 struct Rank {
     fails: bool,
-    /// Maximum over all channels of the badness plus the lost fraction of the finest octave.
+    /// Badness plus the lost fraction of the finest octave; the maximum over all channels.
     cost: f64,
 }
 
@@ -311,8 +311,8 @@ fn options(args: &Args, candidate: &Candidate) -> SeamOptions {
     }
 }
 
-/// Makes the reports if they are needed, and prints them if requested. Returns them as JSON, and whether all tiles
-/// pass.
+/// Computes the seam reports if they are needed, and prints them if requested. Returns them as JSON, and whether all
+/// tiles pass.
 fn reports(
     args: &Args,
     sources: &[Source],
@@ -353,18 +353,18 @@ fn reports(
     Ok((Value::Array(all), passes))
 }
 
-/// Returns a sheet of 2 × 2 copies of a map.
+/// Builds a sheet of 2 × 2 copies of a map.
 fn doubled(map: &Map) -> Result<Map> {
     Ok(map_raster!(map, raster => twice(raster)?))
 }
 
-/// Returns a sheet of 2 × 2 copies of a raster.
+/// Builds a sheet of 2 × 2 copies of a raster.
 fn twice<T: Copy + Send + Sync>(raster: &Raster<T>) -> Result<Raster<T>> {
     let size = raster.size().map(|side| side.saturating_mul(2));
     Ok(repeat(raster, size)?)
 }
 
-/// Adds a hint to errors of sizes that a method does not allow.
+/// Adds a hint to errors about sizes that a method does not allow.
 fn advise(error: TileError) -> Error {
     let hint = match error.kind() {
         TileErrorKind::Margin { .. } => "take a smaller --margin",

@@ -54,7 +54,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut may_replace = args.bake.may_replace();
     loop {
         let files = files_of(recipe);
-        // Note the state of the files before they are read, so that later writes count as changes.
+        // Record the state of the files before they are read, so that later writes count as changes.
         let mut changes = FileChanges::new(&files);
         for &size in &sizes {
             match bake::run(&args.bake.at(size, may_replace), context) {
@@ -78,7 +78,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     }
 }
 
-/// Returns the files to watch: the recipe, and its images.
+/// Returns the files to watch, which are the recipe and its images.
 fn files_of(recipe: &Path) -> Vec<PathBuf> {
     let mut files = vec![recipe.to_owned()];
     // Without a valid recipe, its images are unknown.

@@ -96,7 +96,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     draw(&field, &args.field, &args.image, args, context)
 }
 
-/// Minimum number of cells along an axis on which noise repeats.
+/// Minimum number of cells along an axis on which the noise repeats.
 const FEWEST_CELLS: f64 = 4.0;
 
 /// Checks that the noise can repeat with these numbers of cells along the sides. The hint lists numbers that can.

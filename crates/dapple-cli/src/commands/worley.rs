@@ -199,8 +199,8 @@ impl Args {
         })
     }
 
-    /// Returns the range of values that becomes black to white, measured on a texture with the same options over very
-    /// many cells.
+    /// Returns the values that are drawn as black and white. They are measured on a texture with the same options that
+    /// covers a large number of cells.
     fn range(&self, node: &WorleyNode) -> Result<[f32; 2]> {
         /// Number of positions at which values are measured.
         const N: u32 = 20_000;

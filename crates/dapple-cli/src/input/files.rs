@@ -1,4 +1,4 @@
-//! Checks of paths before their files are read, and names of inputs in messages.
+//! Checks paths before their files are read, and formats the names of inputs for messages.
 
 use super::NAMES_MAX;
 use crate::error::Hint;
@@ -17,7 +17,7 @@ pub(crate) fn name(path: &Path) -> String {
     }
 }
 
-/// Fails for a path that does not exist, a directory, a device, and an empty file.
+/// Returns an error if a path does not exist, or is a directory, a device or an empty file.
 pub(super) fn check_file(path: &Path, what: &str) -> Result<()> {
     let found = match fs::metadata(path) {
         Ok(found) => found,
@@ -45,7 +45,7 @@ pub(super) fn check_file(path: &Path, what: &str) -> Result<()> {
 }
 
 /// Returns whether a file is a device or a socket, from which reading may never end. Pipes are accepted, since the user
-/// has made them.
+/// has created them.
 #[cfg(unix)]
 fn is_device(found: &fs::Metadata) -> bool {
     use std::os::unix::fs::FileTypeExt;
@@ -71,7 +71,7 @@ pub(crate) fn check_regular(path: &Path, what: &str) -> Result<()> {
         .with_context(|| format!("{} cannot be read as {what}", path.display()))
 }
 
-/// Similar names in the directory of a path, most similar first.
+/// Returns the names in a path's directory that are similar to its file name, most similar first.
 fn similar_names(path: &Path) -> Vec<String> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let folder = path.parent().unwrap_or(Path::new(""));

@@ -1,4 +1,4 @@
-//! Reading of meshes, and notes about parts of a model that are not used.
+//! Reads meshes, and formats notes about parts of a model that are not used.
 
 use super::NAMES_MAX;
 use super::files::{check_file, name};
@@ -34,8 +34,8 @@ pub(crate) fn model(path: &Path) -> Result<Model> {
     })
 }
 
-/// Returns a line that lists the parts of a model that are not used: parts that the reader left out, and unit squares
-/// of texture coordinates that share a texture.
+/// Returns a note that lists the parts of a model that are not used; `None` if all are used. These are parts that the
+/// reader left out, and unit squares of texture coordinates that share a texture.
 pub(crate) fn not_used(path: &Path, model: &Model) -> Option<String> {
     let mut parts = model.left_out.clone();
     parts.extend(unit_squares(model));

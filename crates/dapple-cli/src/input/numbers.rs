@@ -1,4 +1,4 @@
-//! Reading of numbers as they are stored, for `dapple info`.
+//! Reads numbers as they are stored, for `dapple info`.
 
 use super::files::{check_file, name};
 use super::{advise, image_or_region, limits, text, whole};
@@ -34,7 +34,7 @@ pub(crate) struct Numbers {
 ///
 /// # Errors
 ///
-/// Same as [`image`](super::image), and raw heights whose size is unknown.
+/// Same as [`image`](super::image), or if the size of raw heights is unknown.
 pub(crate) fn numbers(path: &Path, region: Option<Region>) -> Result<Numbers> {
     let ending = path.extension().unwrap_or_default().to_string_lossy();
     let content = match ending.to_ascii_lowercase().as_str() {

@@ -1,4 +1,4 @@
-//! Reading of text in UTF-8.
+//! Reads text in UTF-8.
 
 use super::files::{check_file, name};
 use crate::error::Hint;

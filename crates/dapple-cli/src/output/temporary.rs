@@ -1,5 +1,5 @@
-//! Storage of the bytes of an output until its run is done: a temporary file in the directory of the final file, or,
-//! for streams, memory.
+//! Stores the bytes of an output until its run is done, in a temporary file in the final file's directory or, for
+//! streams, in memory.
 
 use super::registry::{self, Held};
 use dapple::image::AtomicFile;
@@ -81,7 +81,7 @@ pub(crate) enum Sink {
     Stream(StreamSink),
 }
 
-/// A handle of a spool.
+/// A handle to a spool.
 #[derive(Debug)]
 pub(crate) struct StreamSink(Spool);
 

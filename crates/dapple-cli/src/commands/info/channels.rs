@@ -104,7 +104,7 @@ impl Channel {
 ///
 /// # Errors
 ///
-/// If the image is not OpenEXR and cannot be converted to colors.
+/// If an image in a format other than PNG, JPEG and OpenEXR cannot be converted to colors.
 pub(super) fn channels(content: &Content) -> Result<Vec<Channel>> {
     Ok(match content {
         Content::Raw(codes) => split(&codes.map(|&code| [code]), GRAY),

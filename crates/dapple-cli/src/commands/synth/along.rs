@@ -1,4 +1,4 @@
-//! Synthesis of an image along an orientation field and with scales, which are given as images.
+//! Synthesizes an image along an orientation field and with varying scales, both given as images.
 
 use super::guides::Values;
 use super::surface::{Covered, Layouts};
@@ -61,14 +61,14 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
 }
 
 impl Args {
-    /// Returns whether a texture in the plane follows images of directions or scales, as opposed to a plain texture.
+    /// Returns whether a texture in the plane follows an image of directions or scales.
     pub(super) fn is_along(&self) -> bool {
         self.surface.mesh.is_none()
             && (self.surface.directions.is_some() || self.guides.given_for_scales().is_some())
     }
 
-    /// Refuses options that have no effect on a texture along directions and scales, and `--scales` without an image
-    /// that it applies to.
+    /// Refuses options that have no effect on a texture that follows directions or scales, and `--scales` without an
+    /// image to which it applies.
     pub(super) fn check_along(&self) -> Result<()> {
         if !self.is_along() {
             return Ok(());
@@ -89,8 +89,8 @@ impl Args {
         Ok(())
     }
 
-    /// Returns the angle of the direction at each pixel, in radians, and the scale at each pixel if an image of scales
-    /// was given.
+    /// Returns the angle of the direction at each pixel, in radians, and the scale at each pixel; `None` without an
+    /// image of scales.
     fn planes(&self) -> Result<(Raster<f32>, Option<Raster<f32>>)> {
         let scales = self.read_scale()?.map(Values::into_raster);
         let Some(first) = self.surface.directions.as_deref() else {

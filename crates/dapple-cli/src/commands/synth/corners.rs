@@ -1,11 +1,11 @@
-//! Texture coordinates and normals of the corners of faces in a mesh file, mapped to the repaired mesh.
+//! Maps the texture coordinates and normals of face corners from a mesh file to the repaired mesh.
 
 use crate::error::Hint;
 use anyhow::{Result, anyhow};
 use dapple::mesh::{CREASE, FaceIdx, Model, Repair, Surface};
 use dapple::points::glam::{DVec2, DVec3};
 
-/// Returns the mesh's own texture coordinates, for the faces of the repaired mesh.
+/// Returns the mesh's own texture coordinates for the faces of the repaired mesh.
 pub(super) fn own_uvs(
     surface: &Surface,
     model: &Model,
@@ -22,8 +22,8 @@ pub(super) fn own_uvs(
     })
 }
 
-/// Returns, for each repaired face, the values that its corners had in `column` before the repair; `None` for a corner
-/// whose position the repair has changed.
+/// Returns, for each repaired face, the values of its corners in `column`, which has the values before the repair;
+/// `None` for a corner that the repair has moved.
 fn before_repair<'a, T: Copy>(
     surface: &'a Surface,
     model: &'a Model,
@@ -43,8 +43,8 @@ fn before_repair<'a, T: Copy>(
     })
 }
 
-/// Returns the normals of the corners of all faces: the mesh's own normals, or computed ones if the mesh has none or
-/// `crease` is given. `crease` is the angle in radians above which an edge is a crease.
+/// Returns the normals at the corners of all faces. These are the mesh's own normals, or computed ones if the mesh has
+/// none or `crease` is given. `crease` is the angle, in radians, above which an edge counts as a crease.
 pub(super) fn shading(
     crease: Option<f64>,
     surface: &Surface,

@@ -1,4 +1,4 @@
-//! Displacement of the geometry by the heights of the example.
+//! Displaces the geometry by the heights of the example.
 
 use super::example_mesh::is_mesh;
 use super::material::is_of;
@@ -13,11 +13,11 @@ use dapple::recipe::MapKind;
 use dapple::synth::{Exemplar, SurfaceTexture, Synthesizer, displaced_mesh, displaced_sites};
 
 impl Args {
-    /// Refuses `--displace` without a map of heights.
+    /// Refuses `--displace` without a height map.
     ///
     /// # Errors
     ///
-    /// If `--displace` was given without a map of heights.
+    /// If `--displace` is given without a height map.
     pub(super) fn check_displacement(&self) -> Result<()> {
         let mut names = self.map.iter().map(|map| &map.name);
         if self.surface.displace.is_none() || names.any(|name| is_of(name, MapKind::Height)) {
@@ -49,7 +49,8 @@ impl Args {
         Ok(())
     }
 
-    /// Displaces the sites in a model of sites, if `--displace` was given. The sites get the normals of the new shape.
+    /// Displaces the sites in a model whose vertices are sites, if `--displace` was given. The sites get the normals of
+    /// the displaced surface.
     pub(super) fn displace_sites(
         &self,
         model: &mut Model,
@@ -65,7 +66,7 @@ impl Args {
         Ok(())
     }
 
-    /// Returns the height at each site, transferred from the map of heights.
+    /// Returns the height at each site, transferred from the height map.
     fn heights(&self, texture: &SurfaceTexture, input: &Input) -> Result<Vec<f32>> {
         let mut maps = input.maps.iter();
         let found = maps.find(|(name, _)| is_of(name, MapKind::Height));
@@ -77,7 +78,7 @@ impl Args {
         if is_mesh(&self.exemplar) {
             return Ok(texture.transfer(&values)?);
         }
-        // With `--detail`, maps have the size of the larger example. Reduce them to the size of the exemplar.
+        // With `--detail`, maps are as large as the larger example. Reduce them to the size of the exemplar.
         let factor = values.size()[0] / size[0];
         let reduced = Exemplar::from_planes(&[(&values, 1.0)], edges)?.reduced(factor)?;
         let reduced = Raster::from_vec(size, reduced.pixels().to_vec())?;
@@ -85,7 +86,7 @@ impl Args {
     }
 }
 
-/// Rotates the normals of corners as the normals of their vertices rotate between two shapes of a mesh.
+/// Rotates corner normals by the rotation of their vertex normals between two shapes of a mesh, `from` and `to`.
 fn turn(corners: &mut [[DVec3; 3]], from: &Mesh, to: &Mesh) {
     let (before, after) = (from.vertex_normals(), to.vertex_normals());
     let turn = |(&before, &after): (&DVec3, &DVec3)| {

@@ -1,4 +1,4 @@
-//! An example that is a textured mesh: its texture, maps and texture coordinates.
+//! Reads an example that is a textured mesh, with its texture, maps and texture coordinates.
 
 use super::corners::own_uvs;
 use super::material::is_of;
@@ -21,19 +21,19 @@ use std::path::Path;
 /// Side of the texture that vertex colors are rendered to, in texels.
 const DRAWN_SIDE: u32 = 2048;
 
-/// A mesh as the example.
+/// A textured mesh that serves as the example.
 #[derive(Clone)]
 pub(super) struct ExampleMesh {
     pub(super) model: Model,
     /// The surface of the repaired mesh.
     pub(super) surface: Surface,
-    /// The texture coordinates of the corners of faces; within the sheet, if there is one.
+    /// The texture coordinates of face corners. If there is a sheet, they are positions in the sheet.
     pub(super) uvs: Vec<[DVec2; 3]>,
     /// The layout of the textures of UDIM tiles in one image; `None` for a mesh with a single texture.
     pub(super) sheet: Option<Sheet>,
     /// The texture.
     pub(super) base: Loaded,
-    /// The maps of the material that were not given with `--map`, by their names for `--map`.
+    /// The material's maps that were not given with `--map`, each with the name it has in `--map`.
     pub(super) maps: Vec<(String, Loaded)>,
 }
 
@@ -128,7 +128,7 @@ impl Args {
                 return Err(error.hint(input::not_used(path, &model).unwrap_or(hint)));
             }
         };
-        // Note that vertex colors are not used. A repaired mesh keeps them in its file.
+        // Tell the user that vertex colors are not used. A repaired mesh keeps them in its file.
         if model.material.base_color.is_some()
             && model.colors.is_some()
             && self.plane.repair.is_none()
@@ -152,7 +152,7 @@ impl Args {
         }))
     }
 
-    /// Returns the maps in the material, except maps that were given with `--map`.
+    /// Reads the maps in the material, except maps that were given with `--map`.
     fn maps_of(&self, model: &Model, sheet: Option<&Sheet>) -> Result<Vec<(String, Loaded)>> {
         let path = &self.exemplar;
         let load = |of: ImageOf, kind| {
@@ -206,8 +206,8 @@ impl ExampleMesh {
 /// Selects a texture of a material.
 type ImageOf = fn(&Material) -> &Option<EncodedImage>;
 
-/// Returns the images of a texture of a model: one for each UDIM tile, or a single one without tiles; `None` if the
-/// material does not have this texture.
+/// Returns the images of a texture that `of` selects: one for each UDIM tile, or a single one without tiles; `None` if
+/// the material does not have this texture.
 ///
 /// # Errors
 ///
@@ -229,7 +229,7 @@ fn images(model: &Model, of: ImageOf) -> Result<Option<Vec<&EncodedImage>>> {
     images.collect::<Result<_>>().map(Some)
 }
 
-/// Returns a channel of a packed map as data: the stored codes, from 0 to 1, without sRGB decoding.
+/// Extracts a channel from a packed map as data, that is, the stored codes from 0 to 1 without sRGB decoding.
 fn channel_of(map: &Map, channel: usize) -> Result<Map> {
     let Map::Color(colors) = map else {
         return Err(anyhow!("a packed map has no colors"));
@@ -238,7 +238,7 @@ fn channel_of(map: &Map, channel: usize) -> Result<Map> {
     Ok(Map::Value(colors.map(code)))
 }
 
-/// Renders vertex colors to a texture that is laid out in charts.
+/// Renders vertex colors to a texture whose layout has a chart for each part of the surface.
 fn drawn(surface: &Surface, model: &Model, repair: &Repair) -> Result<(Vec<[DVec2; 3]>, Loaded)> {
     let colors = model.colors.as_deref().unwrap_or_default();
     let faces = surface.mesh().faces();

@@ -1,4 +1,4 @@
-//! Guides: images that determine which part of the example goes where in the texture.
+//! Reads guides, which are images that determine which part of the example goes where in the texture.
 
 use super::Args;
 use super::corners::own_uvs;
@@ -85,11 +85,11 @@ pub(super) struct GuideArgs {
     pub(super) scales: Option<Numbers<f32, 2>>,
 }
 
-/// The default scales of black and white.
+/// The default scales at black and at white.
 const SCALES: [f32; 2] = [1.0, 2.0];
 
 impl GuideArgs {
-    /// Returns the name of a given option that sets scales, if any.
+    /// Returns the name of an option that sets scales, if one was given.
     pub(super) fn given_for_scales(&self) -> Option<&'static str> {
         first_given(&[
             ("scale", self.scale.is_some()),
@@ -97,7 +97,7 @@ impl GuideArgs {
         ])
     }
 
-    /// Returns the name of a given option that requests a guide, if any.
+    /// Returns the name of an option that requests a guide, if one was given.
     pub(super) fn given(&self) -> Option<&'static str> {
         first_given(&[
             ("which", self.which.is_some()),
@@ -109,10 +109,11 @@ impl GuideArgs {
 /// Weight of the guide that selects among examples, relative to one color channel.
 const CHOICE_WEIGHT: f32 = 3.0;
 
-/// Default blur of lightness, as a standard deviation in pixels: removes the grain of an example, and keeps its shapes.
+/// Default blur of lightness, as a standard deviation in pixels. It removes the grain of an example and preserves its
+/// shapes.
 const LIGHTNESS_BLUR: f64 = 2.0;
 
-/// A guide channel, whose values in the example and in the texture are compared.
+/// A guide channel. Synthesis compares its values in the example with those in the texture.
 pub(super) struct Guide {
     /// The values at the pixels of the example.
     pub(super) example: Raster<f32>,
@@ -130,14 +131,14 @@ pub(super) enum Values {
 }
 
 impl Values {
-    /// Returns the values as a raster: an image, or one row of vertices.
+    /// Returns the values as a raster, which is an image or one row of vertices.
     pub(super) fn raster(&self) -> &Raster<f32> {
         match self {
             Self::Image(values) | Self::Vertices(values) => values,
         }
     }
 
-    /// Converts the values to a raster: an image, or one row of vertices.
+    /// Converts the values to a raster, which is an image or one row of vertices.
     pub(super) fn into_raster(self) -> Raster<f32> {
         match self {
             Self::Image(values) | Self::Vertices(values) => values,
@@ -253,7 +254,7 @@ fn blur_range(text: &str) -> Result<f64, String> {
 }
 
 impl Args {
-    /// Reads an image as gray values; colors become their lightness.
+    /// Reads an image as gray values. Colors are converted to their lightness.
     pub(super) fn read_gray(&self, path: &Path, region: Option<Region>) -> Result<Raster<f32>> {
         gray(&input::map(
             path,
@@ -288,8 +289,8 @@ fn moments(values: impl Iterator<Item = f32> + Clone) -> [f64; 2] {
     [mean, (values.map(square).sum::<f64>() / n).sqrt()]
 }
 
-/// Samples values at all sites of a mesh, a column for each of `values`. Images are read at the mesh's own texture
-/// coordinates, and repeat. Values at vertices are interpolated.
+/// Samples values at all sites of a mesh. The result has a column for each element of `values`. Images are read at the
+/// mesh's own texture coordinates, and repeat. Values at vertices are interpolated.
 pub(super) fn at_sites(
     values: &[&Values],
     synthesizer: &Synthesizer,

@@ -1,4 +1,5 @@
-//! Diagnostic images of a texture in the plane: its pieces, its differences from the example, and its origins.
+//! Writes diagnostic images of a texture in the plane, which show its pieces, its differences from the example, and its
+//! source examples.
 
 use super::options::PlaneArgs;
 use super::reading::Input;
@@ -11,7 +12,7 @@ use dapple::hash::{Seed, hash2};
 use dapple::synth::PlaneTexture;
 use dapple::tile::Map;
 
-/// Gain of differences in the image: a quarter of the maximum difference is white.
+/// Gain applied to differences in the diagnostic image, so that a quarter of the maximum difference is white.
 const LIGHTER: f32 = 4.0;
 
 /// The kind of a diagnostic image.
@@ -22,7 +23,7 @@ enum View {
     Origins,
 }
 
-/// A requested diagnostic image, and its file.
+/// A requested diagnostic image and its output file.
 #[derive(Debug)]
 pub(super) struct Inspection {
     view: View,

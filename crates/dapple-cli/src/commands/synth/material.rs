@@ -1,4 +1,4 @@
-//! The material of a textured mesh, and the maps that it can contain.
+//! Assembles the material of a textured mesh from the maps that it can contain.
 //!
 //! Reference: The Khronos Group, *glTF 2.0 Specification*, 2021, section 3.9: occlusion is red, roughness green and
 //! metalness blue, so that one image holds all three.
@@ -21,25 +21,25 @@ const DEFAULTS: [f32; 3] = [1.0, 1.0, 0.0];
 #[derive(Default)]
 pub(super) struct MaterialMaps {
     normal: Option<EncodedImage>,
-    /// The maps of occlusion, roughness and metalness.
+    /// The maps of occlusion, roughness and metalness; `None` for a missing map.
     packed: [Option<Raster<f32>>; 3],
 }
 
-/// Returns the kind of the map with a name; `None` for an unknown name.
+/// Returns the kind of the map called `name`; `None` for an unknown name.
 fn kind_of(name: &str) -> Option<MapKind> {
     MapKind::from_name(&with_underscores(name))
 }
 
-/// Returns whether the map with this name is of this kind.
+/// Returns whether the map called `name` is of this kind.
 pub(super) fn is_of(name: &str, kind: MapKind) -> bool {
     kind_of(name) == Some(kind)
 }
 
-/// Refuses maps whose different names mean the same map of a material.
+/// Refuses maps with different names that mean the same map of a material.
 ///
 /// # Errors
 ///
-/// If there are two such maps, with both names.
+/// If there are two such maps. The error has both names.
 pub(super) fn check_names(maps: &[MapArg]) -> Result<()> {
     for (at, map) in maps.iter().enumerate() {
         let is_other_name = |other: &&MapArg| {

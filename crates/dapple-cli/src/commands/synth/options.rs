@@ -1,4 +1,4 @@
-//! The options of `dapple synth`.
+//! Defines the options of `dapple synth`.
 
 use crate::args::{Axes, Numbers, Size, seed};
 use crate::error::{Hint, usage};
@@ -49,8 +49,7 @@ dapple::raster::named! {
 }
 
 impl Channel {
-    /// Returns the values of the channel in an image, as stored codes from 0 to 1; `None` if the image has no such
-    /// channel.
+    /// Returns the channel's values in an image, as stored codes from 0 to 1; `None` if the image has no such channel.
     pub(super) fn of(self, image: &Loaded) -> Option<Raster<f32>> {
         let at = match self {
             Self::Red => 0,
@@ -271,7 +270,7 @@ pub(super) struct MatchArgs {
     pub(super) paper: bool,
 }
 
-/// Returns the name of the first option that was given.
+/// Returns the name of the first option whose flag is true, which means that it was given.
 pub(super) fn first_given(options: &[(&'static str, bool)]) -> Option<&'static str> {
     let given = options.iter().find(|(_, is_given)| *is_given);
     given.map(|&(name, _)| name)
@@ -319,7 +318,7 @@ fn angle(text: &str) -> Result<f64, String> {
 }
 
 impl PlaneArgs {
-    /// Returns the name of an option for the plane that was given, if any.
+    /// Returns the name of an option for textures in the plane, if one was given.
     pub(super) fn given(&self) -> Option<&'static str> {
         first_given(&[
             ("size", self.size.is_some()),
@@ -345,7 +344,7 @@ impl PlaneArgs {
 }
 
 impl SurfaceArgs {
-    /// Returns the name of an option that was given and needs a mesh, if any.
+    /// Returns the name of an option that needs a mesh, if one was given.
     pub(super) fn given(&self) -> Option<&'static str> {
         first_given(&[
             ("symmetry", self.symmetry.is_some()),
@@ -361,7 +360,7 @@ impl SurfaceArgs {
         ])
     }
 
-    /// Returns the name of an option that was given and needs an example that is a mesh, if any.
+    /// Returns the name of an option that needs a mesh as the example, if one was given.
     pub(super) fn given_for_example(&self) -> Option<&'static str> {
         first_given(&[
             ("example-directions", self.example_directions.is_some()),
@@ -369,7 +368,7 @@ impl SurfaceArgs {
         ])
     }
 
-    /// Returns the options of the sites on an example that is a mesh.
+    /// Returns the options for the sites on an example mesh.
     pub(super) fn example_sites(&self, matching: &MatchArgs) -> HierarchyOptions {
         let sites = self.sites(matching);
         HierarchyOptions {
@@ -379,7 +378,7 @@ impl SurfaceArgs {
         }
     }
 
-    /// Returns the side of the texture, in pixels.
+    /// Returns the side of the square texture, in pixels.
     pub(super) fn side(&self) -> u32 {
         self.texture_size.unwrap_or(1024)
     }
@@ -392,12 +391,12 @@ impl SurfaceArgs {
         self.padding
     }
 
-    /// Returns the angle above which an edge is a crease, in radians, if it was given.
+    /// Returns the angle above which an edge is a crease, in radians; `None` if it was not given.
     pub(super) fn crease(&self) -> Option<f64> {
         self.crease.map(f64::to_radians)
     }
 
-    /// Returns the options of the sites on the mesh, with one level per level of matching.
+    /// Returns the options for the sites on the mesh, which have one level per matching level.
     pub(super) fn sites(&self, matching: &MatchArgs) -> HierarchyOptions {
         let default = HierarchyOptions::default();
         HierarchyOptions {
@@ -410,8 +409,8 @@ impl SurfaceArgs {
 }
 
 impl SurfaceArgs {
-    /// Returns the options of the sites on a surface. With `--repeat`, the number of sites follows from the size of the
-    /// example, in pixels.
+    /// Returns the options for the sites on a surface. With `--repeat`, the number of sites follows from `size`, the
+    /// example's size in pixels.
     ///
     /// # Errors
     ///
@@ -432,17 +431,17 @@ impl SurfaceArgs {
 }
 
 impl MatchArgs {
-    /// Returns the weight of the map with a name in matching; 0 by default.
+    /// Returns the matching weight of the map called `name`; 0 if none was given.
     pub(super) fn weight_of(&self, name: &str) -> f32 {
         let given = self.weight.iter().find(|weight| weight.name == name);
         given.map_or(0.0, |given| given.weight)
     }
 
-    /// Refuses weights of maps that were not given, and several weights of one map.
+    /// Refuses weights for maps that were not given, and several weights for one map.
     ///
     /// # Errors
     ///
-    /// The name of the first such weight.
+    /// If there is such a weight. The error names the first one.
     pub(super) fn check_weights(&self, maps: &[&str]) -> Result<()> {
         for (at, WeightArg { name, .. }) in self.weight.iter().enumerate() {
             if !maps.contains(&name.as_str()) {
@@ -457,7 +456,7 @@ impl MatchArgs {
         Ok(())
     }
 
-    /// Returns the name of an option that was given and has no effect on an endless texture, if any.
+    /// Returns the name of an option that has no effect on an endless texture, if one was given.
     pub(super) fn given_for_sweeps(&self) -> Option<&'static str> {
         first_given(&[
             ("coherence", self.coherence.is_some()),
@@ -472,7 +471,7 @@ impl MatchArgs {
             .map_or(Options::default().n_levels, |levels| levels as usize)
     }
 
-    /// Returns the options of an endless texture with this period, in pixels; `None` along axes without a period.
+    /// Returns the options for an endless texture. `period` is in pixels, and `None` along axes without a period.
     pub(super) fn endless(&self, period: [Option<u32>; 2]) -> EndlessOptions {
         EndlessOptions {
             seed: Seed(self.seed),
@@ -481,7 +480,7 @@ impl MatchArgs {
         }
     }
 
-    /// Returns the options of a sweep.
+    /// Returns the options for a sweep.
     pub(super) fn options(&self, surface: &SurfaceArgs) -> Options {
         let default = if self.paper {
             Options::paper()
@@ -491,7 +490,7 @@ impl MatchArgs {
         Options {
             seed: Seed(self.seed),
             n_levels: self.n_levels(),
-            // The schedule of the paper, for this number of levels.
+            // Use the paper's schedule for this number of levels.
             schedule: None,
             coherence: self.coherence.unwrap_or(default.coherence),
             evenness: self.evenness.unwrap_or(default.evenness),

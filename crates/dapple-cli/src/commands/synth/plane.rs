@@ -1,4 +1,4 @@
-//! Synthesis of an image in the plane, by all methods except along directions.
+//! Synthesizes an image in the plane by all methods except along directions.
 
 use super::options::{MethodName, PlaneArgs};
 use super::reading::Input;
@@ -21,7 +21,7 @@ use dapple::tile::Map;
 use serde_json::Value;
 use std::path::Path;
 
-/// The default size of a texture.
+/// The default size of a texture, in pixels.
 const SIZE: [u32; 2] = [512; 2];
 
 /// The largest number up to which `f32` represents all whole numbers: 2^24.
@@ -45,7 +45,7 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
         guides,
         ..
     } = &input;
-    // Synthesize: from sources of another texture, in a hole, with guides, or freely.
+    // Synthesize the texture from sources of another texture, in a hole, with guides, or freely.
     let progress = Progress::bar("synthesizing", STEPS.into(), context);
     let options = args.matching.options(&args.surface);
     let edges = args.plane.edges();
@@ -128,7 +128,7 @@ impl PlaneArgs {
 }
 
 impl Args {
-    /// Returns the name of an option that was given and has no effect on an endless texture, if any.
+    /// Returns the name of an option that has no effect on an endless texture, if one was given.
     fn given_for_sweeps(&self) -> Option<&'static str> {
         self.matching.given_for_sweeps().or(self.guides.given())
     }

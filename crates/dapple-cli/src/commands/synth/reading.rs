@@ -1,4 +1,4 @@
-//! Reading of the images of a synthesis: examples, their maps, masks and guides.
+//! Reads the images for a synthesis: examples, their maps, masks and guides.
 
 use super::example_mesh::ExampleMesh;
 use super::guides::Guide;
@@ -18,7 +18,7 @@ use dapple::synth::{Edges, Exemplar, SideBySide, SynthError};
 use dapple::tile::Map;
 use std::path::{Path, PathBuf};
 
-/// The input of a synthesis. Several examples are placed side by side in one image.
+/// The input to a synthesis. Several examples are placed side by side in one image.
 pub(super) struct Input {
     /// The image that the texture shows: the example, or the larger version given by `--detail`.
     pub(super) base: Loaded,
@@ -27,14 +27,14 @@ pub(super) struct Input {
     /// The layout of the examples in one image.
     pub(super) layout: SideBySide,
     pub(super) exemplar: Exemplar,
-    /// The pixels to re-synthesize, if the example is repaired.
+    /// The pixels to re-synthesize; `None` unless the example is repaired.
     pub(super) hole: Option<Raster<bool>>,
     pub(super) guides: Vec<Guide>,
 }
 
 impl Args {
-    /// Reads the examples, the larger version of a single example, the maps, which must have the size of the image that
-    /// is shown, the masks, and the guides.
+    /// Reads the examples, their maps, the masks, the guides, and the larger version given by `--detail`. Maps must be
+    /// as large as the image that the texture shows.
     pub(super) fn read(&self) -> Result<Input> {
         let paths: Vec<_> = [&self.exemplar]
             .into_iter()
@@ -53,7 +53,7 @@ impl Args {
             self.check_usable(path, example, (path, image), hole.as_ref())?;
         }
         if self.plane.repair_channel == Some(Channel::Alpha) {
-            // Re-synthesized pixels are opaque, and so the whole result is.
+            // Re-synthesized pixels are opaque, so the whole result is opaque.
             examples[0].alpha = None;
         }
         // Join the examples, and add the mask and the guides.
@@ -93,8 +93,8 @@ impl Args {
         })
     }
 
-    /// Returns the input with a mesh as the example: its texture, the maps given by `--map`, and the maps of its
-    /// material.
+    /// Reads the input for an example that is a mesh, which consists of its texture, the maps given by `--map`, and the
+    /// maps of its material.
     pub(super) fn read_with(&self, example: &ExampleMesh) -> Result<Input> {
         let base = example.base.clone();
         let mut exemplar = exemplar_of(&base.map, self.matching.edges).map_err(advise)?;
@@ -205,7 +205,7 @@ impl Args {
         Ok(map)
     }
 
-    /// Adds the maps with a weight to the exemplar, as further channels for matching.
+    /// Adds the maps that have a weight to the exemplar, as additional channels for matching.
     fn with_weighted(
         &self,
         mut exemplar: Exemplar,
@@ -214,7 +214,7 @@ impl Args {
         for (name, Loaded { map, .. }) in maps {
             let weight = self.matching.weight_of(name);
             if weight > 0.0 {
-                // With `--detail`, maps have the size of the larger example. Reduce them to the size of the exemplar.
+                // With `--detail`, maps are as large as the larger example. Reduce them to the size of the exemplar.
                 let factor = map.size()[0] / exemplar.size()[0];
                 let map = exemplar_of(map, exemplar.edges())?.reduced(factor)?;
                 exemplar = exemplar.with_channels(&map, weight)?;
@@ -223,8 +223,8 @@ impl Args {
         Ok(exemplar)
     }
 
-    /// Fails if an image has NaN or infinite values at a pixel that is used: outside of the hole, and where the mask of
-    /// its example is white. `example` and `index` are the path and the index of the example.
+    /// Returns an error if an image has NaN or infinite values at a pixel that is used. These are the pixels outside of
+    /// the hole where the example's mask is white. `example` and `index` are the path and index of the example.
     fn check_usable(
         &self,
         path: &Path,
@@ -246,8 +246,8 @@ impl Args {
         image.faults.check(&input::name(path), is_used)
     }
 
-    /// Reads the mask of usable pixels of the examples: white in their masks, and outside of the hole. `None` if all
-    /// pixels are usable.
+    /// Reads the mask of usable pixels, which are those outside of the hole that are white in the masks of the
+    /// examples. Returns `None` if all pixels are usable.
     fn read_masks(
         &self,
         paths: &[&PathBuf],
@@ -296,7 +296,7 @@ impl Args {
         Ok(Some(values.map(|&value| value < 0.5)))
     }
 
-    /// Reads a mask with the size of an example. Pixels are set if they are at least half as light as white.
+    /// Reads a mask that is as large as an example. Pixels are set if their lightness is at least half that of white.
     fn load_mask(
         &self,
         path: &Path,
@@ -320,7 +320,7 @@ impl Args {
         }
     }
 
-    /// Reads a larger version of the example, whose sides are the same integer multiple of the sides of the example.
+    /// Reads a larger version of the example. Its sides must be the same integer multiple of the example's sides.
     fn load_detail(&self, path: &Path, [width, height]: [u32; 2]) -> Result<Loaded> {
         let detail = self.load(path, Kind::ByChannels)?;
         let size = detail.map.size();
@@ -344,7 +344,7 @@ impl Args {
     }
 }
 
-/// Returns the lightness of the pixels of an image, as sRGB codes from 0 to 1. Gray images are unchanged.
+/// Converts an image to the lightness of its pixels, as sRGB codes from 0 to 1. Gray images are unchanged.
 pub(super) fn gray(image: &Loaded) -> Result<Raster<f32>> {
     match &image.map {
         Map::Value(values) => Ok(values.clone()),
@@ -353,13 +353,14 @@ pub(super) fn gray(image: &Loaded) -> Result<Raster<f32>> {
     }
 }
 
-/// Returns the lightness of a color: the sRGB code, from 0 to 1, of the gray with the same luminance.
+/// Returns the lightness of a color, which is the sRGB code, from 0 to 1, of the gray with the same luminance.
 pub(super) fn lightness(color: &LinearRgb) -> f32 {
     let [code, ..] = LinearRgb::gray(color.luminance()).to_srgb::<u16>();
     f32::from(code) / f32::from(u16::MAX)
 }
 
-/// Places images side by side. If some are gray and others in color, all become colors. A single image is unchanged.
+/// Places images side by side. If some are gray and others in color, all are converted to colors. A single image is
+/// unchanged.
 pub(super) fn joined(layout: &SideBySide, mut images: Vec<Loaded>) -> Result<Loaded> {
     if layout.size() == layout.size_of(0) {
         return Ok(images.remove(0));
@@ -409,7 +410,7 @@ pub(super) fn joined(layout: &SideBySide, mut images: Vec<Loaded>) -> Result<Loa
     Ok(joined)
 }
 
-/// Returns the rasters of all images, if all images are of the kind that `part` selects.
+/// Returns the rasters of all images if `part` selects all of them, and `None` otherwise.
 fn all<'a, T>(images: &'a [Loaded], part: impl Fn(&'a Map) -> Option<&'a T>) -> Option<Vec<&'a T>> {
     images.iter().map(|image| part(&image.map)).collect()
 }

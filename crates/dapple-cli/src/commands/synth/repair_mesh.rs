@@ -1,4 +1,4 @@
-//! Repair of the texture of a mesh and of the maps in its material: re-synthesis of the texels in a mask.
+//! Repairs the texture of a mesh and the maps in its material by re-synthesis of the texels in a mask.
 
 use super::example_mesh::ExampleMesh;
 use super::reading::Input;
@@ -127,7 +127,7 @@ fn check_tiles(format: Option<&MeshFormat>, example: &ExampleMesh, path: &Path) 
     Err(error.hint("let -o end in .png, for an image of each: NAME.1001.png and so on"))
 }
 
-/// Claims a file for each UDIM tile, or for the single texture.
+/// Claims a file for each UDIM tile, or one file if the mesh has a single texture.
 fn claim_tiles(
     target: &Target,
     sheet: Option<&Sheet>,
@@ -142,7 +142,7 @@ fn claim_tiles(
         .collect()
 }
 
-/// Returns the format of the output if it is a model; `None` for an image.
+/// Returns the output format if the output is a model; `None` for an image.
 fn model_format(target: &Target) -> Result<Option<&'static MeshFormat>> {
     match Product::of(target)? {
         Product::Texture => Ok(None),
@@ -183,8 +183,8 @@ impl Repaired<'_> {
         encoded(&map, alpha.as_ref(), image.is_deep)
     }
 
-    /// Repairs a map: new texels in the hole, and the old texels elsewhere. Returns one map for each UDIM tile, or a
-    /// single one.
+    /// Repairs a map, which gets new texels in the hole and retains its old texels elsewhere. Returns one map for each
+    /// UDIM tile, or a single one.
     fn mended(&self, old: &Loaded) -> Result<Vec<Mended>> {
         let Some(sheet) = &self.sheet else {
             return Ok(vec![self.mended_part(old, old, &self.uvs, &self.hole)?]);
@@ -197,8 +197,8 @@ impl Repaired<'_> {
         (0..sheet.tiles.numbers.len()).map(mend).collect()
     }
 
-    /// Repairs the texture of the faces with texture coordinates in `uvs`. `old` is this texture, and `from` is the
-    /// image that new texels are taken from.
+    /// Repairs the texture of the faces that have texture coordinates in `uvs`. `old` is this texture, and `from` is
+    /// the image from which new texels are copied.
     fn mended_part(
         &self,
         from: &Loaded,
@@ -238,7 +238,7 @@ impl Repaired<'_> {
     }
 }
 
-/// Combines new texels in the hole with the old texels elsewhere. The hole may have another size, and is scaled.
+/// Combines new texels in the hole with old texels elsewhere. If the hole differs in size, it is scaled.
 fn within_hole<T: Copy>(
     old: &Raster<T>,
     new: &Raster<T>,
@@ -254,7 +254,7 @@ fn within_hole<T: Copy>(
     })?)
 }
 
-/// Returns pairs of the images of a material: the old image and its replacement.
+/// Pairs each image in a material with its replacement.
 fn replaced(old: &Material, new: &Material) -> Vec<(EncodedImage, EncodedImage)> {
     let images = |material: &Material| {
         let Material {

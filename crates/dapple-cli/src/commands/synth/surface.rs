@@ -1,4 +1,4 @@
-//! Synthesis on a mesh, and its output files.
+//! Synthesizes a texture on a mesh, and writes its output files.
 
 use super::corners::{own_uvs, shading};
 use super::example_mesh::ExampleMesh;
@@ -35,7 +35,7 @@ use std::path::Path;
 pub(super) enum Product {
     /// The mesh with its texture.
     Model(&'static MeshFormat),
-    /// The sites as a mesh, in a format without textures.
+    /// A mesh whose vertices are the sites, in a format without textures.
     Sites(&'static MeshFormat),
     /// The texture alone.
     Texture,
@@ -46,7 +46,7 @@ const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// The file extensions of images.
 const IMAGES: [&str; 4] = ["png", "exr", "npy", "r16"];
 
-/// The file extension for standard output and for directories.
+/// The file extension if the output is standard output or a directory.
 const DEFAULT_ENDING: &str = "glb";
 
 /// The claimed output files.
@@ -54,17 +54,17 @@ struct Claimed {
     product: Product,
     /// The file name of the output without its extension.
     stem: String,
-    /// The output; several for the textures of UDIM tiles.
+    /// The output file, or a file for the texture of each UDIM tile.
     main: Vec<OutputIdx>,
     /// The files next to the mesh, such as materials and textures, with their names.
     beside: Vec<(String, OutputIdx)>,
-    /// The files of each map, one per layout; empty for a map that is written next to the mesh or embedded only.
+    /// For each map, its files, one per layout; empty for a map that is only embedded, or written next to the mesh.
     maps: Vec<Vec<OutputIdx>>,
-    /// The format of textures in separate files.
+    /// The format for textures in separate files.
     format: Format,
 }
 
-/// Reads the mesh, and prints the parts of it and of the example that are not used.
+/// Reads the mesh, and prints which parts of it and of the example are not used.
 fn read_target(
     args: &Args,
     mesh: &Path,
@@ -81,7 +81,8 @@ fn read_target(
     Ok(model)
 }
 
-/// Returns the UDIM tiles that get a texture each, with the mesh's own texture coordinates; empty for a single texture.
+/// Returns the UDIM tiles that get a texture each, if the mesh's own texture coordinates are used; empty for a single
+/// texture.
 fn squares(args: &Args, product: Product, model: &Model) -> Vec<TileMaterial> {
     let takes_several = match product {
         Product::Texture => true,
@@ -106,8 +107,8 @@ pub(super) fn announce(context: &Context, path: &Path, model: &Model) {
     }
 }
 
-/// Returns the options of the sites on the mesh. For an example that is an image of `size` pixels, also a note with the
-/// number of times that it repeats across the mesh.
+/// Returns the options for the sites on the mesh. If the example is an image of `size` pixels, also returns a note on
+/// how many times it repeats across the mesh.
 fn sites(
     args: &Args,
     is_mesh: bool,
@@ -205,7 +206,7 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Samples the guides at the sites of the mesh, a column for each guide.
+/// Samples the guides at the sites of the mesh. The result has a column for each guide.
 fn guide_columns(
     input: &Input,
     synthesizer: &Synthesizer,
@@ -216,8 +217,8 @@ fn guide_columns(
     guides::at_sites(&targets, synthesizer, model, repair)
 }
 
-/// Synthesizes the texture at the sites of the mesh, from an image or, with `exemplar`, from a mesh. `columns` are the
-/// values of the guides.
+/// Synthesizes the texture at the sites of the mesh, from an image or, with `exemplar`, from a mesh. `columns` has the
+/// guide values at the sites, a column for each guide.
 fn grown(
     args: &Args,
     input: &Input,
@@ -237,7 +238,7 @@ fn grown(
     texture.map_err(advise)
 }
 
-/// Returns the statistics of an atlas, for the sidecar.
+/// Returns statistics of an atlas for the sidecar.
 fn atlas_json(atlas: AtlasReport) -> serde_json::Value {
     json!({
         "pieces": atlas.pieces,
@@ -246,7 +247,7 @@ fn atlas_json(atlas: AtlasReport) -> serde_json::Value {
     })
 }
 
-/// Makes an exemplar from a mesh: places sites on it, and samples its texture.
+/// Builds an exemplar from a mesh, by placing sites on it and sampling its texture at them.
 pub(super) fn exemplar_of_mesh(
     args: &Args,
     example: ExampleMesh,
@@ -261,16 +262,17 @@ pub(super) fn exemplar_of_mesh(
 /// The atlases of the textures of a mesh.
 #[derive(Default)]
 pub(super) struct Layouts {
-    /// The atlas of the texture; one per UDIM tile if there are `tiles`, and none for a mesh of sites.
+    /// The atlases of the texture. There is one per UDIM tile if there are `tiles`, one without them, and none if the
+    /// output is a mesh of sites.
     pub(super) atlases: Vec<Atlas>,
     /// The UDIM tiles that get a texture each, in the order of the atlases.
     tiles: Vec<TileMaterial>,
-    /// The mesh's own texture coordinates, if there are `tiles`.
+    /// The mesh's own texture coordinates; `None` without `tiles`.
     own_uvs: Option<Vec<[DVec2; 3]>>,
 }
 
 impl From<Atlas> for Layouts {
-    /// Builds the atlas of a single texture.
+    /// Creates the layout of a single texture.
     fn from(atlas: Atlas) -> Self {
         Self {
             atlases: vec![atlas],
@@ -280,7 +282,7 @@ impl From<Atlas> for Layouts {
 }
 
 impl Layouts {
-    /// Builds the atlas of a single texture, or the atlases of all UDIM tiles.
+    /// Builds the atlas for a single texture, or the atlases for all UDIM tiles.
     fn new(
         args: &Args,
         surface: &Surface,
@@ -294,7 +296,7 @@ impl Layouts {
         }
     }
 
-    /// Builds the atlases of UDIM tiles, which use the mesh's own texture coordinates.
+    /// Builds the atlases for UDIM tiles, which use the mesh's own texture coordinates.
     fn of_tiles(args: &Args, surface: &Surface, model: &Model, repair: &Repair) -> Result<Self> {
         let numbers: Vec<_> = model.tiles.iter().map(|tile| tile.number).collect();
         let own_uvs = own_uvs(surface, model, repair)?;
@@ -312,7 +314,8 @@ impl Layouts {
         })
     }
 
-    /// Returns the statistics of the atlases, for the sidecar: an object, or a list with an object for each UDIM tile.
+    /// Returns statistics of the atlases for the sidecar. They are an object, or a list with an object for each UDIM
+    /// tile.
     fn report(&self, surface: &Surface) -> serde_json::Value {
         let reports = self.atlases.iter();
         let mut reports: Vec<_> = reports
@@ -330,7 +333,7 @@ pub(super) struct Covered {
     pub(super) synthesizer: Synthesizer,
     pub(super) texture: SurfaceTexture,
     pub(super) layouts: Layouts,
-    /// The normals of the corners of all faces.
+    /// The normals at the corners of all faces.
     pub(super) shading: Vec<[DVec3; 3]>,
     /// Whether faces are visible from both sides.
     pub(super) double_sided: bool,
@@ -338,7 +341,7 @@ pub(super) struct Covered {
 }
 
 impl Product {
-    /// Builds the kind of output for the file extension of a target.
+    /// Chooses the kind of output by the file extension of a target.
     pub(super) fn of(target: &Target) -> Result<Self> {
         let ending = match target {
             Target::Stdout if target.ending().is_empty() => DEFAULT_ENDING.to_owned(),
@@ -362,7 +365,7 @@ impl Product {
     }
 }
 
-/// Returns the part of the help that lists the kind of output for each file extension.
+/// Returns the help text that lists the kind of output for each file extension.
 pub(super) fn endings() -> String {
     let mut text = "What the ending of the output gives for a mesh:".to_owned();
     for format in FORMATS {
@@ -382,7 +385,7 @@ pub(super) fn endings() -> String {
 }
 
 impl Covered {
-    /// Bakes a map of the example to a texture of the mesh.
+    /// Bakes a map of the example to a texture for the mesh.
     pub(super) fn bake(&self, map: &Map, atlas: &Atlas) -> Result<Map> {
         let (synthesizer, texture) = (&self.synthesizer, &self.texture);
         Ok(match map {
@@ -432,7 +435,7 @@ impl Covered {
     }
 }
 
-/// Returns the output path, and its kind.
+/// Returns the output path and the kind of output.
 fn output(args: &Args, mesh: &Path) -> Result<(Target, Product)> {
     let ending = args.image.format.map_or(DEFAULT_ENDING, Format::ending);
     let target = args.target(mesh, ending)?;
@@ -525,7 +528,7 @@ fn claim(
     })
 }
 
-/// Claims a file for each UDIM tile, or for the single texture.
+/// Claims a file for each UDIM tile, or one file if the mesh has a single texture.
 fn claim_tiles(
     target: &Target,
     tiles: &[TileMaterial],
@@ -540,8 +543,8 @@ fn claim_tiles(
         .collect()
 }
 
-/// Returns the names of the files that a format writes next to a mesh. They are found by writing an empty mesh with the
-/// same textures.
+/// Returns the names of the files that a format writes next to a mesh, found by writing an empty mesh with the same
+/// textures.
 fn names_beside(
     format: &MeshFormat,
     path: &Path,
@@ -596,7 +599,7 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
         let cover = Cover::of(alpha.as_ref(), false, Clear::NOT_WRAPPED);
         job.write_with_alpha(claimed.main[at], base, cover, is_deep, &args.image)?;
     }
-    // Combine the models of all UDIM tiles to one, displace it, and write it.
+    // Combine the models of all UDIM tiles into one, displace it, and write it.
     let Product::Model(format) = claimed.product else {
         return Ok(());
     };
@@ -614,7 +617,7 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
     write_model(format, claimed, &model, job)
 }
 
-/// Returns the input mesh with its texture. A gray texture is converted to colors, which models need.
+/// Builds a model from the input mesh and its new texture. A gray texture is converted to colors, which models need.
 fn model(
     args: &Args,
     covered: &Covered,
@@ -665,7 +668,7 @@ fn stem(path: &Path) -> String {
         .into_owned()
 }
 
-/// Makes the atlas of the texture by the method of `--atlas`.
+/// Builds the atlas of the texture with the method given by `--atlas`.
 fn atlas(
     args: &Args,
     surface: &Surface,
@@ -708,7 +711,8 @@ fn synthesizer(
     Synthesizer::from_parts(surface, hierarchy, orientation, None)
 }
 
-/// Sets the scales of the sites, from `--scale` or by `--scales` from the directions.
+/// Sets the scales at the sites. They come from the image `--scale` or, with `--scales` alone, follow from the
+/// directions.
 fn scaled(
     synthesizer: Synthesizer,
     args: &Args,
@@ -726,7 +730,7 @@ fn scaled(
     scaled.map_err(advise)
 }
 
-/// Reads the directions of a file in CSV or JSON; empty without a file.
+/// Reads directions from a file in CSV or JSON. Returns an empty list without a file.
 fn directions(path: Option<&Path>) -> Result<Vec<Direction>> {
     let Some(path) = path else {
         return Ok(Vec::new());

@@ -1,5 +1,5 @@
-//! UDIM tiles: unit squares of texture coordinates with a texture each. The textures of an example are joined in one
-//! image, the sheet.
+//! Handles UDIM tiles, unit squares of texture coordinates with a texture each. The textures of an example are joined
+//! in one image, the sheet.
 
 use super::reading::joined;
 use crate::error::{Hint, usage};
@@ -37,7 +37,7 @@ pub(super) struct Sheet {
 const BORDER: u32 = 1;
 
 impl Tiles {
-    /// Assigns faces with these texture coordinates to the tiles with these numbers.
+    /// Assigns each face to one of the tiles `numbers`, by its texture coordinates `uvs`.
     pub(super) fn new(numbers: Vec<u32>, uvs: &[[DVec2; 3]]) -> Result<Self> {
         let (mut of_face, mut local) = (Vec::new(), Vec::new());
         for corners in uvs {
@@ -57,7 +57,7 @@ impl Tiles {
         })
     }
 
-    /// Returns the texture coordinates of the faces of one tile. All other faces have NaN, so that an atlas leaves them
+    /// Returns the texture coordinates of all faces. Faces outside of `tile` have NaN, so that an atlas leaves them
     /// out.
     pub(super) fn uvs_of(&self, tile: usize) -> Vec<[DVec2; 3]> {
         let faces = self.of_face.iter().zip(&self.local);
@@ -80,7 +80,7 @@ impl Tiles {
 }
 
 impl Sheet {
-    /// Builds the sheet for tiles with textures of `size` columns and rows.
+    /// Creates the layout for tiles with textures of `size` columns and rows.
     pub(super) fn new(tiles: Tiles, size: [u32; 2]) -> Result<Self> {
         let with_border = size.map(|side| side.saturating_add(2 * BORDER));
         let layout = SideBySide::new(&vec![with_border; tiles.numbers.len()])?;
@@ -91,7 +91,7 @@ impl Sheet {
         })
     }
 
-    /// Returns the texture coordinates of all faces in the sheet.
+    /// Returns the texture coordinates of all faces as positions in the sheet.
     pub(super) fn uvs(&self) -> Vec<[DVec2; 3]> {
         let all = DVec2::from(self.layout.size().map(f64::from));
         let size = DVec2::from(self.size.map(f64::from));
@@ -145,12 +145,12 @@ impl Sheet {
         Ok(self.layout.join(&masks.iter().collect::<Vec<_>>(), false)?)
     }
 
-    /// Crops the texture of a tile from the sheet.
+    /// Crops a tile's texture from the sheet.
     pub(super) fn part<T: Copy>(&self, sheet: &Raster<T>, tile: usize) -> Result<Raster<T>> {
         Ok(sheet.crop(self.first(tile), self.size)?)
     }
 
-    /// Crops the map of a tile from the sheet, with its alpha.
+    /// Crops a tile's map, with its alpha, from the sheet.
     pub(super) fn part_of(&self, sheet: &Loaded, tile: usize) -> Result<Loaded> {
         let mut part = sheet.with_map(match &sheet.map {
             Map::Value(values) => Map::Value(self.part(values, tile)?),
@@ -167,7 +167,7 @@ impl Sheet {
     ///
     /// # Errors
     ///
-    /// If the file name has no placeholder for the number of a tile, and the errors of `read`.
+    /// If the file name has no placeholder for the tile number, or `read` fails.
     pub(super) fn read<T>(
         &self,
         path: &Path,

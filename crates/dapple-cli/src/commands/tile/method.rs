@@ -11,14 +11,14 @@ use dapple::tile::{
 use dapple::wavelet::{Degree, Phase};
 use serde::Serialize;
 
-/// The table row of a method.
+/// A method's row in the table.
 struct Row {
     name: &'static str,
     /// The help text of the method.
     about: &'static str,
     /// The options of the method, without `--`.
     options: &'static [&'static str],
-    /// Builds the method from the options, for images of a size.
+    /// Builds the method from the options, for images of the given size.
     make: fn(&MethodArgs, [u32; 2]) -> How,
 }
 
@@ -79,22 +79,22 @@ const METHODS: [Row; 8] = [
     },
 ];
 
-/// The way a tile is made.
+/// The way in which a tile is computed.
 pub(super) enum How {
-    /// By a method of `dapple-tile`.
+    /// Apply a method of `dapple-tile`.
     Seamless(Method),
-    /// By re-synthesis of a strip along the seam.
+    /// Re-synthesize a strip along the seam.
     Synth(Resynthesis),
 }
 
-/// Options of the re-synthesis of a strip along the seam.
+/// Options for re-synthesis of a strip along the seam.
 pub(super) struct Resynthesis {
     /// Width of the strip, in pixels; 3/16 of the shorter side by default.
     pub(super) margin: Option<u32>,
     pub(super) seed: Seed,
 }
 
-/// The name of the re-synthesis, which takes much longer than all other methods.
+/// The name of the method that re-synthesizes a strip. It takes much longer than all other methods.
 const SYNTH: &str = "synth";
 
 /// The name of the default method.
@@ -118,7 +118,7 @@ fn method() -> NamedValueParser<&'static str> {
         .fold(auto, |words, row| words.or(row.name, row.about, row.name))
 }
 
-/// A method with its options, which may be tried.
+/// A method with its options, as a candidate for the best tile.
 pub(super) struct Candidate {
     /// The name of the method on the command line.
     pub(super) name: String,
@@ -154,7 +154,7 @@ fn basis() -> NamedValueParser<Basis> {
     splines.or("sines", "Sines and cosines", Basis::Sines)
 }
 
-/// Returns the default margin, in pixels: the default of the library, but at most a quarter of the shorter side.
+/// Returns the default margin in pixels, which is that of the library, but at most a quarter of the shorter side.
 fn default_margin(size: [u32; 2]) -> u32 {
     let shorter = size[0].min(size[1]);
     SoftCut::default().margin.min((shorter / 4).max(1))
@@ -211,8 +211,8 @@ pub(super) struct MethodArgs {
 }
 
 impl MethodArgs {
-    /// Returns the method with its options, for images of a size. For `auto`, all methods to try; the last resort is
-    /// the last one.
+    /// Returns the methods to try on images of `size` pixels, with their options. There is one unless the method is
+    /// `auto`. The last resort is at the end.
     pub(super) fn candidates(&self, size: [u32; 2]) -> Vec<Candidate> {
         let candidates_of = |is_wanted: &dyn Fn(&str) -> bool| -> Vec<Candidate> {
             let wanted = METHODS.iter().filter(|row| is_wanted(row.name));

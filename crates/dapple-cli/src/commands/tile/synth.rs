@@ -16,11 +16,11 @@ const MOST: u32 = 512;
 /// Minimum shorter side of the exemplar, in pixels, for which matching uses four levels instead of three.
 const LARGE: u32 = 384;
 
-/// Makes a tile of each map, all with the same sources of pixels.
+/// Computes a tile of each map. All tiles take their pixels from the same positions.
 ///
 /// # Errors
 ///
-/// The errors of the synthesis.
+/// If the synthesis fails.
 pub(super) fn tiles(maps: &[Map], axes: [bool; 2], how: &Resynthesis) -> Result<Vec<Map>> {
     // Reduce the exemplar to the maximum side.
     let exemplar = exemplar(maps)?;
@@ -50,7 +50,7 @@ pub(super) fn tiles(maps: &[Map], axes: [bool; 2], how: &Resynthesis) -> Result<
     maps.iter().map(tile).collect()
 }
 
-/// Returns the exemplar of a material: the channels of all its maps.
+/// Builds the exemplar of a material, which has the channels of all its maps.
 fn exemplar(maps: &[Map]) -> Result<Exemplar> {
     let mut exemplars = maps.iter().map(|map| exemplar_of(map, Edges::Cut));
     let Some(first) = exemplars.next() else {
@@ -60,7 +60,7 @@ fn exemplar(maps: &[Map]) -> Result<Exemplar> {
     Ok(joined?)
 }
 
-/// Adds a hint to an error, which is about a size.
+/// Adds a hint to an error about a size.
 fn advise(error: SynthError) -> Error {
     Error::new(error)
         .hint("take a larger image, or another --margin")
