@@ -77,7 +77,7 @@ pub(crate) fn parse() -> (Cli, Vec<GivenOption>) {
     parsed.unwrap_or_else(|error| advised(error.format(&mut command), &words).exit())
 }
 
-/// Returns the options of the subcommand that were given on the command line.
+/// Lists the subcommand's options that were given on the command line.
 fn given(command: &Command, matches: &ArgMatches) -> Vec<GivenOption> {
     let subcommand = matches.subcommand();
     let Some((command, matches)) =

@@ -114,7 +114,7 @@ impl Format {
     }
 }
 
-/// Returns the default format of a map: 8-bit PNG for colors unless `is_deep`, and 16-bit PNG for all other maps.
+/// Returns a map's default format, which is 8-bit PNG for colors unless `is_deep`, and 16-bit PNG otherwise.
 pub(crate) fn default_format(map: &Map, is_deep: bool) -> Format {
     match map {
         Map::Color(_) if !is_deep => Format::Png8,
@@ -292,7 +292,7 @@ pub(crate) fn content(map: &Map) -> Content {
     }
 }
 
-/// Returns the number of pixels with a component below 0 or above 1 by more than half a 16-bit code.
+/// Counts the pixels that have a component below 0 or above 1 by more than half a 16-bit code.
 pub(crate) fn n_clipped<T: Sync, const N: usize>(
     raster: &Raster<T>,
     parts: impl Fn(&T) -> [f32; N],
@@ -305,7 +305,7 @@ pub(crate) fn n_clipped<T: Sync, const N: usize>(
         .count() as u64
 }
 
-/// Returns the number of pixels of a map that integer formats clip. Normals are never clipped.
+/// Counts the pixels of a map that integer formats clip. Normals are never clipped.
 pub(crate) fn n_clipped_of(map: &Map) -> u64 {
     match map {
         Map::Value(raster) => n_clipped(raster, |number| [*number]),

@@ -24,7 +24,7 @@ pub(crate) enum Exit {
     Usage = 2,
     /// The command succeeded, but a condition of `--check` does not hold.
     Check = 3,
-    /// The user interrupted the command: 128 plus the number of SIGINT.
+    /// The user interrupted the command. The code is 128 plus the number of SIGINT.
     Interrupted = 130,
 }
 
@@ -77,10 +77,10 @@ pub(crate) trait Hint {
     /// The type of the result.
     type Hinted;
 
-    /// Adds a hint: an imperative sentence without a period.
+    /// Adds a hint, which is an imperative sentence without a period.
     fn hint(self, hint: impl Into<String>) -> Self::Hinted;
 
-    /// Marks an error as wrong usage: a library has rejected the value of an option.
+    /// Marks an error as wrong usage, because a library has rejected the value of an option.
     fn wrong_value(self) -> Self::Hinted;
 }
 

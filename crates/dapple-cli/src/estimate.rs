@@ -9,9 +9,9 @@ use dapple::recipe::{Bake, BakeMemory, BakeOptions, Plan};
 use indicatif::{DecimalBytes, HumanDuration};
 use std::time::{Duration, Instant};
 
-/// Maximum number of pixels of a bake without `--banded`: 32768 × 32768.
+/// Maximum number of pixels in a bake without `--banded`, which is 32768 × 32768.
 const MOST_PIXELS: u64 = 1 << 30;
-/// Minimum number of pixels for which the estimate is printed: 8192 × 8192.
+/// Minimum number of pixels for which the estimate is printed, which is 8192 × 8192.
 const TOLD_PIXELS: u64 = 1 << 26;
 /// Columns and rows of the small bake whose time is measured.
 const PROBE: [u32; 2] = [256; 2];

@@ -194,8 +194,8 @@ impl FieldArgs {
     }
 }
 
-/// Converts an error of the recipe to an error of an option. The message lacks the node, which users of the subcommand
-/// do not see.
+/// Converts an error about the recipe to an error about an option. The message lacks the node, which users of the
+/// subcommand do not see.
 fn refused(error: RecipeError) -> Error {
     let message = error.kind().to_string();
     Error::new(error).context(message).wrong_value()
@@ -267,8 +267,7 @@ pub(crate) fn extent_of(spaces: Size, shorter: f64) -> [f64; 2] {
     [side(width), side(height)]
 }
 
-/// Checks that the number of cells is whole along each axis that repeats. `option` names the option to change, for the
-/// hint.
+/// Checks that the number of cells is whole along each axis that repeats. The hint suggests to change `option`.
 pub(crate) fn check_whole_cells(cells: [f64; 2], repeats: [bool; 2], option: &str) -> Result<()> {
     for (cells, repeats) in cells.into_iter().zip(repeats) {
         if repeats && cells.fract() != 0.0 {

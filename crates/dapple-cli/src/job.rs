@@ -232,7 +232,7 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// Records the number of pixels of an image that its format clips.
+    /// Records how many pixels of an image are clipped by its format.
     pub(crate) fn note_clipped(&mut self, output: OutputIdx, n_pixels: u64) {
         for (_, record) in self.files.iter_mut().filter(|(at, _)| *at == output) {
             record.clipped = n_pixels;
@@ -403,7 +403,7 @@ impl<'a> Job<'a> {
         self.outputs.claim(target)
     }
 
-    /// Returns the default path of the sidecar: the path of the output with the extension `.json`.
+    /// Returns the default path of the sidecar, which is that of the output with the extension `.json`.
     fn beside(&self, main: &Target) -> Result<Target> {
         let Some(path) = main.path() else {
             return Err(

@@ -162,7 +162,7 @@ impl LayerRows<'_> {
         }
     }
 
-    /// Returns the number of pixels with a number below 0 or above 1, which integer formats clip.
+    /// Counts the pixels that have a number below 0 or above 1, which integer formats clip.
     pub(crate) fn n_clipped(&self) -> u64 {
         match self {
             Self::Map(rows) => match rows.as_ref() {

@@ -242,7 +242,7 @@ impl Outputs {
         Ok(())
     }
 
-    /// Claims an output: checks its path, and creates its temporary file.
+    /// Claims an output by checking its path and creating its temporary file.
     ///
     /// # Errors
     ///

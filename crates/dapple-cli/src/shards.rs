@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 /// The file name of a list.
 const FILE: &str = "shards.json";
-/// Maximum number of files of a list: shards times maps times frames.
+/// Maximum number of files in a list, which is shards times maps times frames.
 const FILES_MAX: u64 = 1 << 20;
 /// Number of digits of the checksum in the name of the directory.
 const DIGITS: usize = 12;
@@ -60,7 +60,7 @@ pub(crate) struct Task {
     pub(crate) region: Region,
 }
 
-/// The options of a list.
+/// The options for creating a list.
 pub(crate) struct Wanted<'a> {
     pub(crate) size: Size,
     pub(crate) samples: SamplesArgs,
@@ -142,7 +142,7 @@ impl List {
         Ok(Some(list))
     }
 
-    /// Validates a list that was read: its checksum, its maps, and its number of files.
+    /// Validates the checksum, the maps and the number of files of a list that was read.
     fn checked(self) -> Result<Self> {
         let is_digit = |c: char| c.is_ascii_hexdigit();
         if self.sha256.len() != 64 || !self.sha256.chars().all(is_digit) {
@@ -250,7 +250,7 @@ impl List {
         Ok(Frame::all(self.frames).flat_map(of_frame))
     }
 
-    /// Returns the number of shards of all frames together.
+    /// Returns the total number of shards in all frames.
     ///
     /// # Errors
     ///
@@ -260,7 +260,7 @@ impl List {
         Ok(self.shards()?.len().saturating_mul(n_frames.into()))
     }
 
-    /// Returns a row of shards of a frame, from left to right.
+    /// Returns the shards of a frame in one row of the grid, from left to right.
     ///
     /// # Errors
     ///
@@ -283,7 +283,7 @@ impl List {
         (0..columns).map(task).collect()
     }
 
-    /// Returns the path of a map of a shard, relative to the directory of `shards.json`. Each row of shards has its own
+    /// Returns the path of a shard's map, relative to the directory of `shards.json`. Each row of shards has its own
     /// directory, which limits the number of files per directory.
     pub(crate) fn file(&self, frame: Option<Frame>, place: [u32; 2], kind: MapKind) -> PathBuf {
         let [column, row] = place;

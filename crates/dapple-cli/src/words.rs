@@ -7,12 +7,12 @@ use dapple::raster::Named;
 use dapple::recipe::similar_words;
 use std::ffi::OsStr;
 
-/// Normalizes a word to the form of the names of maps and fields: lower case, with `_`.
+/// Normalizes a word to the spelling of map and field names, in lower case with `_`.
 pub(crate) fn with_underscores(word: &str) -> String {
     word.trim().to_lowercase().replace('-', "_")
 }
 
-/// Normalizes a word to the form of the names of options and recipes: lower case, with `-`.
+/// Normalizes a word to the spelling of option and recipe names, in lower case with `-`.
 pub(crate) fn with_dashes(word: &str) -> String {
     word.trim().to_lowercase().replace('_', "-")
 }

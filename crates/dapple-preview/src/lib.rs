@@ -47,8 +47,8 @@
 //! * Supersampling is from 1 to 64, and a ray has at most 16 mirror reflections.
 //! * Indirect light is not simulated, since the previews are for textures. Shadows are.
 //! * Spheres and tori can be cut open. Planes and meshes cannot.
-//! * The world is right-handed with y up; a camera on the positive z axis sees x to the right. Lengths are in units
-//!   of the world, or of the object where stated. Angles are in radians. Row 0 of an image is the top.
+//! * The world is right-handed with y up; a camera on the positive z axis sees x to the right. Lengths are in units of
+//!   the world, or of the object where stated. Angles are in radians. Row 0 of an image is at the top.
 //! * Colors are linear and not tone mapped. Clamp values above 1 yourself.
 //! * The crate contains no textures, accesses no files, and does not use the GPU.
 //! * Values are computed with `+ − × ÷ sqrt floor` and `libm` only. An image has the same bits on every platform and

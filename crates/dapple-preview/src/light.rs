@@ -33,12 +33,12 @@ pub struct Light {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LightSource {
-    /// Parallel light from far away.
+    /// Parallel light from an infinite distance.
     Directional {
         /// The direction to the light, in the world. Any length except zero.
         toward: DVec3,
     },
-    /// Light from a point.
+    /// Light that radiates from a point.
     Point {
         /// The position of the light, in the world.
         position: DVec3,

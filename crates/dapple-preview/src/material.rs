@@ -32,8 +32,8 @@ pub struct Material {
     pub color: LinearRgb,
     /// The light that the surface emits. Default: black.
     pub emission: LinearRgb,
-    /// The gradient of a height over the surface, as a vector in the space of the object: units of height per unit of
-    /// length. Its component along the normal has no effect. Default: zero, a smooth surface.
+    /// The gradient of a height over the surface, as a vector in object space. Its length is the rise in height per
+    /// unit of length. Its component along the normal has no effect. Default: zero, a smooth surface.
     pub bump: DVec3,
     /// The strength of highlights, at least 0. Default: 0.
     pub specular: f32,

@@ -29,7 +29,8 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Creates a mesh with a normal at every vertex: the area-weighted sum of the normals of its triangles.
+    /// Creates a mesh with smooth normals. Each vertex normal is the normalized, area-weighted sum of the adjacent
+    /// triangles' normals.
     ///
     /// Triangles are counterclockwise seen from outside. Each consists of three vertex indices.
     ///

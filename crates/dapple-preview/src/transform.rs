@@ -4,7 +4,7 @@ use crate::PreviewError;
 use crate::ray::Ray;
 use glam::{DMat3, DQuat, DVec3};
 
-/// A transform from an object's space to the world: a scale, then a rotation, then a translation.
+/// A transform from object space to the world, which applies a scale, then a rotation, then a translation.
 ///
 /// # Examples
 ///

@@ -1,4 +1,4 @@
-//! Baking: renders the maps of a material, band by band.
+//! Bakes a material, by rendering its maps band by band.
 //!
 //! A band is a block of rows of all maps. Normals, occlusion and curvature depend on the neighborhood of a pixel. They
 //! are computed from the heights of the band and of a margin around it, so that bands, regions and the whole map have

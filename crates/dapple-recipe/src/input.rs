@@ -1,20 +1,20 @@
-//! The input of a node: a number, a color, or the name of another node.
+//! Inputs to nodes, which are numbers, colors, or the names of other nodes.
 
 use core::fmt;
 use dapple_color::LinearRgb;
 use serde::de::{Deserialize, Deserializer, Error, Unexpected, Visitor};
 use serde::ser::{Serialize, Serializer};
 
-/// An input of a node, or of a map of the material.
+/// An input to a node, or to a map of the material.
 ///
-/// In a file: a number, a color such as `"#c08040"`, or the name of a node such as `"stones"`.
+/// In a recipe file, it is written as a number, a color such as `"#c08040"`, or the name of a node such as `"stones"`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Input {
     /// A constant number.
     Number(f64),
     /// A constant color.
     Color(LinearRgb),
-    /// The values of the node with this name.
+    /// The values of the node that has this name.
     Node(String),
 }
 

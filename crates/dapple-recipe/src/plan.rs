@@ -66,13 +66,13 @@ impl Picture {
 /// [`ImageSource::key`].
 pub type Images = std::collections::BTreeMap<String, Picture>;
 
-/// An image that nodes of a recipe read: a file, or a layer of it.
+/// An image that a recipe's nodes read, which is a file or one of its layers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ImageSource<'a> {
     /// The file name.
     pub file: &'a str,
-    /// The layer of the OpenEXR file, if a node names one.
+    /// The layer of an OpenEXR file; `None` unless a node names one.
     pub layer: Option<&'a str>,
     /// How the alpha is handled, if a node sets it.
     pub alpha: Option<ImageAlpha>,
@@ -123,7 +123,7 @@ pub struct Plan {
     watch: Watch,
     /// Whether a node changes with time.
     moves: bool,
-    /// The id of each step in the cache; empty without a cache.
+    /// Each step's id in the cache; empty without a cache.
     ids: Arc<[StepId]>,
 }
 

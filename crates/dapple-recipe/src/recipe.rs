@@ -1,4 +1,4 @@
-//! Recipes as data.
+//! Recipes as plain data, independent of their text format.
 
 use crate::{Input, Node};
 use dapple_color::NormalY;

@@ -63,7 +63,7 @@ fn plain(schema: &mut Schema) {
     transform_subschemas(&mut (plain as fn(&mut Schema)), schema);
 }
 
-/// Returns the schema of an alias: the option, marked as deprecated in favor of `name`.
+/// Converts an option's schema to that of its alias, marked as deprecated in favor of `name`.
 fn deprecated(mut option: Value, name: &str) -> Value {
     if let Value::Object(option) = &mut option {
         option.remove("default");
@@ -112,7 +112,7 @@ macro_rules! schemas {
     };
 }
 
-/// The regular expression of sRGB colors in hexadecimal.
+/// A regular expression for hexadecimal sRGB colors.
 const HEX: &str = "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$";
 
 schemas! {

@@ -1,4 +1,4 @@
-//! Reading and writing recipes as TOML and JSON. Errors have the line and the nearest valid word.
+//! Reads and writes recipes as TOML and JSON. Errors have the line and the nearest valid word.
 
 use crate::{Node, Place, PupsNode, Recipe, RecipeError, RecipeErrorKind, SCHEMA};
 use content::Content;

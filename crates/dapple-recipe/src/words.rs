@@ -1,4 +1,4 @@
-//! Suggestions for misspelled words.
+//! Suggests valid words for misspelled ones.
 
 /// Minimum similarity of two words, from 0 to 1, at which one may be a misspelling of the other.
 const ALIKE: f64 = 0.6;

@@ -73,8 +73,8 @@ pub enum Op {
         /// The name of the node.
         name: String,
     },
-    /// Renames a node and the inputs that refer to it. Random streams derived from the old name are kept, including
-    /// the node's own.
+    /// Renames a node and the inputs that refer to it. Random streams derived from the old name are preserved,
+    /// including the node's own.
     RenameNode {
         /// The current name.
         name: String,

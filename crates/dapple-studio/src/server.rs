@@ -64,7 +64,7 @@ pub trait Host: Send + Sync {
     /// If the bake is refused.
     fn preview(&self, lit: &Lit<'_>) -> Result<Raster<LinearRgb>, StudioError>;
 
-    /// Returns the presets of exports: the programs that the files can be made for.
+    /// Returns the export presets, one for each program that can import the files.
     fn presets(&self) -> Vec<Named>;
 }
 

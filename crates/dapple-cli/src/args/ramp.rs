@@ -52,7 +52,7 @@ pub(super) fn color(text: &str) -> Option<LinearRgb> {
     }
 }
 
-/// Returns the error message for a text that is neither a color nor a palette.
+/// Returns the error message for `text`, which is neither a color nor a palette.
 fn unknown(text: &str) -> String {
     let (text, palettes) = (text.trim(), Palette::NAMES.join(", "));
     format!("{text:?} is neither a color such as #ff8000 nor a palette: {palettes}")

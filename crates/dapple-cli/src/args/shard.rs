@@ -16,7 +16,7 @@ pub(crate) struct Shard {
     pub(crate) place: [u32; 2],
     /// Columns and rows of a shard, in pixels.
     pub(crate) size: Size,
-    /// The number of columns and rows that neighboring shards share.
+    /// How many columns and rows neighboring shards share.
     pub(crate) overlap: u32,
 }
 

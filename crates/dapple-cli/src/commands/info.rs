@@ -152,7 +152,7 @@ pub(super) fn seams_json(reports: &SeamReports) -> Value {
     json!({ "passes": reports.passes(), "faults": faults, "channels": reports.channels() })
 }
 
-/// Describes an image: its channels, its transparency and its seams.
+/// Describes an image's channels, transparency and seams.
 fn image_findings(path: &Path, args: &Args) -> Result<Findings> {
     let image = match input::numbers(path, args.region) {
         Ok(image) => image,

@@ -168,7 +168,7 @@ fn place(name: &str) -> Result<(Option<String>, PathBuf)> {
     Ok((file, path.parent().unwrap_or(Path::new("")).to_owned()))
 }
 
-/// The host of the studio: reads images and bakes files as the other subcommands do.
+/// The studio's host, which reads images and bakes files as the other subcommands do.
 struct Bakes {
     context: Context,
     finite: FiniteArgs,

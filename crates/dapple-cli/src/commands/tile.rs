@@ -220,7 +220,7 @@ fn stem(path: &Path) -> String {
     }
 }
 
-/// Returns the name of the map in a file name: `normal` for `rock_normal`.
+/// Returns the name of the map in a file name, such as `normal` for `rock_normal`.
 fn map_of(stem: &str) -> &str {
     stem.rsplit_once('_').map_or(stem, |(_, map)| map)
 }

@@ -59,7 +59,7 @@ pub(crate) fn numbers(path: &Path, region: Option<Region>) -> Result<Numbers> {
     Ok(Numbers { content, is_part })
 }
 
-/// Returns the size of raw heights, from the sidecar: the file with the same name and the extension `.json`.
+/// Reads the size of raw heights from their sidecar, the file with the same name and the extension `.json`.
 fn raw_size(path: &Path) -> Result<[u32; 2]> {
     #[derive(Deserialize)]
     struct Size {

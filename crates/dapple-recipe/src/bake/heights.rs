@@ -18,8 +18,8 @@ const SHARED_PIXELS: usize = 1 << 23;
 pub(super) struct Heights {
     /// Whether any map needs heights.
     wanted: bool,
-    /// The halo, as columns and rows: how far a pixel's value depends on its neighbors, in pixels. The maximum over all
-    /// maps.
+    /// The largest halo of all maps, in columns and rows. The halo is how far a pixel's value depends on its neighbors,
+    /// in pixels.
     halo: [u32; 2],
     /// For each axis along which heights are extrapolated past the sides of the tile, the first pixel of the tile and
     /// the pixel after its last one.
@@ -41,7 +41,7 @@ struct Rows {
 pub(super) struct Margined {
     pub(super) raster: Option<Raster<f32>>,
     pub(super) halo: [u32; 2],
-    /// The values of shared steps, in the band without its margin.
+    /// The values of shared steps in the band, without its margin.
     pub(super) shared: Box<Known>,
 }
 

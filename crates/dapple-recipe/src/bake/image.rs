@@ -1,4 +1,4 @@
-//! Writing maps to image files.
+//! Writes maps to image files.
 
 use super::{MapKind, MapRows};
 use dapple_image::{Content, ImageError, RowWriter};

@@ -1,4 +1,4 @@
-//! The kinds of maps, and their computation for a band.
+//! Defines the kinds of maps, and computes them for a band.
 
 use super::heights::Margined;
 use crate::plan::{TileSamples, Watch};
@@ -15,21 +15,21 @@ use glam::DVec2;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum MapKind {
-    /// The height: from 0 to 1, unless the recipe leaves this range.
+    /// The height, from 0 to 1 unless the recipe's values leave this range.
     Height,
     /// The surface normals of the height.
     Normal,
-    /// Ambient occlusion: the visible fraction of the sky, from 0 to 1.
+    /// Ambient occlusion, the visible fraction of the sky, from 0 to 1.
     Occlusion,
-    /// The curvature as a gray: ½ where the surface is flat, more on edges, less in grooves.
+    /// The curvature as a gray value, which is ½ on flat areas, higher on edges and lower in grooves.
     Curvature,
     /// The base color.
     Albedo,
-    /// The roughness: from 0, a mirror, to 1, chalk.
+    /// The roughness, from 0 for a mirror to 1 for chalk.
     Roughness,
-    /// The metalness: from 0, no metal, to 1, all metal.
+    /// The metalness, from 0 for no metal to 1 for pure metal.
     Metallic,
-    /// Occlusion, roughness and metallic as red, green and blue, as glTF and engines pack them.
+    /// Occlusion, roughness and metalness packed into red, green and blue, as in glTF and game engines.
     Orm,
 }
 
@@ -66,8 +66,8 @@ impl MapKind {
         Self::Orm,
     ];
 
-    /// Returns the map called `name`: its [name](Self::name) or an alias, `basecolor` and `base_color` for `albedo`,
-    /// `occlusion` for `ao`.
+    /// Returns the map called `name`, which is its [name](Self::name) or an alias: `basecolor` and `base_color` for
+    /// `albedo`, `occlusion` for `ao`.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         match name {
@@ -198,7 +198,7 @@ impl MapRows {
     }
 }
 
-/// How far a pixel's normal depends on its neighbors: one column and one row at each side.
+/// Halo of normals. A pixel's normal depends on one column and one row at each side.
 pub(super) const NORMAL_HALO: [u32; 2] = [1; 2];
 
 /// Returns the scale of a plan's heights. `extent` is the width and height of all pixels of the tile, in units of the

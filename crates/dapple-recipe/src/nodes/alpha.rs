@@ -5,12 +5,13 @@ use dapple_color::LinearRgb;
 use serde::de::{Deserialize, Deserializer, Error, Unexpected};
 use serde::ser::{Serialize, Serializer};
 
-/// The use of an image with alpha where no alpha is needed. In a file: `"drop"`, or `"over:#rrggbb"`.
+/// How to convert an image with alpha to an opaque one. In a recipe file, it is written as `"drop"` or
+/// `"over:#rrggbb"`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ImageAlpha {
-    /// The colors are used without alpha.
+    /// Use the colors without alpha.
     Drop,
-    /// The image is laid over this color, in linear light.
+    /// Composite the image over this color, in linear light.
     Over(LinearRgb),
 }
 

@@ -1,4 +1,4 @@
-//! Layers blended by weights.
+//! Blends layers by weights.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};

@@ -1,4 +1,4 @@
-//! One color at every position.
+//! Nodes with the same color at every position.
 
 use super::NodeKind;
 use crate::RecipeError;
@@ -8,7 +8,7 @@ use dapple_color::LinearRgb;
 use serde::de::{Deserialize, Deserializer, Error};
 use serde::ser::{Serialize, Serializer};
 
-/// One color at every position. In a file: sRGB in hexadecimal, such as `"#c08040"`.
+/// The same color at every position. In a recipe file, it is written in hexadecimal sRGB, such as `"#c08040"`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColorOf(pub LinearRgb);
 

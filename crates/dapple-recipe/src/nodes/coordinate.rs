@@ -1,4 +1,4 @@
-//! Coordinates along a direction.
+//! Nodes whose value is the coordinate along a direction.
 
 use super::NodeKind;
 use crate::RecipeError;

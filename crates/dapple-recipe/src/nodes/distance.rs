@@ -1,4 +1,4 @@
-//! Distances from a center.
+//! Nodes whose value is the distance from a center.
 
 use super::NodeKind;
 use crate::RecipeError;

@@ -1,4 +1,4 @@
-//! Copies of a texture that differ inside.
+//! Fills the tile with copies of a texture that differ inside.
 
 use super::{NodeKind, NodeSeed};
 use crate::plan::{Builder, Step};

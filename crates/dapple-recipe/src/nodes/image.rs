@@ -1,4 +1,4 @@
-//! Images, stretched over the tile.
+//! Stretches images over the tile.
 
 use super::{ImageAlpha, NodeKind};
 use crate::RecipeError;

@@ -1,4 +1,4 @@
-//! Interpolation from one input to another.
+//! Interpolates between two inputs.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};

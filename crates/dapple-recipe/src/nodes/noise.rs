@@ -1,4 +1,4 @@
-//! Fractal sums of octaves of noise, with values from 0 to 1.
+//! Sums octaves of noise to fractal noise with values from 0 to 1.
 
 use super::{NodeKind, NodeSeed, wavelet};
 use crate::RecipeError;

@@ -1,4 +1,4 @@
-//! Powers of numbers.
+//! Raises numbers to a power.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};

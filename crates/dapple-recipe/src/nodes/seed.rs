@@ -1,16 +1,17 @@
-//! Seeds of nodes.
+//! Seeds that override those of nodes.
 
 use core::fmt;
 use dapple_hash::Seed;
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
 use serde::ser::{Serialize, Serializer};
 
-/// The seed of a node in place of its own name: two nodes with the same seed draw the same random numbers.
+/// Overrides a node's seed, which is derived from its name otherwise. Two nodes with the same seed draw the same random
+/// numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NodeSeed {
-    /// A seed, independent of that of the recipe.
+    /// A seed that does not depend on the recipe's seed.
     Seed(Seed),
-    /// A name, such as that of another node.
+    /// A name from which to derive the seed, such as another node's name.
     Name(String),
 }
 

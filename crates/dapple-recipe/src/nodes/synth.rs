@@ -1,4 +1,4 @@
-//! Textures synthesized from example images.
+//! Synthesizes textures from example images.
 
 use super::{ImageAlpha, NodeKind, NodeSeed};
 use crate::RecipeError;

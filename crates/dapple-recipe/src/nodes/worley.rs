@@ -68,7 +68,7 @@ pub struct Motion {
     pub z: f64,
 }
 
-/// A number per unit of the plane, for each axis.
+/// A frequency along each axis, in cells per unit of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frequency(pub [f64; 2]);
 
@@ -78,18 +78,19 @@ impl Default for Frequency {
     }
 }
 
-/// The value at a position, from its nearest feature points.
+/// The value at a position, computed from its nearest feature points.
 ///
-/// In a file: `"f1"`, `"f2_minus_f1"` and so on, `"cell_value"`, `"edge_distance"`, or the four coefficients of F1 to F4.
+/// In a recipe file, it is written as `"f1"`, `"f2_minus_f1"` and so on, `"cell_value"`, `"edge_distance"`, or the four
+/// coefficients of F1 to F4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum WorleyValue {
-    /// A combination of distances.
+    /// A linear combination of the distances F1 to F4.
     Combination(Combination),
     /// A random number from 0 to 1 for each Voronoi cell.
     CellValue,
-    /// The distance to the nearest border of a Voronoi cell, in cells, for the Euclidean metric: joints of one width. It is
-    /// several times slower than F2 − F1.
+    /// The Euclidean distance to the nearest border between Voronoi cells, in cells. It gives joints of uniform width,
+    /// and is several times slower than F2 − F1.
     EdgeDistance,
 }
 

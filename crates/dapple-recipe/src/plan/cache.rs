@@ -58,7 +58,7 @@ struct Kept {
     pictures: Vec<Picture>,
 }
 
-/// A step without inputs.
+/// A step that has no inputs, in its cacheable form.
 enum Source {
     Field(Arc<dyn Field>),
     Colors(Arc<VectorTexture<3>>),

@@ -1,4 +1,4 @@
-//! Errors of deserializing a recipe from parsed data, and their positions in the text.
+//! Errors from deserializing a recipe from parsed data, and their positions in the text.
 
 use crate::Place;
 use core::fmt;
@@ -13,7 +13,7 @@ pub(super) struct Refusal {
     pub(super) message: String,
     /// The path, innermost part first.
     parts: Vec<Part>,
-    /// Whether the error is about the last key of the path instead of its value.
+    /// Whether the error is about the path's last key instead of its value.
     is_key: bool,
 }
 

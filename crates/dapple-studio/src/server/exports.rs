@@ -10,7 +10,7 @@ use axum::response::{IntoResponse as _, Response};
 use std::collections::VecDeque;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Maximum number of exports that are kept.
+/// Maximum number of stored exports. Older ones are dropped.
 const KEPT: usize = 4;
 
 /// The most recent exports.

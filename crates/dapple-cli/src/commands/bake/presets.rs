@@ -68,7 +68,7 @@ const fn sixteen(part: &'static str, layers: Layers) -> PresetImage {
     }
 }
 
-/// Mask map of Unity: metallic, occlusion, detail mask (1 everywhere) and smoothness.
+/// Unity's mask map: metallic, occlusion, detail mask (1 everywhere) and smoothness.
 const MASK: Layers = Layers::Rgba([
     Channel::Of(MapKind::Metallic),
     Channel::Of(MapKind::Occlusion),
@@ -76,7 +76,7 @@ const MASK: Layers = Layers::Rgba([
     Channel::OneLess(MapKind::Roughness),
 ]);
 
-/// Metallic map of Unity: metallic in red, green and blue, and smoothness in alpha.
+/// Unity's metallic map: metallic in red, green and blue, and smoothness in alpha.
 const METALLIC_SMOOTHNESS: Layers = Layers::Rgba([
     Channel::Of(MapKind::Metallic),
     Channel::Of(MapKind::Metallic),

@@ -1,4 +1,4 @@
-//! The channels of an image as stored in its file, and their statistics.
+//! Computes statistics of an image's channels, as stored in its file.
 
 use crate::input::Content;
 use anyhow::Result;

@@ -1,4 +1,4 @@
-//! The description of a mesh: its content and its faults.
+//! Describes the content and the faults of a mesh.
 
 use super::Findings;
 use crate::input;
@@ -8,7 +8,7 @@ use dapple::points::glam::DVec3;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Describes a mesh.
+/// Describes a mesh's content and faults.
 ///
 /// # Errors
 ///

@@ -102,8 +102,8 @@ impl MaterialMaps {
     }
 }
 
-/// Chooses the alpha mode of a material: mask if more pixels of the example are fully transparent than partly
-/// transparent, otherwise blend.
+/// Chooses a material's alpha mode, which is mask if more pixels of the example are fully than partly transparent, and
+/// blend otherwise.
 pub(super) fn alpha_mode(alpha: &Raster<f32>) -> AlphaMode {
     let count = |is_it: fn(&&f32) -> bool| alpha.pixels().iter().filter(is_it).count();
     let n_clear = count(|&&alpha| alpha <= 0.0);

@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 
 /// The input to a synthesis. Several examples are placed side by side in one image.
 pub(super) struct Input {
-    /// The image that the texture shows: the example, or the larger version given by `--detail`.
+    /// The image that the texture shows, which is the example or its larger version given by `--detail`.
     pub(super) base: Loaded,
     /// The maps of the example, with their names.
     pub(super) maps: Vec<(String, Loaded)>,
@@ -278,7 +278,8 @@ impl Args {
         Ok(Some(layout.join(&masks, false)?))
     }
 
-    /// Reads the hole: the pixels of the first example to re-synthesize.
+    /// Reads the hole, the mask of pixels to re-synthesize in the first example. Returns `None` if the example is not
+    /// repaired.
     fn read_hole(&self, example: &Loaded, sheet: Option<&Sheet>) -> Result<Option<Raster<bool>>> {
         if let Some(path) = &self.plane.repair {
             return self
