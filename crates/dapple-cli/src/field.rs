@@ -267,7 +267,7 @@ pub(crate) fn extent_of(spaces: Size, shorter: f64) -> [f64; 2] {
     [side(width), side(height)]
 }
 
-/// Checks that the number of cells is whole along each axis that repeats. The hint suggests to change `option`.
+/// Checks that the number of cells is whole along each axis that repeats. The hint suggests changing `option`.
 pub(crate) fn check_whole_cells(cells: [f64; 2], repeats: [bool; 2], option: &str) -> Result<()> {
     for (cells, repeats) in cells.into_iter().zip(repeats) {
         if repeats && cells.fract() != 0.0 {

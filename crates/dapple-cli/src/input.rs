@@ -46,7 +46,7 @@ const NAMES_MAX: usize = 3;
 /// The kind of map that an image is read as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// Values if the image is gray, otherwise colors.
+    /// Gray values if the image is gray, otherwise colors.
     ByChannels,
     /// Colors, even if the image is gray.
     Colors,

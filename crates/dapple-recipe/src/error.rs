@@ -102,7 +102,7 @@ pub enum RecipeErrorKind {
         /// The largest allowed number.
         limit: u64,
     },
-    /// Two options exclude each other, or one needs another.
+    /// Two options exclude each other, or one option requires another.
     Conflict {
         /// The rule, as a sentence without a full stop.
         rule: &'static str,

@@ -127,7 +127,7 @@ pub struct Plan {
     ids: Arc<[StepId]>,
 }
 
-/// The indices of the steps that the maps of the material read.
+/// The indices of the steps that the material's maps read.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Channels {
     pub(crate) height: usize,

@@ -174,7 +174,7 @@ fn is_in_lines(list: &Array) -> bool {
         })
 }
 
-/// Separates the elements of a single-line array by one space.
+/// Separates the elements of a single-line array with one space each.
 fn respace(list: &mut Array) {
     for (index, value) in list.iter_mut().enumerate() {
         value

@@ -4,7 +4,7 @@ use super::Numbers;
 use serde::Serialize;
 use std::str::FromStr;
 
-/// A rectangle of pixels.
+/// A rectangle of an image, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Region {
     /// The column and the row of the first pixel.

@@ -184,7 +184,7 @@ impl Args {
 }
 
 impl Joined {
-    /// Writes the image, one row of shards after another.
+    /// Writes the image from its shards, one row of shards after another.
     fn write(
         &self,
         folder: &Path,

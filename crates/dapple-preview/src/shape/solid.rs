@@ -23,7 +23,7 @@ pub(crate) enum Skin {
     Torus { major: f64, minor: f64 },
 }
 
-/// A solid, cut or whole.
+/// A solid with an optional cut.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Solid {
     pub(crate) skin: Skin,
@@ -80,7 +80,7 @@ impl Stretch {
 }
 
 impl Solid {
-    /// Returns the first boundary at a distance above zero.
+    /// Returns the first boundary of the solid along `ray` at a distance above zero.
     pub(crate) fn hit(&self, ray: &Ray) -> Option<Boundary> {
         let stretches = self.skin.stretches(ray);
         let stretches = match &self.wedge {

@@ -97,7 +97,7 @@ impl NodeKind for FractalNode {
 }
 
 impl FractalNode {
-    /// Returns the options of PUPs noise with these octaves.
+    /// Converts the node's options to those of PUPs noise.
     fn pups(&self, plan: &Builder<'_>) -> OctavesOptions {
         OctavesOptions {
             domain: plan.domain(),

@@ -8,8 +8,7 @@ use crate::{RecipeError, RecipeErrorKind};
 
 /// Limits on the work for a recipe.
 ///
-/// The defaults are far above the needs of textures, and the work that they allow fits in the memory of a small
-/// machine.
+/// The defaults are far above what textures need, and the work that they allow fits in a small machine's memory.
 ///
 /// # Examples
 ///
@@ -24,14 +23,14 @@ use crate::{RecipeError, RecipeErrorKind};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlanLimits {
-    /// Maximum number of control points of all nodes together; 2^22 by default, which take about 2 GiB. The number is
-    /// estimated, rather too high than too low.
+    /// Maximum total number of control points in all nodes; 2^22 by default, which take about 2 GiB. The number is
+    /// estimated, and the estimate is rather too high than too low.
     pub control_points: u64,
-    /// Maximum number of cells of the tiles of all wavelet noise together; 2^24 by default, such as one tile of
-    /// 4096 × 4096 cells.
+    /// Maximum total number of cells in the tiles of wavelet noise; 2^24 by default, such as one tile of 4096 × 4096
+    /// cells.
     pub wavelet_cells: u64,
-    /// Maximum number of pixels of all textures synthesized from examples together; 2^24 by default, such as one
-    /// texture of 4096 × 4096 pixels.
+    /// Maximum total number of pixels in textures synthesized from examples; 2^24 by default, such as one texture of
+    /// 4096 × 4096 pixels.
     pub synthesized_pixels: u64,
     /// Maximum number of values computed for each pixel; 4096 by default. Each node counts as one value, and so does
     /// each number or color that is an input. Inputs of a warp, or of a node that depends on the whole tile, count once
@@ -39,8 +38,8 @@ pub struct PlanLimits {
     pub values: u64,
     /// Maximum depth of nested warps; 32 by default.
     pub warps: u64,
-    /// Maximum number of pixels of the stored images of all nodes that depend on the whole tile, together, at the size
-    /// of a bake; 2^29 by default.
+    /// Maximum total number of pixels in the images stored for nodes that depend on the whole tile, at the size of a
+    /// bake; 2^29 by default.
     pub pixels: u64,
 }
 
@@ -82,7 +81,7 @@ fn check(what: &'static str, value: f64, limit: u64) -> Result<(), RecipeError> 
 pub(crate) struct Work {
     /// Number of control points to place and connect.
     pub(crate) control_points: f64,
-    /// Number of cells of tiles of wavelet noise.
+    /// Number of cells in the tiles of wavelet noise.
     pub(crate) wavelet_cells: f64,
     /// Number of pixels synthesized from examples.
     pub(crate) synthesized_pixels: f64,

@@ -50,7 +50,7 @@ impl Reference<'_> {
         }
     }
 
-    /// Appends the table of the options of a type.
+    /// Appends a table of a type's options.
     fn options(&self, page: &mut String, table: &Value) {
         page.push_str("\n| option | what it is | form | default |\n|---|---|---|---|\n");
         for (name, option) in self.written(table) {

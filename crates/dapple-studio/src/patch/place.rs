@@ -89,12 +89,12 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// Follows a path.
+    /// Navigates to the value at `path`.
     fn found(self, path: &[Part]) -> Result<Self, StudioError> {
         path.iter().try_fold(self, Self::step)
     }
 
-    /// Follows a path and creates missing tables.
+    /// Navigates to the value at `path`, and creates missing tables on the way.
     fn made(self, path: &[Part]) -> Result<Self, StudioError> {
         let mut place = self;
         for (depth, part) in path.iter().enumerate() {

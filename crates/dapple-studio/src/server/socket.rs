@@ -267,7 +267,7 @@ impl Page {
         Ok(vec![Reply::Saved { file, hash }])
     }
 
-    /// Returns the recipes of the gallery: the built-in recipes and the recipes in the folder.
+    /// Lists the recipes of the gallery, which are the built-in ones and those in the folder.
     fn samples(&self, side: u32) -> Vec<Sample> {
         let builtin = |(index, name): (u16, &str)| Sample {
             shown: Shown::Builtin(index),

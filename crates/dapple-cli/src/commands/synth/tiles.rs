@@ -103,7 +103,7 @@ impl Sheet {
         faces.map(placed).collect()
     }
 
-    /// Returns the first column and row of the texture of a tile, within the sheet.
+    /// Returns the first column and row of a tile's texture within the sheet.
     fn first(&self, tile: usize) -> [u32; 2] {
         // The layout leaves a column between two images.
         let width = self.size[0] + 2 * BORDER + 1;
