@@ -2,13 +2,14 @@
 //! points.
 //!
 //! Our side starts from a point set and ends with the axes of every point in compressed rows. `spade` starts from a
-//! list of positions, which it takes over. The results of both are freed outside the timed section. Confirmed: every
-//! point is a vertex, and each point has exactly six axes on average, as in every periodic triangulation.
+//! list of positions, which it takes ownership of. The results of both are freed outside the timed section.
+//! Confirmed: every point is a vertex, and each point has exactly six axes on average, as in every periodic
+//! triangulation.
 
 use crate::harness::Bench;
 use anyhow::Result;
 
-/// Measures the rows of the group.
+/// Measures this group's rows.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     #[cfg(feature = "peers")]
     beside_spade::run(bench)?;

@@ -1,17 +1,16 @@
-//! Measurement of a row.
+//! The harness that measures one row.
 //!
 //! **One thread.** Both sides run inside a thread pool of one thread, in turns (ours, theirs, ours, theirs …). The
 //! clock is the processor time of that thread, because other programs on the machine reduce wall time but not
 //! processor time. Other programs also share cache, memory bandwidth and clock speed, but the turns are short, so both
-//! sides are affected equally. The time of a side is the median of its runs. Preparation of a run (a copy of the
-//! input, freeing the last output) is not timed. One untimed warm-up run of our side goes first, so that memory is
-//! mapped.
+//! processor time. Other programs also share cache, memory bandwidth and clock speed, but the turns are short, so
+//! both sides are affected equally. A side's time is the median of its runs. The setup of a run (copying the input,
+//! freeing the last output) is not timed. Our side first does one untimed warm-up run, so that memory is mapped.
 //!
 //! **Two threads** are measured differently, see `two_threads`.
 //!
-//! **No side wins by skipping work.** Results pass through [`black_box`]. Every row ends with a check of the output of
-//! both sides, which also counts it (pixels, points), so that times are per unit of verified work.
-//! sides made, which also counts it (pixels, points), so that times are per unit of verified work.
+//! **No side wins by skipping work.** Results pass through [`black_box`]. Every row ends with a check of both sides'
+//! output, which also counts it (pixels, points), so that times are per unit of verified work.
 
 mod two_threads;
 
@@ -25,7 +24,7 @@ use cpu_time::ThreadTime;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::hint::black_box;
 
-/// The benchmark: runs cases that the filters select and collects their rows.
+/// The benchmark: runs the cases that the filters select and collects their rows.
 #[derive(Debug)]
 pub(crate) struct Bench {
     filters: Vec<String>,
@@ -34,7 +33,7 @@ pub(crate) struct Bench {
     rows: Vec<Row>,
 }
 
-/// One side of a row: its state, the preparation of a run, and the run itself.
+/// One side of a row: its state, the setup before each run, and the run itself.
 pub(crate) struct Side<'a, S> {
     state: S,
     runs_per_turn: u32,
@@ -43,7 +42,7 @@ pub(crate) struct Side<'a, S> {
 }
 
 impl<'a, S: Send> Side<'a, S> {
-    /// Returns a side that works on `state`, which holds its input and its output.
+    /// Returns a side whose runs call `work` on `state`, which holds the input and the output.
     pub(crate) fn new(state: S, work: impl FnMut(&mut S) + Send + 'a) -> Self {
         Self {
             state,
@@ -53,14 +52,14 @@ impl<'a, S: Send> Side<'a, S> {
         }
     }
 
-    /// Adds a preparation that runs before every run and is not timed.
+    /// Adds a setup function that is called before every run and is not timed.
     pub(crate) fn prepared(mut self, prepare: impl FnMut(&mut S) + Send + 'a) -> Self {
         self.prepare = Box::new(prepare);
         self
     }
 
-    /// Sets the number of runs per turn, each timed separately, for a job that is short compared with the other
-    /// side's.
+    /// Sets the number of runs per turn, each timed separately. Use it if this side's job is much shorter than the
+    /// other side's.
     pub(crate) fn times(mut self, runs_per_turn: u32) -> Self {
         self.runs_per_turn = runs_per_turn;
         self
@@ -81,21 +80,21 @@ impl<'a, S: Send> Side<'a, S> {
 /// Amount of work that each side did in one run, counted from its output in the row's unit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Done {
-    /// Number of pixels, points or positions of our side.
+    /// Number of pixels, points or positions processed by our side.
     pub(crate) ours: usize,
-    /// Number of pixels, points or positions of the other side.
+    /// Number of pixels, points or positions processed by the other side.
     pub(crate) theirs: usize,
 }
 
 impl Done {
-    /// Returns an amount of work that both sides do.
+    /// Returns the amount of work for two sides that both process `n` units.
     pub(crate) const fn both(n: usize) -> Self {
         Self { ours: n, theirs: n }
     }
 }
 
 impl Bench {
-    /// Returns a benchmark that measures the cases that the filters select.
+    /// Returns a benchmark that measures the cases selected by `filters`.
     pub(crate) fn new(filters: Vec<String>) -> Result<Self> {
         let pool = |n_threads| ThreadPoolBuilder::new().num_threads(n_threads).build();
         Ok(Self {
@@ -106,12 +105,12 @@ impl Bench {
         })
     }
 
-    /// Returns whether the filters select a case.
+    /// Returns whether the filters select `case`.
     pub(crate) fn wants(&self, case: &Case) -> bool {
         case.is_wanted(&self.filters)
     }
 
-    /// Returns whether the filters select any of some cases, so that their common inputs are worth preparing.
+    /// Returns whether the filters select any of `cases`, so that preparing their common inputs is worthwhile.
     pub(crate) fn wants_any(&self, cases: &[Case]) -> bool {
         cases.iter().any(|case| self.wants(case))
     }
@@ -167,7 +166,7 @@ impl Bench {
         })
     }
 
-    /// Adds the row of a case that was measured elsewhere, from the seconds per unit of work.
+    /// Adds a row for a case that was measured elsewhere. `ours` and `theirs` are seconds per unit of work.
     pub(crate) fn measured(&mut self, case: &Case, ours: f64, theirs: f64) {
         self.keep(case.row(ours, theirs));
     }
@@ -196,7 +195,7 @@ impl Bench {
     }
 }
 
-/// Returns the name of a case for messages.
+/// Returns the case's name for error messages.
 fn in_case(case: &Case) -> String {
     format!("{}: {}, {}", case.group, case.case, case.peer)
 }

@@ -1,18 +1,18 @@
-//! Description of the machine that a run was measured on, for the results.
+//! Describes the machine that a run was measured on, for the results page.
 
 use std::fmt;
 use std::process::Command;
 
-/// Processor, cores, vector instructions and compiler.
+/// The machine's processor, number of threads, vector instructions and compiler.
 #[derive(Clone, Debug)]
 pub(crate) struct Machine {
-    /// Model of the processor, as the operating system reports it.
+    /// Processor model, as the operating system reports it.
     pub(crate) processor: String,
     /// Number of threads that can run at the same time.
     pub(crate) n_threads: usize,
     /// Widest vector instructions that run-time dispatch can choose.
     pub(crate) vectors: &'static str,
-    /// Version of the compiler.
+    /// Compiler version.
     pub(crate) compiler: String,
 }
 

@@ -7,7 +7,7 @@ mod stars;
 use crate::harness::Bench;
 use anyhow::Result;
 
-/// Measures the rows of the group.
+/// Measures this group's rows.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     evenness::run(bench)?;
     #[cfg(feature = "peers")]

@@ -20,7 +20,7 @@ pub(crate) struct Naive {
 }
 
 impl Naive {
-    /// Adds a control point of the unit torus with its value and the vectors to its neighbors.
+    /// Adds a control point of the unit torus: its position, its value and the vectors to its neighbors.
     pub(crate) fn push(
         &mut self,
         center: [f64; 2],
@@ -39,7 +39,7 @@ impl Naive {
         self.first.push(self.axes.len() as u32);
     }
 
-    /// Fills one row of an image of the unit square; `y` is the coordinate of the pixel centers.
+    /// Fills one row of an image of the unit square; `y` is the y coordinate of the row's pixel centers.
     pub(crate) fn row(&self, y: f64, row: &mut [f32]) {
         let pixel = 1.0 / row.len() as f64;
         for (column, value) in row.iter_mut().enumerate() {
@@ -47,7 +47,7 @@ impl Naive {
         }
     }
 
-    /// Returns the value at a position of the unit square.
+    /// Returns the value at `position` in the unit square.
     pub(crate) fn sample(&self, position: [f64; 2]) -> f32 {
         let [x, y] = position.map(|coordinate| coordinate as f32);
         let (mut sum, mut total) = (0.0, 0.0);

@@ -61,10 +61,10 @@ const TERRAIN: Case = Case {
     note: "one thread; the warp moves positions by up to half a cell along each axis",
 };
 
-/// Width and height of a chunk of terrain in positions. Adjacent chunks share a row.
+/// Width and height of a chunk of terrain, in positions. Adjacent chunks share a row.
 const CHUNK: u32 = 65;
 
-/// Distance between two positions of a chunk, in cells.
+/// Distance between adjacent positions of a chunk, in cells.
 const CHUNK_STEP: f64 = 1.0 / 32.0;
 
 /// Width and height of the images in pixels.
@@ -73,7 +73,7 @@ const SIDE: u32 = 1024;
 /// Number of positions per run.
 const N_POSITIONS: usize = 1 << 16;
 
-/// Measures the rows of the group.
+/// Measures this group's rows.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     picture(bench, &COARSE, 64)?;
     picture(bench, &FINE, 8)?;
@@ -88,7 +88,7 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
         confirm,
     )?;
     let many = |at: &[[f64; 2]], values: &mut [f32]| {
-        // There is a value for each position, so this cannot fail.
+        // There is one value per position, so this cannot fail.
         let _ = plane.sample_many(at, values);
     };
     beside_perlin(bench, &MANY_POSITIONS, 128, many, perlin, confirm)?;
@@ -104,7 +104,7 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
         confirm_spread,
     )?;
     let many = |at: &[[f64; 3]], values: &mut [f32]| {
-        // There is a value for each position, so this cannot fail.
+        // There is one value per position, so this cannot fail.
         let _ = space.sample_many(at, values);
     };
     beside_perlin(
@@ -118,7 +118,7 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     terrain(bench)
 }
 
-/// Measures a chunk of a warped terrain.
+/// Measures rendering a chunk of warped terrain.
 fn terrain(bench: &mut Bench) -> Result<()> {
     if !bench.wants(&TERRAIN) {
         return Ok(());
@@ -132,7 +132,7 @@ fn terrain(bench: &mut Bench) -> Result<()> {
     let window = Window::new(DVec2::ZERO, DVec2::splat(extent), [CHUNK; 2])?;
     let n = (CHUNK * CHUNK) as usize;
     let ours = Side::new(Raster::filled(window.size, 0.0)?, |raster| {
-        // The raster has the size of the window, so this cannot fail.
+        // The raster is the same size as the window, so this cannot fail.
         let _ = height.render(&window, raster.view_mut());
     });
     let theirs = Side::new(vec![0.0; n], |values: &mut Vec<f32>| {
@@ -161,7 +161,7 @@ fn picture(bench: &mut Bench, case: &Case, px_per_cell: u32) -> Result<()> {
     let ours = Side::new(
         Raster::filled([SIDE; 2], 0.0)?,
         |raster: &mut Raster<f32>| {
-            // The raster has the size of the window, so this cannot fail.
+            // The raster is the same size as the window, so this cannot fail.
             let _ = field.render(&window, raster.view_mut());
         },
     );
@@ -188,7 +188,7 @@ fn picture(bench: &mut Bench, case: &Case, px_per_cell: u32) -> Result<()> {
     )
 }
 
-/// Returns a function that evaluates values one position at a time.
+/// Returns a function that fills in values by evaluating one position at a time.
 pub(crate) fn one_by_one<const N: usize>(
     sample: impl Fn([f64; N]) -> f32,
 ) -> impl Fn(&[[f64; N]], &mut [f32]) {
@@ -199,7 +199,7 @@ pub(crate) fn one_by_one<const N: usize>(
     }
 }
 
-/// Measures values at positions anywhere in a cube of `cells`, in random order, compared with Perlin noise of
+/// Measures evaluation at random positions in a cube with sides of `cells` cells, compared with Perlin noise from
 /// `noise-functions`.
 pub(crate) fn beside_perlin<const N: usize>(
     bench: &mut Bench,
@@ -237,7 +237,7 @@ pub(crate) fn confirm_spread(values: &[f32]) -> Result<()> {
     Ok(())
 }
 
-/// Checks that values are within the bound, and that their variance is near the stated one.
+/// Checks that values are within the bound, and that their variance is near the documented one.
 fn confirm(values: &[f32]) -> Result<()> {
     let past = values
         .iter()

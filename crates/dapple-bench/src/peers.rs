@@ -1,9 +1,9 @@
-//! The peers, each in its fastest configuration: the performance advice of its documentation is followed, and memory
-//! is kept between calls.
+//! The peers, each in its fastest configuration: the performance advice in its documentation is followed, and memory
+//! is reused between calls.
 //!
-//! * `spade` interpolates inside the convex hull of its points. It therefore gets a point set of the unit torus with
-//!   the copies within a margin, which makes it defined in the whole unit square. The interpolators keep their
-//!   buffers. An image is scanned in a serpentine, so that the last vertex, where `spade` starts to search for a
+//! * `spade` interpolates inside the convex hull of its points. It therefore gets a point set of the unit torus
+//!   with the copies within a margin, which makes it defined in the whole unit square. The interpolators reuse their
+//!   buffers. An image is scanned in serpentine order, so that the last vertex, where `spade` starts to search for a
 //!   position, is always near. For scattered positions it uses its hierarchy of triangulations.
 //! * `bluenoise` makes few attempts (10) per point, as in its own examples; more are slower.
 //! * `poisson-diskus` and `fast_poisson` make the 30 attempts that they recommend. `fast_poisson` is not periodic.
@@ -22,7 +22,7 @@ use spade::{
     HintGenerator, LastUsedVertexHintGenerator, Point2, Triangulation as _,
 };
 
-/// A position with a value, as a vertex of `spade`.
+/// A position with a value, as a vertex for `spade`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Site {
     position: Point2<f64>,
@@ -120,17 +120,17 @@ fn serpentine(side: usize, image: &mut [f32], value_at: impl Fn(Point2<f64>) -> 
     }
 }
 
-/// Returns NaN for a position where a peer has no value.
+/// Returns the value as `f32`, or NaN where a peer has no value.
 fn or_nan(value: Option<f64>) -> f32 {
     value.map_or(f32::NAN, |value| value as f32)
 }
 
-/// Converts positions to the type of `spade`.
+/// Converts positions to `spade`'s point type.
 pub(crate) fn spade_positions(positions: &[DVec2]) -> Vec<Point2<f64>> {
     positions.iter().map(|at| Point2::new(at.x, at.y)).collect()
 }
 
-/// Returns the bounded triangulation of a list of positions, which it takes over.
+/// Returns the bounded triangulation of a list of positions. `spade` takes ownership of the list.
 ///
 /// # Panics
 ///
@@ -144,7 +144,7 @@ pub(crate) fn n_vertices(triangulation: &DelaunayTriangulation<Point2<f64>>) -> 
     triangulation.num_vertices()
 }
 
-/// Returns points of `bluenoise` on a torus with the given side, at least 1 apart.
+/// Generates points with `bluenoise` on a torus with the given side, at least 1 apart.
 pub(crate) fn bluenoise(side: f32, seed: u64) -> Vec<[f32; 2]> {
     let mut noise =
         bluenoise::WrappingBlueNoise::<rand_09::rngs::SmallRng>::from_seed(side, side, 1.0, seed);
@@ -152,7 +152,7 @@ pub(crate) fn bluenoise(side: f32, seed: u64) -> Vec<[f32; 2]> {
     noise.map(|at| [at.x, at.y]).collect()
 }
 
-/// Returns points of `poisson-diskus` on the unit torus.
+/// Generates points with `poisson-diskus` on the unit torus.
 ///
 /// # Panics
 ///
@@ -163,7 +163,7 @@ pub(crate) fn poisson_diskus(radius: f64, seed: u64) -> Vec<[f64; 2]> {
         .expect("the radius is positive")
 }
 
-/// Returns points of `fast_poisson` in the unit square, which does not wrap.
+/// Generates points with `fast_poisson` in the unit square, which does not wrap.
 pub(crate) fn fast_poisson(radius: f64, seed: u64) -> Vec<[f64; 2]> {
     fast_poisson::Poisson2D::new()
         .with_dimensions([1.0, 1.0], radius)
@@ -175,7 +175,7 @@ pub(crate) fn fast_poisson(radius: f64, seed: u64) -> Vec<[f64; 2]> {
 mod tests {
     use super::*;
 
-    /// A grid of points with a linear value, except at the seam of the torus.
+    /// Returns a grid of points whose values are linear, except at the seam of the torus.
     fn grid() -> (Vec<DVec2>, Vec<f32>) {
         let steps = || (0..16).map(|i| (f64::from(i) + 0.5) / 16.0);
         let positions: Vec<DVec2> = steps()

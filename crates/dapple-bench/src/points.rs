@@ -1,5 +1,5 @@
-//! The points group: maximal Poisson-disk sets of the unit torus compared with other crates that make Poisson-disk
-//! points.
+//! The points group: maximal Poisson-disk sets on the unit torus compared with other crates that generate
+//! Poisson-disk points.
 //!
 //! All sides get the same radius. They are compared by the time per point, since their densities differ: no peer is
 //! maximal, `bluenoise` packs more densely than random darts, the others more loosely, and `fast_poisson` does not
@@ -15,7 +15,7 @@ use anyhow::{Context as _, Result, ensure};
 use dapple_points::PointSet;
 use std::ops::RangeInclusive;
 
-/// Measures the rows of the group.
+/// Measures this group's rows.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     #[cfg(feature = "peers")]
     beside_peers::run(bench)?;
@@ -26,7 +26,7 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
 /// Returns the number of points.
 fn confirm_maximal(points: &Option<PointSet>, radius: f64) -> Result<usize> {
     let points = points.as_ref().context("no points")?;
-    // The density is 0.697, with less than 1 % deviation from 100 k points on.
+    // The density is 0.697, with less than 1 % deviation for 100,000 points or more.
     let n_points = confirm(points, radius, 1e-9, 0.690..=0.704)?;
     let largest = points
         .largest_empty_circle()

@@ -19,7 +19,7 @@ use dapple_points::PointSet;
 use dapple_pups::{Pups, PupsOptions, Texture};
 use dapple_raster::{Raster, Window};
 
-/// Measures the rows of the group.
+/// Measures this group's rows.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     #[cfg(feature = "peers")]
     beside_spade::run(bench)?;
@@ -30,7 +30,7 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
 /// Width and height of the images in pixels.
 const SIDE: u32 = 1000;
 
-/// A texture with about a given number of control points, and the structures that it consists of.
+/// A texture with about the requested number of control points, and the structures that it consists of.
 struct Scene {
     points: PointSet,
     graph: Graph,
@@ -54,7 +54,7 @@ impl Scene {
         })
     }
 
-    /// Returns the naive evaluation of the same texture.
+    /// Builds the naive evaluation of the same texture.
     fn naive(&self) -> Naive {
         let mut naive = Naive::default();
         for ((point, center), &value) in self.points.iter().zip(&self.values) {
@@ -84,7 +84,7 @@ impl Scene {
     fn confirm_values(&self, found: &[f32], expected: &[f32]) -> Result<()> {
         let tolerance = self.tolerance();
         for (index, (found, expected)) in found.iter().zip(expected).enumerate() {
-            // In this form a NaN difference fails.
+            // Written so that a NaN difference fails, too.
             let near = (found - expected).abs() <= tolerance;
             ensure!(
                 near,
@@ -94,7 +94,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Returns how much two `f32` evaluations of the same formulas may differ.
+    /// Returns the maximum difference between two `f32` evaluations of the same formulas.
     ///
     /// About 25 products and sums of numbers up to 1 lose up to 6e-8 each, partly canceling: 5e-7. The naive
     /// evaluation rounds offsets in the unit torus by up to 1.2e-7. That changes the weight of each of about four
@@ -105,12 +105,12 @@ impl Scene {
     }
 }
 
-/// Returns the window of an image of the unit square.
+/// Returns the window of a `side`×`side` image of the unit square.
 fn window(side: u32) -> Result<Window> {
     Ok(Window::unit([side, side])?)
 }
 
-/// Returns a black image.
+/// Returns a black `side`×`side` image.
 fn image(side: u32) -> Result<Raster<f32>> {
     Ok(Raster::filled([side, side], 0.0)?)
 }

@@ -1,4 +1,5 @@
-//! The recipe group: baking a part compared with baking the whole, and nodes compared with the functions they use.
+//! The recipe group: baking some maps compared with baking all of them, and nodes compared with the functions they
+//! use.
 
 mod maps;
 mod nodes;
@@ -6,7 +7,7 @@ mod nodes;
 use crate::harness::Bench;
 use anyhow::Result;
 
-/// Measures the rows of the group.
+/// Measures this group's rows.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     maps::run(bench)?;
     nodes::run(bench)

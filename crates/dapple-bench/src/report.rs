@@ -1,4 +1,4 @@
-//! The results of a run as aligned Markdown tables, and the exit code of the program.
+//! Formats the results of a run as aligned Markdown tables, and computes the exit code of the program.
 
 use crate::machine::Machine;
 use crate::row::{GROUPS, Row};
@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Titles of the columns, and whether a column is right-aligned.
+/// Column titles, and whether each column is right-aligned.
 const COLUMNS: [(&str, bool); 8] = [
     ("case", false),
     ("peer", false),
@@ -89,7 +89,7 @@ fn table(rows: &[&Row]) -> String {
     text
 }
 
-/// Returns the cells of a row as text.
+/// Returns the row's table cells as text.
 fn cells(row: &Row) -> [String; 8] {
     let sign = if row.at == "most" { '≤' } else { '≥' };
     let must = format!("{sign} {}", row.must);
@@ -145,7 +145,7 @@ pub(crate) fn print(page: &str) {
     print!("{page}");
 }
 
-/// Writes a file of results.
+/// Writes a results file.
 #[expect(
     clippy::disallowed_methods,
     reason = "the caller asked for results in a file"

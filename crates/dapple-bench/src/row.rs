@@ -31,7 +31,7 @@ impl Goal {
     }
 }
 
-/// The description of a row: the two sides, the unit and the threshold.
+/// Description of a row: the two sides, the unit and the threshold.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Case {
     /// The group, which is also a filter: one of [`GROUPS`].
@@ -40,11 +40,11 @@ pub(crate) struct Case {
     pub(crate) case: &'static str,
     /// The name of the other side.
     pub(crate) peer: &'static str,
-    /// The unit of both times, see [`Unit`].
+    /// The unit of both measurements, see [`Unit`].
     pub(crate) unit: Unit,
-    /// Threshold of the ratio.
+    /// Threshold for the ratio.
     pub(crate) must: Goal,
-    /// Note that a reader needs to understand the row; empty if there is none.
+    /// Note that helps a reader understand the row; empty if not needed.
     pub(crate) note: &'static str,
 }
 
@@ -64,7 +64,7 @@ impl Case {
             })
     }
 
-    /// Returns the row of this case. Both numbers are seconds per unit of work, or bytes, distances or angles.
+    /// Returns this case's row. Both numbers are seconds per unit of work, or bytes, distances or angles.
     pub(crate) fn row(&self, ours: f64, theirs: f64) -> Row {
         let ratio = self.must.ratio(ours, theirs);
         let (must, at) = match self.must {
@@ -87,7 +87,7 @@ impl Case {
     }
 }
 
-/// Groups in the order of the table.
+/// The groups in table order.
 pub(crate) const GROUPS: [&str; 10] = [
     "pups", "points", "graph", "worley", "noise", "wavelet", "tile", "mesh", "synth", "recipe",
 ];
@@ -135,7 +135,8 @@ impl Unit {
         }
     }
 
-    /// Returns the factor from a second (or a byte, a distance of 1, a degree) to this unit.
+    /// Returns the conversion factor from the base unit (one second, one byte, a distance of 1, or one degree) to
+    /// this unit.
     pub(crate) const fn per_one(self) -> f64 {
         match self {
             Self::NsPerPixel | Self::NsPerPoint | Self::NsPerPosition => 1e9,
@@ -164,13 +165,13 @@ pub(crate) struct Row {
     pub(crate) theirs: f64,
     /// Their time divided by ours if `at` is `least` and times are compared; ours divided by theirs otherwise.
     pub(crate) ratio: f64,
-    /// Threshold of the ratio.
+    /// Threshold for the ratio.
     pub(crate) must: f64,
     /// Comparison with the threshold: the ratio must be at `least` or at `most` this value.
     pub(crate) at: &'static str,
     /// Whether the ratio meets the threshold.
     pub(crate) holds: bool,
-    /// Note that a reader needs to understand the row.
+    /// Note that helps a reader understand the row; empty if not needed.
     pub(crate) note: String,
 }
 

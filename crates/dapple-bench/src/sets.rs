@@ -11,7 +11,7 @@ pub(crate) const SEED: Seed = Seed(2013);
 /// The unit torus.
 pub(crate) const UNIT_TORUS: Domain = Domain::torus(DVec2::ZERO, DVec2::ONE);
 
-/// The number of points times squared radius for a maximal Poisson-disk set of the unit torus.
+/// Number of points times the squared radius, for a maximal Poisson-disk set on the unit torus.
 pub(crate) const NORMALIZED_DENSITY: f64 = 0.697;
 
 /// Returns the radius at which the unit torus holds about `n_points` maximal Poisson-disk points.
@@ -19,12 +19,12 @@ pub(crate) fn radius_of(n_points: u32) -> f64 {
     (NORMALIZED_DENSITY / f64::from(n_points)).sqrt()
 }
 
-/// Returns about `n_points` maximal Poisson-disk points of the unit torus.
+/// Generates about `n_points` maximal Poisson-disk points on the unit torus.
 pub(crate) fn poisson_disk(n_points: u32) -> Result<PointSet> {
     poisson_disk_from(SEED, n_points)
 }
 
-/// Returns about `n_points` maximal Poisson-disk points made with a given seed.
+/// Generates about `n_points` maximal Poisson-disk points from the given seed.
 pub(crate) fn poisson_disk_from(seed: Seed, n_points: u32) -> Result<PointSet> {
     Ok(dapple_points::poisson_disk(
         UNIT_TORUS,
@@ -51,7 +51,7 @@ pub(crate) fn positions(n: usize) -> Vec<DVec2> {
         .collect()
 }
 
-/// Returns `n` random positions in the cube from the origin with this side.
+/// Returns `n` random positions in a cube with the given side, whose minimum corner is the origin.
 #[cfg(feature = "peers")]
 pub(crate) fn positions_in<const N: usize>(n: usize, side: f64) -> Vec<[f64; N]> {
     let seed = SEED.child("bench scattered positions", 0);

@@ -1,8 +1,8 @@
 //! The synth group: textures on surfaces and in the plane, their stages, and their quality.
 //!
-//! The model and the exemplars are files under `../shared/data` next to the workspace if these exist, and
-//! procedural otherwise; notes say which. `texture-synthesis` makes a flat image of 512×512 pixels, once per turn for
-//! all rows.
+//! The model and the exemplars are files under `../shared/data` next to the workspace if these exist, and procedural
+//! otherwise; notes say which. `texture-synthesis` generates a flat image of 512×512 pixels, once per turn for all
+//! rows.
 //! Confirmed: every site or pixel of ours has a color, and the colors come from many pixels of the exemplar.
 
 #[cfg(feature = "peers")]
@@ -25,7 +25,7 @@ mod whole;
 use crate::harness::Bench;
 use anyhow::Result;
 
-/// Measures the rows of the group.
+/// Measures this group's rows.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     #[cfg(feature = "peers")]
     beside_flat::run(bench)?;

@@ -1,4 +1,4 @@
-//! The tile group: a large blend map from a stored tile, compared with computing it pixel by pixel.
+//! The tile group: filling a large blend map from a stored tile, compared with computing it pixel by pixel.
 //!
 //! The map has 4096×4096 pixels in preallocated memory (the feature map allocates its own, which takes a tenth of its
 //! time), and the tile has 128×128. Confirmed: every copy in the map equals the tile.
@@ -33,7 +33,7 @@ const FEATURES: Case = Case {
     note: MEMORY,
 };
 
-/// Measures the rows of the group.
+/// Measures this group's rows.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     #[cfg(feature = "peers")]
     beside_peers::run(bench)?;
@@ -63,12 +63,12 @@ fn feature_map(bench: &mut Bench) -> Result<()> {
     })
 }
 
-/// Makes a seamless tile.
+/// Computes a seamless tile.
 fn tile() -> Result<Raster<f32>> {
     Ok(wavelet_tile([TILE; 2], &[0.3, 0.5, 0.7, 1.0], SEED)?)
 }
 
-/// Makes the map of a tile.
+/// Fills a blend map with copies of a tile.
 fn map_of(tile: &Raster<f32>) -> Result<Raster<f32>> {
     let mut map = Raster::filled([MAP; 2], 0.0)?;
     repeat_into(tile, [0, 0], map.view_mut());

@@ -16,7 +16,7 @@ use dapple_hash::{hash2, unit_f32};
 use dapple_raster::Raster;
 use dapple_wavelet::{Border, FilterMemory, SplineFilter};
 
-/// Measures the rows of the group.
+/// Measures this group's rows.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     alone::run(bench)?;
     #[cfg(feature = "peers")]
@@ -30,7 +30,7 @@ const SIDE: u32 = 2048;
 /// Periodic borders along both axes.
 const PERIODIC: [Border; 2] = [Border::Periodic; 2];
 
-/// Makes white noise in [0, 1).
+/// Generates white noise in [0, 1).
 fn white_noise(side: u32) -> Result<Raster<f32>> {
     let seed = SEED.child("bench wavelet", 0);
     Ok(Raster::from_fn([side; 2], |column, row| {
@@ -38,7 +38,7 @@ fn white_noise(side: u32) -> Result<Raster<f32>> {
     })?)
 }
 
-/// State of our side: inputs and buffers, all allocated before the timed section, as for the other side.
+/// State of our side: inputs and buffers, all allocated before the timed section, as they are for the other side.
 pub(crate) struct Halved {
     coarse: Raster<f32>,
     memory: FilterMemory,
@@ -67,7 +67,7 @@ fn down_and_up(raster: &Raster<f32>) -> Result<Side<'_, Halved>> {
     }))
 }
 
-/// Fails if two rasters differ by more than `most` anywhere.
+/// Fails if two rasters differ by more than `most` at any pixel.
 fn confirm_equal(ours: &[f32], theirs: &[f32], most: f32) -> Result<()> {
     ensure!(ours.len() == theirs.len(), "the sizes differ");
     let off = ours

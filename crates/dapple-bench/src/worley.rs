@@ -25,7 +25,7 @@ use dapple_raster::{Raster, Window};
 use dapple_worley::{Cellular, Combination, Dimensions, Plane, Space, Vector, Worley};
 use glam::DVec2;
 
-/// Measures the rows of the group.
+/// Measures this group's rows.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     #[cfg(feature = "peers")]
     {
@@ -44,7 +44,7 @@ const PLANE: [u32; 2] = [1024; 2];
 /// Size of a raster in space, in pixels.
 const SPACE: [u32; 3] = [128; 3];
 
-/// A combination of distances and its known mean over all positions, for three feature points per cell.
+/// A combination of distances and its known mean over all positions, with three feature points per cell.
 #[derive(Clone, Copy, Debug)]
 struct Known {
     combination: Combination,
@@ -70,7 +70,7 @@ const F2_MINUS_F1_IN_SPACE: Known = Known {
     ..F2_MINUS_F1
 };
 
-/// A cellular texture and the pixels of its raster, divided into slices along the first two axes.
+/// A cellular texture, and a raster divided into slices along the first two axes.
 struct Grid<const N: usize>
 where
     Dimensions: Space<N>,
@@ -93,7 +93,7 @@ where
         Self::of(&Worley::new(SEED), known, size, px_per_cell)
     }
 
-    /// Returns a raster of another basis, with the same meaning of `size` and `px_per_cell` as in `new`.
+    /// Like [`new`](Self::new), for the given basis.
     fn of(worley: &Worley<N>, known: Known, size: [u32; N], px_per_cell: u32) -> Result<Self> {
         let px = f64::from(px_per_cell);
         let extent = DVec2::new(f64::from(size[0]), f64::from(size[1])) / px;
@@ -121,7 +121,7 @@ where
         self.window.n_pixels() * self.slices.len()
     }
 
-    /// Returns black memory for the raster, with the slices below each other.
+    /// Returns a black raster in which the slices are stacked vertically.
     fn image(&self) -> Result<Raster<f32>> {
         let [width, height] = self.window.size;
         Ok(Raster::filled(
@@ -149,7 +149,7 @@ where
     /// Checks a raster: its values at some pixels, and the range, mean and spread of all values.
     fn confirm(&self, image: &Raster<f32>) -> Result<()> {
         let [width, height] = self.window.size;
-        // The stride is a prime, so that the pixels have all positions in a tile.
+        // The stride is a prime, so that the checked pixels cover all positions within a tile.
         for index in (0..self.n_pixels() as u32).step_by(1009) {
             let (column, row) = (index % width, index / width);
             let plane = &self.slices[(row / height) as usize];
@@ -168,7 +168,7 @@ where
             found.n_not_finite == 0 && found.min >= 0.0,
             "differences of sorted distances are not negative: {found:?}"
         );
-        // The values in `n` cells are counted as `n` independent ones. The tolerance is three relative standard
+        // The values in `n` cells are counted as `n` independent values. The tolerance is three relative standard
         // deviations of their mean (0.5 for one value), plus the rounding of the known mean to three digits.
         let px = f64::from(self.px_per_cell);
         let n_cells: f64 = self.size.iter().map(|&side| f64::from(side) / px).product();

@@ -15,7 +15,7 @@ const CASE: Case = Case {
     note: "",
 };
 
-/// Integer work of an amount that the compiler cannot know.
+/// Does integer work proportional to `n`; the compiler cannot compute the result ahead of time.
 fn spin(n: u64) -> u64 {
     (0..black_box(n)).fold(1, |sum, i| black_box(sum * 16_807 + i) % 1_000_003)
 }
@@ -137,7 +137,7 @@ fn two_threads_gains_nothing_from_a_job_that_is_not_divided() {
     );
 }
 
-/// Works on one thread for slightly longer than the minimum time of a job.
+/// Works on one thread for slightly longer than the minimum job time.
 fn tenth_of_a_second(n: &mut u64) {
     let start = ThreadTime::now();
     while start.elapsed().as_secs_f64() < LEAST_JOB_S * 1.01 {

@@ -1,4 +1,4 @@
-//! Measurement of a row on two threads.
+//! Measures a row on two threads.
 //!
 //! Processor time cannot tell whether two threads ran at the same time, so the run on two threads is timed by the wall
 //! clock. On a shared machine a wall time is nearly always too long and never too short, so its minimum over many runs
@@ -8,11 +8,11 @@
 //! used up. A job takes at least [`LEAST_JOB_S`] on one thread, so that the time to wake threads is negligible. Both
 //! results must have the same bits.
 //!
-//! The note of the row has three numbers that help to judge a failure. The first is the processor time of both threads
-//! together divided by that of one thread: 1.00 means that dividing the work has no cost. The second is the share of
-//! the busier thread: the relative wall time without other programs and without waiting. The third is the speedup of
-//! two loops that share nothing and touch no memory, measured in the same turns as the row: the upper limit on this
-//! machine.
+//! The row's note has three numbers that help to judge a failure. The first is the processor time of both threads
+//! together divided by the processor time on one thread: 1.00 means that dividing the work has no cost. The second is
+//! the busier thread's share of the processor time, that is, the relative wall time without other programs and
+//! without waiting. The third is the speedup of two loops that share nothing and touch no memory, measured in the
+//! same turns as the row: the upper limit on this machine.
 
 use super::{Bench, in_case};
 use crate::report::three_digits;
@@ -22,10 +22,10 @@ use cpu_time::ThreadTime;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-/// Minimum time of a job on one thread, in seconds, in a row on two threads.
+/// Minimum time of a job on one thread, in seconds, for a row on two threads.
 pub(crate) const LEAST_JOB_S: f64 = 0.1;
 
-/// Minimum number of turns of a row on two threads.
+/// Minimum number of turns for a row on two threads.
 const LEAST_TURNS: u32 = 3;
 
 impl Bench {
@@ -112,13 +112,13 @@ impl Bench {
 /// Minimum times so far of a job on one and on two threads, in seconds.
 #[derive(Clone, Copy, Debug)]
 struct Best {
-    /// Processor time on one thread.
+    /// Processor time of the job on one thread.
     one: f64,
-    /// Wall time on two threads.
+    /// Wall time of the job on two threads.
     wall: f64,
-    /// Processor time of two threads together.
+    /// Total processor time of the two threads.
     both: f64,
-    /// Processor time of the busier of two threads.
+    /// Processor time of the busier thread.
     busier: f64,
 }
 
@@ -135,7 +135,7 @@ impl Default for Best {
 }
 
 impl Best {
-    /// Keeps the smaller of each pair of times.
+    /// Takes the smaller value of each time.
     fn keep(&mut self, turn: &Self) {
         self.one = self.one.min(turn.one);
         self.wall = self.wall.min(turn.wall);

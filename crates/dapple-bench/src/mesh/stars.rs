@@ -2,8 +2,8 @@
 //!
 //! Both sides get positions, normals and a spacing. They find the sites around every site with our grid, project them
 //! to its tangent plane, find its star, and join all stars into a graph. `spade` gets as few sites as a complete star
-//! needs: within 1.8 spacings, or within 2.8 or 4 if a smaller radius is not enough. It triangulates them all at once
-//! and returns the neighbors of the center.
+//! needs: those within 1.8 spacings, or within 2.8 or 4 if a smaller radius is not enough. It triangulates them all
+//! at once and returns the neighbors of the center.
 //!
 //! Confirmed: both find the same neighbors. At sharp bends even 4 spacings can leave an empty circle that is too
 //! large. There our side connects sites by a separate rule, and these sites are not compared.
@@ -29,10 +29,11 @@ const STARS: Case = Case {
     note: "both look the sites around each site up with our grid, project them, and join the stars to a graph",
 };
 
-/// Search radii for neighbors, in spacings. The next one is tried while empty circles are larger.
+/// Search radii for neighbors, in multiples of the site spacing. The next radius is tried if an empty circle is too
+/// large.
 const REACHES: [f64; 3] = [1.8, 2.8, 2.0 * STAR_RADIUS];
 
-/// A site projected to the tangent plane of another one, as a vertex of `spade`.
+/// A site projected to another site's tangent plane, as a vertex for `spade`.
 #[derive(Clone, Copy)]
 struct Near {
     at: Point2<f64>,
@@ -51,7 +52,7 @@ impl HasPosition for Near {
 #[derive(Default)]
 struct Theirs {
     graph: SiteGraph,
-    /// Whether a site has empty circles that are too large for our method.
+    /// For each site, whether an empty circle around it is too large for our method.
     open: Vec<bool>,
 }
 
@@ -132,8 +133,8 @@ fn star(sites: &Sites, grid: &SiteGrid, center: SiteIdx, spacing: f64) -> (Vec<u
     (around, true)
 }
 
-/// Returns the sites of the same sheet within a distance, projected so that their distance to the center stays equal
-/// to the distance in space.
+/// Returns the sites of the same sheet within `reach` of the center. They are projected so that their distance to the
+/// center equals the distance in space.
 fn within(sites: &Sites, grid: &SiteGrid, center: SiteIdx, reach: f64) -> Vec<Near> {
     let [position, normal] =
         [sites.positions(), sites.normals()].map(|of: &[DVec3]| of[center.index()]);

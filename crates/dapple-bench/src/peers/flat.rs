@@ -1,4 +1,4 @@
-//! The crate `texture-synthesis` with its defaults, on one thread, where its result is deterministic.
+//! Runs the crate `texture-synthesis` with its defaults, on one thread, where its result is deterministic.
 //!
 //! It starts its own thread, so it is timed by the processor time of this process, in which nothing else runs.
 
@@ -10,7 +10,7 @@ use std::hint::black_box;
 use texture_synthesis::image::{DynamicImage, Rgba, RgbaImage};
 use texture_synthesis::{Dims, Example, Session, SessionBuilder};
 
-/// Makes a flat square image that resembles an exemplar. Returns the processor time in seconds and the image.
+/// Synthesizes a flat square image that resembles `exemplar`. Returns the processor time in seconds and the image.
 pub(crate) fn synthesize(
     exemplar: &Raster<LinearRgb>,
     side: u32,
@@ -21,7 +21,7 @@ pub(crate) fn synthesize(
         .output_size(Dims::square(side)))
 }
 
-/// Converts an image to the type of the peer.
+/// Converts an image to the peer's type.
 pub(crate) fn image(colors: &Raster<LinearRgb>) -> DynamicImage {
     let [width, height] = colors.size();
     DynamicImage::ImageRgba8(RgbaImage::from_fn(width, height, |column, row| {
@@ -30,7 +30,7 @@ pub(crate) fn image(colors: &Raster<LinearRgb>) -> DynamicImage {
     }))
 }
 
-/// Makes an image according to a session. Returns the processor time in seconds and the image.
+/// Runs a synthesis session. Returns its processor time in seconds and the image.
 pub(crate) fn run(session: SessionBuilder<'_>) -> Result<(f64, Raster<LinearRgb>)> {
     let start = ProcessTime::now();
     let session = session.seed(1).max_thread_count(1).build()?;

@@ -5,19 +5,19 @@
 //! refinement filter and `B` the transform of the Gram filter on the coarse line, frequency `k` becomes `H(k) (C(k)
 //! G(k) + C(k + n/2) G(k + n/2))`, where `C = conj(H) · B(fine) / B(coarse) / 4`. The filters are real, so one complex
 //! transform processes two lines. Columns are processed as rows of the transposed raster. Planner, scratch memory and
-//! buffers are kept. The default planner uses the widest vector code of the machine.
+//! buffers are reused. The default planner uses the widest vector instructions of the machine.
 
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Projection of square rasters, with its buffers.
+/// Projects square rasters; owns its buffers.
 pub(crate) struct FourierProjection {
     side: usize,
     forward: Arc<dyn Fft<f32>>,
     backward: Arc<dyn Fft<f32>>,
-    /// `C` and `H / n` of each frequency.
+    /// `C` and `H / n` for each frequency.
     down: Vec<Complex<f32>>,
     up: Vec<Complex<f32>>,
     line: Vec<Complex<f32>>,
@@ -142,7 +142,7 @@ mod tests {
         ];
         for (at, &value) in fourier.fine.iter().enumerate() {
             let expected: f32 = line[at / 8] * line[at % 8];
-            // Error of an `f32` transform of 8 values.
+            // Error of an `f32` transform with 8 values.
             assert!(
                 (value - expected).abs() < 1e-6,
                 "{value} and not {expected}"

@@ -1,5 +1,5 @@
-//! The k-d tree of `kiddo`. It is not intended for hundreds of dimensions, so it stores the rows projected to a few
-//! directions.
+//! Nearest-row search with the k-d tree of `kiddo`. The tree is not intended for hundreds of dimensions, so it stores
+//! the rows projected to a few directions.
 //!
 //! A projection to orthogonal unit directions never lengthens a distance. Therefore the best of the few nearest
 //! projected points gives a radius. The tree lists all points within it, and the nearest row is among them; these rows
@@ -13,13 +13,13 @@ use dapple_synth::distance_sq;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use std::num::NonZero;
 
-/// Maximum number of rows from which directions are computed.
+/// Maximum number of rows from which the directions are computed.
 const MOST_ROWS: usize = 4096;
 
-/// Number of iterations. The directions need not be exact.
+/// Number of orthogonal iterations. The directions need not be exact.
 const N_ITERATIONS: usize = 60;
 
-/// Number of nearest projected points that give the radius.
+/// Number of nearest projected points that determine the search radius.
 const FIRST: NonZero<usize> = NonZero::new(4).unwrap();
 
 /// A few orthogonal unit vectors, stored by dimension: each dimension has its component along every vector.
@@ -28,7 +28,7 @@ pub(crate) struct Directions<const N: usize> {
     parts: Vec<[f32; N]>,
 }
 
-/// A tree of projected rows.
+/// A k-d tree of projected rows.
 pub(crate) struct KdTree<'a, const N: usize> {
     dims: usize,
     rows: &'a [f32],
@@ -52,7 +52,7 @@ impl<'a, const N: usize> KdTree<'a, N> {
         })
     }
 
-    /// Returns the nearest row, the first one if several have the same distance.
+    /// Returns the index of the row nearest to `query`, the first one if several have the same distance.
     pub(crate) fn nearest(&self, query: &[f32]) -> u32 {
         let at = self.directions.along(query);
         let mut best = (f32::INFINITY, u32::MAX);
@@ -83,7 +83,7 @@ impl<'a, const N: usize> KdTree<'a, N> {
 }
 
 impl<const N: usize> Directions<N> {
-    /// Returns the directions along which rows differ most.
+    /// Returns the directions along which the rows vary most.
     pub(crate) fn principal(dims: usize, rows: &[f32]) -> Self {
         let n_rows = rows.len() / dims;
         let sample: Vec<&[f32]> = rows
@@ -131,7 +131,7 @@ impl<const N: usize> Directions<N> {
     }
 }
 
-/// Returns approximate eigenvectors of the largest eigenvalues.
+/// Returns approximate eigenvectors for the largest eigenvalues.
 fn iterate<const N: usize>(dims: usize, matrix: &[f64]) -> Vec<Vec<f64>> {
     // Start with rows of the matrix, which are all different.
     let mut vectors: Vec<Vec<f64>> = (0..N)
@@ -150,7 +150,7 @@ fn iterate<const N: usize>(dims: usize, matrix: &[f64]) -> Vec<Vec<f64>> {
     vectors
 }
 
-/// Makes vectors orthogonal, in order, and of length 1.
+/// Orthonormalizes the vectors, in order.
 fn orthonormalize(vectors: &mut [Vec<f64>]) {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     for index in 0..vectors.len() {

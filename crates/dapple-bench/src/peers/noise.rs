@@ -1,26 +1,26 @@
-//! Grids of `simdnoise` and scattered values of `noise-functions`.
+//! Renders grids with `simdnoise` and evaluates scattered positions with `noise-functions`.
 //!
-//! * `simdnoise` makes whole grids, with the widest of SSE2, SSE4.1 and AVX2 that it finds at run time. It always
-//!   returns a grid in a new `Vec`, with its minimum and maximum, which cannot be avoided; the last grid is freed
-//!   outside the timed section. Of all tested crates it has the fastest cellular grids and the fastest grid of one
-//!   octave of gradient noise, which is simplex noise (compared with Perlin and simplex noise of `noise-functions`,
-//!   `fastnoise-lite`, `libnoise` and `noise`). Its cellular distances are squared, from one feature point per cell on
-//!   a circle or sphere around the cell's corner; it searches only the 3×3 or 3×3×3 cells next to the position. In
-//!   space it steps `z` from `y`, so that it visits 18 cells rather than 27, some of them wrong; its times are used
-//!   unchanged.
+//! * `simdnoise` computes whole grids, with the widest of SSE2, SSE4.1 and AVX2 that it finds at run time. It
+//!   always returns a grid in a new `Vec`, with its minimum and maximum, which cannot be avoided; the last grid is
+//!   freed outside the timed section. Of all tested crates it has the fastest cellular grids and the fastest grid of
+//!   one octave of gradient noise, which is simplex noise (compared with Perlin and simplex noise of
+//!   `noise-functions`, `fastnoise-lite`, `libnoise` and `noise`). Its cellular distances are squared. They come from
+//!   one feature point per cell on a circle or sphere around the cell's corner; it searches only the 3×3 or 3×3×3
+//!   cells around the position. In space it steps `z` from `y`, so that it visits 18 cells rather than 27, some of
+//!   them wrong; its times are used unchanged.
 //! * `noise-functions` has the fastest function for one position (compared with `fastnoise-lite`, `libnoise` and
 //!   `noise`), with the square root that Euclidean distances need. Its feature points also lie on a circle or sphere.
 
 use noise_functions::{CellDistance, Noise as _, Perlin};
 use simdnoise::{Cell2ReturnType, CellReturnType, NoiseBuilder};
 
-/// A grid of `simdnoise`: the values, their minimum and their maximum.
+/// A grid from `simdnoise`: the values, their minimum and their maximum.
 pub(crate) type Grid = (Vec<f32>, f32, f32);
 
-/// Distance of feature points from the corners of the cells. It does not affect the time.
+/// Distance from feature points to the corners of their cells. It does not affect the time.
 const JITTER: f32 = 0.45;
 
-/// Returns cellular noise of `simdnoise` in the plane: squared F1.
+/// Returns cellular noise from `simdnoise` in the plane: squared F1.
 pub(crate) fn simdnoise_f1([width, height]: [usize; 2], frequency: f32) -> Grid {
     NoiseBuilder::cellular_2d(width, height)
         .with_freq(frequency)
@@ -29,7 +29,7 @@ pub(crate) fn simdnoise_f1([width, height]: [usize; 2], frequency: f32) -> Grid 
         .generate()
 }
 
-/// Returns the second cellular noise of `simdnoise` in the plane: squared F1 minus squared F2.
+/// Returns `simdnoise`'s second cellular noise in the plane: squared F1 minus squared F2.
 pub(crate) fn simdnoise_f1_minus_f2([width, height]: [usize; 2], frequency: f32) -> Grid {
     NoiseBuilder::cellular2_2d(width, height)
         .with_freq(frequency)
@@ -38,7 +38,7 @@ pub(crate) fn simdnoise_f1_minus_f2([width, height]: [usize; 2], frequency: f32)
         .generate()
 }
 
-/// Returns the second cellular noise of `simdnoise` in space: squared F1 minus squared F2.
+/// Returns `simdnoise`'s second cellular noise in space: squared F1 minus squared F2.
 pub(crate) fn simdnoise_f1_minus_f2_in_space(
     [width, height, depth]: [usize; 3],
     frequency: f32,
@@ -50,14 +50,14 @@ pub(crate) fn simdnoise_f1_minus_f2_in_space(
         .generate()
 }
 
-/// Returns one octave of simplex noise of `simdnoise` in the plane.
+/// Returns one octave of simplex noise from `simdnoise` in the plane.
 pub(crate) fn simdnoise_simplex([width, height]: [usize; 2], frequency: f32) -> Grid {
     NoiseBuilder::gradient_2d(width, height)
         .with_freq(frequency)
         .generate()
 }
 
-/// Returns one octave of simplex noise of `simdnoise` in space.
+/// Returns one octave of simplex noise from `simdnoise` in space.
 pub(crate) fn simdnoise_simplex_in_space(
     [width, height, depth]: [usize; 3],
     frequency: f32,
@@ -67,7 +67,7 @@ pub(crate) fn simdnoise_simplex_in_space(
         .generate()
 }
 
-/// Computes the distances to the nearest feature points of positions in the plane, mapped from [0, 1] to [−1, 1].
+/// Computes the distance from each position in the plane to its nearest feature point, mapped from [0, 1] to [−1, 1].
 pub(crate) fn noise_functions_f1_2(positions: &[[f32; 2]], values: &mut [f32]) {
     let noise = CellDistance::default();
     for (value, &position) in values.iter_mut().zip(positions) {
@@ -75,7 +75,7 @@ pub(crate) fn noise_functions_f1_2(positions: &[[f32; 2]], values: &mut [f32]) {
     }
 }
 
-/// Computes the distances to the nearest feature points of positions in space, mapped from [0, 1] to [−1, 1].
+/// Computes the distance from each position in space to its nearest feature point, mapped from [0, 1] to [−1, 1].
 pub(crate) fn noise_functions_f1_3(positions: &[[f32; 3]], values: &mut [f32]) {
     let noise = CellDistance::default();
     for (value, &position) in values.iter_mut().zip(positions) {
@@ -97,8 +97,8 @@ pub(crate) fn noise_functions_perlin_3(positions: &[[f32; 3]], values: &mut [f32
     }
 }
 
-/// Fills a square of a terrain, `side` by `side` positions, `step` cells apart: six octaves and five ridged ones, warped
-/// by half a cell of two more fields.
+/// Fills a square of terrain with `side` by `side` positions, `step` cells apart. The terrain is six octaves plus
+/// five ridged octaves, warped by up to half a cell by two more fields.
 pub(crate) fn noise_functions_terrain(side: usize, step: f32, values: &mut [f32]) {
     let hills = Perlin.seed(1).fbm(6, 0.5, 2.0);
     let ridges = Perlin.seed(2).ridged().fbm(5, 0.5, 2.0);

@@ -45,7 +45,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     two_threads(bench)
 }
 
-/// Returns a side that makes a point set of the unit torus and stores it.
+/// Returns a side that generates a point set on the unit torus and stores it.
 pub(super) fn maximal(radius: f64) -> Side<'static, Option<PointSet>> {
     Side::new(None, move |points| {
         *points = poisson_disk(UNIT_TORUS, radius, SEED).ok();

@@ -1,4 +1,4 @@
-//! Our sets compared with other crates that make Poisson-disk points.
+//! Our sets compared with other crates that generate Poisson-disk points.
 
 use super::alone::maximal;
 use super::{confirm, confirm_maximal};
@@ -58,26 +58,26 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     row(bench, &FAST_POISSON_1M, 1, &fast_poisson(1_000_000))
 }
 
-/// A peer that makes positions of type `P`, with its known properties.
+/// A peer that generates positions of type `P`, with its known properties.
 struct Peer<P> {
-    /// Radius on the unit torus, which our side also gets.
+    /// Radius on the unit torus, the same as our side's.
     radius: f64,
-    /// Makes the points.
+    /// Generates the points.
     make: Box<dyn Fn() -> Vec<P> + Sync>,
-    /// Returns the position of a point.
+    /// Converts a point of the peer to a position.
     position: fn(&P) -> DVec2,
-    /// Domain of its points.
+    /// Domain of the peer's points.
     domain: Domain,
-    /// Radius in units of its domain.
+    /// Radius in units of the peer's domain.
     own_radius: f64,
     /// Tolerance of the minimum distance between two points, relative to the radius.
     slack: f64,
-    /// Expected density: the number of points times squared radius over area.
+    /// Expected density: the number of points times the squared radius, divided by the area.
     density: RangeInclusive<f64>,
 }
 
 impl<P> Peer<P> {
-    /// Checks the points of the peer, and returns their number.
+    /// Checks the peer's points and returns their number.
     fn confirm(&self, made: &[P]) -> Result<usize> {
         let points = PointSet::new(self.domain, made.iter().map(self.position).collect())?;
         confirm(&points, self.own_radius, self.slack, self.density.clone())
@@ -121,7 +121,7 @@ fn diskus(n_points: u32) -> Peer<[f64; 2]> {
         position: |at| DVec2::from_array(*at),
         domain: UNIT_TORUS,
         own_radius: radius,
-        // Rounding of positions up to 1, compared with radii down to 8e-4.
+        // Rounding error of positions up to 1, relative to radii down to 8e-4.
         slack: 1e-9,
         density: BRIDSON,
     }
@@ -137,7 +137,7 @@ fn fast_poisson(n_points: u32) -> Peer<[f64; 2]> {
     }
 }
 
-/// Number of points times squared radius for Bridson's algorithm with 30 attempts per point.
+/// Range of the number of points times the squared radius, for Bridson's algorithm with 30 attempts per point.
 const BRIDSON: RangeInclusive<f64> = 0.610..=0.640;
 
 #[cfg(test)]

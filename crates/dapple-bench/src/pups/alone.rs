@@ -51,10 +51,10 @@ const TWO_THREADS: Case = Case {
     ..NAIVE
 };
 
-/// Width and height in pixels of the image on two threads: large enough for a job of at least 100 ms.
+/// Width and height, in pixels, of the image for two threads: large enough for a job of at least 100 ms.
 const TWO_THREADS_SIDE: u32 = 8192;
 
-/// The naive evaluation runs on every row whose number is a multiple of this.
+/// Row stride of the naive evaluation, which runs only on rows whose index is a multiple of this.
 const NAIVE_STRIDE: usize = 25;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -65,7 +65,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     two_threads(bench)
 }
 
-/// Returns a side that renders a texture into one image.
+/// Returns a side that renders `texture` into an image.
 pub(super) fn raster<'a>(
     texture: &'a Texture,
     window: &'a Window,

@@ -1,8 +1,8 @@
-//! An edit of a control point and a redraw of the changed parts, compared with making and drawing the texture from
+//! Editing a control point and redrawing the changed parts, compared with building and drawing the texture from
 //! scratch.
 //!
-//! Edits alternate: a point moves by a fraction of the mean distance, a point is added, and that point is removed.
-//! Confirmed: the image updated by edits has the same bits as an image made from scratch.
+//! Edits alternate: a point moves by a fraction of the mean point spacing, a point is added, and that point is
+//! removed. Confirmed: the image updated by edits has the same bits as an image rendered from scratch.
 
 use super::{SIDE, image, window};
 use crate::harness::{Bench, Done, Side};
@@ -37,7 +37,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     edits(bench, &EDIT_700, 700)
 }
 
-/// A texture under edits, and its image.
+/// A texture that is being edited, and its image.
 struct Edited {
     pups: EditablePups,
     window: Window,
@@ -119,7 +119,7 @@ impl Edited {
     }
 }
 
-/// Makes a texture from scratch and returns its image.
+/// Builds a texture from scratch and returns its image.
 fn anew(options: &ControlPoints, window: &Window) -> Result<Raster<f32>> {
     let mut image = image(SIDE)?;
     match control_points(options, sets::SEED)? {

@@ -1,6 +1,7 @@
-//! Each map of each built-in recipe alone, and its height with a margin, compared with a bake of all its maps.
+//! Each map of each built-in recipe baked alone, and its height with a margin, compared with a bake of all its maps.
 //!
-//! A part can cost more than the whole only if it takes a separate path. The two rows report the most expensive parts.
+//! One map can cost more than all of them only if it takes a separate code path. The two rows report the most
+//! expensive of these jobs.
 
 use crate::harness::Bench;
 use crate::row::{Case, Goal, Unit};
@@ -30,7 +31,7 @@ const SIDE: u32 = 256;
 /// Maximum margin, in pixels.
 const WIDEST: u32 = 16;
 
-/// Number of runs of each job. The fastest one counts.
+/// Number of runs of each job; the fastest one counts.
 const RUNS: u32 = 3;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -65,9 +66,9 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// The job with the largest time relative to a reference job.
+/// The job with the highest cost relative to a reference job.
 struct Costliest {
-    /// Times of the job and of the reference, in seconds.
+    /// Times of the job and of the reference job, in seconds.
     times: [f64; 2],
     what: String,
 }
@@ -90,7 +91,7 @@ impl Costliest {
     }
 }
 
-/// Returns the minimum processor time of a job on one thread, in seconds.
+/// Returns the minimum processor time of `job` on one thread, in seconds.
 fn fastest(bench: &Bench, job: impl Fn() -> Result<(), RecipeError> + Sync) -> Result<f64> {
     let mut least = f64::INFINITY;
     for _ in 0..RUNS {
@@ -110,7 +111,7 @@ fn bake(plan: &Plan, maps: &[MapKind]) -> Result<(), RecipeError> {
     Bake::new(plan, &options)?.try_for_each(|band| band.map(drop))
 }
 
-/// Renders the height of the tile with a margin of the given number of pixels.
+/// Renders the tile's height with a margin of `pixels` pixels.
 fn height(plan: &Plan, pixels: u32) -> Result<(), RecipeError> {
     let first = [-i64::from(pixels); 2];
     let window = plan

@@ -38,7 +38,7 @@ const WAVELET: Case = Case {
     ..WORLEY
 };
 
-/// The nodes in TOML, without their frequency.
+/// The nodes as TOML, without their frequency.
 const NODES: [(&Case, &str); 5] = [
     (&WORLEY, "worley = { value = \"f2_minus_f1\""),
     (&OCTAVES, "worley = { value = \"f1\", octaves = {}"),
@@ -56,10 +56,10 @@ const WARPED: Case = Case {
 /// Width and height of the tile in pixels.
 const SIDE: u32 = 1024;
 
-/// The number of turns of a row.
+/// Number of turns per row.
 const TURNS: u32 = 21;
 
-/// The amplitude of the warp, in units of the plane; positions shift by this number times their coordinates.
+/// Amplitude of the warp, in units of the plane. Positions shift by this number times their coordinates.
 const AMOUNT: f64 = 0.37;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -77,13 +77,13 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     warped(bench)
 }
 
-/// A recipe for one node, prepared to render.
+/// A recipe with a single node, ready to render.
 struct Single {
     plan: Plan,
     field: NodeField,
 }
 
-/// Returns the node with this name.
+/// Builds the single-node recipe for the node called `name`.
 fn single(nodes: &str, name: &str) -> Result<Single> {
     let text = format!("dapple = 1\n{nodes}\n[material]\nheight = 0.5\n");
     let recipe = Recipe::from_toml(&text).context(text)?;
@@ -103,7 +103,7 @@ fn side(node: &Single) -> Result<Side<'_, Raster<f32>>> {
     }))
 }
 
-/// Checks an image against evaluations at single positions.
+/// Checks an image against evaluations at individual positions.
 fn confirm(node: &Single, image: &Raster<f32>) -> Result<usize> {
     let window = node.plan.window([SIDE; 2])?;
     for index in (0..SIDE * SIDE).step_by(1009) {

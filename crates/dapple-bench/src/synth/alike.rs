@@ -1,4 +1,4 @@
-//! Similarity of textures to their exemplars, ours compared with `texture-synthesis`.
+//! Measures how similar textures are to their exemplars, ours compared with `texture-synthesis`.
 //!
 //! The rows report sliced Wasserstein distances (`Likeness`) between images of 256×256 pixels and their exemplars, for
 //! colors and for 5×5 patches, with the default options of both sides. These are not times: a smaller number is a
@@ -25,8 +25,8 @@ const COLORS: Case = Case {
     note: "",
 };
 
-/// An exemplar: a photograph, a drawing that replaces it if the file is missing, and its rows: colors and patches of a
-/// texture made by a sweep, and of an endless one.
+/// An exemplar and its rows. The exemplar is a photograph, or a drawing that replaces it if the file is missing. The
+/// rows compare the colors and patches of a texture synthesized by a sweep, and of an endless texture.
 struct Subject {
     file: &'static str,
     drawing: Drawing,
@@ -123,7 +123,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// Returns the distances to an exemplar of our two images, the one by a sweep first, and of the peer's image.
+/// Returns the distances from an exemplar to three images: ours by a sweep, our endless one, and the peer's.
 fn likenesses(picture: &Picture) -> Result<[Likeness; 3]> {
     let exemplar = picture.exemplar()?;
     let sweep = synthesize_plane(&exemplar, [SIDE; 2], [Edges::Cut; 2], &Options::default())?;

@@ -1,7 +1,8 @@
-//! Our synthesis compared with `texture-synthesis`, which makes one flat image of 512×512 pixels from the same
+//! Our synthesis compared with `texture-synthesis`, which generates one flat image of 512×512 pixels from the same
 //! exemplar.
 //!
-//! Both run on one thread. Times are medians of processor times. The peer makes one image in every turn for all rows.
+//! Both run on one thread. Times are medians of processor times. The peer generates one image per turn, shared by all
+//! rows.
 
 use super::scene::{self, N_SITES, SIDE, endless, exact, leaves, model, synthesizer};
 use super::whole;
@@ -68,7 +69,7 @@ const LARGE_EXACT: Case = Case {
     ..EXACT
 };
 
-/// Job of a row: makes an output and counts its elements.
+/// A row's job: produces an output and returns the number of its elements.
 type Job<'a> = Box<dyn Fn() -> Result<usize> + Sync + 'a>;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -206,7 +207,7 @@ fn beside(
     Ok(())
 }
 
-/// Returns the number of pixels of a texture; fails if the texture uses few pixels of the exemplar.
+/// Returns the number of pixels of a texture. Fails if the texture uses too few pixels of the exemplar.
 fn count_plane(texture: &PlaneTexture) -> Result<usize> {
     let mut sources = texture.sources().pixels().to_vec();
     let n_pixels = sources.len();

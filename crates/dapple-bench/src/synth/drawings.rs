@@ -1,6 +1,7 @@
-//! Drawn exemplars, which need no files: of the same kinds as the exemplars of the paper, in short code.
+//! Draws exemplars in short code, so that no files are needed. They are of the same kinds as the paper's exemplars.
 //!
-//! All of them repeat. Positions go from 0 to 1 along both axes, v down. Colors are sRGB codes from 0 to 255.
+//! All of them tile. Positions range from 0 to 1 along both axes, with v pointing down. Colors are sRGB codes from 0
+//! to 255.
 
 use crate::sets::SEED;
 use anyhow::Result;
@@ -9,13 +10,13 @@ use dapple_hash::{hash2, unit_f64};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// Number of samples along the side of a pixel.
+/// Number of samples along each side of a pixel.
 const N_SAMPLES: u32 = 4;
 
-/// A drawing: the color at a position.
+/// A drawing: a function that returns the color at a position.
 pub(super) type Drawing = fn(DVec2) -> [f64; 3];
 
-/// Draws a square image, rounded to the codes of a file.
+/// Draws a square image, rounded to 8-bit sRGB codes.
 pub(super) fn draw(drawing: Drawing, side: u32) -> Result<Raster<LinearRgb>> {
     let n_samples = side * N_SAMPLES;
     let place = |index: u32| (f64::from(index) + 0.5) / f64::from(n_samples);
@@ -33,7 +34,7 @@ pub(super) fn draw(drawing: Drawing, side: u32) -> Result<Raster<LinearRgb>> {
     })?)
 }
 
-/// A checkerboard with slightly wavy lines.
+/// Draws a checkerboard with slightly wavy lines.
 pub(super) fn checker(at: DVec2) -> [f64; 3] {
     let sway = DVec2::new(wave(5.0 * at.y + at.x), wave(5.0 * at.x - at.y + 0.3));
     let square = ((at + 0.013 * sway) * 6.0).floor();
@@ -44,7 +45,7 @@ pub(super) fn checker(at: DVec2) -> [f64; 3] {
     }
 }
 
-/// Pale cups with a rim on a red skin.
+/// Draws pale suction cups with rims on red skin.
 pub(super) fn suckers(at: DVec2) -> [f64; 3] {
     let near = nearest(at, 4, 0.5);
     let part = near.distance / (0.3 + 0.15 * roll(near.cell, 3));
@@ -55,7 +56,7 @@ pub(super) fn suckers(at: DVec2) -> [f64; 3] {
     }
 }
 
-/// Rows of round scales, each over the one below it.
+/// Draws rows of round scales, each overlapping the row below it.
 pub(super) fn scales(at: DVec2) -> [f64; 3] {
     let [across, down] = [8.0, 12.0];
     // Upper rows lie on top of lower ones: the first row whose scale reaches this far down is visible.
@@ -75,7 +76,7 @@ pub(super) fn scales(at: DVec2) -> [f64; 3] {
     [25.0, 40.0, 25.0]
 }
 
-/// Strands woven over and under each other.
+/// Draws strands woven over and under each other.
 pub(super) fn weave(at: DVec2) -> [f64; 3] {
     let scaled = at * 8.0;
     let cell = scaled.floor();
@@ -100,7 +101,7 @@ pub(super) fn weave(at: DVec2) -> [f64; 3] {
     color.map(|code| code * shade)
 }
 
-/// Lines of illegible letters.
+/// Draws lines of illegible letters.
 pub(super) fn text(at: DVec2) -> [f64; 3] {
     let scaled = at * DVec2::new(22.0, 14.0);
     let letter = scaled.floor();
@@ -108,7 +109,7 @@ pub(super) fn text(at: DVec2) -> [f64; 3] {
         (letter.x as i64).rem_euclid(22),
         (letter.y as i64).rem_euclid(14),
     ];
-    // A letter has a grid of three by five places, with a gap to the right and below.
+    // A letter is drawn on a grid of three by five squares, with a gap to the right and below.
     let place = ((scaled - letter) * DVec2::new(4.0, 6.0)).floor();
     let inside = place.x < 3.0 && place.y < 5.0;
     // There are 24 letters; about one cell in six is a space.
@@ -121,7 +122,7 @@ pub(super) fn text(at: DVec2) -> [f64; 3] {
     }
 }
 
-/// Pieces of several colors with dark seams.
+/// Draws puzzle pieces in several colors with dark seams.
 pub(super) fn puzzle(at: DVec2) -> [f64; 3] {
     let sway = DVec2::new(wave(7.0 * at.y), wave(6.0 * at.x));
     let near = nearest(at + 0.012 * sway, 5, 0.9);
@@ -136,7 +137,7 @@ pub(super) fn puzzle(at: DVec2) -> [f64; 3] {
     color.map(|code| code * (0.85 + 0.3 * near.gap.min(0.5)))
 }
 
-/// A wall of bricks in running bond, each with its own color and some roughness.
+/// Draws a brick wall in running bond; each brick has its own color and some roughness.
 #[cfg(feature = "peers")]
 pub(super) fn bricks(at: DVec2) -> [f64; 3] {
     let scaled = at * DVec2::new(4.0, 8.0);
@@ -154,17 +155,17 @@ pub(super) fn bricks(at: DVec2) -> [f64; 3] {
     color.map(|code| code * light)
 }
 
-/// The nearest of a set of jittered points to a position.
+/// The jittered point nearest to a position.
 struct Nearest {
-    /// Cell of the point, the same in every copy of the image.
+    /// Cell that contains the point, the same in every copy of the image.
     cell: [i64; 2],
     /// Distance to the point, in cells.
     distance: f64,
-    /// Distance to the second nearest point minus that to the nearest, in cells.
+    /// Distance to the second nearest point minus the distance to the nearest one, in cells.
     gap: f64,
 }
 
-/// Returns the nearest of `n` times `n` points, each displaced by up to `jitter` from the center of its cell.
+/// Returns the nearest of `n`×`n` points, each displaced by up to `jitter` from the center of its cell.
 fn nearest(at: DVec2, n: i64, jitter: f64) -> Nearest {
     let scaled = at * n as f64;
     let mut found: [(f64, [i64; 2]); 2] = [(f64::INFINITY, [0; 2]); 2];
@@ -189,12 +190,12 @@ fn nearest(at: DVec2, n: i64, jitter: f64) -> Nearest {
     }
 }
 
-/// Returns a random number from 0 to 1 for a cell.
+/// Returns a random number from 0 to 1 for `cell`; each `index` gives a different one.
 fn roll(cell: [i64; 2], index: u32) -> f64 {
     unit_f64(hash2(SEED.child("bench drawings", 0), cell, index))
 }
 
-/// One period of a wave from -1 to 1, made of two parabolas.
+/// Returns one period of a wave from -1 to 1, built from two parabolas.
 fn wave(at: f64) -> f64 {
     let part = at - at.floor();
     if part < 0.5 {
@@ -204,7 +205,7 @@ fn wave(at: f64) -> f64 {
     }
 }
 
-/// Mixes two colors.
+/// Interpolates linearly from `a` to `b`; `part` is the weight of `b`.
 fn mix(a: [f64; 3], b: [f64; 3], part: f64) -> [f64; 3] {
     let part = part.clamp(0.0, 1.0);
     [0, 1, 2].map(|channel| a[channel] + (b[channel] - a[channel]) * part)

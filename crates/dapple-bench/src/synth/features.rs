@@ -1,9 +1,9 @@
 //! Further features of `texture-synthesis` compared with ours: several exemplars, guides, rotated exemplars, tiles and
 //! repairs.
 //!
-//! Exemplars are drawings of 128² pixels, and images have 192² pixels, except for the repair, whose image has the size
-//! of its exemplar. Both sides use their defaults and run on one thread. Times are medians of processor times; ours
-//! include all preparation.
+//! Exemplars are drawings of 128×128 pixels, and images have 192×192 pixels, except for the repair, whose image is
+//! the same size as its exemplar. Both sides use their defaults and run on one thread. Times are medians of processor
+//! times; ours include all setup.
 
 use super::drawings::{bricks, draw, scales};
 use crate::harness::{Bench, median};
@@ -53,7 +53,7 @@ const REPAIR: Case = Case {
 const EXEMPLAR: u32 = 128;
 const SIDE: u32 = 192;
 
-/// Number of turns of each row.
+/// Number of turns per row.
 const TURNS: usize = 3;
 
 /// Function that a row measures on our side and on the peer's.
@@ -116,7 +116,7 @@ impl Inputs {
     }
 }
 
-/// Makes an endless texture from images side by side.
+/// Synthesizes an endless texture from adjacent exemplars.
 fn of_layout(layout: &SideBySide, images: &[&Raster<LinearRgb>]) -> Result<Raster<LinearRgb>> {
     let joined = layout.join(images, LinearRgb::default())?;
     let exemplar = Exemplar::new(&joined, Edges::Cut)?.with_mask(&layout.mask()?)?;

@@ -1,5 +1,5 @@
-//! Atlases of large meshes, each with the synthesis and the bake: charts compared with triangles by area, and loose
-//! squares with the default options compared with the synthesis of the paper.
+//! Atlases of large meshes, timed together with the synthesis and the bake. Charts are compared with triangles laid
+//! out by area, and loose squares with the default options are compared with the paper's synthesis.
 
 use super::scene::{Picture, leaves};
 use crate::harness::Bench;
@@ -37,10 +37,10 @@ const SQUARES: u32 = 82;
 /// Width and height of the texture map in texels.
 const MAP_SIDE: u32 = 2048;
 
-/// Number of runs of each side. The fastest one counts.
+/// Number of runs of each side; the fastest one counts.
 const RUNS: u32 = 2;
 
-/// Function that lays out a texture map with a given side in texels.
+/// Function that lays out an atlas whose side is given in texels.
 type Layout = fn(&Surface, u32) -> Result<Atlas, SynthError>;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -53,7 +53,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// Charts compared with triangles by area.
+/// Measures charts compared with triangles laid out by area.
 fn charts(bench: &mut Bench) -> Result<()> {
     let (mesh, _) = bunny(100_000)?.repair();
     let down = Direction {
@@ -75,7 +75,7 @@ fn charts(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// Loose squares with the default options compared with those of the paper.
+/// Measures loose squares with the default options compared with the paper's options.
 fn loose(bench: &mut Bench) -> Result<()> {
     let mesh = loose_squares()?;
     let picture = leaves(64)?;
@@ -96,7 +96,7 @@ fn loose(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// Returns the surface of a cube as squares that share no vertex.
+/// Returns the surface of a cube as a mesh of squares that share no vertices.
 fn loose_squares() -> Result<Mesh> {
     let mut positions = Vec::new();
     let mut faces = Vec::new();
@@ -124,7 +124,7 @@ fn loose_squares() -> Result<Mesh> {
     Ok(Mesh::new(positions, &faces)?)
 }
 
-/// Synthesizes a texture from an exemplar on a mesh and bakes it.
+/// Synthesizes a texture from an exemplar on a mesh, and bakes it into a texture map.
 fn baked(
     mesh: &Mesh,
     picture: &Picture,

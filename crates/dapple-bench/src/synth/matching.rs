@@ -1,7 +1,8 @@
 //! The matcher on recorded neighborhoods, compared with an exhaustive search and with a k-d tree.
 //!
-//! The queries are the neighborhoods of the last pass, F(7,0) and F(3,1), on a tile of 320×320 pixels made by all
-//! earlier passes: 102,400 queries of 171 numbers each. Exemplars of 64² and 256² pixels have 3364 and 62,500
+//! The queries are the neighborhoods of the last pass, F(7,0) and F(3,1), on a tile of 320×320 pixels synthesized by
+//! all earlier passes: 102,400 queries of 171 numbers each. Exemplars of 64×64 and 256×256 pixels have 3364 and
+//! 62,500
 //! candidates.
 //!
 //! Confirmed: every query finds the same row as brute force with the same distance function; ties go to the lower
@@ -37,12 +38,12 @@ const PLAIN_LARGE: Case = Case {
     ..PLAIN_SMALL
 };
 
-/// An exemplar size, and the timing of the queries.
+/// An exemplar size, and how many queries are timed.
 struct Setting {
     /// Width and height of the exemplar in pixels.
     side: u32,
     plain: Case,
-    /// Strides of the timed queries: for our side, for a peer, and for the plain loop.
+    /// Query strides for our side, for a peer, and for the plain loop: every n-th query is timed.
     timed: [usize; 3],
 }
 
@@ -62,7 +63,7 @@ const SETTINGS: [Setting; 2] = [
 /// Width and height in pixels of the tile whose neighborhoods are the queries.
 const TILE: u32 = 320;
 
-/// Number of queries that are compared with a block of rows while it is in the cache.
+/// Number of queries compared with a block of rows while the block is in the cache.
 const CONFIRMED_AT_ONCE: usize = 512;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -118,7 +119,7 @@ struct Found {
 }
 
 impl Recorded {
-    /// Makes a tile by all passes except the last, and reads its neighborhoods.
+    /// Synthesizes a tile by all passes except the last, and reads its neighborhoods.
     fn new(picture: &Picture) -> Result<Self> {
         let exemplar = picture.exemplar()?;
         let mut passes = Schedule::paper(3).passes;
@@ -147,7 +148,7 @@ impl Recorded {
         self.queries.chunks_exact(self.dims).step_by(every)
     }
 
-    /// Returns our side, which matches every `every`-th query.
+    /// Returns our side as a [`Side`] that matches every `every`-th query.
     fn ours(&self, every: usize) -> Side<'_, Found> {
         Side::new(Found::default(), move |state: &mut Found| {
             state.found.clear();
@@ -162,7 +163,7 @@ impl Recorded {
         })
     }
 
-    /// Returns the nearest row by comparing all rows term by term.
+    /// Returns the nearest row, found by comparing all rows term by term.
     fn plain_loop(&self, query: &[f32]) -> u32 {
         let (mut least, mut nearest) = (f32::INFINITY, 0);
         for (index, row) in self.rows.chunks_exact(self.dims).enumerate() {
@@ -177,7 +178,8 @@ impl Recorded {
         nearest
     }
 
-    /// Fails if a query finds a different row from brute force, which returns the first of the nearest rows.
+    /// Fails if the matcher's row for any query differs from the brute-force result, which is the first of the
+    /// nearest rows.
     fn confirm(&self) -> Result<()> {
         let brute_force = BruteForce::new(self.dims, &self.rows);
         let queries: Vec<&[f32]> = self.queries(1).collect();
@@ -202,8 +204,8 @@ impl Recorded {
         Ok(())
     }
 
-    /// Returns the numbers of queries of both sides, where every `ours`-th and `theirs`-th was searched. Fails if the
-    /// rows of the other side are not as near as ours.
+    /// Returns the number of queries that each side searched, where our side searched every `ours`-th and the other
+    /// side every `theirs`-th query. Fails if the other side's rows are not as near as ours.
     fn done(&self, [ours, theirs]: [usize; 2], found: &[u32], others: &[u32]) -> Result<Done> {
         let row = |row: u32| &self.rows[row as usize * self.dims..][..self.dims];
         let compared = found.iter().step_by(theirs / ours).zip(others);
@@ -219,7 +221,7 @@ impl Recorded {
     }
 }
 
-/// Returns the length of a neighborhood, and the concatenated neighborhoods of an image that a pass compares.
+/// Returns the length of a neighborhood, and the concatenated neighborhoods of `image` that `pass` compares.
 fn neighborhoods(image: &Exemplar, pass: &Pass) -> Result<(usize, Vec<f32>)> {
     let candidates = Candidates::new(&image.pyramid(2)?, pass, CoarserCenter::Exact)?;
     let rows = (0..candidates.len()).flat_map(|row| candidates.row(row).iter().copied());

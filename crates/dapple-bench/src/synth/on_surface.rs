@@ -34,10 +34,11 @@ const JUMPS: Case = Case {
     ..ORIENTATION
 };
 
-/// Distance from an edge at which colors are compared, in spacings.
+/// Distance from an edge at which colors are compared, in multiples of the site spacing.
 const ASIDE: f64 = 0.01;
 
-/// Rounding error of colors: sums of about five `f32` from 0 to 1, each rounded by up to 2^-24 a few times.
+/// Rounding error of colors, which are sums of about five `f32` values from 0 to 1, each rounded by up to 2^-24 a few
+/// times.
 const ROUNDING: f64 = 1e-6;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -65,7 +66,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// Makes vertical stripes, seven in 56 pixels: the texture changes only along P.
+/// Builds an exemplar with seven vertical stripes in 56 pixels: the texture changes only along P.
 fn stripes() -> Result<Exemplar> {
     let image = Raster::from_fn([56, 56], |x, _| {
         let turns = f64::from(x % 8) / 8.0;
@@ -127,7 +128,7 @@ impl Striped<'_> {
         (0.5 * libm::atan2(2.0 * xy, xx - yy)).abs().to_degrees()
     }
 
-    /// Returns the difference of codes at the edge where it is largest relative to its bound, together with that
+    /// Returns the difference in sRGB codes at the edge where it is largest relative to its bound, together with that
     /// bound.
     fn largest_jump(&self) -> Result<[f64; 2]> {
         let surface = self.synthesizer.surface();
@@ -148,7 +149,7 @@ impl Striped<'_> {
         Ok(largest)
     }
 
-    /// Returns the difference of codes between the two sides of an edge, and its bound.
+    /// Returns the difference in sRGB codes between the two sides of an edge, and its bound.
     fn jump(&self, here: FaceEdge, there: FaceIdx) -> Result<[f64; 2]> {
         let (surface, hierarchy) = (self.synthesizer.surface(), self.synthesizer.hierarchy());
         let corners = surface.mesh().corners(here.face);
@@ -168,7 +169,8 @@ impl Striped<'_> {
         Ok([(color - other).abs(), self.bound([here, there], color)])
     }
 
-    /// Returns a bound of the change of a mean between two positions, given that the mean is `color` at one of them.
+    /// Returns a bound for how much a mean changes between two positions, given that the mean is `color` at one of
+    /// them.
     fn bound(&self, [here, there]: [DVec3; 2], color: f64) -> f64 {
         let hierarchy = self.synthesizer.hierarchy();
         let (sites, level) = (hierarchy.sites(), &hierarchy.levels()[0]);

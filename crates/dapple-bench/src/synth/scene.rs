@@ -1,4 +1,4 @@
-//! Inputs of the group: a model, photographs or drawings of the same kind, and common options.
+//! Inputs of the synth group: a model, photographs or drawings of the same kind, and common options.
 
 use super::drawings::{self, Drawing, draw};
 use anyhow::{Result, ensure};
@@ -19,25 +19,25 @@ use std::path::PathBuf;
 /// Width and height of flat images in pixels.
 pub(super) const SIDE: u32 = 512;
 
-/// Number of sites in most rows: the number of pixels of the flat image.
+/// Number of sites in most rows, equal to the number of pixels of the flat image.
 pub(super) const N_SITES: usize = 512 * 512;
 
-/// The file of a model in memory.
+/// A model's file in memory.
 pub(super) struct Model {
     pub(super) obj: Vec<u8>,
     pub(super) directions: Vec<Direction>,
-    /// Note that says which model it is.
+    /// Note that says which model was used.
     pub(super) note: &'static str,
 }
 
-/// The image of an exemplar.
+/// An exemplar image.
 pub(super) struct Picture {
     pub(super) image: Raster<LinearRgb>,
-    /// Whether the image is the photograph rather than the drawing.
+    /// Whether the image is the photograph (true) or the drawing that replaces it.
     pub(super) is_photograph: bool,
 }
 
-/// Makes a window of an endless texture, including its preparation.
+/// Synthesizes a window of an endless texture, including its setup.
 pub(super) fn endless(exemplar: &Exemplar) -> Result<PlaneTexture, SynthError> {
     let texture = Endless::new(exemplar, &EndlessOptions::default())?;
     texture.window([0; 2], [SIDE; 2], |_| ControlFlow::Continue(()))
@@ -110,7 +110,7 @@ pub(super) fn picture(file: &str, drawing: Drawing, side: u32) -> Result<Picture
 }
 
 impl Picture {
-    /// Returns the exemplar for matching. It does not continue past its edges.
+    /// Returns the exemplar for matching. Its image is not continued past its edges.
     pub(super) fn exemplar(&self) -> Result<Exemplar> {
         Ok(Exemplar::new(&self.image, Edges::Cut)?)
     }
@@ -125,7 +125,7 @@ impl Picture {
     }
 }
 
-/// Returns the options of the paper's exact search: colors are compared, and the minimum distance wins.
+/// Returns options for the paper's exact search, which compares colors and takes the minimum distance.
 pub(super) fn exact(n_levels: usize) -> Options {
     Options {
         n_levels,
@@ -136,7 +136,7 @@ pub(super) fn exact(n_levels: usize) -> Options {
     }
 }
 
-/// Returns the sites of a model, with their directions and their order.
+/// Returns a synthesizer for the model, with its sites, their directions and their order.
 pub(super) fn synthesizer(model: &Model, n_sites: usize, n_levels: usize) -> Result<Synthesizer> {
     let surface = Surface::new(super::whole::read_obj(&model.obj)?)?;
     let sites = HierarchyOptions {
@@ -147,8 +147,8 @@ pub(super) fn synthesizer(model: &Model, n_sites: usize, n_levels: usize) -> Res
     Ok(Synthesizer::new(surface, &model.directions, &sites)?)
 }
 
-/// Returns the number of sites of a texture. Fails if a site has no color, or if the texture uses few pixels of the
-/// exemplar.
+/// Returns the number of sites of a texture. Fails if a site has no color, or if the texture uses too few pixels of
+/// the exemplar.
 pub(super) fn count(texture: &SurfaceTexture) -> Result<usize> {
     let mut sources: Vec<[u32; 2]> = texture.sources(0).collect();
     let n_sites = sources.len();

@@ -1,4 +1,4 @@
-//! Time and memory of whole programs with four times as many sites.
+//! Measures time and memory of whole programs, for one size and for four times as many sites.
 //!
 //! Each size runs in a separate process on one thread: this program with the hidden argument `--synthesize`. Linux
 //! reports the peak memory of a process in a file; on other systems that row is omitted.
@@ -32,7 +32,7 @@ const MEMORY: Case = Case {
 
 /// Measurements of one process.
 struct Took {
-    /// Processor time of the setup, in seconds.
+    /// Setup time, in seconds of processor time.
     setup: f64,
     synthesis: f64,
     /// Peak memory in bytes; 0 if it is unknown.
@@ -95,7 +95,7 @@ fn in_process(n_sites: usize) -> Result<Took> {
     })
 }
 
-/// Synthesizes a texture with `n_sites` sites. Prints the seconds of its setup and of its synthesis, and the peak
+/// Synthesizes a texture with `n_sites` sites. Prints the setup time and the synthesis time in seconds, and the peak
 /// memory.
 pub(crate) fn synthesize_here(n_sites: usize) -> Result<()> {
     let one = ThreadPoolBuilder::new().num_threads(1).build()?;
@@ -124,7 +124,7 @@ fn most_memory() -> Option<f64> {
     high_water(&text)
 }
 
-/// Returns the `VmHWM` in the text of `/proc/self/status`, in bytes.
+/// Returns the `VmHWM` value in the text of `/proc/self/status`, in bytes.
 fn high_water(status: &str) -> Option<f64> {
     let line = status
         .lines()

@@ -1,4 +1,4 @@
-//! Single steps whose times the paper reports.
+//! Measures single steps whose times the paper reports.
 
 use super::table_1::TORI;
 use crate::harness::Bench;
@@ -21,7 +21,7 @@ const SWEEP: Case = Case {
     ..FIELD
 };
 
-/// Number of runs of each step. The fastest one counts.
+/// Number of runs of each step; the fastest one counts.
 const RUNS: u32 = 3;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {

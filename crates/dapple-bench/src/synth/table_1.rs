@@ -1,8 +1,8 @@
 //! Table 1 of Turk's paper: our times compared with its times in minutes, for models and exemplars of the same sizes.
 //!
-//! `cargo xtask bench "table 1"` makes it. Our time is the wall time of the synthesis on two threads with an exact
-//! search, the smaller of two runs. The note has the time of the setup (points, graph, directions and sweep), since
-//! the paper does not say whether its times include it. The models come from `dapple_models`, and the exemplars are
+//! `cargo xtask bench "table 1"` measures it. Our time is the wall time of the synthesis on two threads with an exact
+//! search, the smaller of two runs. The note states the setup time (points, graph, directions and sweep), since the
+//! paper does not say whether its times include it. The models come from `dapple_models`, and the exemplars are
 //! drawn.
 
 use super::drawings::{self, Drawing, draw};
@@ -89,7 +89,7 @@ const BUNNY: Row = Row {
     ..OCTOPUS
 };
 
-/// Row whose model the rows of single steps also use.
+/// Row whose model is also used by the rows for single steps.
 pub(super) const TORI: Row = Row {
     case: Case {
         case: "table 1: tori, 256,000 sites, 4 levels, 64² exemplar",
@@ -143,7 +143,7 @@ const ELEPHANT: Row = Row {
     ..TORI
 };
 
-/// Number of triangles of a model. The paper has 10,000 to 20,000.
+/// Number of triangles of each model. The paper's models have 10,000 to 20,000.
 const N_TRIANGLES: usize = 14_000;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -161,7 +161,7 @@ impl Row {
         Ok(Surface::new((self.model)(N_TRIANGLES)?)?)
     }
 
-    /// Returns the options of the sites.
+    /// Returns the options for placing the sites.
     pub(super) fn sites(&self) -> HierarchyOptions {
         HierarchyOptions {
             n_sites: self.n_sites,
@@ -170,7 +170,7 @@ impl Row {
         }
     }
 
-    /// Returns the directions of the texture.
+    /// Returns the directions that the texture follows.
     pub(super) fn directions(&self) -> Vec<Direction> {
         let directions = self.directions.iter();
         directions

@@ -1,4 +1,4 @@
-//! The synthesis on two threads compared with one.
+//! Synthesis on two threads compared with one thread.
 
 use super::scene::{N_SITES, endless, exact, leaves, model, synthesizer};
 use super::whole;
@@ -28,7 +28,7 @@ const ENDLESS: Case = Case {
     ..SYNTHESIS
 };
 
-/// Time spent on a row, unless three turns take longer.
+/// Time spent on a row; exceeded if three turns take longer.
 const BUDGET: Duration = Duration::from_secs(20);
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {

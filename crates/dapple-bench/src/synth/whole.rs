@@ -1,4 +1,4 @@
-//! A whole run, from an OBJ file in memory to a GLB file with a texture map.
+//! Measures a whole run, from an OBJ file in memory to a GLB file with a texture map.
 
 use super::scene::{self, Model, N_SITES};
 use anyhow::Result;
@@ -15,7 +15,7 @@ const MAP_SIDE: u32 = 2048;
 pub(super) struct Written {
     /// GLB file with the texture map.
     pub(super) glb: Vec<u8>,
-    /// Fraction of the map that is covered by faces.
+    /// Fraction of the texture map that is covered by faces.
     pub(super) coverage: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Our filters compared with a plain convolution and with other sizes: rows that need no other crate.
+//! Our filters compared with a plain convolution, and at other raster sizes. These rows need no other crate.
 
 use super::straight::Straight;
 use super::{SIDE, confirm_equal, down_and_up, white_noise};
@@ -23,7 +23,7 @@ const SIZE: Case = Case {
     ..STRAIGHT
 };
 
-/// Sizes between the smallest and the largest one, whose cost is measured relative to the smallest.
+/// Raster sizes, in ascending order, whose cost is measured relative to the smallest.
 const SIZES: [(u32, Case); 3] = [
     (
         1024,

@@ -1,4 +1,4 @@
-//! A plain convolution for halving and doubling: 32 taps, applied one at a time, in `f32`.
+//! Halves and doubles rasters by plain convolution: 32 taps, applied one at a time, in `f32`.
 //!
 //! The taps are the first 16 of the exact filter on either side; the rest sums to less than 1e-3. The code is simple,
 //! but not deliberately slow: rows are split into even and odd pixels with a margin, so that no index wraps in a loop.
@@ -7,12 +7,12 @@
 /// Number of taps on either side.
 const HALF: usize = 16;
 
-/// Filter pair with its buffers.
+/// A filter pair with its buffers.
 #[derive(Clone, Debug)]
 pub(crate) struct Straight {
     side: usize,
-    /// Tap `a` of pixels `k + 1` and `-k`, for `k` from 0: the filter is symmetric about the midpoint between two
-    /// pixels.
+    /// The tap `a` shared by pixels `k + 1` and `-k`, for `k` from 0. The filter is symmetric about the midpoint
+    /// between two pixels.
     taps: [f32; HALF],
     even: Vec<f32>,
     odd: Vec<f32>,
@@ -25,7 +25,7 @@ pub(crate) struct Straight {
 }
 
 impl Straight {
-    /// Returns the filters for a square raster.
+    /// Returns the filters for a raster of `side`×`side` pixels.
     pub(crate) fn new(side: usize) -> Self {
         let half = side / 2;
         Self {

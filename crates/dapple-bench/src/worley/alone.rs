@@ -33,10 +33,11 @@ const TWO_THREADS: Case = Case {
     ..MANHATTAN
 };
 
-/// Width and height of the image on two threads: large enough for a job of at least 100 ms.
+/// Width and height, in pixels, of the image for two threads: large enough for a job of at least 100 ms.
 const TWO_THREADS_SIDE: u32 = 8192;
 
-/// F2 − F1 for the Manhattan metric. Its disks have the area 2r² instead of πr², so distances are √(π/2) times as long.
+/// F2 − F1 with the Manhattan metric. Its disks have the area 2r² instead of πr², so distances are √(π/2) times as
+/// long.
 const MANHATTAN_F2_MINUS_F1: Known = Known {
     mean: 0.182,
     ..F2_MINUS_F1

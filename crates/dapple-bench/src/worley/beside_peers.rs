@@ -69,7 +69,7 @@ const BESIDE_SIMPLEX_IN_SPACE: Case = Case {
     ..BESIDE_SIMPLEX
 };
 
-/// Number of turns of a row.
+/// Number of turns per row.
 const TURNS: u32 = 25;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -91,17 +91,17 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     )
 }
 
-/// A peer that makes grids with `N` axes, and its known properties.
+/// A peer that computes grids with `N` axes, and its known properties.
 struct Peer<const N: usize> {
-    /// Makes the grid. The arguments are its size in pixels and the number of cells per pixel.
+    /// Computes the grid. The arguments are its size in pixels and the number of cells per pixel.
     make: fn([usize; N], f32) -> noise::Grid,
-    /// Range of its values.
+    /// Range of the grid's values.
     range: RangeInclusive<f32>,
-    /// Lower bound of the difference between the maximum and the minimum value.
+    /// Minimum difference between the largest and the smallest value.
     spread: f32,
 }
 
-/// Cellular F1: a position is less than 0.45 + 0.71 from its nearest feature point.
+/// Cellular F1: a position is less than 0.45 + 0.71 away from its nearest feature point.
 const CELLULAR_F1: Peer<2> = Peer {
     make: noise::simdnoise_f1,
     range: 0.0..=1.4,

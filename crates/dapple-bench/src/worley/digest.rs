@@ -1,4 +1,4 @@
-//! A hash of rasters. The program `worley_raster` and this one compare their results with it.
+//! Hashes rasters, so that this program can compare its results with those of the program `worley_raster`.
 
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 

@@ -1,4 +1,4 @@
-//! The distance to the edges of cells compared with F2 − F1, which is often used in its place.
+//! The distance to cell edges compared with F2 − F1, which is often used instead.
 
 use super::{F2_MINUS_F1, Grid, PLANE};
 use crate::harness::{Bench, Done, Side};
@@ -27,7 +27,7 @@ const AT_256: Case = Case {
     ..AT_64
 };
 
-/// Number of turns of a row.
+/// Number of turns per row.
 const TURNS: u32 = 31;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -46,7 +46,7 @@ fn row(bench: &mut Bench, case: &Case, px_per_cell: u32) -> Result<()> {
             .expect("the image has the window's size");
     });
     bench.beside(case, TURNS, ours, grid.side()?, |image, _| {
-        // The stride is a prime, so that the pixels have all positions in a block.
+        // The stride is a prime, so that the checked pixels cover all positions within a block.
         for index in (0..grid.n_pixels() as u32).step_by(1009) {
             let (column, row) = (index % PLANE[0], index / PLANE[0]);
             let expected = worley.edge_distance(grid.window.position(column, row));

@@ -1,6 +1,6 @@
-//! All data of the four nearest points compared with the distances to two of them.
+//! All data of the four nearest points compared with only the distances to two of them.
 //!
-//! The band is small enough to stay in the cache, so that the search is measured and not the memory.
+//! The band is small enough to stay in the cache, so that the row measures the search, not memory access.
 
 use crate::harness::{Bench, Done, Side};
 use crate::row::{Case, Goal, Unit};
@@ -20,17 +20,17 @@ const FOUR: Case = Case {
            beside 8",
 };
 
-/// Width and height of the band in pixels: 640 KiB for all data of the four nearest points.
+/// Width and height of the band in pixels. All data of the four nearest points takes 640 KiB.
 const BAND: [u32; 2] = [256, 32];
 
 /// Pixels per unit cell along each axis.
 const PX_PER_CELL: f64 = 64.0;
 
-/// Number of turns of the row, and number of runs of each side in a turn.
+/// Number of turns of the row, and number of runs per side in each turn.
 const TURNS: u32 = 101;
 const RUNS: u32 = 5;
 
-/// Data of one of the nearest points at all pixels of the band.
+/// Data of one of the nearest points, at every pixel of the band.
 struct Nearest {
     distance: Raster<f32>,
     vector: Raster<[f32; 2]>,

@@ -1,7 +1,7 @@
 //! Our evaluation at scattered positions, many at once or one at a time, compared with the fastest functions of other
 //! crates for one position.
 //!
-//! The positions lie anywhere in 1000×1000 or 1000×1000×1000 cells, in random order, so that consecutive positions do
+//! The positions are spread over 1000×1000 or 1000×1000×1000 cells, in random order, so that consecutive positions do
 //! not share a cell. Both sides get the same positions, the peer in single precision.
 
 use crate::harness::{Bench, Done, Side};
@@ -72,12 +72,12 @@ const N_POSITIONS: usize = 1 << 16;
 /// Number of cells along each axis.
 const N_CELLS: f64 = 1000.0;
 
-/// Number of turns of a row.
+/// Number of turns per row.
 const TURNS: u32 = 41;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
     let (plane, space) = (noise::noise_functions_f1_2, noise::noise_functions_f1_3);
-    // Means of F1: known for three points per cell, and measured for one with a plain loop over the neighbors.
+    // Mean F1: known for three points per cell, and measured for one with a plain loop over the neighbors.
     poisson::<2>(bench, &F1_AND_F2, 0.282, plane)?;
     poisson::<3>(bench, &F1_AND_F2_IN_SPACE, 0.381, space)?;
     jittered::<2>(bench, &JITTERED, 0.430, plane)?;
@@ -88,7 +88,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     one_by_one::<3, 2>(bench, &ONE_POSITION_F2_IN_SPACE, 0.519, space)
 }
 
-/// A function of a peer that fills in values at positions.
+/// A peer's function that fills in values at the given positions.
 type Fill<const N: usize> = fn(&[[f32; N]], &mut [f32]);
 
 fn poisson<const N: usize>(bench: &mut Bench, case: &Case, mean: f64, fill: Fill<N>) -> Result<()>
@@ -133,7 +133,7 @@ where
     });
     bench.beside(case, TURNS, ours, theirs, |features, values| {
         confirm(worley, mean, &positions, features)?;
-        // F1 up to 1.5, mapped as the peer maps [0, 1] to [−1, 1].
+        // F1 is at most 1.5, and the peer maps [0, 1] to [−1, 1].
         ensure!(
             values.iter().all(|value| (-1.0..=2.0).contains(value)),
             "a value of the peer is not in its range"
@@ -146,7 +146,7 @@ where
     })
 }
 
-/// Measures the distances one position at a time.
+/// Measures the distances, evaluated one position at a time.
 fn one_by_one<const N: usize, const K: usize>(
     bench: &mut Bench,
     case: &Case,
@@ -175,7 +175,7 @@ where
     bench.beside(case, TURNS, ours, theirs, |ours, theirs| {
         let sum: f64 = ours.iter().map(|found| f64::from(found[0])).sum();
         let found = sum / ours.len() as f64;
-        // A hundredth is six standard deviations of the mean of this number of positions.
+        // A hundredth is six standard deviations of the mean over this number of positions.
         ensure!(
             (found / mean - 1.0).abs() <= 0.01,
             "the mean of F1 is {found}, not {mean}"
@@ -210,7 +210,7 @@ where
         .map(|found| f64::from(found[0].distance))
         .sum();
     let found = sum / features.len() as f64;
-    // A hundredth is six standard deviations of the mean of this number of positions.
+    // A hundredth is six standard deviations of the mean over this number of positions.
     ensure!(
         (found / mean - 1.0).abs() <= 0.01,
         "a mean F1 of {found} is not known, {mean} is"

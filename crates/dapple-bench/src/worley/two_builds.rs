@@ -1,9 +1,9 @@
 //! A build for any processor, which selects its instructions at run time, compared with a build for the current
 //! processor.
 //!
-//! Both are builds of the program `worley_raster`, each in its own target directory under `target/`. They run in turns
-//! as child processes, which print the processor time of every run; the row has the medians of all runs. Confirmed:
-//! the bits equal a raster rendered in this process. The first build of both takes a few minutes.
+//! Both are builds of the program `worley_raster`, each in its own target directory under `target/`. They run in
+//! turns as child processes, which print the processor time of every run; the row reports the medians of all runs.
+//! Confirmed: the bits equal a raster rendered in this process. The first build of both takes a few minutes.
 
 use super::digest::digest;
 use super::{F2_MINUS_F1, Grid, PLANE};
@@ -29,10 +29,10 @@ const DEFAULT_4: Case = Case {
     ..DEFAULT_64
 };
 
-/// Number of turns of a row.
+/// Number of turns per row.
 const TURNS: u32 = 9;
 
-/// Number of runs of each program in a turn.
+/// Number of runs of each program per turn.
 const RUNS: u32 = 25;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {

@@ -1,4 +1,4 @@
-//! Our matcher compared with `kiddo`, with the better of two numbers of directions.
+//! Our matcher compared with `kiddo`, using the faster of two numbers of directions.
 
 use super::{PLAIN_SMALL, Recorded, Setting};
 use crate::harness::{Bench, Side};

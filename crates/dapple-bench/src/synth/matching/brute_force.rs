@@ -1,4 +1,4 @@
-//! Check of nearest rows: every row is compared with every query, independently of the matcher.
+//! Verifies nearest rows: every row is compared with every query, independently of the matcher.
 //!
 //! A row is rejected as soon as its partial sum exceeds the total distance of the row found. The few remaining rows
 //! are compared by `distance_sq` itself. Sixteen rows at a time are compared term by term, so that the compiler uses
@@ -6,10 +6,10 @@
 
 use dapple_synth::distance_sq;
 
-/// Number of rows that are compared at once.
+/// Number of rows compared at once.
 const LANES: usize = 16;
 
-/// Number of groups of rows in a block: 176 KB for rows of 171 numbers.
+/// Number of row groups in a block: 176 KB for rows of 171 numbers.
 const BLOCK: usize = 16;
 
 /// Number of partial sums; rows can be rejected after each of them.
@@ -19,13 +19,13 @@ const PARTS: usize = 16;
 /// most 1003 times by 2^-24.
 const MARGIN: f32 = 1.0 - 1.3e-4;
 
-/// Rows to compare with.
+/// The rows, arranged for comparison in groups.
 pub(super) struct BruteForce<'a> {
     dims: usize,
     rows: &'a [f32],
-    /// Numbers of each group of rows, in the order of `terms`; infinite past the last row.
+    /// The numbers of each group of rows, in the order of `terms`; infinite past the last row.
     groups: Vec<[f32; LANES]>,
-    /// Order of the terms, in steps of sixteen, so that the first terms come from all parts of the neighborhood.
+    /// Order of the terms, in steps of sixteen, so that the first terms sample the whole neighborhood.
     terms: Vec<usize>,
 }
 
@@ -51,7 +51,8 @@ impl<'a> BruteForce<'a> {
         }
     }
 
-    /// Returns how many queries have a row that is nearer than the one found, or equally near with a lower index.
+    /// Returns the number of queries for which some row is nearer than the one found, or equally near with a lower
+    /// index.
     pub(super) fn n_wrong(&self, queries: &[&[f32]], found: &[u32]) -> usize {
         let limits: Vec<f32> = queries
             .iter()
@@ -87,7 +88,7 @@ impl<'a> BruteForce<'a> {
         &self.rows[row as usize * self.dims..][..self.dims]
     }
 
-    /// Returns the numbers of a query in the order of `terms`.
+    /// Returns the query's numbers in the order of `terms`.
     fn sorted(&self, query: &[f32]) -> Vec<f32> {
         self.terms.iter().map(|&term| query[term]).collect()
     }
@@ -128,7 +129,7 @@ mod tests {
     use super::*;
     use dapple_hash::{Seed, hash1};
 
-    /// Numbers with few distinct values, so that many rows are equally near.
+    /// Returns numbers with few distinct values, so that many rows are equally near.
     fn numbers(seed: u64, count: usize) -> Vec<f32> {
         let number = |index: usize| (hash1(Seed(seed), [index as i64], 0) % 4) as f32;
         (0..count).map(number).collect()
