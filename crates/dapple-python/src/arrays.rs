@@ -1,7 +1,7 @@
-//! Conversion to and from NumPy arrays.
+//! Converts to and from NumPy arrays.
 //!
-//! Results of the library become arrays without a copy. Arguments are read in place if they have the type and the order
-//! of the library, and are copied otherwise.
+//! The library's results become arrays without a copy. Arguments are read in place if they have the type and memory
+//! order that the library expects, and are copied otherwise.
 
 use crate::error::{Error, Result};
 use crate::watch::{self, Stop};
@@ -14,17 +14,17 @@ use numpy::{
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-/// Loads NumPy and its function tables. Otherwise the first array would load them, and a signal that arrives then,
-/// after long work, would cause a panic.
+/// Loads NumPy and its function tables. Otherwise the first array would load them, and a signal arriving at that
+/// point, after long work, would cause a panic.
 pub(crate) fn load(py: Python<'_>) -> Result<()> {
     py.import("numpy")?;
     let array = numpy::PyArray1::<f32>::zeros(py, 0, false);
-    // Also load the table of borrows, which all packages share.
+    // Also load the borrow-tracking table, which all packages share.
     drop(array.try_readwrite().map_err(PyErr::from)?);
     Ok(())
 }
 
-/// Converts values to an array of a shape, without a copy.
+/// Converts values to an array of the given shape, without a copy.
 pub(crate) fn array<'py, T: Element>(
     py: Python<'py>,
     values: Vec<T>,
@@ -35,7 +35,8 @@ pub(crate) fn array<'py, T: Element>(
     Ok(array.into_pyarray(py).into_any())
 }
 
-/// Fills an array of a shape by `fill`: a new array, or `out`, which must be float32, of this shape, and in C order.
+/// Fills an array of the given shape with `fill`. The array is new, or `out`, which must be float32, of this shape,
+/// and in C order.
 pub(crate) fn filled<'py>(
     py: Python<'py>,
     shape: &[usize],
@@ -78,9 +79,10 @@ pub(crate) fn filled<'py>(
     Ok(out.into_any())
 }
 
-/// Allocates zeros; fails if there is not enough memory.
+/// Allocates `count` zeros; fails if there is not enough memory.
 fn zeros(count: usize) -> Result<Vec<f32>> {
-    // Try a reservation first, which can fail. Neither it nor the zeroed allocation touches the memory pages.
+    // Try a reservation first, which can fail without aborting. Neither it nor the zeroed allocation touches the
+    // memory pages.
     reserve(&mut Vec::new(), count)?;
     Ok(vec![0.0; count])
 }
@@ -112,11 +114,11 @@ pub(crate) fn channels<'py, const N: usize>(
     )
 }
 
-/// Positions from an array of the shape (…, axes).
+/// Positions from an array of shape (…, axes).
 pub(crate) struct Positions {
-    /// The flat coordinates: all coordinates of a position are adjacent, x first.
+    /// Flat coordinates: all coordinates of a position are adjacent, x first.
     pub(crate) numbers: Vec<f64>,
-    /// The shape of the array without its last axis.
+    /// Shape of the array without its last axis.
     pub(crate) shape: Vec<usize>,
 }
 
@@ -144,7 +146,7 @@ impl Positions {
     }
 }
 
-/// Copies an array of two axes (rows, columns) into a raster.
+/// Copies a 2-D array (rows, columns) into a raster.
 pub(crate) fn raster(what: &str, data: &Bound<'_, PyAny>) -> Result<Raster<f32>> {
     let array: PyArrayLike<'_, f32, numpy::Ix2, AllowTypeChange> = data.extract()?;
     let array = array.as_array();
@@ -152,7 +154,7 @@ pub(crate) fn raster(what: &str, data: &Bound<'_, PyAny>) -> Result<Raster<f32>>
     Ok(Raster::from_vec(raster_size(what, array.shape())?, values)?)
 }
 
-/// Columns and rows of an array whose first axes are rows and columns.
+/// Returns the columns and rows of an array whose first axes are rows and columns.
 pub(crate) fn raster_size(what: &str, shape: &[usize]) -> Result<[u32; 2]> {
     let side = |length: usize| {
         u32::try_from(length).map_err(|_| {
@@ -176,7 +178,7 @@ pub(crate) fn features<'py>(
         .call1(arrays)?)
 }
 
-/// Makes a named tuple: a class of `dapple_textures._types`.
+/// Creates an instance of `class`, a named tuple in `dapple_textures._types`.
 pub(crate) fn result<'py>(
     py: Python<'py>,
     class: &str,

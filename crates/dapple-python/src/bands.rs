@@ -13,7 +13,7 @@ use dapple::wavelet::{Bands, Border, SplineFilter, WaveletError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Reads the options of a filter.
+/// Reads the filter options.
 fn filter(options: Option<&Bound<'_, PyDict>>) -> Result<SplineFilter> {
     data::options_or(
         "options",
@@ -22,7 +22,7 @@ fn filter(options: Option<&Bound<'_, PyDict>>) -> Result<SplineFilter> {
     )
 }
 
-/// Applies a function to each channel of an image, and returns the results as an array.
+/// Applies `step` to each channel of an image, and returns the results as an array.
 fn each<'py>(
     py: Python<'py>,
     image: &Bound<'py, PyAny>,
@@ -38,16 +38,16 @@ fn each<'py>(
     array_of_planes(py, planes)
 }
 
-/// An image of half the size, (rows / 2, columns / 2[, channels]): the nearest spline of half the resolution.
+/// Halves an image to (rows / 2, columns / 2[, channels]): returns the nearest spline at half the resolution.
 ///
-/// Pixels are coefficients of B-splines; the filter of Cook and DeRose (2005), exact.
+/// Pixels are coefficients of B-splines. The filters are those of Cook and DeRose (2005), without truncation.
 ///
 /// Parameters
 /// ----------
 /// image : array_like
-///     (rows, columns) or (rows, columns, channels); sides that repeat must be even.
+///     (rows, columns) or (rows, columns, channels); the length of a periodic side must be even.
 /// borders : {"periodic", "mirror"} or a pair of them, default "periodic"
-///     The extension past the edges: `"periodic"` or `"mirror"`, or one for each axis, x first.
+///     How the image continues past its edges: `"periodic"` or `"mirror"`, or one for each axis, x first.
 /// **options : str
 ///     `degree` (`"constant"`, `"linear"`, `"quadratic"`, `"cubic"`), `phase` (`"centered"`, `"cook_de_rose"`), `fit`
 ///     (`"function"`, `"coefficients"`).
@@ -55,7 +55,7 @@ fn each<'py>(
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The half, (rows / 2, columns / 2[, channels]).
+///     The halved image, (rows / 2, columns / 2[, channels]).
 ///
 /// Raises
 /// ------
@@ -81,23 +81,23 @@ pub(crate) fn wavelet_halve<'py>(
     each(py, image, move |plane| filter.down(plane, borders))
 }
 
-/// An image of twice the size that is the same spline, (2 rows, 2 columns[, channels]).
+/// Doubles an image to (2 rows, 2 columns[, channels]); the result is the same spline at twice the resolution.
 ///
 /// Parameters
 /// ----------
 /// image : array_like
-///     As for `wavelet_halve`, which restores the image.
+///     As for `wavelet_halve`. Halving the result restores this image.
 /// size : int or tuple of int or None, default None
-///     (rows, columns) of the result; needed if a mirrored side is odd.
+///     (rows, columns) of the result; needed if a mirrored side of the result has an odd length.
 /// borders : {"periodic", "mirror"} or a pair of them, default "periodic"
-///     As for `wavelet_halve`, which restores the image.
+///     As for `wavelet_halve`.
 /// **options : str
-///     As for `wavelet_halve`, which restores the image.
+///     As for `wavelet_halve`.
 ///
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The double, (2 rows, 2 columns[, channels]).
+///     The doubled image, (2 rows, 2 columns[, channels]).
 ///
 /// Raises
 /// ------
@@ -128,14 +128,14 @@ pub(crate) fn wavelet_double<'py>(
     })
 }
 
-/// The bands of an image: the detail that is lost each time it is halved, finest first, and the coarse rest.
+/// Splits an image into bands: the details lost in each halving, finest first, and the coarse remainder.
 ///
 /// Parameters
 /// ----------
 /// image : array_like
 ///     As for `wavelet_halve`.
 /// levels : int, default 1
-///     The number of times it is halved; sides that repeat are multiples of 2**levels.
+///     The number of halvings; the length of a periodic side must be a multiple of 2**levels.
 /// borders : {"periodic", "mirror"} or a pair of them, default "periodic"
 ///     As for `wavelet_halve`.
 /// **options : str
@@ -149,7 +149,7 @@ pub(crate) fn wavelet_double<'py>(
 /// Raises
 /// ------
 /// DappleError
-///     If there are too many bands for the sides, a pixel is not finite, or `borders` is unknown.
+///     If there are too many bands for the side lengths, a pixel is not finite, or `borders` is unknown.
 ///
 /// Examples
 /// --------
@@ -195,16 +195,16 @@ pub(crate) fn wavelet_analyze<'py>(
     Ok(bands.call1((details, array_of_planes(py, coarse)?))?)
 }
 
-/// Reconstructs an image from its bands; `borders` and options are those of `wavelet_analyze`.
+/// Reconstructs an image from its bands; `borders` and the options must be the same as for `wavelet_analyze`.
 ///
 /// Parameters
 /// ----------
 /// bands : tuple of (sequence of array_like, array_like)
-///     (details, coarse): a list of images, finest first, and the coarse rest.
+///     (details, coarse): a list of images, finest first, and the coarse remainder.
 /// borders : {"periodic", "mirror"} or a pair of them, default "periodic"
-///     What lies outside of the image.
+///     How the image continues past its edges, as for `wavelet_halve`.
 /// **options : str
-///     Options of the method.
+///     As for `wavelet_halve`.
 ///
 /// Returns
 /// -------
@@ -254,19 +254,20 @@ pub(crate) fn wavelet_synthesize<'py>(
     array_of_planes(py, planes)
 }
 
-/// Wavelet noise as an array that repeats without a seam, (rows, columns), from the weights of its bands.
+/// Generates a tile of wavelet noise that repeats without a seam, (rows, columns), from the weights of its bands.
 ///
-/// Each band is noise of one octave, independent of the others (Cook and DeRose 2005). The mean is 0, and the variance
-/// the sum of the squares of the weights.
+/// Each band is noise of one octave, independent of the others (Cook and DeRose 2005). The mean is 0, and the
+/// variance is the sum of the squared weights.
 ///
 /// Parameters
 /// ----------
 /// size : int or tuple of int
-///     (rows, columns), or a number for both: multiples of 2**n for n weights.
+///     (rows, columns), or one number for both: multiples of 2**n for n weights.
 /// weights : sequence of float, default [1.0]
-///     Of 1 to 16 bands, finest first: band b has its power between 2**-b / 4 and 2**-b / 2 cycles per pixel.
+///     The weights of 1 to 16 bands, finest first. Band b has its power between 2**-b / 4 and 2**-b / 2 cycles per
+///     pixel.
 /// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     The random seed, from 0 to 2**64 - 1.
 ///
 /// Returns
 /// -------
@@ -276,7 +277,7 @@ pub(crate) fn wavelet_synthesize<'py>(
 /// Raises
 /// ------
 /// DappleError
-///     If a side is 0 or not a multiple of what its bands need, or a weight is not finite.
+///     If a side is 0 or not a multiple of 2**n for n weights, or a weight is not finite.
 ///
 /// Examples
 /// --------

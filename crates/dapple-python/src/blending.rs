@@ -1,4 +1,4 @@
-//! Blend maps, and blending of materials.
+//! Computes blend maps, and blends materials.
 
 use crate::arrays;
 use crate::data;
@@ -12,17 +12,17 @@ use dapple::raster::{Raster, Wrap};
 use dapple::tile::{Blend, BlendMap, Layer, Map, TileError};
 use pyo3::prelude::*;
 
-/// A blend tile of a texture, (rows, columns): low in its cracks, high on raised or bright parts (after Du, Wang and
-/// Meng).
+/// Computes a blend tile from a texture, (rows, columns): low in cracks, high on raised or bright parts (after Du,
+/// Wang and Meng).
 ///
-/// `rank_equalize` spreads its values evenly, so that weights are areas in `blend`.
+/// `rank_equalize` distributes its values evenly, so that weights equal area fractions in `blend`.
 ///
 /// Parameters
 /// ----------
 /// texture : array_like
 ///     (rows, columns), or (rows, columns, 3) in linear light.
 /// feature_size : float, default 32.0
-///     The size of the features, such as the diameter of stones, in pixels, from 1 to 4096.
+///     The feature size, such as the diameter of stones, in pixels, from 1 to 4096.
 /// contrast : float, default 1.0
 ///     The steepness of the map around its median, at least 0.
 /// wrap : {"repeat", "clamp", "mirror"} or a pair of them, default "repeat"
@@ -35,7 +35,7 @@ use pyo3::prelude::*;
 ///
 /// Raises
 /// ------
-/// DappleError
+/// If the image's shape is wrong, or an option is out of range.
 ///     If the image has a shape or an option a value out of range.
 ///
 /// Examples
@@ -74,24 +74,24 @@ pub(crate) fn blend_map<'py>(
     arrays::numbers(py, map)
 }
 
-/// Layers blended by weights, by heights, or along the features of a blend tile.
+/// Blends layers by weights, by heights, or along the features of a blend tile.
 ///
 /// Parameters
 /// ----------
 /// layers : iterable of dict of array_like or iterable of array_like
-///     Images of one size, or dictionaries of maps with the same names. Where only one layer has a weight, the result
-///     is that layer.
+///     Images of the same size, or dictionaries of maps with the same names. Where only one layer has a nonzero
+///     weight, the result is that layer.
 /// weights : iterable of array_like or None, default None
-///     For each layer a number or (rows, columns), at least 0; 1 by default.
+///     For each layer, a number or an array (rows, columns), at least 0; 1 by default.
 /// heights : iterable of array_like or None, default None
-///     For each layer (rows, columns) or None.
+///     For each layer, an array (rows, columns) or None.
 /// tile : array_like or None, default None
 ///     A blend tile, (rows, columns), from 0 to 1; see `blend_map`.
 /// weighting : str or dict, default "given"
 ///     `"given"` uses the weights unchanged; `{"height": {"depth": 0.1}}` shows the higher layer; `{"mask": {"gain":
-///     8}}` cuts the tile at thresholds: the first layer lies where it is lowest.
+///     8}}` cuts the tile at thresholds, with the first layer where the tile is lowest.
 /// mixing : str or dict, default "linear"
-///     `"linear"`, `"keep_variance"`, or `{"pyramid": {"levels": 4}}`, which mixes in bands.
+///     `"linear"`, `"keep_variance"`, or `{"pyramid": {"levels": 4}}`, which mixes each frequency band separately.
 ///
 /// Returns
 /// -------
@@ -101,7 +101,8 @@ pub(crate) fn blend_map<'py>(
 /// Raises
 /// ------
 /// DappleError
-///     If the layers differ in size or channels, there is none, or an option is out of range or not of this mixing.
+///     If the layers differ in size or channels, there are no layers, or an option is out of range or does not apply
+///     to the chosen mixing.
 ///
 /// Examples
 /// --------
@@ -166,8 +167,8 @@ pub(crate) fn blend<'py>(
     layout.python(py, maps)
 }
 
-/// Reads an optional item for each layer, such as a weight; `None` for a layer without the item. Fails unless there is
-/// one entry per layer.
+/// Reads one optional item per layer, such as a weight; `None` for a layer without the item. Fails unless there is
+/// exactly one entry per layer.
 fn column<'py, T>(
     what: &str,
     data: Option<&Bound<'py, PyAny>>,
@@ -195,8 +196,8 @@ fn column<'py, T>(
     Err(Error::new("count", message))
 }
 
-/// Changes colors by their alpha. Colors are mixed premultiplied by alpha, so that transparent pixels contribute no
-/// color.
+/// Applies `by` to the colors and their alpha. Colors are mixed premultiplied by alpha, so that transparent pixels
+/// contribute no color.
 fn multiply(
     layout: &Layout,
     maps: &mut [Map],

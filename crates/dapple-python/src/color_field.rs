@@ -1,4 +1,4 @@
-//! Fields with several numbers at each position, such as colors.
+//! Fields with several values at each position, such as colors.
 
 use crate::arrays::{self, Positions};
 use crate::error::Result;
@@ -13,20 +13,20 @@ use dapple::raster::parallel;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// A function of the plane with several numbers at every position, such as a color (linear RGB).
+/// A function of the plane with several values at every position, such as a color (linear RGB).
 ///
-/// Color fields are made by `pups` with values of the shape (n, channels), and by `color_noise`. A color field is
-/// defined by its description: it can be pickled, compared and used as a key.
+/// Color fields are created by `pups` with values of shape (n, channels), and by `color_noise`. A color field is
+/// defined by its description: it can be pickled, compared and used as a dictionary key.
 #[pyclass(frozen, module = "dapple_textures")]
 pub(crate) struct ColorField {
     made: Made,
     vectors: Arc<dyn Vectors>,
 }
 
-/// Number of positions that a thread takes at a time.
+/// Number of positions that a thread processes at a time.
 const CHUNK: usize = 1024;
 
-/// Makes the field of a description: a `ColorField` if it has channels, otherwise a `Field`.
+/// Builds the field from its description: a `ColorField` if it has channels, otherwise a `Field`.
 pub(crate) fn object(py: Python<'_>, made: Made) -> Result<Py<PyAny>> {
     let (made, vectors) = threads::run(py, move || {
         let vectors = made.vectors();
@@ -52,33 +52,33 @@ impl ColorField {
         self.vectors.n_channels()
     }
 
-    /// The distances after which the field repeats, x first: None for an axis where it does not.
+    /// The period along each axis, x first; None for an axis along which the field does not repeat.
     #[getter]
     fn period(&self) -> Vec<Option<f64>> {
         self.vectors.period().to_vec()
     }
 
-    /// The extent of a picture for which none is given.
+    /// The extent used when an image is rendered without one.
     fn _default_extent(&self) -> Vec<f64> {
         default_extent(&self.vectors.period(), &[1.0; 2])
     }
 
-    /// The values at the pixels of an array: float32 of the shape (rows, columns, channels).
+    /// Renders the field to an array: float32 of shape (rows, columns, channels).
     ///
-    /// The parameters are those of `Field.render`.
+    /// The parameters are the same as for `Field.render`.
     ///
     /// Parameters
     /// ----------
     /// size : int or tuple of int
-    ///     (rows, columns), or a number for both.
+    ///     (rows, columns), or one number for both.
     /// extent : float or tuple of float or None, default None
-    ///     The size of the rectangle of the array, x first, as in `Field.render`.
+    ///     The size of the rendered rectangle, x first, as in `Field.render`.
     /// origin : float or tuple of float or None, default None
-    ///     The corner of the first pixel, x first.
+    ///     The corner of the first pixel, x first, as in `Field.render`.
     /// window : tuple of slice or None, default None
-    ///     The part to compute, a slice for each axis of `size`.
+    ///     The part to compute, one slice per axis of `size`.
     /// samples : str, default "centers"
-    ///     The positions of the samples, "centers" or "corners", as in `Field.render`.
+    ///     The sample positions, "centers" or "corners", as in `Field.render`.
     /// out : numpy.ndarray of float32 or None, default None
     ///     Memory for the values, an array in C order; a new one by default.
     ///
@@ -90,8 +90,8 @@ impl ColorField {
     /// Raises
     /// ------
     /// DappleError
-    ///     If `size`, `extent`, `origin` or `window` is out of range or of another number of axes, or `out` has another
-    ///     shape.
+    ///     If `size`, `extent`, `origin` or `window` is out of range or has a different number of axes, or `out` has
+    ///     a different shape.
     #[pyo3(signature = (size, *, extent = None, origin = None, window = None, samples = None, out = None),
         text_signature = "(self, size, *, extent=None, origin=None, window=None, samples='centers', out=None)")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
@@ -136,22 +136,22 @@ impl ColorField {
         })
     }
 
-    /// The values at positions of the shape (…, 2), x first: float32 of the shape (…, channels).
+    /// Evaluates the field at positions of shape (…, 2), x first: float32 of shape (…, channels).
     ///
     /// Parameters
     /// ----------
     /// positions : array_like
-    ///     Positions of the shape (…, axes), x first.
+    ///     Positions of shape (…, axes), x first.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray of float32
-    ///     The colors, of the shape (…, channels).
+    ///     The colors, of shape (…, channels).
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If the last axis of `positions` is not 2 long.
+    ///     If the last axis of `positions` does not have length 2.
     fn sample<'py>(
         &self,
         py: Python<'py>,
@@ -190,7 +190,7 @@ impl ColorField {
         self.made.reduced(py)
     }
 
-    /// The token by which Dask identifies results of the field: the same in all processes.
+    /// A token that identifies the field in Dask; it is the same in all processes.
     fn __dask_tokenize__(&self) -> Result<String> {
         self.made.token()
     }
@@ -201,7 +201,7 @@ impl ColorField {
 }
 
 impl Made {
-    /// Makes the function with several numbers at each position; `None` if the description has a single number.
+    /// Builds the function with several values at each position; `None` if the description has only one value.
     fn vectors(&self) -> Result<Option<Arc<dyn Vectors>>> {
         let values = match self {
             Self::Pups(made) => made.get()?,

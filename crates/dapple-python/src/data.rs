@@ -1,4 +1,4 @@
-//! Conversion of options from Python objects (dictionaries, lists, strings, numbers, NumPy arrays) to JSON data.
+//! Converts options from Python objects (dictionaries, lists, strings, numbers, NumPy arrays) to JSON data.
 
 use crate::error::{Error, Result};
 use pyo3::exceptions::PyTypeError;
@@ -7,15 +7,15 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyMapping, PySequence, PyStrin
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Number, Value};
 
-/// Maximum depth of nested data.
+/// Maximum nesting depth of data.
 const DEEPEST: usize = 100;
 
-/// Reads options in the form in which recipes write them. `what` names the options in error messages.
+/// Reads options in the same form as recipes use. `what` names the options in error messages.
 pub(crate) fn options<T: DeserializeOwned>(what: &str, data: &Bound<'_, PyAny>) -> Result<T> {
     read(what, value(data)?)
 }
 
-/// Reads options in the form in which recipes write them; returns `default` without data.
+/// Reads options in the same form as recipes use; returns `default` if `data` is `None`.
 pub(crate) fn options_or<T: DeserializeOwned>(
     what: &str,
     data: Option<&Bound<'_, PyAny>>,
@@ -24,7 +24,7 @@ pub(crate) fn options_or<T: DeserializeOwned>(
     data.map_or(Ok(default), |data| options(what, data))
 }
 
-/// Converts data to options of a type.
+/// Converts data to options of type `T`.
 pub(crate) fn read<T: DeserializeOwned>(what: &str, data: Value) -> Result<T> {
     dapple::recipe::read_options(&data).map_err(|error| {
         let message = format!("{what}: {}", in_our_words(&error.kind().to_string()));
@@ -32,7 +32,7 @@ pub(crate) fn read<T: DeserializeOwned>(what: &str, data: Value) -> Result<T> {
     })
 }
 
-/// Rewrites a message about an unknown word without the terms of Rust.
+/// Rewrites a message about an unknown name without Rust terms.
 fn in_our_words(message: &str) -> String {
     let parts = ["unknown variant ", "unknown field "].into_iter();
     let Some(rest) = parts.filter_map(|start| message.strip_prefix(start)).next() else {
@@ -84,7 +84,7 @@ fn write(data: &Bound<'_, PyAny>, depth: usize, text: &mut String) -> Result<()>
 /// The entries of a dictionary.
 type Entries<'py> = Vec<(String, Bound<'py, PyAny>)>;
 
-/// The entries of a dictionary; `None` for other data.
+/// Returns the entries of a dictionary; `None` for other data.
 fn pairs<'py>(data: &Bound<'py, PyAny>) -> Result<Option<Entries<'py>>> {
     let pairs: Vec<(Bound<'py, PyAny>, _)> = if let Ok(mapping) = data.cast::<PyDict>() {
         mapping.iter().collect()
@@ -167,12 +167,12 @@ fn number(data: &Bound<'_, PyAny>, depth: usize) -> Result<Value> {
     Err(PyTypeError::new_err(message).into())
 }
 
-/// The value of a type with this name.
+/// Returns the value of `T` called `name`.
 pub(crate) fn named<T: dapple::raster::Named>(what: &str, name: &str) -> Result<T> {
     T::from_name(name).ok_or_else(|| unknown_name(what, name, T::NAMES))
 }
 
-/// The error for an unknown name, with the known names and the nearest of them.
+/// Returns the error for an unknown name, with the known names and the nearest of them.
 pub(crate) fn unknown_name(what: &str, name: &str, known: &[&str]) -> Error {
     let message = format!(
         "the {what} is `{name}`, but it must be one of {}",

@@ -1,4 +1,4 @@
-//! The exception of the package, and the conversion of errors of the crates to it.
+//! The package's exception, and the conversion of the crates' errors to it.
 
 use dapple::{
     color::ColorError, graph::GraphError, image::ImageError, mesh::MeshError, mesh_io::MeshIoError,
@@ -10,7 +10,7 @@ use pyo3::exceptions::{PyIsADirectoryError, PyOSError, PyUserWarning, PyValueErr
 use pyo3::prelude::*;
 use std::{io, path::Path};
 
-/// The C error number for "is a directory", which is the same on all systems.
+/// The C error number EISDIR ("is a directory"), which is the same on all systems.
 const EISDIR: i32 = 21;
 
 pyo3::create_exception!(
@@ -28,7 +28,7 @@ pyo3::create_exception!(
     "Something that the library did, but that was perhaps not meant. The message names the share or the number."
 );
 
-/// An error of a call, before it becomes an exception.
+/// An error raised by a call, before its conversion to a Python exception.
 pub(crate) enum Error {
     /// An error of the library.
     Refused(Refusal),
@@ -36,7 +36,7 @@ pub(crate) enum Error {
     Python(PyErr),
 }
 
-/// The content of a [`DappleError`].
+/// The contents of a [`DappleError`].
 pub(crate) struct Refusal {
     kind: String,
     message: String,
@@ -48,7 +48,7 @@ pub(crate) struct Refusal {
 pub(crate) type Result<T> = core::result::Result<T, Error>;
 
 impl Error {
-    /// Makes an error of the package itself. The kind is in lower case.
+    /// Creates an error that the package itself raises. `kind` is in lower case.
     pub(crate) fn new(kind: &str, message: impl Into<String>) -> Self {
         Self::Refused(Refusal {
             kind: kind.to_owned(),
@@ -78,7 +78,7 @@ impl Error {
         }
     }
 
-    /// Makes the exception for an error number of the operating system: `FileNotFoundError`, `IsADirectoryError`, or
+    /// Creates the exception for an operating system error number: `FileNotFoundError`, `IsADirectoryError`, or
     /// another `OSError`.
     pub(crate) fn of_system(code: i32, path: Option<&Path>) -> Self {
         Self::Python(Python::attach(|py| {
@@ -99,19 +99,19 @@ impl Error {
         }))
     }
 
-    /// The exception for a directory in place of a file, if the library itself has detected it.
+    /// Creates the exception for a directory where a file is expected, if the library itself has detected it.
     fn of_folder(path: Option<&Path>) -> Self {
         let arguments = (EISDIR, "Is a directory", path.map(Path::to_owned));
         Self::Python(PyIsADirectoryError::new_err(arguments))
     }
 
-    /// Converts an error of a crate. Its kind is the name of the enum variant, in snake case.
+    /// Converts a crate's error. The kind is the name of the enum variant in snake case.
     fn of(kind: &impl core::fmt::Debug, message: &impl ToString) -> Self {
         Self::new(&snake_case(&format!("{kind:?}")), message.to_string())
     }
 }
 
-/// The identifier at the start of a debug text, in snake case.
+/// Returns the identifier at the start of a debug text, in snake case.
 fn snake_case(text: &str) -> String {
     let mut name = String::new();
     for letter in text.chars().take_while(|letter| letter.is_alphanumeric()) {

@@ -14,28 +14,28 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// A function with a value at every position: of the plane, of space, or of space and time.
+/// A function with a value at every position of the plane, of space, or of space and time.
 ///
-/// Fields are made by `worley`, `gradient_noise`, `wavelet_noise`, `pups` and others, and can be composed: `a + b`,
-/// `a * 0.5`, `a.warp(x, y, 0.1)`. A field is defined by its description: it can be pickled, compared and used as a key,
-/// and the same description has the same bits on every machine.
+/// Fields are created by `worley`, `gradient_noise`, `wavelet_noise`, `pups` and other functions, and can be
+/// composed: `a + b`, `a * 0.5`, `a.warp(x, y, 0.1)`. A field is defined by its description: it can be pickled,
+/// compared and used as a dictionary key. The same description gives the same bits on every machine.
 #[pyclass(frozen, subclass, module = "dapple_textures")]
 pub(crate) struct Field {
     made: Shared<Made>,
     function: Function,
 }
 
-/// Number of positions that a thread takes at a time.
+/// Number of positions that a thread processes at a time.
 const CHUNK: usize = 4096;
 
-/// Number of values that are computed before the first check for signals.
+/// Number of values computed before the first check for signals.
 pub(crate) const FIRST: usize = 1 << 14;
 
-/// Maximum number of columns that are rendered at a time.
+/// Maximum number of columns rendered at a time.
 const STRIP: u32 = 1 << 17;
 
 impl Field {
-    /// Makes the field of a description, on the threads of the package.
+    /// Builds a field from its description, on the package's threads.
     pub(crate) fn new(made: Made) -> Result<Self> {
         let made = Shared::new(made);
         let work = made.clone();
@@ -44,23 +44,23 @@ impl Field {
         Ok(Self { made, function })
     }
 
-    /// The function; an error unless it has two axes.
+    /// Returns the function; an error unless it has two axes.
     pub(crate) fn plane(&self) -> Result<Arc<dyn dapple::raster::Field>> {
         self.made.plane()
     }
 
-    /// The periods along all axes.
+    /// Returns the period along each axis; `None` for an axis without a period.
     fn periods(&self) -> Vec<Option<f64>> {
         self.function.period()
     }
 
-    /// The default extent along each of four axes, for axes without a period.
+    /// Returns the default extent along each of four axes, for axes without a period.
     fn shown(&self) -> [f64; 4] {
         let shown = self.made.made().shown();
         [shown[0], shown[1], shown[0], shown[0]]
     }
 
-    /// Writes the values at the pixels of a grid. `values` must have the length of the grid.
+    /// Writes the values at the pixels of a grid. `values` must have one element per pixel.
     fn fill(&self, grid: &Grid, values: &mut [f32], stop: &Stop) -> Result<()> {
         match &self.function {
             Function::Plane(field) => fill_planes(field.as_ref(), grid, values, stop),
@@ -69,13 +69,14 @@ impl Field {
         }
     }
 
-    /// Writes the values at some positions.
+    /// Writes the values at `positions`, given as flat coordinates.
     fn sample_chunk(&self, positions: &[f64], values: &mut [f32]) {
-        // Ignore the result: only unequal lengths are an error, and the lengths are equal.
+        // Ignore the result: only unequal lengths are an error, and the lengths are equal here.
         let _ = self.function.values(positions, values);
     }
 
-    /// Combines this field and another field or number, value by value.
+    /// Combines this field with another field or number, value by value. `is_first` says whether this field is the
+    /// first operand.
     fn with(&self, other: Operand, operation: PairOperation, is_first: bool) -> Result<Self> {
         let (this, other) = (self.made.clone(), other.0);
         let (first, second) = if is_first {
@@ -130,7 +131,7 @@ impl<'py> FromPyObject<'_, 'py> for Operand {
     }
 }
 
-/// Makes the field of a description, as an object of its class.
+/// Builds a field from its description, as an object of the matching Python class.
 #[pyfunction]
 pub(crate) fn _field_from_description(py: Python<'_>, description: &str) -> Result<Py<PyAny>> {
     let made = serde_json::from_str(description);
@@ -140,7 +141,7 @@ pub(crate) fn _field_from_description(py: Python<'_>, description: &str) -> Resu
     }
 }
 
-/// A number as a field.
+/// Converts a number to a constant field.
 ///
 /// Parameters
 /// ----------
@@ -150,7 +151,7 @@ pub(crate) fn _field_from_description(py: Python<'_>, description: &str) -> Resu
 /// Returns
 /// -------
 /// Field
-///     The field. Its value is the same everywhere, and its period 0.
+///     The field. It has the same value everywhere, and its period is 0.
 ///
 /// Raises
 /// ------
@@ -169,52 +170,55 @@ impl Field {
         self.periods().len()
     }
 
-    /// The distances after which the field repeats, x first: None where it does not or where the period is unknown, and
-    /// 0 for an axis along which the field is constant.
+    /// The period along each axis, x first: None if the field does not repeat or the period is unknown, and 0 for an
+    /// axis along which the field is constant.
     #[getter]
     fn period(&self) -> Vec<Option<f64>> {
         self.periods()
     }
 
-    /// The extent of a picture for which none is given.
+    /// The extent used when an image is rendered without one.
     fn _default_extent(&self) -> Vec<f64> {
         default_extent(&self.periods(), &self.shown())
     }
 
-    /// The values at the pixels of an array, float32.
+    /// Renders the field to an array of float32 values.
     ///
     /// Parameters
     /// ----------
     /// size : int or tuple of int
-    ///     (rows, columns), or a number for all axes; (z, rows, columns) of three axes, (w, z, rows, columns) of four.
+    ///     (rows, columns), or one number for all axes; (z, rows, columns) for three axes, (w, z, rows, columns) for
+    ///     four.
     /// extent : float or tuple of float or None, default None
-    ///     (x, y), the size of the rectangle of the array, in units of the field; one period by default. Where there is
-    ///     none, 8 cells of `worley` and `gradient_noise`, and 1 for other fields. (x, y, z) for three axes and (x, y,
-    ///     z, w) for four.
+    ///     (x, y), the size of the rendered rectangle, in units of the field; by default one period. For an axis
+    ///     without a period, the default is 8 cells for `worley` and `gradient_noise`, and 1 for other fields. (x, y,
+    ///     z) for three axes and (x, y, z, w) for four.
     /// origin : float or tuple of float or None, default None
-    ///     (x, y) of the corner of the first pixel, with z and w as for `extent`; 0 by default.
+    ///     (x, y) of the first pixel's corner, with z and w as for `extent`; 0 by default.
     /// window : tuple of slice or None, default None
-    ///     The part to compute, such as `np.s_[100:150, 33:94]`, a slice for each axis of `size`: bit for bit the crop
-    ///     of the whole. It may lie outside: negative numbers are before the array, and not at its end as in NumPy.
+    ///     The part to compute, such as `np.s_[100:150, 33:94]`, with one slice per axis of `size`. The result is bit
+    ///     for bit a crop of the whole. The window may extend outside: negative indices are before the array, not at
+    ///     its end as in NumPy.
     /// samples : str, default "centers"
-    ///     The positions of the samples: "centers" of pixels, or "corners" of a grid that reaches the sides of the extent, as
-    ///     in `Plan.bake`. On corners, along an axis whose extent is a whole number of periods, the last index is a copy of
-    ///     the first.
+    ///     The sample positions: "centers" of pixels, or "corners" of a grid that reaches the sides of the extent, as
+    ///     in `Plan.bake`. With corners, if the extent along an axis is a whole number of periods, the last sample is
+    ///     a copy of the first.
     /// out : numpy.ndarray of float32 or None, default None
     ///     Memory for the values, a float32 array in C order; a new array by default.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray of float32
-    ///     The values, (rows, columns), with z and w before them for three and four axes. It is `out` if that is given.
+    ///     The values, (rows, columns), preceded by z and w for three and four axes. If `out` is given, it is
+    ///     returned.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If `size`, `extent`, `origin` or `window` is out of range or of another number of axes, or `out` has another
-    ///     shape.
+    ///     If `size`, `extent`, `origin` or `window` is out of range or has a different number of axes, or `out` has
+    ///     a different shape.
     /// TypeError
-    ///     If `out` is no array of float32.
+    ///     If `out` is not a float32 array.
     #[pyo3(signature = (size, *, extent = None, origin = None, window = None, samples = None, out = None),
         text_signature = "(self, size, *, extent=None, origin=None, window=None, samples='centers', out=None)")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
@@ -245,22 +249,22 @@ impl Field {
         })
     }
 
-    /// The values at positions of the shape (…, ndim), x first: float32 of the shape (…).
+    /// Evaluates the field at positions of shape (…, ndim), x first: float32 of shape (…).
     ///
     /// Parameters
     /// ----------
     /// positions : array_like
-    ///     Positions of the shape (…, axes), x first.
+    ///     Positions of shape (…, axes), x first.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray of float32
-    ///     The values, of the shape of `positions` without its last axis.
+    ///     The values, with the shape of `positions` without its last axis.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If the last axis of `positions` does not have the length `ndim`.
+    ///     If the last axis of `positions` does not have length `ndim`.
     fn sample<'py>(
         &self,
         py: Python<'py>,
@@ -281,22 +285,23 @@ impl Field {
         })
     }
 
-    /// The plane of the first two axes at fixed further coordinates: `slice(z)` for three axes, `slice(z, w)` for four.
+    /// Returns the 2-D slice along the first two axes at fixed other coordinates: `slice(z)` for three axes,
+    /// `slice(z, w)` for four.
     ///
     /// Parameters
     /// ----------
     /// *rest : float
-    ///     The further coordinates.
+    ///     The coordinates along the axes after the first two.
     ///
     /// Returns
     /// -------
     /// Field
-    ///     The field of the plane, of two axes.
+    ///     The 2-D field.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If the field is of the plane, or the number of coordinates is not that of its further axes.
+    ///     If the field has only two axes, or the number of coordinates does not match the remaining axes.
     #[pyo3(signature = (*rest))]
     fn slice(&self, rest: Vec<f64>) -> Result<Self> {
         Self::new(Made::Slice {
@@ -305,7 +310,7 @@ impl Field {
         })
     }
 
-    /// This field at positions times a frequency: one number, or one for each axis, x first.
+    /// Multiplies positions by a frequency before evaluating this field: one number, or one for each axis, x first.
     ///
     /// Parameters
     /// ----------
@@ -320,7 +325,7 @@ impl Field {
     /// Raises
     /// ------
     /// DappleError
-    ///     If a number is not finite, or there is not one for each axis.
+    ///     If a number is not finite, or the number of values does not match the axes.
     fn frequency(&self, frequency: &Bound<'_, PyAny>) -> Result<Self> {
         let frequency = numbers("frequency", frequency, self.ndim())?;
         Self::new(Made::Frequency {
@@ -329,7 +334,7 @@ impl Field {
         })
     }
 
-    /// This field at positions plus an offset, x first.
+    /// Adds an offset to positions, x first, before evaluating this field.
     ///
     /// Parameters
     /// ----------
@@ -344,7 +349,7 @@ impl Field {
     /// Raises
     /// ------
     /// DappleError
-    ///     If a number is not finite, or there is not one for each axis.
+    ///     If a number is not finite, or the number of values does not match the axes.
     fn offset(&self, offset: &Bound<'_, PyAny>) -> Result<Self> {
         let offset = numbers("offset", offset, self.ndim())?;
         Self::new(Made::Offset {
@@ -353,13 +358,13 @@ impl Field {
         })
     }
 
-    /// This field at positions rotated by an angle about the origin, in radians, from x to y; about the
-    /// further axes in space.
+    /// Rotates positions about the origin by an angle in radians, from x to y, before evaluating this field. Fields
+    /// with more axes are rotated in the xy plane.
     ///
     /// Parameters
     /// ----------
     /// angle : float
-    ///     In radians, from x to y.
+    ///     The angle in radians, from x to y.
     ///
     /// Returns
     /// -------
@@ -377,7 +382,7 @@ impl Field {
         })
     }
 
-    /// This field at positions moved by `amount` times the values of other fields, one for each axis (domain warping).
+    /// Displaces positions by `amount` times the values of other fields, one for each axis (domain warping).
     ///
     /// Parameters
     /// ----------
@@ -386,22 +391,22 @@ impl Field {
     /// y : Field
     ///     The field of displacements along y.
     /// amount : float
-    ///     The factor of the displacements.
+    ///     The factor that scales the displacements.
     /// z : Field or None, default None
-    ///     The field of displacements along z, of fields with three or four axes; positions keep their z by default.
+    ///     The field of displacements along z, for fields with three or four axes; by default z is unchanged.
     /// w : Field or None, default None
-    ///     The field of displacements along w, of fields with four axes; positions keep their w by default.
+    ///     The field of displacements along w, for fields with four axes; by default w is unchanged.
     ///
     /// Returns
     /// -------
     /// Field
-    ///     The warped field. It has the largest number of axes of these fields.
+    ///     The warped field. It has as many axes as the field with the most axes.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If `amount` is not finite, if fields of three and of four axes are combined, or if no field has the axis `z`
-    ///     or `w` of a displacement.
+    ///     If `amount` is not finite, if fields with three and with four axes are combined, or if no field has the
+    ///     axis `z` or `w` of a displacement.
     ///
     /// Examples
     /// --------
@@ -437,19 +442,19 @@ impl Field {
         })
     }
 
-    /// This field with the range `old` of its values mapped linearly to the range `new`, also beyond it.
+    /// Maps values linearly from the range `old` to the range `new`; values outside of `old` are extrapolated.
     ///
     /// Parameters
     /// ----------
     /// old : sequence of float
-    ///     The range of values that is mapped.
+    ///     The range of values to map from.
     /// new : sequence of float, optional
-    ///     The range that it becomes.
+    ///     The range of values to map to.
     ///
     /// Returns
     /// -------
     /// Field
-    ///     The field, with values from `new[0]` to `new[1]` where they were from `old[0]` to `old[1]`.
+    ///     The field, with `old[0]` mapped to `new[0]` and `old[1]` mapped to `new[1]`.
     ///
     /// Raises
     /// ------
@@ -464,7 +469,7 @@ impl Field {
         })
     }
 
-    /// This field with values below `low` and above `high` replaced by these.
+    /// Clamps this field's values to the range from `low` to `high`.
     ///
     /// Parameters
     /// ----------
@@ -490,7 +495,7 @@ impl Field {
         })
     }
 
-    /// The smaller of this field and another field or number, everywhere.
+    /// Returns the minimum of this field and another field or number at every position.
     ///
     /// Parameters
     /// ----------
@@ -500,17 +505,17 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field of the smaller values.
+    ///     The field of minimum values.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If fields of three and of four axes are combined, or the composition nests too deep.
+    ///     If fields with three and with four axes are combined, or the composition is nested too deeply.
     fn minimum(&self, other: Operand) -> Result<Self> {
         self.with(other, PairOperation::Minimum, true)
     }
 
-    /// The larger of this field and another field or number, everywhere.
+    /// Returns the maximum of this field and another field or number at every position.
     ///
     /// Parameters
     /// ----------
@@ -520,17 +525,17 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field of the larger values.
+    ///     The field of maximum values.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If fields of three and of four axes are combined, or the composition nests too deep.
+    ///     If fields with three and with four axes are combined, or the composition is nested too deeply.
     fn maximum(&self, other: Operand) -> Result<Self> {
         self.with(other, PairOperation::Maximum, true)
     }
 
-    /// Interpolates from this field, where `by` is 0, to another field or number, where it is 1.
+    /// Interpolates from this field, where `by` is 0, to another field or number, where `by` is 1.
     ///
     /// Parameters
     /// ----------
@@ -547,7 +552,7 @@ impl Field {
     /// Raises
     /// ------
     /// DappleError
-    ///     If fields of three and of four axes are combined, or the composition nests too deep.
+    ///     If fields with three and with four axes are combined, or the composition is nested too deeply.
     fn mix(&self, to: Operand, by: Operand) -> Result<Self> {
         Self::new(Made::Mix {
             from: self.made.clone(),
@@ -556,82 +561,83 @@ impl Field {
         })
     }
 
-    /// Fractional Brownian motion of this field: the sum of octaves, each finer and lower than the one before.
+    /// Computes fractional Brownian motion: the sum of octaves of this field, each finer and lower than the previous
+    /// one.
     ///
-    /// With w = 1 + gain + gain**2 + …, values from -b to b have sums from -w * b to w * b, for a gain from 0 to 1.
+    /// With w = 1 + gain + gain**2 + …, values from -b to b give sums from -w * b to w * b, for a gain from 0 to 1.
     ///
     /// Parameters
     /// ----------
     /// octaves : int, default 6
     ///     The number of octaves.
     /// gain : float, default 0.5
-    ///     The ratio of the heights of an octave and the one before.
+    ///     The ratio of an octave's amplitude to the previous one's.
     /// lacunarity : float, default 2.0
-    ///     The ratio of the frequencies of an octave and the one before.
+    ///     The ratio of an octave's frequency to the previous one's.
     ///
     /// Returns
     /// -------
     /// Field
-    ///     The sum, which is not divided by w.
+    ///     The sum; it is not divided by w.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If the octaves are not 1 to 32, the gain not from -1 to 1, or the lacunarity not from 1 to 16.
+    ///     If `octaves` is not from 1 to 32, `gain` is not from -1 to 1, or `lacunarity` is not from 1 to 16.
     #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
     fn fbm(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
         self.fractal(octaves, gain, lacunarity, FractalShape::Sum)
     }
 
-    /// The sum of octaves of `1 - |value|`: ridges where values cross 0.
+    /// Sums octaves of `1 - |value|`, which has ridges where values cross 0.
     ///
-    /// With w = 1 + gain + gain**2 + …, values from -b to b have sums from w * (1 - b) to w, for a gain from 0 to 1.
+    /// With w = 1 + gain + gain**2 + …, values from -b to b give sums from w * (1 - b) to w, for a gain from 0 to 1.
     ///
     /// Parameters
     /// ----------
     /// octaves : int, default 6
     ///     The number of octaves.
     /// gain : float, default 0.5
-    ///     The ratio of the heights of an octave and the one before.
+    ///     The ratio of an octave's amplitude to the previous one's.
     /// lacunarity : float, default 2.0
-    ///     The ratio of the frequencies of an octave and the one before.
+    ///     The ratio of an octave's frequency to the previous one's.
     ///
     /// Returns
     /// -------
     /// Field
-    ///     The sum, which is not divided by w.
+    ///     The sum; it is not divided by w.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If the octaves are not 1 to 32, the gain not from -1 to 1, or the lacunarity not from 1 to 16.
+    ///     If `octaves` is not from 1 to 32, `gain` is not from -1 to 1, or `lacunarity` is not from 1 to 16.
     #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
     fn ridged(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
         self.fractal(octaves, gain, lacunarity, FractalShape::Ridged)
     }
 
-    /// The sum of octaves of `|value|`: creases, and round hills between them (turbulence).
+    /// Sums octaves of `|value|`, which has creases with round hills between them (turbulence).
     ///
-    /// With w = 1 + gain + gain**2 + …, values from -b to b have sums from 0 to w * b, for a gain from 0 to 1.
+    /// With w = 1 + gain + gain**2 + …, values from -b to b give sums from 0 to w * b, for a gain from 0 to 1.
     ///
     /// Parameters
     /// ----------
     /// octaves : int, default 6
     ///     The number of octaves.
     /// gain : float, default 0.5
-    ///     The ratio of the heights of an octave and the one before.
+    ///     The ratio of an octave's amplitude to the previous one's.
     /// lacunarity : float, default 2.0
-    ///     The ratio of the frequencies of an octave and the one before.
+    ///     The ratio of an octave's frequency to the previous one's.
     ///
     /// Returns
     /// -------
     /// Field
-    ///     The sum, which is not divided by w.
+    ///     The sum; it is not divided by w.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If the octaves are not 1 to 32, the gain not from -1 to 1, or the lacunarity not from 1 to 16.
+    ///     If `octaves` is not from 1 to 32, `gain` is not from -1 to 1, or `lacunarity` is not from 1 to 16.
     #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
     fn billow(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
         self.fractal(octaves, gain, lacunarity, FractalShape::Billow)
@@ -661,7 +667,7 @@ impl Field {
         self.with(other, PairOperation::Multiply, false)
     }
 
-    /// This field times `1 / divisor`, rounded to float32.
+    /// Multiplies this field by `1 / divisor`, rounded to float32.
     fn __truediv__(&self, divisor: f64) -> Result<Self> {
         if divisor == 0.0 || !divisor.is_finite() {
             let message =
@@ -679,7 +685,7 @@ impl Field {
         field
     }
 
-    /// NumPy leaves `array + field` to the field, which raises an error.
+    /// Set to None so that NumPy passes `array + field` to the field, which raises an error.
     #[classattr]
     fn __array_ufunc__() -> Option<()> {
         None
@@ -703,7 +709,7 @@ impl Field {
         self.made.made().reduced(py)
     }
 
-    /// The token by which Dask identifies results of the field: the same in all processes.
+    /// A token that identifies the field in Dask; it is the same in all processes.
     fn __dask_tokenize__(&self) -> Result<String> {
         self.made.made().token()
     }
@@ -741,7 +747,7 @@ fn fill_planes<const N: usize>(
     Ok(())
 }
 
-/// Writes the values at the pixels of several windows of equal size, window by window.
+/// Writes the values at the pixels of several windows of the same size, window by window.
 fn fill_windows<const N: usize>(
     field: &dyn dapple::raster::Field<N>,
     windows: &[Window<N>],
@@ -763,7 +769,7 @@ fn fill_windows<const N: usize>(
             Ok(field.render_stack(&windows[part], views)?)
         });
     }
-    // Render large windows in strips of columns, and each strip in parts of some milliseconds.
+    // Render large windows in strips of columns, and each strip in parts that take some milliseconds.
     let width = window.size[0] as usize;
     for (whole, values) in windows.iter().zip(values.chunks_mut(n_pixels)) {
         for left in (0..window.size[0]).step_by(STRIP as usize) {

@@ -1,6 +1,6 @@
 //! Descriptions of fields as data, and the functions that they define.
 //!
-//! A field is made from its description alone, so that the description can be sent to another process.
+//! A field is built from its description alone, so that the description can be sent to another process.
 
 use crate::error::{Error, Result};
 use crate::generators::{CellsMade, GradientMade, WaveletMade};
@@ -15,19 +15,19 @@ use sha2::{Digest, Sha256};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
-/// A function of two, three or four axes.
+/// A function with two, three or four axes.
 #[derive(Clone)]
 pub(crate) enum Function {
-    /// A function of the plane.
+    /// A function with two axes.
     Plane(Arc<dyn Field>),
-    /// A function of three axes.
+    /// A function with three axes.
     Space(Arc<dyn Field<3>>),
-    /// A function of four axes.
+    /// A function with four axes.
     Time(Arc<dyn Field<4>>),
 }
 
 impl Function {
-    /// The number of axes.
+    /// Returns the number of axes.
     pub(crate) fn n_axes(&self) -> usize {
         match self {
             Self::Plane(_) => 2,
@@ -36,7 +36,7 @@ impl Function {
         }
     }
 
-    /// The period along each axis; `None` for an axis without a period.
+    /// Returns the period along each axis; `None` for an axis without a period.
     pub(crate) fn period(&self) -> Vec<Option<f64>> {
         match self {
             Self::Plane(field) => field.period().to_vec(),
@@ -45,7 +45,7 @@ impl Function {
         }
     }
 
-    /// Writes the values at positions, given as flat coordinates.
+    /// Writes the values at `positions`, given as flat coordinates.
     pub(crate) fn values(&self, positions: &[f64], values: &mut [f32]) -> Result<()> {
         match self {
             Self::Plane(field) => field.values(positions.as_chunks().0, values)?,
@@ -55,7 +55,7 @@ impl Function {
         Ok(())
     }
 
-    /// A slice along the first two axes, at fixed coordinates along the other axes.
+    /// Returns the slice along the first two axes, at fixed coordinates along the other axes.
     fn slice(self, rest: &[f64]) -> Result<Arc<dyn Field>> {
         match (self, rest) {
             (Self::Space(field), &[z]) => Ok(Arc::new(field.slice([z]))),
@@ -71,7 +71,7 @@ impl Function {
     }
 }
 
-/// The description of a field.
+/// The description of a field as data.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Made {
@@ -85,7 +85,7 @@ pub(crate) enum Made {
     WaveletNoise(Shared<WaveletMade>),
     /// The field of values at control points.
     Pups(Shared<PupsMade>),
-    /// A texture of control points, by name.
+    /// One of the paper's textures of control points, by name.
     Texture(Shared<TextureMade>),
     /// A node of a recipe.
     Node(Shared<NodeMade>),
@@ -109,7 +109,7 @@ pub(crate) enum Made {
         x: Shared<Made>,
         y: Shared<Made>,
         amount: f64,
-        /// The displacements along the axes after the first two.
+        /// The displacement fields along the axes after the first two.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         further: Vec<Shared<Made>>,
     },
@@ -132,13 +132,13 @@ pub(crate) enum Made {
         second: Shared<Made>,
         operation: PairOperation,
     },
-    /// The interpolation between two fields by a third.
+    /// Interpolation between two fields, weighted by a third.
     Mix {
         from: Shared<Made>,
         to: Shared<Made>,
         by: Shared<Made>,
     },
-    /// A sum of a field at several scales.
+    /// A sum of octaves of a field.
     Fractal {
         field: Shared<Made>,
         octaves: u32,
@@ -148,23 +148,23 @@ pub(crate) enum Made {
     },
 }
 
-/// The value of Python's `__reduce__`: a function, and its arguments.
+/// The return value of Python's `__reduce__`: a function and its arguments.
 pub(crate) type Reduced = (Py<PyAny>, (String,));
 
-/// A function, with the depth and the size of its composition.
+/// A function, with the depth and the number of parts of its composition.
 #[derive(Clone)]
 pub(crate) struct Built {
     pub(crate) function: Function,
     /// Length of the longest chain of nested operations.
     depth: usize,
-    /// Number of operations and elementary fields, counted as often as they are evaluated.
+    /// Number of operations and elementary fields, each counted once per evaluation.
     n_parts: usize,
 }
 
-/// Maximum depth of a composition. Its description nests two levels for each operation, and JSON parsers stop at 127.
+/// Maximum depth of a composition. Its description nests two levels per operation, and JSON parsers stop at 127.
 const DEEPEST: usize = 60;
 
-/// Maximum number of parts of a composition.
+/// Maximum number of operations and elementary fields in a composition.
 const MOST_PARTS: usize = 1 << 16;
 
 impl Build for Made {
@@ -198,7 +198,7 @@ impl Build for Made {
 }
 
 impl Shared<Made> {
-    /// Makes the function; an error unless it has two axes.
+    /// Builds the function; an error unless it has two axes.
     pub(crate) fn plane(&self) -> Result<Arc<dyn Field>> {
         match self.get()?.function {
             Function::Plane(field) => Ok(field),
@@ -211,7 +211,7 @@ impl Shared<Made> {
 }
 
 impl Made {
-    /// The fields that the operation combines.
+    /// Returns the fields that the operation combines.
     fn parts(&self) -> Vec<&Shared<Self>> {
         match self {
             Self::Constant(_)
@@ -241,7 +241,8 @@ impl Made {
         }
     }
 
-    /// Default width and height of a rendered image along axes without a period: 8 cells of noise, otherwise 1.
+    /// Returns the default width and height of a rendered image along axes without a period: 8 cells for noise,
+    /// otherwise 1.
     pub(crate) fn shown(&self) -> [f64; 2] {
         match self {
             Self::Worley(_) | Self::GradientNoise(_) => [CELLS; 2],
@@ -295,7 +296,7 @@ impl Made {
         Err(Error::new("not_finite", message))
     }
 
-    /// Makes the function of this description.
+    /// Builds the function of this description.
     fn function(&self) -> Result<Function> {
         match self {
             Self::Constant(number) => return Ok(Function::Plane(Arc::new(Constant(*number)))),
@@ -330,7 +331,7 @@ impl Made {
                 "fields of three and of four axes are not combined: take a `slice(…)`, or fields of the same number of axes",
             )
         };
-        // Extrude fields of the plane to the number of axes of the other fields.
+        // Extrude 2-D fields to the number of axes of the other fields.
         let parts = parts.into_iter();
         Ok(match n_axes {
             2 => Function::Plane(self.composed(parts.map(|part| match part {
@@ -350,14 +351,14 @@ impl Made {
         })
     }
 
-    /// Applies the operation to fields of `N` axes.
+    /// Applies the operation to fields with `N` axes.
     fn composed<const N: usize>(
         &self,
         parts: impl Iterator<Item = Result<Arc<dyn Field<N>>>>,
     ) -> Result<Arc<dyn Field<N>>> {
         let parts: Vec<_> = parts.collect::<Result<_>>()?;
         let part = |index: usize| Arc::clone(&parts[index]);
-        // Fill up to `N` numbers, so that further axes keep their coordinate.
+        // Fill up to `N` numbers, so that coordinates along the other axes are unchanged.
         let along = |numbers: &[f64], default: f64| -> [f64; N] {
             core::array::from_fn(|axis| numbers.get(axis).copied().unwrap_or(default))
         };
@@ -393,12 +394,12 @@ impl Made {
         })
     }
 
-    /// The description as text.
+    /// Returns the description as JSON text.
     pub(crate) fn description(&self) -> Result<String> {
         serde_json::to_string(self).map_err(|error| Error::new("description", error.to_string()))
     }
 
-    /// The beginning of the description, for display.
+    /// Returns the beginning of the description, for display.
     pub(crate) fn summary(&self) -> Result<String> {
         /// Maximum number of displayed characters.
         const MOST: usize = 500;
@@ -409,32 +410,33 @@ impl Made {
         })
     }
 
-    /// The hash of the description, for Python's dictionaries.
+    /// Returns the hash of the description, for Python dictionaries.
     pub(crate) fn hash(&self) -> Result<u64> {
         let mut hasher = DefaultHasher::new();
         self.description()?.hash(&mut hasher);
         Ok(hasher.finish())
     }
 
-    /// The function and the arguments with which Python rebuilds the field in another process.
+    /// Returns the function and the arguments with which Python rebuilds the field in another process.
     pub(crate) fn reduced(&self, py: Python<'_>) -> Result<Reduced> {
         let module = py.import("dapple_textures._native")?;
         let make = module.getattr("_field_from_description")?;
         Ok((make.unbind(), (self.description()?,)))
     }
 
-    /// A hash of the description for Dask. It is equal in all processes, and differs for different descriptions.
+    /// Returns a hash of the description for Dask. It is equal in all processes, and differs for different
+    /// descriptions.
     pub(crate) fn token(&self) -> Result<String> {
         Ok(hex(&Sha256::digest(self.description()?)))
     }
 }
 
-/// Bytes in hexadecimal.
+/// Formats bytes in hexadecimal.
 pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// A function that clamps values to two bounds and keeps NaN.
+/// Returns a function that clamps values between two bounds; NaN is unchanged.
 fn clamp([low, high]: [f32; 2]) -> Result<impl Fn(f32) -> f32 + Send + Sync> {
     if low > high || low.is_nan() || high.is_nan() {
         return Err(Error::new(

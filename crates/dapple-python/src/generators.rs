@@ -1,4 +1,4 @@
-//! Fields with a seed: Worley's cells, gradient noise, wavelet noise.
+//! Generators of fields from a seed: Worley's cells, gradient noise, wavelet noise.
 
 mod cells;
 mod gradient;
@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::grid::per_axis;
 use pyo3::prelude::*;
 
-/// Reads the periods along axes, in cells: one for all axes, or one for each axis. `None` means no period.
+/// Reads the period along each axis, in cells: one for all axes, or one for each axis. `None` means no period.
 fn periods(data: Option<&Bound<'_, PyAny>>, n_axes: usize) -> Result<Vec<Option<u32>>> {
     let Some(data) = data else {
         return Ok(vec![None; n_axes]);
@@ -25,7 +25,7 @@ fn periods(data: Option<&Bound<'_, PyAny>>, n_axes: usize) -> Result<Vec<Option<
     })
 }
 
-/// The error for an unsupported number of axes.
+/// Returns the error for an unsupported number of axes.
 fn unknown_axes(dims: usize, known: &str) -> Error {
     Error::new(
         "axes",
@@ -33,7 +33,7 @@ fn unknown_axes(dims: usize, known: &str) -> Error {
     )
 }
 
-/// Converts numbers to an array of fixed length; an error for another length.
+/// Converts numbers to an array of length `N`; fails for any other length.
 fn array<T: Copy, const N: usize>(numbers: &[T]) -> Result<[T; N]> {
     numbers.try_into().map_err(|_| {
         Error::new(

@@ -8,14 +8,14 @@ use pyo3::conversion::FromPyObjectOwned;
 use pyo3::prelude::*;
 use pyo3::types::{PySlice, PyTuple};
 
-/// The pixels of an array of two to four axes, in the order of positions: x first.
+/// The pixels of an array with two to four axes, in the order of position coordinates: x first.
 #[derive(Clone, Debug)]
 pub(crate) struct Grid {
     axes: Vec<Axis>,
 }
 
-/// The pixels along an axis: the center of pixel `i` is at `origin + (first + i + ½) · pixel`. For samples on corners,
-/// `origin` is half a pixel less than the origin of the caller.
+/// The pixels along an axis: the center of pixel `i` is at `origin + (first + i + ½) · pixel`. For samples at
+/// corners, `origin` is half a pixel less than the caller's origin.
 #[derive(Clone, Copy, Debug)]
 struct Axis {
     origin: f64,
@@ -27,17 +27,17 @@ struct Axis {
     copy: Option<i64>,
 }
 
-/// Pixels of an array that are copies of other pixels: the last column or row of a tile sampled on corners.
+/// Pixels of an array that are copies of other pixels: the last column or row of a tile sampled at corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Copies {
     /// The pixels to evaluate.
     pub(crate) window: Window,
-    /// The column and row of the array at which they are written.
+    /// Column and row of the array at which the copies are written.
     pub(crate) at: [usize; 2],
 }
 
-/// The arguments of a grid in the form of the caller: sizes and windows in NumPy's order (the last axis is x), extents
-/// and origins in the order of positions (x first).
+/// The arguments of a grid as the caller passes them: sizes and windows in NumPy's order (the last axis is x),
+/// extents and origins in the order of position coordinates (x first).
 pub(crate) struct GridArguments<'a, 'py> {
     pub(crate) size: &'a Bound<'py, PyAny>,
     pub(crate) extent: Option<&'a Bound<'py, PyAny>>,
@@ -47,7 +47,7 @@ pub(crate) struct GridArguments<'a, 'py> {
 }
 
 impl Grid {
-    /// Makes the grid for the arguments and for the periods of the field. The default extent is [`default_extent`].
+    /// Builds the grid from the arguments and from the field's periods. The default extent is [`default_extent`].
     pub(crate) fn new(
         arguments: &GridArguments<'_, '_>,
         period: &[Option<f64>],
@@ -88,7 +88,7 @@ impl Grid {
         Ok(Self { axes })
     }
 
-    /// The shape of the array, x last.
+    /// Returns the shape of the array, x last.
     pub(crate) fn shape(&self) -> Vec<usize> {
         self.axes
             .iter()
@@ -97,18 +97,18 @@ impl Grid {
             .collect()
     }
 
-    /// Number of values; an error if there are too many.
+    /// Returns the number of values; an error if there are too many.
     pub(crate) fn n_values(&self) -> Result<usize> {
         let sizes = self.axes.iter().map(|axis| axis.size as usize);
         let count = sizes.clone().try_fold(1_usize, usize::checked_mul);
-        // Stay far below 2^63 bytes, the limit of NumPy arrays. Memory is exhausted earlier.
+        // Stay far below 2^63 bytes, the limit for NumPy arrays. Memory runs out earlier.
         count.filter(|&count| count <= 1 << 40).ok_or_else(|| {
             let message = format!("an array of shape {:?} has too many values", self.shape());
             Error::new("too_large", message)
         })
     }
 
-    /// The pixels along the first two axes.
+    /// Returns the window of pixels along the first two axes.
     pub(crate) fn plane(&self) -> Window {
         let [x, y] = [self.axes[0], self.axes[1]];
         Window {
@@ -120,8 +120,8 @@ impl Grid {
         }
     }
 
-    /// The copies to write over the pixels of each [`plane`](Self::plane), in this order: the last column, the last
-    /// row and the last pixel of a tile sampled on corners, which have the bits of the first ones.
+    /// Returns the copies to write over the pixels of each [`plane`](Self::plane), in this order: the last column,
+    /// the last row and the last pixel of a tile sampled at corners, which have the same bits as the first ones.
     pub(crate) fn copies(&self) -> Vec<Copies> {
         let plane = self.plane();
         let [column, row] = [0, 1].map(|axis| self.axes[axis].copied());
@@ -144,12 +144,12 @@ impl Grid {
         copies
     }
 
-    /// For each plane, its coordinates along the axes after the first two, in the order of the array.
+    /// Returns, for each plane, its coordinates along the axes after the first two, in the order of the array.
     pub(crate) fn planes(&self) -> Vec<Vec<f64>> {
         let mut planes = vec![Vec::new()];
         for axis in &self.axes[2..] {
             let centers: Vec<f64> = (0..axis.size).map(|index| axis.center(index)).collect();
-            // The last axis of positions is the first axis of the array, which varies slowest.
+            // The last coordinate of positions corresponds to the first axis of the array, which varies slowest.
             let all = centers.iter().flat_map(|&center| {
                 planes
                     .iter()
@@ -190,8 +190,8 @@ impl Axis {
         }
     }
 
-    /// Samples on corners, from one side of the extent to the other. The last corner is a copy of the first one if the
-    /// extent is a whole number of periods.
+    /// Returns an axis with samples at corners, from one side of the extent to the other. The last corner is a copy
+    /// of the first one if the extent is a whole number of periods.
     fn on_corners(origin: f64, extent: f64, whole: u32, period: Option<f64>) -> Result<Self> {
         if whole < 2 {
             let message =
@@ -214,13 +214,13 @@ impl Axis {
         })
     }
 
-    /// The index of the copy of corner 0 within the window to compute; `None` if it is outside.
+    /// Returns the index of the copy of corner 0 within the window to compute; `None` if it is outside.
     fn copied(&self) -> Option<usize> {
         let at = usize::try_from(self.copy? - self.first).ok()?;
         (at < self.size as usize).then_some(at)
     }
 
-    /// The center of a pixel, computed with the same operations as in [`Window`].
+    /// Returns the center of a pixel, computed with the same operations as in [`Window`].
     fn center(&self, index: u32) -> f64 {
         let index = self.first + i64::from(index);
         let index = if self.copy == Some(index) { 0 } else { index };
@@ -228,15 +228,15 @@ impl Axis {
     }
 }
 
-/// The sample positions with a name; pixel centers by default.
+/// Returns the sample positions called `name`; pixel centers by default.
 pub(crate) fn samples(name: Option<&str>) -> Result<Samples> {
     name.map_or(Ok(Samples::default()), |name| named("samples", name))
 }
 
-/// Number of cells that are rendered by default along an axis without a period.
+/// Number of cells rendered by default along an axis without a period.
 pub(crate) const CELLS: f64 = 8.0;
 
-/// The default extent: one period along each axis, and `shown` along axes without a period.
+/// Returns the default extent: one period along each axis, or the value in `shown` for an axis without a period.
 pub(crate) fn default_extent(period: &[Option<f64>], shown: &[f64]) -> Vec<f64> {
     let axes = period.iter().zip(shown);
     axes.map(|(period, &shown)| period.filter(|&period| period > 0.0).unwrap_or(shown))
@@ -256,7 +256,7 @@ where
     values.filter(|values| values.len() == n_axes)
 }
 
-/// Reads numbers of pixels, each at least 1: one for all axes, or one for each axis.
+/// Reads pixel counts, each at least 1: one for all axes, or one for each axis.
 pub(crate) fn sizes(size: &Bound<'_, PyAny>, n_axes: usize) -> Result<Vec<u32>> {
     let sizes = per_axis(size, n_axes).filter(|sizes| !sizes.contains(&0));
     sizes.ok_or_else(|| {
@@ -267,13 +267,13 @@ pub(crate) fn sizes(size: &Bound<'_, PyAny>, n_axes: usize) -> Result<Vec<u32>> 
     })
 }
 
-/// Reads the size of an array of two axes, and returns columns and rows.
+/// Reads the size of a 2-D array, and returns columns and rows.
 pub(crate) fn size(size: &Bound<'_, PyAny>) -> Result<[u32; 2]> {
     let sizes = sizes(size, 2)?;
     Ok([sizes[1], sizes[0]])
 }
 
-/// Reads numbers along axes: one for all axes, or one for each axis.
+/// Reads one number for all axes, or one for each axis.
 pub(crate) fn numbers(what: &str, data: &Bound<'_, PyAny>, n_axes: usize) -> Result<Vec<f64>> {
     per_axis(data, n_axes).ok_or_else(|| {
         let message = format!(
@@ -283,12 +283,12 @@ pub(crate) fn numbers(what: &str, data: &Bound<'_, PyAny>, n_axes: usize) -> Res
     })
 }
 
-/// Reads numbers along the two axes of the plane: one for both axes, or one for each axis.
+/// Reads one number for both axes of the plane, or one for each axis.
 pub(crate) fn pair(what: &str, data: &Bound<'_, PyAny>) -> Result<DVec2> {
     Ok(DVec2::from_slice(&numbers(what, data, 2)?))
 }
 
-/// The slices of a window, the first axis of the array first.
+/// Returns the slices of a window, starting with the first axis of the array.
 fn slices<'py>(window: &Bound<'py, PyAny>, n_axes: usize) -> Result<Vec<Bound<'py, PySlice>>> {
     let parts = window.cast::<PyTuple>().ok().and_then(|parts| {
         let parts = parts.iter().map(|part| part.cast_into::<PySlice>());
@@ -303,7 +303,7 @@ fn slices<'py>(window: &Bound<'py, PyAny>, n_axes: usize) -> Result<Vec<Bound<'p
     })
 }
 
-/// The first pixel and the number of pixels of a slice, which may begin before the array and end after it.
+/// Returns the first pixel and the number of pixels of a slice, which may begin before the array and end after it.
 fn crop(part: &Bound<'_, PySlice>, whole: u32) -> Result<(i64, u32)> {
     let bound = |name: &str, default: i64| -> Result<i64> {
         let bound = part.getattr(name)?;

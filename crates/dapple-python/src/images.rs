@@ -1,4 +1,4 @@
-//! Image files: PNG, OpenEXR, JPEG, NumPy arrays and raw heights.
+//! Reads and writes image files: PNG, OpenEXR, JPEG, NumPy arrays and raw heights.
 
 use crate::data;
 use crate::error::{DappleWarning, Error, Result};
@@ -28,9 +28,9 @@ struct Reading {
 /// How the alpha of an image is handled.
 #[derive(PartialEq)]
 enum Alpha {
-    /// Alpha is kept if a pixel is not opaque.
+    /// Alpha is included if any pixel is not opaque.
     Needed,
-    /// Alpha is always kept, or added.
+    /// Alpha is always included, and added if missing.
     Always,
     /// Alpha is removed.
     Without(ImageAlpha),
@@ -98,8 +98,8 @@ impl Reading {
         };
         let color = match plain {
             ImageAlpha::Drop => pixels.map(|pixel| pixel.color),
-            // Composite as the command does: OpenEXR colors are associated, so that light at alpha 0 is added to the
-            // color below.
+            // Composite as the command does: OpenEXR colors are premultiplied, so that light at alpha 0 is added to
+            // the color below.
             ImageAlpha::Over(below) => {
                 let covered = match image {
                     Image::Exr(exr) => exr.associated()?.0,
@@ -114,7 +114,7 @@ impl Reading {
     }
 }
 
-/// The channels of an image as data: codes from 0 to 1, without sRGB decoding, one raster per channel.
+/// Reads the image's channels as data: codes from 0 to 1, without sRGB decoding, one raster per channel.
 fn channels(image: &Image) -> Result<Vec<Raster<f32>>> {
     fn codes<T: Code, const N: usize>(raster: &Raster<[T; N]>) -> Vec<Raster<f32>> {
         (0..N)
@@ -146,29 +146,32 @@ fn channels(image: &Image) -> Result<Vec<Raster<f32>>> {
     })
 }
 
-/// The array of an image file, float32: PNG, JPEG or OpenEXR, whatever its name ends with.
+/// Reads an image file as a float32 array: PNG, JPEG or OpenEXR, whatever its file extension.
 ///
-/// Gray images are uncoded numbers, (rows, columns); PNG and JPEG from 0 to 1. Colors are linear light of BT.709,
-/// converted from the color space that the file declares, (rows, columns, 3), or (rows, columns, 4) if a pixel is not
-/// opaque; alpha is not multiplied into them. OpenEXR has the pixels of its display window.
+/// Gray images are read without sRGB decoding, (rows, columns); PNG and JPEG values are from 0 to 1. Colors are
+/// linear BT.709 light, converted from the color space that the file declares, (rows, columns, 3), or (rows, columns,
+/// 4) if any pixel is not opaque; alpha is not multiplied into them. For OpenEXR, the array has the pixels of the
+/// display window.
 ///
 /// Parameters
 /// ----------
 /// path : str or os.PathLike
-///     The file.
+///     The path of the file.
 /// content : {"gray", "color", "normal", "data"} or None, default None
-///     The content, if the channels do not show it: `"gray"`, `"color"` (a gray image, too), `"normal"` (unit vectors
-///     of a normal map), or `"data"` (all channels uncoded, such as occlusion, roughness and metallic).
+///     The content, if it does not follow from the channels: `"gray"`, `"color"` (also for a gray image), `"normal"`
+///     (unit vectors of a normal map), or `"data"` (all channels without decoding, such as occlusion, roughness and
+///     metallic).
 /// alpha : str or None, default None
-///     None keeps it if a pixel is not opaque; `"keep"` always; `"drop"` removes it; `"over:#808080"` composites the
-///     image over a color.
+///     None includes alpha if any pixel is not opaque; `"keep"` always includes it; `"drop"` removes it;
+///     `"over:#808080"` composites the image over a color.
 /// layer : str or None, default None
-///     The layer of an OpenEXR file with several, such as `"ViewLayer.DiffCol"`. By default the one without a name,
-///     `Combined`, `rgba` or `beauty`, and of several views the first; the error lists all. Other formats have none.
+///     The layer of an OpenEXR file with several layers, such as `"ViewLayer.DiffCol"`. By default the layer without
+///     a name, `Combined`, `rgba` or `beauty`, and the first of several views; the error message lists all layers.
+///     Other formats have no layers.
 /// max_pixels : int, default 268435456
-///     The limits; a larger image is an error before memory is allocated for it.
+///     Maximum number of pixels; a larger image is an error before memory is allocated for it.
 /// max_bytes : int, default 4294967296
-///     The limits; a larger image is an error before memory is allocated for it.
+///     Maximum number of bytes; a larger image is an error before memory is allocated for it.
 ///
 /// Returns
 /// -------
@@ -178,8 +181,8 @@ fn channels(image: &Image) -> Result<Vec<Raster<f32>>> {
 /// Raises
 /// ------
 /// DappleError
-///     If the file is no image that can be read, is larger than the limits, or lacks the `layer`, or the `content` does
-///     not fit its channels.
+///     If the file is not a readable image, exceeds the limits, or lacks the `layer`, or if the `content` does not
+///     match its channels.
 /// OSError
 ///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
 ///
@@ -211,33 +214,33 @@ pub(crate) fn read_image<'py>(
     kind.array(py, maps)
 }
 
-/// Decodes the bytes of an image file to an array; see `read_image`.
+/// Decodes an image file in memory to an array; see `read_image`.
 ///
 /// Parameters
 /// ----------
 /// data : bytes
 ///     The contents of the file.
 /// content : {"gray", "color", "normal", "data"} or None, default None
-///     What the numbers are, as in `read_image`.
+///     The content of the image, as in `read_image`.
 /// alpha : str or None, default None
-///     What is done with alpha, as in `read_image`.
+///     How alpha is handled, as in `read_image`.
 /// layer : str or None, default None
-///     The layer of an OpenEXR file with several, as in `read_image`.
+///     The layer of an OpenEXR file with several layers, as in `read_image`.
 /// max_pixels : int, default 268435456
-///     The largest number of pixels that is read.
+///     The maximum number of pixels.
 /// max_bytes : int, default 4294967296
-///     The largest number of bytes of a file and of its pixels.
+///     The maximum number of bytes of the file and of its pixels.
 ///
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The array, as `read_image` returns it.
+///     The array, as returned by `read_image`.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If the bytes are no image that can be read, are larger than the limits, or lack the `layer`, or the `content`
-///     does not fit their channels.
+///     If the bytes are not a readable image, exceed the limits, or lack the `layer`, or if the `content` does not
+///     match their channels.
 ///
 /// Examples
 /// --------
@@ -268,35 +271,36 @@ pub(crate) fn decode_image<'py>(
     kind.array(py, maps)
 }
 
-/// Writes an array as an image file, in the format of its ending: `.png`, `.exr`, `.npy` or `.r16`.
+/// Writes an array as an image file, in the format of its extension: `.png`, `.exr`, `.npy` or `.r16`.
 ///
-/// The file is written under a temporary name and then renamed, so that other programs see the old one or the whole new
-/// one. The bytes are those of the command `dapple`.
+/// The file is written under a temporary name and then renamed, so that other programs see either the old file or the
+/// complete new one. The bytes are the same as those that the command `dapple` writes.
 ///
 /// Parameters
 /// ----------
 /// path : str or os.PathLike
-///     The file.
+///     The path of the file.
 /// image : array_like
 ///     (rows, columns), or (rows, columns, 3 or 4), floating point.
 /// content : {"gray", "color", "normal", "data"} or None, default None
-///     `"gray"`, `"color"`, `"normal"` or `"data"`; by default gray for one channel and color for more. Color is linear
-///     here and in EXR and NPY, and sRGB in PNG. Normals are `(part + 1) / 2` in PNG and EXR. Data is unchanged.
+///     `"gray"`, `"color"`, `"normal"` or `"data"`; by default gray for one channel and color for more. Color is
+///     linear in the array and in EXR and NPY, and sRGB in PNG. Normals are stored as `(component + 1) / 2` in PNG
+///     and EXR. Data is unchanged.
 /// depth : {8, 16} or None, default None
-///     8 or 16 bits of PNG; 8 by default for color, 16 for all other content.
+///     Bits per channel of a PNG file, 8 or 16; by default 8 for color and 16 for all other content.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If the ending is not one of the formats, the array is not floating point or its channels do not fit `content` or
-///     the format, or `depth` is not one of the format's.
+///     If the extension is not a known format, the array is not floating point or its channels do not match `content`
+///     or the format, or `depth` is not supported by the format.
 /// OSError
 ///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
 ///
 /// Warns
 /// -----
 /// DappleWarning
-///     If a format of whole numbers, `png` or `r16`, clips at least 1 % of the pixels: numbers below 0 or above 1.
+///     If an integer format, `png` or `r16`, clips at least 1 % of the pixels (values below 0 or above 1).
 ///
 /// Examples
 /// --------
@@ -320,23 +324,23 @@ pub(crate) fn write_image(
     Ok(py.detach(|| image::replace(&path, &bytes))?)
 }
 
-/// Writes the maps of a material as image files into a folder, which is created if necessary, and returns their paths.
+/// Writes a material's maps as image files into a folder, which is created if necessary, and returns their paths.
 ///
-/// The name of a map determines how it is written: `normal` as unit vectors, `orm` as data, `albedo` as color, all
-/// others by their channels, as in `write_image`.
+/// The name of a map determines its encoding: `normal` is written as unit vectors, `orm` as data, `albedo` as color,
+/// and every other map according to its channels, as in `write_image`.
 ///
 /// Parameters
 /// ----------
 /// folder : str or os.PathLike
 ///     The folder for the files.
 /// maps : dict of array_like
-///     A dictionary of maps, as `Plan.bake` returns it.
+///     A dictionary of maps, as returned by `Plan.bake`.
 /// name : str or None, default None
-///     The beginning of the file names: `rock` for `rock_normal.png`; by default they are the names of the maps.
+///     The prefix of the file names: `rock` for `rock_normal.png`; by default the files are named after the maps.
 /// format : {"png", "exr", "npy"}, default "png"
 ///     `"png"`, `"exr"` or `"npy"`.
 /// depth : {8, 16} or None, default None
-///     8 or 16 bits of PNG; 8 by default for color, 16 for all other content.
+///     Bits per channel of a PNG file, 8 or 16; by default 8 for color and 16 for all other content.
 ///
 /// Returns
 /// -------
@@ -346,15 +350,15 @@ pub(crate) fn write_image(
 /// Raises
 /// ------
 /// DappleError
-///     If the format is unknown, a name is no name of a file, an array does not fit its map, or `depth` is not one of
-///     the format's.
+///     If the format is unknown, a name is not a valid file name, an array does not match its map, or `depth` is not
+///     supported by the format.
 /// OSError
 ///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
 ///
 /// Warns
 /// -----
 /// DappleWarning
-///     If a format of whole numbers, `png` or `r16`, clips at least 1 % of the pixels: numbers below 0 or above 1.
+///     If an integer format, `png` or `r16`, clips at least 1 % of the pixels (values below 0 or above 1).
 ///
 /// Examples
 /// --------
@@ -405,34 +409,34 @@ pub(crate) fn write_maps(
     Ok(files)
 }
 
-/// Encodes an array as the bytes of an image file; see `write_image`.
+/// Encodes an array as an image file in memory; see `write_image`.
 ///
 /// Parameters
 /// ----------
 /// image : array_like
-///     An image.
+///     The image, as for `write_image`.
 /// format : {"png", "exr", "npy", "r16"}, default "png"
 ///     The format of the bytes.
 /// content : {"gray", "color", "normal", "data"} or None, default None
-///     What the numbers are, as in `read_image`.
+///     The content of the image, as in `write_image`.
 /// depth : {8, 16} or None, default None
-///     The number of bits.
+///     Bits per channel, as in `write_image`.
 ///
 /// Returns
 /// -------
 /// bytes
-///     The bytes.
+///     The contents of the file.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If the format is unknown, the array is not floating point or its channels do not fit `content` or the format, or
-///     `depth` is not one of the format's.
+///     If the format is unknown, the array is not floating point or its channels do not match `content` or the
+///     format, or `depth` is not supported by the format.
 ///
 /// Warns
 /// -----
 /// DappleWarning
-///     If a format of whole numbers, `png` or `r16`, clips at least 1 % of the pixels: numbers below 0 or above 1.
+///     If an integer format, `png` or `r16`, clips at least 1 % of the pixels (values below 0 or above 1).
 ///
 /// Examples
 /// --------
@@ -490,8 +494,8 @@ fn encoded(
 /// Minimum fraction of clipped pixels for a warning; the command uses the same value.
 const CLIPPED_MIN: f64 = 0.01;
 
-/// Fraction of pixels that an integer format clips: pixels with a number below 0 or above 1 by more than half a 16-bit
-/// code. Normals are never clipped.
+/// Returns the fraction of pixels that an integer format clips, that is, pixels with a value below 0 or above 1 by
+/// more than half a 16-bit code. Normals are never clipped.
 fn clipped_share(kind: Kind, values: &[f32], encoding: Encoding, stop: &Stop) -> Result<f64> {
     const HALF_CODE: f32 = 0.5 / 65_535.0;
     if kind.content == Content::Normal || matches!(encoding, Encoding::Exr | Encoding::Npy) {
@@ -508,7 +512,7 @@ fn clipped_share(kind: Kind, values: &[f32], encoding: Encoding, stop: &Stop) ->
     Ok(n_clipped as f64 / n_pixels as f64)
 }
 
-/// The encoding of numbers in a format.
+/// Returns the encoding of values in a format.
 fn encoding(format: &str, kind: Kind, depth: Option<u32>) -> Result<Encoding> {
     let default = if kind.content == Content::Color {
         8
@@ -539,7 +543,7 @@ fn encoding(format: &str, kind: Kind, depth: Option<u32>) -> Result<Encoding> {
     }
 }
 
-/// Encodes numbers in pixel order as the bytes of an image file.
+/// Encodes values in pixel order as the bytes of an image file.
 pub(crate) fn encode(
     kind: Kind,
     size: [u32; 2],
@@ -598,5 +602,5 @@ pub(crate) fn encode(
     Ok(rows.finish()?.into_inner())
 }
 
-/// Number of pixels that are converted and encoded at a time.
+/// Number of pixels converted and encoded at a time.
 const BAND: usize = 1 << 18;

@@ -1,7 +1,8 @@
-//! The native part of the Python package `dapple-textures`: the crates of dapple with NumPy arrays.
+//! The native part of the Python package `dapple-textures`: exposes the dapple crates with NumPy arrays.
 //!
-//! A call checks its arguments while it holds the interpreter lock. It then releases the lock and works on the threads
-//! of the package ([`threads`]). Fields are descriptions, from which other processes can rebuild them ([`function`]).
+//! A call checks its arguments while it holds the interpreter lock. It then releases the lock and works on the
+//! package's threads ([`threads`]). Fields are descriptions, from which other processes can rebuild them
+//! ([`function`]).
 
 mod arrays;
 mod bands;
@@ -87,7 +88,7 @@ mod _native {
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         arrays::load(module.py())?;
-        // Set class attributes, so that attributes that an error does not set are None.
+        // Set class attributes, so that attributes are None if an error does not set them.
         let error = module.getattr("DappleError")?;
         for attribute in ["kind", "node", "hint"] {
             error.setattr(attribute, module.py().None())?;

@@ -1,4 +1,4 @@
-//! Maps from heights, color ramps, and the sRGB curve.
+//! Computes maps from heights, color ramps, and the sRGB curve.
 
 use crate::arrays;
 use crate::data;
@@ -21,7 +21,7 @@ use pyo3::types::{PyDict, PyString};
 use rayon::prelude::*;
 use serde_json::Value;
 
-/// Reads a named value per axis, such as the wrap: one name for both axes, or one for each axis, x first.
+/// Reads a named option per axis, such as the wrap: one name for both axes, or one for each axis, x first.
 pub(crate) fn per_axis<T: Named>(
     what: &str,
     data: Option<&Bound<'_, PyAny>>,
@@ -37,7 +37,7 @@ pub(crate) fn per_axis<T: Named>(
     Ok([data::named(what, &x)?, data::named(what, &y)?])
 }
 
-/// The scale of heights: relief, extent and wrap.
+/// Reads the scale of heights: relief, extent and wrap.
 fn plane(
     relief: f64,
     extent: Option<&Bound<'_, PyAny>>,
@@ -50,23 +50,23 @@ fn plane(
     })
 }
 
-/// The normal map of heights, (rows, columns, 3): unit vectors with x to the right and z out of the picture.
+/// Computes the normal map of heights, (rows, columns, 3): unit vectors with x to the right and z out of the image.
 ///
-/// A height `h` has the normal `normalize(-relief ∂h/∂x, ±relief ∂h/∂y, 1)` (Blinn 1978). Slopes are per unit of the plane and not per
-/// pixel: the resolution does not change the normals.
+/// A height `h` has the normal `normalize(-relief ∂h/∂x, ±relief ∂h/∂y, 1)` (Blinn 1978). Slopes are per unit of the
+/// plane, not per pixel, so the resolution does not change the normals.
 ///
 /// Parameters
 /// ----------
 /// height : array_like
-///     (rows, columns).
+///     The heights, (rows, columns).
 /// relief : float, default 1.0
-///     The height in units of the plane of a value of 1; negative turns hills into dents.
+///     The height of the value 1, in units of the plane; negative values turn hills into dents.
 /// extent : float or tuple of float or None, default None
 ///     (x, y), or a number for both: the size of the array in the plane, as in `Field.render`; 1 by default.
 /// wrap : {"repeat", "clamp", "mirror"} or a pair of them, default "repeat"
-///     The wrapping past the edges: `"repeat"`, `"clamp"` or `"mirror"`, or one for each axis, x first.
-///     Without `"repeat"`, heights continue past a side with their slope, so that a plane has the same values up to its
-///     last row.
+///     How heights continue past the edges: `"repeat"`, `"clamp"` or `"mirror"`, or one for each axis, x first.
+///     Without `"repeat"`, heights continue past an edge with the slope that they have there, so that a tilted plane
+///     has the same normals up to its last row.
 /// y : {"up", "down"}, default "up"
 ///     `"up"` (OpenGL, Blender, glTF) or `"down"` (DirectX).
 ///
@@ -117,10 +117,11 @@ pub(crate) fn normal_map<'py>(
     kind.array(py, vec![Map::Normal(normals)])
 }
 
-/// Ambient occlusion of heights, (rows, columns): the visible part of the sky at each place, from 0 to 1.
+/// Computes the ambient occlusion of heights, (rows, columns): the visible fraction of the sky at each pixel, from 0
+/// to 1.
 ///
-/// Horizons in 16 directions, without random turns (after Bavoil, Sainz and Dimitrov 2008; Jimenez and others 2016). A plane of any slope
-/// sees exactly 1.
+/// Horizons are searched in 16 directions, without random rotations (after Bavoil, Sainz and Dimitrov 2008; Jimenez
+/// and others 2016). A plane with any slope has exactly the value 1.
 ///
 /// Parameters
 /// ----------
@@ -135,12 +136,12 @@ pub(crate) fn normal_map<'py>(
 /// radius : float, default 0.0625
 ///     The distance within which heights occlude the sky, in units of the plane.
 /// fade : float, default 0.5
-///     The outer part of the radius over which occlusion fades, from 0 to 1.
+///     The outer fraction of the radius over which occlusion fades, from 0 to 1.
 ///
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The visible parts of the sky, (rows, columns), from 0 to 1.
+///     The visible fractions of the sky, (rows, columns), from 0 to 1.
 ///
 /// Raises
 /// ------
@@ -179,9 +180,10 @@ pub(crate) fn ambient_occlusion<'py>(
     arrays::numbers(py, seen)
 }
 
-/// Mean curvature of heights, (rows, columns), in 1 / units of the plane: positive on ridges and hills, negative in grooves.
+/// Computes the mean curvature of heights, (rows, columns), in 1 / units of the plane: positive on ridges and hills,
+/// negative in grooves.
 ///
-/// A hill that is part of a sphere has one over its radius everywhere (do Carmo 1976, section 3.3).
+/// On a hill shaped like part of a sphere, it is 1 / radius everywhere (do Carmo 1976, section 3.3).
 ///
 /// Parameters
 /// ----------
@@ -194,7 +196,7 @@ pub(crate) fn ambient_occlusion<'py>(
 /// wrap : {"repeat", "clamp", "mirror"} or a pair of them, default "repeat"
 ///     As for `normal_map`.
 /// radius : float, default 0.0078125
-///     The radius of the differences, in units of the plane; at least one pixel.
+///     The distance over which differences are taken, in units of the plane; at least one pixel.
 ///
 /// Returns
 /// -------
@@ -232,21 +234,21 @@ pub(crate) fn curvature<'py>(
     arrays::numbers(py, bent)
 }
 
-/// Colors of numbers by a ramp, (rows, columns, 3), in linear light.
+/// Maps values to colors with a color ramp, (rows, columns, 3), in linear light.
 ///
 /// Parameters
 /// ----------
 /// values : array_like
-///     (rows, columns).
+///     The values, (rows, columns).
 /// colors : str, sequence of object or numpy.ndarray, default "gray"
-///     The name of a palette (see `palettes`); or a list of colors, evenly from 0 to 1; or of (position, color). A
-///     color is `"#rrggbb"` in sRGB, or three linear numbers.
+///     The name of a palette (see `palettes`), a list of colors spaced evenly from 0 to 1, or a list of (position,
+///     color). A color is `"#rrggbb"` in sRGB, or three numbers in linear light.
 /// space : {"oklab", "srgb", "linear"}, default "oklab"
-///     The space in which colors are mixed: `"oklab"`, `"srgb"` or `"linear"`.
+///     The color space for interpolation: `"oklab"`, `"srgb"` or `"linear"`.
 /// interpolation : {"linear", "smooth", "stepped"}, default "linear"
-///     `"linear"`, `"smooth"` or `"stepped"`.
+///     How colors change between two stops: `"linear"`, `"smooth"` or `"stepped"`.
 /// outside : {"clamp", "repeat"}, default "clamp"
-///     The colors before the first and after the last position: `"clamp"` or `"repeat"`.
+///     The colors before the first and after the last stop: `"clamp"` or `"repeat"`.
 ///
 /// Returns
 /// -------
@@ -256,7 +258,7 @@ pub(crate) fn curvature<'py>(
 /// Raises
 /// ------
 /// DappleError
-///     If a palette or a color is unknown, there is no stop, stops are not in order, or a word is not one of those
+///     If a palette or a color is unknown, there are no stops, stops are out of order, or a name is not one of those
 ///     above.
 ///
 /// Examples
@@ -339,12 +341,13 @@ fn color(color: &Value) -> Result<LinearRgb> {
     }
 }
 
-/// The palettes of `ramp`: the colors of each name, (n, 3) in linear light, from low values to high ones.
+/// Returns the palettes of `ramp`: an array of colors for each name, (n, 3) in linear light, from low values to high
+/// ones.
 ///
 /// Returns
 /// -------
 /// dict
-///     The colors of each palette by its name, arrays (n, 3) of float32.
+///     The colors of each palette by name, float32 arrays (n, 3).
 ///
 /// Examples
 /// --------
@@ -364,9 +367,11 @@ pub(crate) fn palettes(py: Python<'_>) -> Result<Bound<'_, PyDict>> {
     Ok(palettes)
 }
 
-/// The sRGB codes of linear light, of any shape: exactly the nearest code, at every value (IEC 61966-2-1).
+/// Converts linear light to sRGB codes, for arrays of any shape; each value becomes exactly the nearest code (IEC
+/// 61966-2-1).
 ///
-/// Values below 0 and NaN become 0, those above 1 the largest code. Alpha is not coded with this curve: leave it out.
+/// Values below 0 and NaN become 0, and values above 1 become the largest code. Alpha does not use this curve, so
+/// leave it out.
 ///
 /// Parameters
 /// ----------
@@ -378,7 +383,7 @@ pub(crate) fn palettes(py: Python<'_>) -> Result<Bound<'_, PyDict>> {
 /// Returns
 /// -------
 /// numpy.ndarray of uint8 or numpy.ndarray of uint16
-///     The codes, of the shape of the argument.
+///     The codes, with the shape of the argument.
 ///
 /// Raises
 /// ------
@@ -407,19 +412,20 @@ pub(crate) fn srgb_from_linear<'py>(
     }
 }
 
-/// The linear light of sRGB codes, of any shape, float32: uint8 from 0 to 255, or uint16 from 0 to 65535 (IEC 61966-2-1).
+/// Converts sRGB codes to linear light, for arrays of any shape, float32. Codes are uint8 from 0 to 255, or uint16
+/// from 0 to 65535 (IEC 61966-2-1).
 ///
-/// `srgb_from_linear` restores every code. Alpha is not coded with this curve: divide it by the largest code.
+/// `srgb_from_linear` restores every code. Alpha does not use this curve: divide it by the largest code.
 ///
 /// Parameters
 /// ----------
 /// codes : numpy.ndarray of uint8 or numpy.ndarray of uint16
-///     Codes of sRGB, uint8 or uint16.
+///     sRGB codes, uint8 or uint16.
 ///
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The linear light, of the shape of the codes, from 0 to 1.
+///     The linear light, with the shape of `codes`, from 0 to 1.
 ///
 /// Raises
 /// ------
@@ -446,7 +452,7 @@ pub(crate) fn linear_from_srgb<'py>(
     Err(PyTypeError::new_err(message).into())
 }
 
-/// Converts each element of an array.
+/// Applies `code` to each element of an array.
 fn codes<'py, T: Element + Copy + Sync, U: Element + Send>(
     py: Python<'py>,
     array: &numpy::PyReadonlyArrayDyn<'py, T>,

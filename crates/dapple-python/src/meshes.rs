@@ -1,4 +1,4 @@
-//! Conversion of meshes from and to arrays and files.
+//! Converts meshes from and to arrays and files.
 
 use crate::arrays;
 use crate::error::{Error, Result};
@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 
-/// Reads vectors of `N` numbers from an array whose last axes have this shape.
+/// Reads vectors of `N` numbers from an array whose last axes have the lengths `axes`.
 pub(crate) fn vectors<const N: usize>(
     what: &str,
     data: &Bound<'_, PyAny>,
@@ -51,14 +51,14 @@ pub(crate) fn mesh(data: &Bound<'_, PyAny>) -> Result<Mesh> {
     mesh_of(&vertices, &faces)
 }
 
-/// Converts a mesh of trimesh or Blender to an object with vertices, faces and texture coordinates; other objects are
+/// Converts a trimesh or Blender mesh to an object with vertices, faces and texture coordinates; other objects are
 /// unchanged. The second value is whether the mesh is from Blender.
 pub(crate) fn plain<'py>(data: &Bound<'py, PyAny>) -> Result<(Bound<'py, PyAny>, bool)> {
     let helper = data.py().import("dapple_textures._meshes")?;
     Ok(helper.call_method1("plain", (data,))?.extract()?)
 }
 
-/// Makes a mesh from an array of vertices and an array of faces.
+/// Builds a mesh from an array of vertices and an array of faces.
 pub(crate) fn mesh_of(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> Result<Mesh> {
     let vertices = vectors::<3>("vertices", vertices, &[3])?;
     if let Ok(array) = faces.cast::<PyUntypedArray>()
@@ -101,20 +101,20 @@ pub(crate) fn mesh_of(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> 
     Ok(Mesh::new(vertices, &faces.collect::<Vec<_>>())?)
 }
 
-/// Positions as an array (n, 3).
+/// Converts positions to an array (n, 3).
 pub(crate) fn positions<'py>(py: Python<'py>, positions: &[DVec3]) -> Result<Bound<'py, PyAny>> {
     let numbers: Vec<[f64; 3]> = positions.iter().map(|at| at.to_array()).collect();
     arrays::array(py, numbers.into_flattened(), &[positions.len(), 3])
 }
 
-/// The vertex indices of faces as an array (n, 3).
+/// Converts the vertex indices of faces to an array (n, 3).
 pub(crate) fn faces<'py>(py: Python<'py>, mesh: &Mesh) -> Result<Bound<'py, PyAny>> {
     let faces = mesh.faces().iter().flatten();
     let numbers = faces.map(|vertex| i64::from(vertex.0)).collect();
     arrays::array(py, numbers, &[mesh.faces().len(), 3])
 }
 
-/// Attributes of the corners of faces as an array (n, 3, N).
+/// Converts attributes of face corners to an array (n, 3, N).
 pub(crate) fn corners<'py, const N: usize>(
     py: Python<'py>,
     corners: impl ExactSizeIterator<Item = [[f64; N]; 3]>,
@@ -124,7 +124,7 @@ pub(crate) fn corners<'py, const N: usize>(
     arrays::array(py, numbers, &[n_faces, 3, N])
 }
 
-/// Reads a mesh file: OBJ, PLY, glTF, GLB, OFF or STL, by its ending.
+/// Reads a mesh file: OBJ, PLY, glTF, GLB, OFF or STL, chosen by its extension.
 ///
 /// Parameters
 /// ----------
@@ -134,14 +134,15 @@ pub(crate) fn corners<'py, const N: usize>(
 /// Returns
 /// -------
 /// MeshFile
-///     `MeshFile(vertices, faces, uv, normals, colors, texture, left_out)`: vertices (n, 3); faces (m, 3); for the
-///     corners of faces, uv (m, 3, 2), v down, and normals (m, 3, 3); for vertices, linear colors (n, 4); the image of
-///     the base color. Attributes that the file lacks are None; `left_out` lists content that was not read.
+///     `MeshFile(vertices, faces, uv, normals, colors, texture, left_out)`. `vertices` is (n, 3) and `faces` (m, 3).
+///     Per face corner, `uv` is (m, 3, 2), with v pointing down, and `normals` is (m, 3, 3). Per vertex, `colors` is
+///     (n, 4) in linear light. `texture` is the base color image. Attributes that the file lacks are None; `left_out`
+///     lists content that was not read.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If the file is of no known format, or damaged.
+///     If the file format is unknown, or the file is damaged.
 /// OSError
 ///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
 ///
@@ -157,7 +158,7 @@ pub(crate) fn read_model(py: Python<'_>, path: PathBuf) -> Result<Bound<'_, PyAn
     let mut model = threads::run(py, move || mesh_io::read_model(&path))??;
     let n_tiles = model.tiles.len();
     if n_tiles > 0 {
-        // Leave the textures of UDIM tiles out, since the texture of the first tile would cover all faces.
+        // Skip textures with UDIM tiles, since the texture of the first tile would cover all faces.
         model.material.base_color = None;
         let what = format!("the textures of {n_tiles} unit squares (UDIM)");
         model.left_out.push(what);
@@ -198,22 +199,22 @@ pub(crate) fn read_model(py: Python<'_>, path: PathBuf) -> Result<Bound<'_, PyAn
     Ok(file.call1(fields)?)
 }
 
-/// The counts of the elements and faults of a mesh: a dictionary.
+/// Counts the elements and faults of a mesh.
 ///
 /// Parameters
 /// ----------
 /// mesh : mesh
-///     Anything with `.vertices` (n, 3) and `.faces` (m, 3), as trimesh has them, or a pair of such arrays.
+///     Any object with `.vertices` (n, 3) and `.faces` (m, 3), such as a trimesh mesh, or a pair of such arrays.
 ///
 /// Returns
 /// -------
 /// dict
-///     The number of each kind of element and fault, by its name.
+///     The number of elements or faults of each kind, by name.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If the mesh is not one of those above, or a face names a vertex that it lacks.
+///     If the mesh is not one of those above, or a face refers to a missing vertex.
 ///
 /// Examples
 /// --------

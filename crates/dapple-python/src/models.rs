@@ -1,4 +1,4 @@
-//! Textures that are synthesized on meshes.
+//! Synthesizes textures on meshes.
 
 mod along;
 mod example_mesh;
@@ -34,26 +34,27 @@ use std::path::PathBuf;
 use surface_guides::{Guide, SitesOfMesh, SurfaceGuides, SurfaceScales};
 
 dapple::raster::named! {
-    /// The layout of a mesh in a texture.
+    /// How the faces of a mesh are laid out in a texture.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     enum AtlasKind {
-        /// Large pieces of the surface, each flattened as a whole.
+        /// Charts: large pieces of the surface, each flattened as a whole.
         Charts = "charts",
-        /// Right triangles whose sizes follow the areas of the faces.
+        /// Right triangles whose sizes follow the face areas.
         Area = "area",
-        /// Right triangles of one size, as in the paper.
+        /// Right triangles of equal size, as in the paper.
         Uniform = "uniform",
         /// The mesh's own texture coordinates.
         Uv = "uv",
     }
 }
 
-/// A mesh with a synthesized texture, and the maps that follow it. Made by `synthesize_on`.
+/// A mesh with a synthesized texture and its other maps. Created by `synthesize_on`.
 #[pyclass(frozen, module = "dapple_textures")]
 pub(crate) struct Model {
     mesh: Mesh,
     uvs: Vec<[DVec2; 3]>,
-    /// Whether the texture may have mipmaps: coarse levels do not mix faces that are far apart.
+    /// Whether the texture may have mipmaps, that is, whether coarse mipmap levels do not mix faces that are far
+    /// apart.
     mipmaps: bool,
     shading: Vec<[DVec3; 3]>,
     is_double_sided: bool,
@@ -66,14 +67,14 @@ pub(crate) struct Model {
 
 /// The sites as a mesh, with a color for each site.
 enum SitePoints {
-    /// Not yet a mesh.
+    /// Sites that have not been converted to a mesh yet.
     Sites(Box<Synthesizer>, Vec<LinearRgba>),
-    /// The mesh of a model that was pickled; `None` if its points are not a mesh.
+    /// The mesh of an unpickled model; `None` if its sites do not form a mesh.
     Mesh(Option<Box<dapple::mesh::Model>>),
 }
 
 impl SitePoints {
-    /// The mesh of the sites; an error if the sites are not a mesh.
+    /// Returns the mesh of the sites; an error if the sites do not form a mesh.
     fn model(&self) -> Result<dapple::mesh::Model> {
         match self {
             Self::Sites(synthesizer, colors) => Ok(site_model(synthesizer, colors.clone())?),
@@ -86,48 +87,46 @@ impl SitePoints {
     }
 }
 
-/// Covers a mesh with a texture that looks like an example, after Turk (2001): points on the surface take pixels of the
-/// example.
+/// Covers a mesh with a texture that looks like an example, after Turk (2001): each point on the surface takes the
+/// color of an example pixel.
 ///
 /// Faults of the mesh are repaired first.
 ///
 /// Parameters
 /// ----------
 /// mesh : mesh
-///     Anything with `.vertices` (n, 3) and `.faces` (m, 3), such as a `trimesh.Trimesh`, or a pair of such arrays.
+///     Any object with `.vertices` (n, 3) and `.faces` (m, 3), such as a `trimesh.Trimesh`, or a pair of such arrays.
 /// exemplar : array_like or dict of array_like
 ///     (rows, columns), or (rows, columns, 3) in linear light; or a dictionary of maps, of which the first is matched
-///     and the others follow it: `normal` and `orm` go into the material of the files, too.
+///     and the others follow it: `normal` and `orm` are also written to the material of exported files.
 /// texels : int, default 1024
-///     The side of the square texture in pixels, up to 16384.
+///     The side of the square texture in pixels, at most 16384.
 /// sites : int, default 65536
-///     The number of points of the surface that get a color, 1 to 2**28.
+///     The number of points on the surface that get a color, 1 to 2**28.
 /// directions : tuple of array_like or None, default None
-///     (positions, vectors), each (n, 3): the direction of the example's down at these positions; in between they are
-///     interpolated.
+///     (positions, vectors), each (n, 3): the direction in which the example's downward axis points at each position.
+///     Directions are interpolated in between.
 /// down : sequence of float or None, default None
-///     The direction for pieces of the surface without any.
+///     The downward direction for connected pieces of the surface that contain none of the `directions`.
 /// symmetry : {1, 2, 4}, default 1
-///     How many directions at a place are as good as each other: 2 for examples that look alike upside down, such as
-///     bricks, and 4 for those that look alike lying on their side, such as a checker; the texture then has fewer
-///     tears.
+///     The rotational symmetry of the example: 2 if it looks the same upside down, such as bricks, and 4 if it looks
+///     the same after a quarter turn, such as a checkerboard. Higher symmetry gives the texture fewer seams.
 /// scales : array_like or None, default None
-///     How large a pixel of the example is, in distances of points, from 1/8 to 8, by default 1: a number for each
-///     vertex, (n,), or an image that is read at `mesh.uv` and repeats, (rows, columns). Or two bounds, between which
-///     sizes follow the directions: features grow where these spread and shrink where they meet, and so they go on
-///     there.
+///     The size of an example pixel, in multiples of the point spacing, from 1/8 to 8; by default 1. Pass a number
+///     for each vertex, (n,), or an image that is sampled at `mesh.uv` and repeats, (rows, columns). Or pass two
+///     bounds, between which sizes follow the directions: features grow where the directions diverge and shrink where
+///     they converge, so that they continue without breaks.
 /// atlas : {"charts", "area", "uniform", "uv"}, default "charts"
-///     The layout of faces: `"charts"` (large pieces), `"area"` (triangles by their areas), `"uniform"`, or `"uv"`
-///     (`mesh.uv`, (m, 3, 2), v down).
+///     How faces are laid out: `"charts"` (large pieces), `"area"` (triangles sized by their areas), `"uniform"`, or
+///     `"uv"` (`mesh.uv`, (m, 3, 2), v down).
 /// padding : int or None, default None
-///     The number of pixels around each piece of the texture that continue it.
+///     The number of pixels by which each piece of the texture is extended past its border.
 /// crease : float, default 30.0
-///     The angle of an edge in degrees above which it is shaded as a crease.
+///     The crease angle in degrees: an edge with a larger angle is shaded as a crease.
 /// axes : {"followed", "carried"} or None, default None
 ///     How neighborhoods continue over the surface: `"followed"` or `"carried"`.
 /// matching : {"appearance", "colors"} or None, default None
-///     The values that are compared, `"appearance"` by default, or `"colors"` as in the paper; always colors with
-///     `example_mesh`.
+///     What is compared: `"appearance"` by default, or `"colors"` as in the paper; always colors with `example_mesh`.
 /// seed : int, default 0
 ///     As for `synthesize`.
 /// edges : {"cut", "wrap"}, default "cut"
@@ -141,16 +140,17 @@ impl SitePoints {
 /// paper : bool, default False
 ///     As for `synthesize`.
 /// guides : sequence of tuple of (array_like, float), default ()
-///     A list of (of_example, of_mesh, weight): numbers in the size of the example, and for the mesh a number for each
-///     vertex, (n,), or an image that is read at `mesh.uv` and repeats, (rows, columns); parts of the example go where
-///     both are alike. Weights are as for `synthesize`, and `evenness` has no effect.
+///     A list of (of_example, of_mesh, weight). `of_example` is a scalar image of the same size as the example.
+///     `of_mesh` is a number for each vertex, (n,), or an image that is sampled at `mesh.uv` and repeats, (rows,
+///     columns). Parts of the example are placed where both have similar values. Weights are as for `synthesize`, and
+///     `evenness` has no effect.
 /// example_mesh : mesh or None, default None
-///     The mesh that `exemplar` is the texture of, with `.uv` (m, 3, 2), v down, such as a `MeshFile` or a `Model`: its
-///     texture is lifted onto the other mesh. The `"auto"` of `coherence` is 2 then.
+///     The mesh that `exemplar` is the texture of, with `.uv` (m, 3, 2), v down, such as a `MeshFile` or a `Model`:
+///     its texture is lifted onto the other mesh. In this case, the `"auto"` of `coherence` is 2.
 /// example_sites : int or None, default None
-///     The number of points of `example_mesh`, by default `sites`: more make its features larger.
+///     The number of points on `example_mesh`, by default `sites`: more points make its features larger.
 /// example_directions : tuple of array_like or None, default None
-///     (positions, vectors) on `example_mesh`, like `directions`: where nothing else is said, its texture runs down.
+///     (positions, vectors) on `example_mesh`, like `directions`; its texture points down by default.
 /// progress : callable or None, default None
 ///     As for `synthesize`.
 ///
@@ -163,7 +163,7 @@ impl SitePoints {
 /// ------
 /// DappleError
 ///     If the mesh has faults that leave no surface, the maps of the example differ in size, or an option is out of
-///     range or excluded by another.
+///     range or conflicts with another.
 ///
 /// Examples
 /// --------
@@ -209,11 +209,11 @@ pub(crate) fn synthesize_on<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> Result<Model> {
     let atlas = data::named("atlas", atlas)?;
-    // Mipmaps of atlases of triangles would mix faces that are far apart.
+    // Mipmaps of triangle atlases would mix faces that are far apart.
     let has_mipmaps = matches!(atlas, AtlasKind::Charts | AtlasKind::Uv);
     let (mesh, is_blender) = crate::meshes::plain(mesh)?;
     let mesh = &mesh;
-    // The vertical axis of Blender is z.
+    // Blender's vertical axis is z.
     let down = down.unwrap_or(match is_blender {
         true => [0.0, 0.0, -1.0],
         false => [0.0, -1.0, 0.0],
@@ -262,7 +262,7 @@ pub(crate) fn synthesize_on<'py>(
     let cover = move |heard: watch::Heard<'_>, _: &Stop| -> Result<Model> {
         let (repaired, repair) = mesh.repair();
         let surface = Surface::new(repaired)?;
-        // Check all options before charts are cut, which takes long.
+        // Check all options before cutting charts, which takes long.
         hierarchy.check(&surface)?;
         let uvs = match needs_uvs {
             true => own_uvs(&surface, &mesh, &repair, &uvs)?,
@@ -330,10 +330,10 @@ pub(crate) fn synthesize_on<'py>(
     watch::run(py, progress, cover)?
 }
 
-/// Fraction of the work that cutting charts takes.
+/// Fraction of the total work spent on cutting charts.
 const CHARTS: f64 = 0.3;
 
-/// The progress of a part of the work. `range` is the range of the whole progress that the part takes.
+/// Converts the progress of one step, `part`, to the total progress, of which the step covers `range`.
 fn part_of(range: core::ops::Range<f64>, part: f64) -> Progress {
     const STEPS: u32 = 1 << 16;
     let done = range.start + (range.end - range.start) * part;
@@ -345,7 +345,7 @@ fn part_of(range: core::ops::Range<f64>, part: f64) -> Progress {
     }
 }
 
-/// Refuses colors with alpha, which is not baked.
+/// Returns an error for colors with alpha, which cannot be baked.
 fn refuse_alpha(layout: &Layout) -> Result<()> {
     let has_alpha = |kind: &Kind| kind.content == Content::Color && kind.n_channels == 4;
     if layout.kinds.iter().any(has_alpha) {
@@ -355,7 +355,7 @@ fn refuse_alpha(layout: &Layout) -> Result<()> {
     Ok(())
 }
 
-/// Reads the directions of a texture at positions.
+/// Reads the texture directions and their positions.
 fn directions(directions: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>) -> Result<Vec<Direction>> {
     let Some((positions, at_each)) = directions else {
         return Ok(Vec::new());
@@ -378,14 +378,14 @@ fn directions(directions: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>) -> Resul
     Ok(pairs.map(direction).collect())
 }
 
-/// Reads the texture coordinates of the corners of a mesh; an error if it has none.
+/// Reads the texture coordinates of the face corners; an error if the mesh has none.
 fn uvs_of(what: &str, mesh: &Bound<'_, PyAny>) -> Result<Vec<[f64; 2]>> {
     let uvs = mesh.getattr("uv").ok().filter(|uvs| !uvs.is_none());
     let uvs = uvs.ok_or_else(|| Error::new("uv", format!("the {what} has no attribute uv")))?;
     vectors::<2>("uv", &uvs, &[3, 2])
 }
 
-/// The mesh's own texture coordinates, for the faces that remain after repair.
+/// Returns the mesh's own texture coordinates, for the faces that remain after repair.
 fn own_uvs(
     surface: &Surface,
     before: &Mesh,
@@ -406,7 +406,7 @@ fn own_uvs(
     })
 }
 
-/// For the faces that remain after a repair, the values of their corners before the repair; `None` if a face was cut.
+/// Returns the corner values that the remaining faces had before the repair; `None` if a face was cut.
 fn at_corners<T: Copy>(
     surface: &Surface,
     before: &Mesh,
@@ -416,7 +416,7 @@ fn at_corners<T: Copy>(
     let mesh = surface.mesh();
     let faces = mesh.faces().iter().zip(&repair.face_before);
     let whole = faces.map(|(face, &at)| {
-        // Match corners by position: repair may have reversed the face, or merged vertices at equal positions.
+        // Match corners by position: repair may have reversed the face, or merged vertices at the same position.
         let corners = before.corners(at);
         let own = face.map(|vertex| {
             let here = mesh.positions()[vertex.index()];
@@ -428,7 +428,7 @@ fn at_corners<T: Copy>(
     whole.collect()
 }
 
-/// Bakes a map of the example to a texture of the mesh.
+/// Bakes one of the example's maps into a texture for the mesh.
 fn bake(
     synthesizer: &Synthesizer,
     texture: &SurfaceTexture,
@@ -450,7 +450,7 @@ fn bake(
     })
 }
 
-/// The color that displays a gray value: the value is its sRGB code, as in a gray PNG file.
+/// Returns the color that displays a gray value, which is an sRGB code as in a gray PNG file.
 fn color_of(value: f32) -> LinearRgb {
     LinearRgb::from_srgb([u16::from_unit(value); 3])
 }
@@ -478,33 +478,34 @@ impl Model {
         positions(py, self.mesh.positions())
     }
 
-    /// The vertices of each face, (m, 3).
+    /// The vertex indices of each face, (m, 3).
     #[getter]
     fn faces<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         faces(py, &self.mesh)
     }
 
-    /// The texture coordinates of the corners of each face, (m, 3, 2), from 0 to 1; v goes down, as the rows of the texture do.
+    /// The texture coordinates of each face corner, (m, 3, 2), from 0 to 1; v points down, like the rows of the
+    /// texture.
     #[getter]
     fn uv<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         corners(py, self.uvs.iter().map(|face| face.map(|uv| uv.to_array())))
     }
 
-    /// The normals of the corners of each face, (m, 3, 3).
+    /// The normals at each face corner, (m, 3, 3).
     #[getter]
     fn normals<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let normals = self.shading.iter();
         corners(py, normals.map(|face| face.map(|normal| normal.to_array())))
     }
 
-    /// The texture: the first map of the example on the mesh, (texels, texels[, 3]).
+    /// The baked texture from the example's first map, (texels, texels[, 3]).
     #[getter]
     fn texture<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let maps = self.picture(0);
         self.layout.kinds[0].array(py, maps)
     }
 
-    /// All maps by name; the map of an example without names is `texture`.
+    /// All maps by name; if the example has no names, its map is called `texture`.
     #[getter]
     fn maps<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyDict>> {
         let maps = PyDict::new(py);
@@ -514,14 +515,14 @@ impl Model {
         Ok(maps)
     }
 
-    /// Whether the mesh has faces that are visible from both sides.
+    /// Whether the mesh has faces visible from both sides.
     #[getter]
     fn double_sided(&self) -> bool {
         self.is_double_sided
     }
 
-    /// Writes the mesh with its texture: `.glb` in one file, `.obj` with files beside it; `.ply` has the points of the
-    /// surface as a mesh, with a color for each. Every file is replaced as a whole.
+    /// Writes the mesh with its texture: `.glb` is a single file, `.obj` has accompanying files; `.ply` has the
+    /// points on the surface as a mesh with vertex colors. Every file is replaced atomically.
     ///
     /// The maps `normal` (y up) and `orm` are written to the material.
     ///
@@ -533,11 +534,11 @@ impl Model {
     /// Raises
     /// ------
     /// DappleError
-    ///     If the ending is not that of a format of models.
+    ///     If the extension is not a supported model format.
     /// OSError
     ///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
     fn export(&self, py: Python<'_>, path: PathBuf) -> Result<()> {
-        // Wait for the work after an interruption, so that the file is complete.
+        // Wait for the work even after an interruption, so that the file is complete.
         watch::within(py, |stop| -> Result<()> {
             let format =
                 MeshFormat::of_path(&path).filter(|format| format.written_ending().is_some());
@@ -551,7 +552,7 @@ impl Model {
         })
     }
 
-    /// A `trimesh.Trimesh` with the texture as its material. Corners of faces are separate vertices.
+    /// Converts to a `trimesh.Trimesh` with the texture as its material. Face corners become separate vertices.
     ///
     /// Returns
     /// -------
@@ -562,7 +563,7 @@ impl Model {
         Ok(helper.call_method1("to_trimesh", (model,))?)
     }
 
-    /// The function and the arrays by which another process makes the model again.
+    /// Returns the function and the arrays with which another process rebuilds the model.
     fn __reduce__<'py>(&self, py: Python<'py>) -> Result<(Bound<'py, PyAny>, Parts<'py>)> {
         let make = py
             .import("dapple_textures._native")?
@@ -609,7 +610,7 @@ impl Model {
 }
 
 impl Model {
-    /// The baked maps of the image with this index in the layout.
+    /// Returns the baked maps of the image at index `at` in the layout.
     fn picture(&self, at: usize) -> Vec<Map> {
         let before: usize = self.layout.kinds[..at]
             .iter()
@@ -618,7 +619,7 @@ impl Model {
         self.baked[before..before + self.layout.kinds[at].n_maps()].to_vec()
     }
 
-    /// The mesh with its material, whose textures are PNG images.
+    /// Builds the mesh with its material, whose textures are PNG images.
     fn model(&self, stop: &Stop) -> Result<dapple::mesh::Model> {
         let base = match &self.baked[0] {
             Map::Value(values) => values.map(|&value| color_of(value)),
@@ -626,7 +627,7 @@ impl Model {
             Map::Normal(_) => return Err(Error::new("channels", "normals are no colors")),
         };
         let base = png(Content::Color, &base.map(|color| color.to_array()), stop)?;
-        // Faces outside of the atlas show the first corner of the texture, as in `textured_model`.
+        // Faces outside the atlas show the first corner of the texture, as in `textured_model`.
         let placed = |uv: DVec2| if uv.is_finite() { uv } else { DVec2::ZERO };
         let mut model = dapple::mesh::Model::from(self.mesh.clone());
         model.uvs = Some(self.uvs.iter().map(|face| face.map(placed)).collect());
@@ -676,7 +677,7 @@ type Parts<'py> = (
     Option<PointParts<'py>>,
 );
 
-/// Makes a model again from its arrays.
+/// Rebuilds a model from its arrays.
 #[pyfunction]
 pub(crate) fn _model_from_parts(
     vertices: Bound<'_, PyAny>,
@@ -719,7 +720,7 @@ pub(crate) fn _model_from_parts(
     })
 }
 
-/// Encodes an image of three channels as PNG with 8 bits per channel.
+/// Encodes a three-channel image as PNG with 8 bits per channel.
 fn png(content: Content, raster: &Raster<[f32; 3]>, stop: &Stop) -> Result<EncodedImage> {
     let kind = Kind {
         content,

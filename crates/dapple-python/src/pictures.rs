@@ -1,8 +1,8 @@
-//! Conversion of images with one to four numbers per pixel, single or in dictionaries, to maps of the library and back.
+//! Converts images with one to four channels, single or in dictionaries, to the library's maps and back.
 //!
-//! An array (rows, columns) has numbers, (rows, columns, 3) colors in linear light, and (rows, columns, 4) colors with
-//! alpha, which becomes a separate map. In a dictionary, `normal` has unit vectors and `orm` three independent
-//! numbers.
+//! An array (rows, columns) holds scalars, (rows, columns, 3) colors in linear light, and (rows, columns, 4) colors
+//! with alpha, which becomes a separate map. In a dictionary, `normal` holds unit vectors, and `orm` three
+//! independent values.
 
 use crate::arrays;
 use crate::error::{Error, Result};
@@ -17,28 +17,28 @@ use pyo3::types::{PyDict, PyMapping};
 use std::borrow::Cow;
 
 dapple::raster::named! {
-    /// The content of a picture.
+    /// What the values of an image mean.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub(crate) enum Content {
-        /// Heights, masks and similar numbers.
+        /// Heights, masks and similar scalars.
         Gray = "gray",
         /// Color in linear light, with or without alpha.
         Color = "color",
         /// Unit vectors.
         Normal = "normal",
-        /// Independent numbers.
+        /// Independent values.
         Data = "data",
     }
 }
 
-/// The kind of an image: its content and number of channels.
+/// The kind of an image: its content and its number of channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Kind {
     pub(crate) content: Content,
     pub(crate) n_channels: usize,
 }
 
-/// The form of the input, a single image or a dictionary of images, with names and kinds.
+/// The form of the input: a single image or a dictionary of images, with names and kinds.
 #[derive(Clone)]
 pub(crate) struct Layout {
     /// The names in the dictionary; `None` for a single image.
@@ -47,7 +47,8 @@ pub(crate) struct Layout {
 }
 
 impl Kind {
-    /// The kind of an image with a number of channels. Without `content`, one channel is gray, and several are a color.
+    /// Returns the kind of an image with `n_channels` channels. By default, one channel is gray, and several are a
+    /// color.
     pub(crate) fn new(what: &str, content: Option<Content>, n_channels: usize) -> Result<Self> {
         let content = content.unwrap_or(match n_channels {
             1 => Content::Gray,
@@ -72,7 +73,7 @@ impl Kind {
         Err(Error::new("channels", message))
     }
 
-    /// Number of maps of the image: colors with alpha have two, data has one per channel.
+    /// Returns the number of maps of the image: colors with alpha have two, data has one per channel.
     pub(crate) fn n_maps(self) -> usize {
         match self.content {
             Content::Gray | Content::Normal => 1,
@@ -81,7 +82,7 @@ impl Kind {
         }
     }
 
-    /// Makes the maps from the numbers of an image, in pixel order.
+    /// Builds the maps from the values of an image, in pixel order.
     fn maps(self, size: [u32; 2], values: Cow<'_, [f32]>) -> Result<Vec<Map>> {
         let n = self.n_channels;
         let channel = |channel| -> Result<Map> {
@@ -113,7 +114,7 @@ impl Kind {
         })
     }
 
-    /// Makes an array from the maps.
+    /// Builds an array from the maps.
     pub(crate) fn array<'py>(self, py: Python<'py>, maps: Vec<Map>) -> Result<Bound<'py, PyAny>> {
         let Some(size) = maps.first().map(Map::size) else {
             return Err(Error::new("count", "a picture has at least one map"));
@@ -139,14 +140,14 @@ impl Kind {
     }
 }
 
-/// Flattens pixels to numbers, which reuse the memory of the pixels.
+/// Flattens pixels to numbers, reusing the memory of the pixels.
 fn flattened<T>(raster: Raster<T>, numbers: fn(T) -> [f32; 3]) -> Vec<f32> {
     let pixels: Vec<[f32; 3]> = raster.into_pixels().into_iter().map(numbers).collect();
     pixels.into_flattened()
 }
 
-/// Writes the channels of a map to the first numbers of each pixel. Pixels are `n` numbers apart. Returns the number
-/// of channels.
+/// Writes the channels of a map to the first values of each pixel. Pixels are `n` values apart. Returns the number of
+/// channels.
 fn interleave(map: &Map, values: &mut [f32], n: usize) -> usize {
     match map {
         Map::Value(raster) => {
@@ -179,7 +180,8 @@ pub(crate) struct Pixels<'py> {
 }
 
 impl<'py> Pixels<'py> {
-    /// Reads an array. Fails for data that is not an image, and for integers, which are codes and not linear light.
+    /// Reads an array. Fails for data that is not an image, and for integers, which are codes rather than linear
+    /// light.
     pub(crate) fn read(what: &str, data: &Bound<'py, PyAny>) -> Result<Self> {
         if let Ok(array) = data.cast::<PyUntypedArray>() {
             let dtype = array.dtype();
@@ -212,7 +214,7 @@ impl<'py> Pixels<'py> {
         })
     }
 
-    /// The numbers in pixel order, borrowed if possible, otherwise copied.
+    /// Returns the values in pixel order, borrowed if possible, otherwise copied.
     pub(crate) fn values(&self) -> Cow<'_, [f32]> {
         let view: ArrayViewD<'_, f32> = self.array.as_array();
         match view.to_slice() {
@@ -221,7 +223,7 @@ impl<'py> Pixels<'py> {
         }
     }
 
-    /// Each channel as a raster.
+    /// Returns each channel as a raster.
     pub(crate) fn planes(&self) -> Result<Vec<Raster<f32>>> {
         let values = self.values();
         let plane = |channel| {
@@ -232,7 +234,7 @@ impl<'py> Pixels<'py> {
     }
 }
 
-/// Makes an array of channels: (rows, columns) for one, and (rows, columns, channels) for several.
+/// Builds an array from channels: (rows, columns) for one, and (rows, columns, channels) for several.
 pub(crate) fn array_of_planes(
     py: Python<'_>,
     planes: Vec<Raster<f32>>,
@@ -276,7 +278,7 @@ pub(crate) fn read(what: &str, data: &Bound<'_, PyAny>) -> Result<(Layout, Vec<M
     Ok((Layout { names, kinds }, maps))
 }
 
-/// Reads the maps of a list of images or of dictionaries, which must all have the same names and kinds.
+/// Reads the maps of a list of images or dictionaries, which must all have the same names and kinds.
 pub(crate) fn read_all(what: &str, data: &Bound<'_, PyAny>) -> Result<(Layout, Vec<Vec<Map>>)> {
     let mut all = Vec::new();
     let mut first: Option<Layout> = None;
@@ -311,7 +313,7 @@ pub(crate) fn numbers(what: &str, data: &Bound<'_, PyAny>) -> Result<Raster<f32>
 }
 
 impl Layout {
-    /// The name of each image; `alone` for a single image.
+    /// Returns the name of each image; `alone` for a single image.
     pub(crate) fn names_or<'a>(&'a self, alone: &'a str) -> Vec<&'a str> {
         match &self.names {
             None => vec![alone],

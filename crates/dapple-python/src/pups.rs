@@ -1,4 +1,4 @@
-//! Partition-of-unity parametrics: values of control points, interpolated over the plane, and the textures of the paper.
+//! Partition-of-unity parametrics: control-point values interpolated over the plane, and the paper's textures.
 
 mod assignments;
 mod partition;

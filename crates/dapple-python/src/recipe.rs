@@ -1,4 +1,4 @@
-//! Recipes: materials as data, and the maps that are baked from them.
+//! Recipes: materials as data, and the maps baked from them.
 
 mod maps;
 mod node;
@@ -25,8 +25,8 @@ use std::sync::Arc;
 
 /// A material as data: named nodes, and the maps that use them.
 ///
-/// It is made from a dictionary, or read from a text. `plan` prepares it for baking. `Recipe.reference()` describes all
-/// nodes and their options, or one node, as in `print(dp.Recipe.reference("worley"))`.
+/// Create it from a dictionary, or read it from text. `plan` prepares it for baking. `Recipe.reference()` describes
+/// all nodes and their options; to describe a single node, use for example `print(dp.Recipe.reference("worley"))`.
 ///
 /// Parameters
 /// ----------
@@ -36,7 +36,7 @@ use std::sync::Arc;
 /// Raises
 /// ------
 /// DappleError
-///     If the data is no recipe. The message names the entry, and `hint` the nearest name where there is one.
+///     If the data is not a valid recipe. The message names the entry, and `hint` is the nearest valid name, if any.
 ///
 /// Examples
 /// --------
@@ -55,7 +55,7 @@ pub(crate) struct Recipe {
     recipe: RustRecipe,
 }
 
-/// The SHA-256 of a list of byte strings, in hexadecimal.
+/// Returns the SHA-256 of a list of byte strings, in hexadecimal.
 fn sha256(parts: &[&[u8]]) -> String {
     let mut hash = Sha256::new();
     for part in parts {
@@ -66,12 +66,12 @@ fn sha256(parts: &[&[u8]]) -> String {
     hex(&hash.finalize())
 }
 
-/// Reads a recipe from Python data. Errors name the entry instead of a line, since the user has no text.
+/// Reads a recipe from Python data. Error messages name the entry instead of a line, since the user has no text.
 fn from_data(data: &Bound<'_, PyAny>) -> Result<RustRecipe> {
     let text = data::text(data)?;
     RustRecipe::from_json(&text).map_err(|error| {
-        // Search upward from the line of the error for a line with content, since an error may be reported at a
-        // closing bracket.
+        // Search upward from the error's line for a line with content, since an error may be reported at a closing
+        // bracket.
         let before = error.place().map_or(0, |place| place.line);
         let mut lines = text
             .lines()
@@ -106,12 +106,12 @@ impl Recipe {
         })
     }
 
-    /// Reads a recipe from a text in TOML.
+    /// Reads a recipe from TOML text.
     ///
     /// Parameters
     /// ----------
     /// text : str
-    ///     The text.
+    ///     The TOML text.
     ///
     /// Returns
     /// -------
@@ -121,8 +121,8 @@ impl Recipe {
     /// Raises
     /// ------
     /// DappleError
-    ///     If the text is no TOML or no recipe. The message names line and column, or `node` the node; `hint` is the
-    ///     nearest name.
+    ///     If the text is not TOML or not a valid recipe. The message names line and column, `node` is the node if
+    ///     the error concerns one, and `hint` is the nearest valid name.
     #[staticmethod]
     fn from_toml(text: &str) -> Result<Self> {
         Ok(Self {
@@ -130,12 +130,12 @@ impl Recipe {
         })
     }
 
-    /// Reads a recipe from a text in JSON.
+    /// Reads a recipe from JSON text.
     ///
     /// Parameters
     /// ----------
     /// text : str
-    ///     The text.
+    ///     The JSON text.
     ///
     /// Returns
     /// -------
@@ -145,7 +145,8 @@ impl Recipe {
     /// Raises
     /// ------
     /// DappleError
-    ///     If the text is no JSON or no recipe; `node` names the node, and `hint` is the nearest name.
+    ///     If the text is not JSON or not a valid recipe; `node` names the node, and `hint` is the nearest valid
+    ///     name.
     #[staticmethod]
     fn from_json(text: &str) -> Result<Self> {
         Ok(Self {
@@ -153,12 +154,12 @@ impl Recipe {
         })
     }
 
-    /// The built-in recipe with a name.
+    /// Returns the built-in recipe called `name`.
     ///
     /// Parameters
     /// ----------
     /// name : str
-    ///     The name.
+    ///     The name of the recipe, one of `builtin_names()`.
     ///
     /// Returns
     /// -------
@@ -176,7 +177,7 @@ impl Recipe {
         })
     }
 
-    /// The names of the built-in recipes.
+    /// Returns the names of the built-in recipes.
     ///
     /// Returns
     /// -------
@@ -187,22 +188,22 @@ impl Recipe {
         RustRecipe::builtin_names().collect()
     }
 
-    /// The reference of recipes as a text in Markdown: every option with its range and default.
+    /// Returns the recipe reference as Markdown text: every option with its range and default.
     ///
     /// Parameters
     /// ----------
     /// node : str or None, default None
-    ///     Str or None, default None The kind of a node, such as "worley"; None for the whole reference.
+    ///     The kind of a node, such as "worley"; None for the whole reference.
     ///
     /// Returns
     /// -------
     /// str
-    ///     The reference, or the section of the node.
+    ///     The reference, or the section about the node.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If no node has this name.
+    ///     If there is no such node.
     ///
     /// Examples
     /// --------
@@ -225,7 +226,7 @@ impl Recipe {
         })
     }
 
-    /// The JSON Schema of recipes as a dictionary, for editors and checkers.
+    /// Returns the JSON Schema of recipes as a dictionary, for editors and validators.
     ///
     /// Returns
     /// -------
@@ -237,49 +238,49 @@ impl Recipe {
         Ok(py.import("json")?.call_method1("loads", (schema,))?)
     }
 
-    /// The recipe as TOML.
+    /// Converts the recipe to TOML.
     ///
     /// Returns
     /// -------
     /// str
-    ///     The text.
+    ///     The TOML text.
     fn to_toml(&self) -> Result<String> {
         Ok(self.recipe.to_toml()?)
     }
 
-    /// The recipe as JSON.
+    /// Converts the recipe to JSON.
     ///
     /// Returns
     /// -------
     /// str
-    ///     The text.
+    ///     The JSON text.
     fn to_json(&self) -> Result<String> {
         Ok(self.recipe.to_json()?)
     }
 
-    /// The recipe as a dictionary.
+    /// Converts the recipe to a dictionary.
     ///
     /// Returns
     /// -------
     /// dict
-    ///     The recipe, with lists, numbers, words and dictionaries alone. `Recipe` reads it.
+    ///     The recipe as nested dictionaries and lists of numbers and strings. `Recipe` reads it.
     fn to_dict<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         Ok(py
             .import("json")?
             .call_method1("loads", (self.recipe.to_json()?,))?)
     }
 
-    /// This recipe with another seed, from 0 to 2**64 - 1.
+    /// Returns this recipe with another seed, from 0 to 2**64 - 1.
     ///
     /// Parameters
     /// ----------
     /// seed : int
-    ///     From 0 to 2**64 - 1.
+    ///     The random seed, from 0 to 2**64 - 1.
     ///
     /// Returns
     /// -------
     /// Recipe
-    ///     The recipe.
+    ///     The recipe with the new seed.
     ///
     /// Raises
     /// ------
@@ -293,13 +294,13 @@ impl Recipe {
         Self { recipe }
     }
 
-    /// The name, which the baked files have.
+    /// The name of the recipe, which is used for the baked files.
     #[getter]
     fn name(&self) -> &str {
         &self.recipe.name
     }
 
-    /// The seed of all random numbers.
+    /// The seed for all random numbers.
     #[getter]
     fn seed(&self) -> u64 {
         self.recipe.seed.0
@@ -311,7 +312,7 @@ impl Recipe {
         self.recipe.extent.into()
     }
 
-    /// The names of the images of the recipe.
+    /// The names of the image files that the recipe uses.
     #[getter]
     fn image_files(&self) -> Vec<String> {
         self.recipe
@@ -321,7 +322,7 @@ impl Recipe {
             .collect()
     }
 
-    /// The images of the recipe: the file, the layer and the handling of alpha in the form of `read_image`, None where no
+    /// The images of the recipe: the file, the layer and the handling of alpha, as for `read_image`; None where no
     /// node sets them.
     fn _image_sources(&self) -> Result<Vec<Source<'_>>> {
         let mut sources = Vec::new();
@@ -334,21 +335,22 @@ impl Recipe {
         Ok(sources)
     }
 
-    /// The SHA-256 of its text: the same for the same recipe on every machine.
+    /// The SHA-256 of the recipe's text, which is the same for the same recipe on every machine.
     #[getter]
     fn hash(&self) -> Result<String> {
         Ok(sha256(&[self.recipe.to_json()?.as_bytes()]))
     }
 
-    /// Makes all nodes of the recipe.
+    /// Builds all nodes of the recipe.
     ///
     /// Parameters
     /// ----------
     /// images : dict or None, default None
-    ///     The images by name (see `image_files`), or by name and layer, such as `("render.exr", "Depth")`, where nodes
-    ///     read several layers of a file: arrays (rows, columns) of numbers or (rows, columns, 3) of linear colors, floating point.
+    ///     The images by name (see `image_files`), or by name and layer, such as `("render.exr", "Depth")`, if nodes
+    ///     read several layers of a file: floating-point arrays (rows, columns) of scalars or (rows, columns, 3) of
+    ///     linear colors.
     /// time : float, default 0.0
-    ///     The elapsed part of a loop, for nodes that move: 0 and 1 are the same.
+    ///     The elapsed fraction of a looping animation, for nodes that move; 0 and 1 give the same result.
     ///
     /// Returns
     /// -------
@@ -358,7 +360,7 @@ impl Recipe {
     /// Raises
     /// ------
     /// DappleError
-    ///     If an image is missing, or a node refuses an option; `node` names it.
+    ///     If an image is missing, or a node rejects an option; `node` names it.
     #[pyo3(signature = (*, images = None, time = 0.0))]
     fn plan(&self, py: Python<'_>, images: Option<&Bound<'_, PyDict>>, time: f64) -> Result<Plan> {
         let mut pictures = Images::new();
@@ -406,7 +408,7 @@ impl Recipe {
 type Source<'a> = (&'a str, Option<&'a str>, Option<String>);
 
 impl Recipe {
-    /// Checks that the recipe has an image with a key.
+    /// Checks that the recipe has an image with the given key.
     fn check_image(&self, py: Python<'_>, key: &str) -> Result<()> {
         let sources = self.recipe.image_sources()?;
         if sources
@@ -436,7 +438,7 @@ impl Recipe {
     }
 }
 
-/// The section of a text in Markdown with a heading, up to the next heading of its level or above.
+/// Returns the section of a Markdown text below a heading, up to the next heading of the same or a higher level.
 fn section<'a>(text: &'a str, heading: &str) -> Option<&'a str> {
     let level = heading.bytes().take_while(|&byte| byte == b'#').count();
     let start = text.find(&format!("\n{heading}\n"))? + 1;
@@ -446,7 +448,7 @@ fn section<'a>(text: &'a str, heading: &str) -> Option<&'a str> {
     Some(text[start..ends.min().map_or(text.len(), |end| after + end)].trim_end())
 }
 
-/// Reads the key of an image in the form of `ImageSource::key`, from a file name or a pair of file name and layer.
+/// Reads an image key in the form of `ImageSource::key`, from a file name or a pair of file name and layer.
 fn image_key(name: &Bound<'_, PyAny>) -> Result<String> {
     match name.extract::<(String, String)>() {
         Ok((file, layer)) => Ok(format!("{file}\0{layer}")),
@@ -454,7 +456,7 @@ fn image_key(name: &Bound<'_, PyAny>) -> Result<String> {
     }
 }
 
-/// The key of an image as text for messages.
+/// Formats an image key for messages.
 fn shown(key: &str) -> String {
     match key.split_once('\0') {
         Some((file, layer)) => format!("`{file}` with the layer `{layer}`"),
@@ -462,7 +464,7 @@ fn shown(key: &str) -> String {
     }
 }
 
-/// Reads an image of a recipe from an array.
+/// Reads a recipe image from an array.
 fn picture(what: &str, image: &Bound<'_, PyAny>) -> Result<Picture> {
     let pixels = Pixels::read(what, image)?;
     let values = pixels.values();

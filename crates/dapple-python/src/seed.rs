@@ -1,4 +1,4 @@
-//! Seeds as arguments.
+//! Seeds as Python arguments.
 
 use crate::error::Error;
 use dapple::hash::Seed;

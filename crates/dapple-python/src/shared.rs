@@ -4,17 +4,17 @@ use crate::error::Result;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::{Arc, OnceLock};
 
-/// A description of an object that takes time to make.
+/// A description of an object that is expensive to build.
 pub(crate) trait Build {
-    /// The object, cheap to clone.
+    /// The built object, which is cheap to clone.
     type Built: Clone;
 
-    /// Makes the object.
+    /// Builds the object.
     fn build(&self) -> Result<Self::Built>;
 }
 
 /// A description with the object built from it. The object is built once, on first use, and shared by all clones.
-/// Serialization and comparison use the description alone.
+/// Serialization and comparison use only the description.
 pub(crate) struct Shared<T: Build>(Arc<(T, OnceLock<T::Built>)>);
 
 impl<T: Build> Shared<T> {
@@ -23,12 +23,12 @@ impl<T: Build> Shared<T> {
         Self(Arc::new((made, OnceLock::new())))
     }
 
-    /// The description.
+    /// Returns the description.
     pub(crate) fn made(&self) -> &T {
         &self.0.0
     }
 
-    /// The object of the description, made on first use.
+    /// Returns the described object, built on first use.
     pub(crate) fn get(&self) -> Result<T::Built> {
         let (made, built) = &*self.0;
         if let Some(built) = built.get() {

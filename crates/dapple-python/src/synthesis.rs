@@ -1,4 +1,4 @@
-//! Synthesis of textures from an example, in the plane.
+//! Synthesizes textures from an example, in the plane.
 
 use crate::arrays;
 use crate::data;
@@ -20,7 +20,7 @@ dapple::raster::named! {
     /// The argument `method`.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     enum Method {
-        /// A window of a texture without ends.
+        /// A window of an infinite texture.
         Endless = "endless",
         /// Pixel by pixel, as in the paper.
         Sweep = "sweep",
@@ -30,13 +30,13 @@ dapple::raster::named! {
 /// The argument `coherence`.
 #[derive(FromPyObject)]
 pub(crate) enum Coherence {
-    /// A factor.
+    /// A number of at least 0.
     Factor(f32),
-    /// `auto`.
+    /// The word `auto`.
     Word(String),
 }
 
-/// Options of matching, shared by synthesis in the plane and on meshes.
+/// Matching options, shared by synthesis in the plane and on meshes.
 pub(crate) struct Matching {
     pub(crate) seed: SeedArgument,
     pub(crate) levels: usize,
@@ -48,7 +48,7 @@ pub(crate) struct Matching {
 }
 
 impl Matching {
-    /// The options of a repair.
+    /// Returns the options for a repair.
     pub(crate) fn of_repair(
         seed: SeedArgument,
         levels: usize,
@@ -93,7 +93,7 @@ impl Matching {
     }
 }
 
-/// Makes the exemplar from the first map, which is matched. The other maps are transferred.
+/// Builds the exemplar from the first map, which is matched. The other maps are transferred.
 pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
     let edges: Edges = data::named("edges", edges)?;
     match maps {
@@ -106,62 +106,65 @@ pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
     }
 }
 
-/// A texture of any size that looks like an example, after Lefebvre and Hoppe (2005, 2006) or Turk (2001).
+/// Synthesizes a texture of any size that looks like an example, after Lefebvre and Hoppe (2005, 2006) or Turk
+/// (2001).
 ///
-/// Every pixel is one of the example's, chosen so that its surroundings in the example match those in the texture.
+/// Every pixel is copied from the example, chosen so that its neighborhoods in the example and in the texture match.
 ///
 /// Parameters
 /// ----------
 /// exemplar : dict of array_like or array_like
-///     (rows, columns), or (rows, columns, 3 or 4) in linear light, best 64 to 256 pixels wide; or a dictionary of
-///     maps, of which the first is matched (color in sRGB, numbers unchanged) and the others follow it.
+///     (rows, columns), or (rows, columns, 3 or 4) in linear light, ideally 64 to 256 pixels wide; or a dictionary of
+///     maps, of which the first is matched (color in sRGB, scalars unchanged) and the others follow it.
 /// size : int or tuple of int
-///     (rows, columns), or a number for both; at most 2**26 pixels.
+///     (rows, columns), or one number for both; at most 2**26 pixels.
 /// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     The random seed, from 0 to 2**64 - 1.
 /// wrap : bool or tuple of bool, default False
-///     The axes along which the texture repeats, x first; one for both. These sides are multiples of 2**levels where
-///     the method is `"endless"`, and else of 2**(levels - 1).
+///     Whether the texture repeats along each axis, x first; one value for both. A side that repeats must be a
+///     multiple of 2**levels if the method is `"endless"`, and of 2**(levels - 1) otherwise.
 /// edges : {"cut", "wrap"}, default "cut"
-///     The treatment of the edges of the example: `"cut"`, or `"wrap"` if it repeats.
+///     How the edges of the example are treated: `"cut"`, or `"wrap"` if the example repeats.
 /// levels : int or None, default None
-///     1 to 16, each with half the resolution: more for larger features. By default 3, or as many as the example has
-///     room for where the method is `"endless"`.
+///     1 to 16 levels, each with half the resolution of the next finer one: more levels capture larger features. By
+///     default 3, or as many as fit the example if the method is `"endless"`.
 /// coherence : float, {"auto"} or None, default None
-///     The tolerance for a worse match that continues the pixels beside it: `"auto"` or a number of at least 0; higher
-///     copies larger pieces.
+///     The tolerance for worse matches that continue the adjacent pixels: `"auto"` or a number of at least 0; higher
+///     values copy larger pieces.
 /// evenness : float or None, default None
-///     How evenly the example is used, 0 to 1000; 1 by default.
+///     How evenly the pixels of the example are used, 0 to 1000; 1 by default.
 /// paper : bool, default False
-///     Match as in the paper: the smallest difference wins.
+///     Whether to match as in the paper, where the smallest difference wins.
 /// mask : array_like or None, default None
-///     (rows, columns) of the example, at least 0.5 where it is used; nowhere else is anything taken from.
+///     (rows, columns) of the example, at least 0.5 where it may be used; nothing is copied from elsewhere.
 /// guides : sequence of tuple of (array_like, float), default ()
-///     A list of (of_example, of_texture, weight): numbers in the sizes of the example and of the texture; parts of the
-///     example go where both are alike. With weight 1 a guide counts as much as one channel; with 3 one of zeros and
-///     ones is obeyed nearly everywhere. With guides, `evenness` has no effect.
+///     A list of (of_example, of_texture, weight): scalar images of the same size as the example and as the texture.
+///     Parts of the example are placed where both have similar values. With weight 1 a guide counts as much as one
+///     channel; with weight 3 a guide of zeros and ones is followed nearly everywhere. With guides, `evenness` has no
+///     effect.
 /// sources : bool, default False
-///     Return (texture, sources): for every pixel the (column, row) of its source in the example, (rows, columns, 2).
+///     Whether to return (texture, sources), where `sources` has the (column, row) of each pixel's source in the
+///     example, (rows, columns, 2).
 /// method : {"endless", "sweep"} or None, default None
-///     `"endless"`, a window of a texture without ends, which is fast and continues what is large or regular; or
-///     `"sweep"`, pixel by pixel. By default `"endless"`, unless `coherence`, `evenness`, `paper` or `guides` are given
-///     or a side that wraps has another length than it needs.
+///     `"endless"`, a window of an infinite texture, which is fast and preserves large or regular features; or
+///     `"sweep"`, pixel by pixel. By default `"endless"`, unless `coherence`, `evenness`, `paper` or `guides` are
+///     given or the length of a side that wraps is not the required multiple.
 /// at : tuple of int or None, default None
-///     The (x, y), column and row, of an endless texture at which the result begins, from -2**52 to 2**52: windows
-///     beside each other fit together; by default (0, 0).
+///     The position (x, y), that is, column and row, of the result in an endless texture, from -2**52 to 2**52; by
+///     default (0, 0). Adjacent windows fit together.
 /// progress : callable or None, default None
-///     Called with the part of the work done, from 0 to 1. Ctrl-C stops the call.
+///     Called with the completed fraction of the work, from 0 to 1. Ctrl-C stops the call.
 ///
 /// Returns
 /// -------
 /// dict or tuple of (dict, numpy.ndarray of int64) or numpy.ndarray of float32 or tuple of (numpy.ndarray of float32, numpy.ndarray of int64)
-///     The texture, in the form of the example: an array, or a dictionary of arrays. With `return_indices`, the places
-///     in the example that the pixels come from, too.
+///     The texture, in the form of the example: an array, or a dictionary of arrays. With `sources`, also the
+///     position in the example that each pixel was copied from.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If the maps of the example differ in size, or an option is out of range or excluded by another.
+///     If the maps of the example differ in size, or an option is out of range or conflicts with another.
 ///
 /// Examples
 /// --------
@@ -243,8 +246,8 @@ pub(crate) fn synthesize<'py>(
     followed(py, layout, &maps, &texture, sources)
 }
 
-/// The requested method, or the method that other options need. `None` means endless synthesis, or a sweep if the
-/// period does not fit the levels.
+/// Returns the requested method, or the method that other options require. `None` means endless synthesis, or a sweep
+/// if the period does not fit the levels.
 fn method(
     asked: Option<&str>,
     at: Option<[i64; 2]>,
@@ -272,7 +275,8 @@ fn method(
     })
 }
 
-/// Adds the guides to an exemplar, and returns it with the guides of the texture, which must have its size.
+/// Adds the guides to an exemplar, and returns it with the texture's guides, which must be the same size as the
+/// texture.
 fn guided(
     exemplar: Exemplar,
     size: [u32; 2],
@@ -293,38 +297,38 @@ fn guided(
     Ok((exemplar.with_guides(&planes)?, targets))
 }
 
-/// A photograph of a texture in which a part is made again, such as a stain; all around it stays as it is.
+/// Re-synthesizes part of a photograph of a texture, such as a stain; everything around it is unchanged.
 ///
 /// Parameters
 /// ----------
 /// image : dict of array_like or array_like
 ///     (rows, columns), or (rows, columns, 3 or 4) in linear light; or a dictionary of maps, of which the first is
-///     matched (color in sRGB, numbers unchanged) and the others follow it.
+///     matched (color in sRGB, scalars unchanged) and the others follow it.
 /// hole : array_like
-///     (rows, columns), at least 0.5 where the image is made again; nothing is taken from there.
+///     (rows, columns), at least 0.5 where the image is re-synthesized; nothing is copied from there.
 /// seed : int, default 0
-///     As for `synthesize`. More levels fill larger holes.
+///     As for `synthesize`.
 /// edges : {"cut", "wrap"}, default "cut"
-///     As for `synthesize`. More levels fill larger holes.
+///     As for `synthesize`.
 /// levels : int, default 3
-///     As for `synthesize`. More levels fill larger holes.
+///     As for `synthesize`; more levels fill larger holes.
 /// coherence : float, {"auto"} or None, default None
-///     As for `synthesize`. More levels fill larger holes.
+///     As for `synthesize`.
 /// sources : bool, default False
-///     As for `synthesize`. More levels fill larger holes.
+///     Whether to return (image, sources), as for `synthesize`.
 /// progress : callable or None, default None
-///     As for `synthesize`. More levels fill larger holes.
+///     As for `synthesize`.
 ///
 /// Returns
 /// -------
 /// dict or tuple of (dict, numpy.ndarray of int64) or numpy.ndarray of float32 or tuple of (numpy.ndarray of float32, numpy.ndarray of int64)
-///     The photograph, in the form that was given: an array, or a dictionary of arrays. With `return_indices`, the
-///     places that the pixels come from, too.
+///     The photograph, in the same form as the input: an array, or a dictionary of arrays. With `sources`, also the
+///     position that each pixel was copied from.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If the mask has another size or leaves too little to copy from, or an option is out of range.
+///     If the mask differs in size or leaves too little to copy from, or an option is out of range.
 ///
 /// Examples
 /// --------
@@ -362,8 +366,8 @@ pub(crate) fn repair<'py>(
     followed(py, layout, &maps, &texture, sources)
 }
 
-/// Transfers the maps of the example to a texture, and returns them in the layout of the example; with `sources`, also
-/// the source of each pixel.
+/// Transfers the example's maps to a texture, and returns them in the layout of the example; with `sources`, also the
+/// source of each pixel.
 fn followed<'py>(
     py: Python<'py>,
     layout: Layout,
@@ -383,7 +387,7 @@ fn followed<'py>(
     Ok((picture, places).into_pyobject(py)?.into_any())
 }
 
-/// Checks that maps have the same size.
+/// Checks that the maps have the same size.
 pub(crate) fn check_sizes(maps: &[Map]) -> Result<()> {
     for map in maps {
         if map.size() != maps[0].size() {
@@ -398,7 +402,7 @@ pub(crate) fn check_sizes(maps: &[Map]) -> Result<()> {
     Ok(())
 }
 
-/// Transfers a map of the example to the texture.
+/// Transfers one of the example's maps to the texture.
 fn transfer(texture: &PlaneTexture, map: &Map) -> core::result::Result<Map, SynthError> {
     Ok(match map {
         Map::Value(raster) => Map::Value(texture.transfer(raster)?),

@@ -1,4 +1,4 @@
-//! The thread pool of the package. A forked process creates a new pool.
+//! The package's thread pool. A forked process creates a new pool.
 
 use crate::error::{Error, Result};
 use crate::watch;
@@ -19,14 +19,14 @@ static THREADS: Mutex<Threads> = Mutex::new(Threads {
     pool: None,
 });
 
-/// The environment variable with the number of threads.
+/// The environment variable that sets the number of threads.
 const VARIABLE: &str = "DAPPLE_THREADS";
 
 /// Maximum number of threads.
 const MOST: usize = 1024;
 
-/// Runs `work` on the threads of the package without the interpreter lock, and returns its result. If a signal raises
-/// an exception, the call returns and the work is abandoned ([`watch`]).
+/// Runs `work` on the package's threads without the interpreter lock, and returns its result. If a signal raises an
+/// exception, the call returns and the work is abandoned ([`watch`]).
 pub(crate) fn run<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
@@ -34,7 +34,7 @@ pub(crate) fn run<T: Send + 'static>(
     watch::run(py, None, |_, _| work())
 }
 
-/// The pool of this process.
+/// Returns the pool of this process.
 pub(crate) fn pool(_py: Python<'_>) -> Result<Arc<ThreadPool>> {
     let mut threads = THREADS.lock().unwrap_or_else(PoisonError::into_inner);
     let process = std::process::id();
@@ -62,7 +62,8 @@ pub(crate) fn pool(_py: Python<'_>) -> Result<Arc<ThreadPool>> {
     Ok(pool)
 }
 
-/// Abandons a busy pool, so that the next call creates a new one. The threads of the old pool end with their work.
+/// Abandons a busy pool, so that the next call creates a new one. The threads of the old pool end when their work
+/// does.
 pub(crate) fn leave(busy: &Arc<ThreadPool>) {
     let mut threads = THREADS.lock().unwrap_or_else(PoisonError::into_inner);
     let is_it = |(_, pool): &(u32, Arc<ThreadPool>)| Arc::ptr_eq(pool, busy);
@@ -71,7 +72,7 @@ pub(crate) fn leave(busy: &Arc<ThreadPool>) {
     }
 }
 
-/// The number of threads from the environment variable; 0 if it is not set.
+/// Reads the number of threads from the environment variable; 0 if it is not set.
 fn from_environment() -> Result<usize> {
     let Ok(text) = std::env::var(VARIABLE) else {
         return Ok(0);
@@ -83,31 +84,32 @@ fn from_environment() -> Result<usize> {
     })
 }
 
-/// The number of threads on which calls work.
+/// Returns the number of threads on which calls work.
 ///
 /// Returns
 /// -------
 /// int
-///     The number.
+///     The number of threads.
 #[pyfunction]
 pub(crate) fn threads(py: Python<'_>) -> Result<usize> {
     Ok(pool(py)?.current_num_threads())
 }
 
-/// Sets the number of threads on which calls work: 0 is one for each core. The results have the same bits.
+/// Sets the number of threads on which calls work; 0 means one per core. The number does not change the bits of any
+/// result.
 ///
-/// By default it is the number in the environment variable `DAPPLE_THREADS`, or one for each core. Workers of a cluster
-/// that run one task on each core set it to 1.
+/// By default it is the value of the environment variable `DAPPLE_THREADS`, or one thread per core. Set it to 1 in
+/// cluster workers that run one task per core.
 ///
 /// Parameters
 /// ----------
 /// count : int
-///     The number of them.
+///     The number of threads, from 0 to 1024.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If `count` is not a whole number from 0 to 1024.
+///     If `count` is not an integer from 0 to 1024.
 #[pyfunction]
 pub(crate) fn set_threads(count: &Bound<'_, PyAny>) -> Result<()> {
     let number = count.extract().ok().filter(|&number| number <= MOST);

@@ -1,4 +1,4 @@
-//! Making images repeat, seam reports, and maps covered with tiles.
+//! Makes images tileable, measures seams, and covers maps with tiles.
 
 use crate::arrays;
 use crate::data;
@@ -29,12 +29,12 @@ pub(crate) fn flags(data: Option<&Bound<'_, PyAny>>, default: bool) -> Result<[b
     }
 }
 
-/// Reads the position of the first pixel of a map in the plane, x first; (0, 0) by default.
+/// Reads the position of a map's first pixel in the plane, x first; (0, 0) by default.
 fn first(data: Option<&Bound<'_, PyAny>>) -> Result<[i64; 2]> {
     Ok(data.map_or(Ok([0; 2]), |first| first.extract())?)
 }
 
-/// Renders maps of a window of the plane in bands of rows, so that the work ends soon after an interruption.
+/// Renders maps of a window of the plane in bands of rows, so that the work stops soon after an interruption.
 fn rows(
     py: Python<'_>,
     first: [i64; 2],
@@ -60,10 +60,10 @@ fn rows(
     })?
 }
 
-/// Number of pixels of a band. It is large, so that few copies of a tile are cut by bands and rendered twice.
+/// Number of pixels in a band. It is large, so that few copies of a tile are cut by bands and rendered twice.
 const BAND: usize = 1 << 22;
 
-/// Appends the rows of maps to maps of the same kinds and width.
+/// Appends the rows of `maps` to `whole`, whose maps have the same kinds and widths.
 fn extend(whole: &mut [Map], maps: Vec<Map>) -> Result<()> {
     fn both<T>(above: &mut Raster<T>, below: Raster<T>) -> Result<()> {
         let size = [above.width(), above.height() + below.height()];
@@ -84,7 +84,7 @@ fn extend(whole: &mut [Map], maps: Vec<Map>) -> Result<()> {
     Ok(())
 }
 
-/// Reads a method of making images repeat from its name and options.
+/// Reads a tiling method from its name and options.
 fn method(
     name: &Bound<'_, PyAny>,
     options: Option<&Bound<'_, PyDict>>,
@@ -113,7 +113,7 @@ fn method(
     data::read(&format!("method {name}"), data)
 }
 
-/// The options of a soft cut; the default margin is at most a quarter of the shorter side, as in the command.
+/// Reads the options of a soft cut; the default margin is at most a quarter of the shorter side, as in the command.
 fn soft_cut(mut options: Object<String, Value>, size: [u32; 2]) -> Object<String, Value> {
     let default = SoftCut::default();
     let room = (size[0].min(size[1]) / 4).max(1);
@@ -127,24 +127,24 @@ fn soft_cut(mut options: Object<String, Value>, size: [u32; 2]) -> Object<String
     options
 }
 
-/// Makes an image repeat, or all maps of a material along the same cut.
+/// Makes an image tile seamlessly, or all maps of a material along the same cut.
 ///
 /// Parameters
 /// ----------
 /// image : dict of array_like or array_like
-///     (rows, columns), or (rows, columns, 3 or 4) in linear light; or a dictionary of such maps, of which `normal` is
-///     unit vectors and `orm` three numbers.
+///     (rows, columns), or (rows, columns, 3 or 4) in linear light; or a dictionary of such maps, of which `normal`
+///     holds unit vectors and `orm` three independent values.
 /// method : str or dict, default "soft_cut"
 ///     The method, with its options as keywords, or a dictionary as in a recipe.
 ///
-///     * `"soft_cut"` cuts along the line of least difference, and is smaller by the margin: `margin`, `half_width`,
-///       `crossfade`.
-///     * `"periodic"` keeps all detail and the size (Moisan 2011); `"poisson"` likewise, with `wrap_gradient`.
-///     * `"spline_project"` is the tile of Du, Wang and Meng, which smooths, and `"periodic_then_project"`: `levels`,
-///       `phase`, `basis`, `pixels`.
-///     * `"feather"` is a crossfade: `margin`, `crossfade`. `"mirror"` is the image beside its mirror image.
+///     * `"soft_cut"` cuts along the path with the smallest difference, and the result is smaller by the margin:
+///       `margin`, `half_width`, `crossfade`.
+///     * `"periodic"` preserves all detail and the size (Moisan 2011); so does `"poisson"`, with `wrap_gradient`.
+///     * `"spline_project"` is the tile of Du, Wang and Meng, which smooths the image, and
+///       `"periodic_then_project"` applies both methods: `levels`, `phase`, `basis`, `pixels`.
+///     * `"feather"` is a crossfade: `margin`, `crossfade`. `"mirror"` places the image next to its mirror image.
 /// axes : bool or tuple of bool, default True
-///     The axes along which the result repeats, x first; one for both.
+///     Whether the result repeats along each axis, x first; one value for both.
 /// **options : object
 ///     Options of the method.
 ///
@@ -156,7 +156,7 @@ fn soft_cut(mut options: Object<String, Value>, size: [u32; 2]) -> Object<String
 /// Raises
 /// ------
 /// DappleError
-///     If the maps of the image differ in size, or an option is unknown, out of range or not of this method.
+///     If the maps of the image differ in size, or an option is unknown, out of range or not supported by the method.
 ///
 /// Examples
 /// --------
@@ -187,26 +187,26 @@ pub(crate) fn make_tile<'py>(
     layout.python(py, tile)
 }
 
-/// Measures how well an image repeats, and how much it has kept of the image from which it was made.
+/// Measures how well an image repeats, and how much of its source image it has preserved.
 ///
-/// Steps across the wrap are compared with those inside at four scales; with a source, lost detail, lost contrast, and
-/// parts unlike the source are measured. Colors are judged as they are displayed, in sRGB.
+/// Differences across the seam are compared with differences inside the image at four scales. With a source, lost
+/// detail, lost contrast, and parts unlike the source are measured. Colors are judged as displayed, in sRGB.
 ///
 /// Parameters
 /// ----------
 /// tile : dict of array_like or array_like
-///     An image, or a dictionary of maps.
+///     The image that repeats, or a dictionary of maps.
 /// source : dict of array_like or array_like or None, default None
-///     The original, of the same kind; None if there is none.
+///     The original image, of the same kind; None if there is none.
 /// axes : bool or tuple of bool, default True
-///     The axes along which it repeats, x first; one for both.
+///     Whether the image repeats along each axis, x first; one value for both.
 /// lattice : int or tuple of int, default 1
-///     The distance in pixels of boundaries that are like the wrap, such as 2**levels for `"spline_project"`.
+///     The distance in pixels between boundaries that resemble the seam, such as 2**levels for `"spline_project"`.
 ///
 /// Returns
 /// -------
 /// dict or SeamReport
-///     A `SeamReport`, or one for each map by name.
+///     A `SeamReport`, or a dictionary of them by map name.
 ///
 /// Raises
 /// ------
@@ -272,7 +272,7 @@ pub(crate) fn seam_report<'py>(
     }
 }
 
-/// Combines the reports of the maps of an image to a `SeamReport` of Python.
+/// Combines the reports for an image's maps into a Python `SeamReport`.
 fn report<'py>(py: Python<'py>, reports: &[SeamReports], kind: Kind) -> Result<Bound<'py, PyAny>> {
     let (mut channels, mut faults, mut texts) = (Vec::new(), Vec::new(), Vec::new());
     for (at, map) in reports.iter().enumerate() {
@@ -305,14 +305,14 @@ fn report<'py>(py: Python<'py>, reports: &[SeamReports], kind: Kind) -> Result<B
     Ok(report.call1((passes, faults, badness, channels, texts.join("\n")))?)
 }
 
-/// Copies of a tile side by side, cropped to a size.
+/// Repeats a tile along both axes, cropped to a size.
 ///
 /// Parameters
 /// ----------
 /// tile : dict of array_like or array_like
 ///     An image of any number of channels, or a dictionary of maps.
 /// size : int or tuple of int
-///     (rows, columns), or a number for both.
+///     (rows, columns), or one number for both.
 ///
 /// Returns
 /// -------
@@ -350,24 +350,24 @@ pub(crate) fn repeat<'py>(
     layout.python(py, maps)
 }
 
-/// A map that is covered with copies of a tile, each of which is varied inside and keeps its borders.
+/// Covers a map with copies of a tile; each copy is varied inside and preserves its borders.
 ///
-/// A window is the crop of the whole.
+/// A window of the map is bit for bit a crop of the whole.
 ///
 /// Parameters
 /// ----------
 /// tile : dict of array_like or array_like
-///     An image that repeats, or a dictionary of maps, of at least 56 pixels a side with the default widths.
+///     An image that repeats, or a dictionary of maps, with sides of at least 56 pixels for the default widths.
 /// size : int or tuple of int
-///     (rows, columns), or a number for both.
+///     (rows, columns), or one number for both.
 /// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     The random seed, from 0 to 2**64 - 1.
 /// first : tuple of int, default (0, 0)
-///     (x, y) of the first pixel in the plane, in which copy (0, 0) begins in pixel (0, 0).
+///     (x, y) of the first pixel in the plane, where copy (0, 0) begins at pixel (0, 0).
 /// frozen : int, default 4
-///     The number of unchanged pixels along the borders.
+///     The width of the unchanged border of each copy, in pixels.
 /// margin : int, default 24
-///     The number of pixels next to these in which a copy changes to the shifted one.
+///     The width, in pixels, of the transition from this border to the shifted copy inside.
 ///
 /// Returns
 /// -------
@@ -377,7 +377,7 @@ pub(crate) fn repeat<'py>(
 /// Raises
 /// ------
 /// DappleError
-///     If the tile is too small, the size is out of range, or an option is.
+///     If the tile is too small, or the size or an option is out of range.
 ///
 /// Examples
 /// --------
@@ -411,22 +411,22 @@ pub(crate) fn disturb<'py>(
     layout.python(py, maps)
 }
 
-/// Tiles with the border of the first one, so that they fit beside each other in any order.
+/// Gives all tiles the border of the first one, so that they fit together in any order.
 ///
 /// Parameters
 /// ----------
 /// tiles : iterable of dict of array_like or iterable of array_like
-///     Images of one size, or dictionaries of maps.
+///     Images of the same size, or dictionaries of maps.
 /// width : int, default 16
-///     The number of pixels along the borders in which tiles change.
+///     The width of the border in which tiles change, in pixels.
 /// source : {"border", "middle"}, default "border"
-///     `"border"` uses the border of the first tile, which must repeat; `"middle"` the strip along its middle, for a
-///     tile that does not.
+///     `"border"` uses the border of the first tile, which must repeat; `"middle"` uses the strip along its middle,
+///     for a tile that does not repeat.
 ///
 /// Returns
 /// -------
 /// list of dict or list of numpy.ndarray of float32
-///     The tiles, each in the form that was given: arrays, or dictionaries of arrays.
+///     The tiles, each in the same form as the input: arrays, or dictionaries of arrays.
 ///
 /// Raises
 /// ------
@@ -457,7 +457,7 @@ pub(crate) fn match_borders<'py>(
     list(py, &layout, matched)
 }
 
-/// A map that is covered with tiles in random order, whose borders are matched first; maps of whole tiles repeat.
+/// Covers a map with tiles in random order, after matching their borders; maps of whole tiles repeat.
 ///
 /// Parameters
 /// ----------
@@ -482,7 +482,7 @@ pub(crate) fn match_borders<'py>(
 /// Raises
 /// ------
 /// DappleError
-///     If there is no tile, tiles differ in size or maps, or the size is out of range.
+///     If there are no tiles, tiles differ in size or maps, or the size is out of range.
 ///
 /// Examples
 /// --------
@@ -518,30 +518,31 @@ fn borders(width: Option<u32>, source: Option<&str>) -> Result<MatchBorders> {
     })
 }
 
-/// Converts lists of maps to a list of images in a layout.
+/// Converts lists of maps to a list of images in the given layout.
 fn list<'py>(py: Python<'py>, layout: &Layout, all: Vec<Vec<Map>>) -> Result<Bound<'py, PyList>> {
     let pictures = all.into_iter().map(|maps| layout.python(py, maps));
     Ok(PyList::new(py, pictures.collect::<Result<Vec<_>>>()?)?)
 }
 
-/// Tiles that fit beside each other where their corners have the same color, after Lagae and Dutré (2006).
+/// Corner tiles, which fit next to each other if their corners have the same colors, after Lagae and Dutré (2006).
 ///
-/// Every tile is made from 2 to 4 sources, one for each color: at a corner it shows the source of that color, and
-/// sources meet along the lines of least difference. All C**4 tiles of C colors cover a plane without repeating.
+/// Every tile is built from 2 to 4 sources, one per corner color: at each corner it shows the source of that color,
+/// and sources meet along the paths with the smallest difference. The C**4 tiles for C colors cover a plane without
+/// repeating.
 ///
 /// Parameters
 /// ----------
 /// sources : iterable of array_like or dict of array_like
-///     2 to 4 images of one size, or dictionaries of maps.
+///     2 to 4 images of the same size, or dictionaries of maps.
 /// width : float, default 0.5
-///     The share of the shorter side that cuts may take, above 0 and at most 1.
+///     The width of the region where cuts may run, as a fraction of the shorter side, above 0 and at most 1.
 /// period : int, tuple of int or None, default None
-///     The number of tiles after which the corners repeat: a number, or (x, y); None if they do not.
+///     The number of tiles after which the corners repeat: one number, or (x, y); None if they do not repeat.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If there is no source, sources differ in size or maps, or an option is out of range.
+///     If there are no sources, sources differ in size or maps, or an option is out of range.
 ///
 /// Examples
 /// --------
@@ -601,12 +602,12 @@ impl CornerTiles {
         Ok(((list(py, &self.layout, self.sources.clone())?,), options))
     }
 
-    /// The tile with these sources at its corners: top left, top right, bottom left, bottom right.
+    /// Returns the tile with the given sources at its corners: top left, top right, bottom left, bottom right.
     ///
     /// Parameters
     /// ----------
     /// corners : sequence of int
-    ///     The sources at the corners: top left, top right, bottom left, bottom right.
+    ///     The source indices at the corners: top left, top right, bottom left, bottom right.
     ///
     /// Returns
     /// -------
@@ -616,14 +617,14 @@ impl CornerTiles {
     /// Raises
     /// ------
     /// DappleError
-    ///     If a corner is not the number of a source.
+    ///     If a corner is not the index of a source.
     fn tile<'py>(&self, py: Python<'py>, corners: [u8; 4]) -> Result<Bound<'py, PyAny>> {
         let tiles = Arc::clone(&self.tiles);
         let maps = threads::run(py, move || tiles.tile(corners))??;
         self.layout.python(py, maps)
     }
 
-    /// All C**4 tiles; the one with the corners a, b, c, d is at the index a + b C + c C**2 + d C**3.
+    /// Returns all C**4 tiles; the tile with the corners a, b, c, d is at index a + b C + c C**2 + d C**3.
     ///
     /// Returns
     /// -------
@@ -635,17 +636,16 @@ impl CornerTiles {
         list(py, &self.layout, tiles)
     }
 
-    /// A map with random corners: `size` is (rows, columns), `first` (x, y) of its first pixel. A window is the crop of
-    /// the whole.
+    /// Covers a map with tiles whose corners are random. A window of the map is bit for bit a crop of the whole.
     ///
     /// Parameters
     /// ----------
     /// size : int or tuple of int
-    ///     (rows, columns), or a number for both.
+    ///     (rows, columns), or one number for both.
     /// seed : int, default 0
-    ///     From 0 to 2**64 - 1.
+    ///     The random seed, from 0 to 2**64 - 1.
     /// first : tuple of int, default (0, 0)
-    ///     (x, y) of the first pixel.
+    ///     (x, y) of the first pixel in the plane.
     ///
     /// Returns
     /// -------
@@ -676,14 +676,14 @@ impl CornerTiles {
     }
 }
 
-/// The ranks of numbers, from 0 to 1: values below `x` cover the fraction `x` of the area.
+/// Replaces values by their ranks, from 0 to 1: values below `x` cover the fraction `x` of the area.
 ///
-/// As the tile of `blend`, ranks make weights equal to areas.
+/// If ranks are used as the tile of `blend`, weights equal area fractions.
 ///
 /// Parameters
 /// ----------
 /// values : array_like
-///     The values: an array.
+///     The values, (rows, columns).
 ///
 /// Returns
 /// -------

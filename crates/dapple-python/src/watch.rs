@@ -1,12 +1,12 @@
-//! Calls that can be interrupted with Ctrl-C and report their progress.
+//! Runs calls that can be interrupted with Ctrl-C and report their progress.
 //!
-//! The work runs on the threads of the package. The calling thread waits for it. Periodically, it takes the
-//! interpreter lock to run the signal handlers, which only the main thread may do, and the progress callback.
+//! The work runs on the package's threads. The calling thread waits for it. Periodically, it takes the interpreter
+//! lock to run the signal handlers, which only the main thread may do, and the progress callback.
 //!
 //! A thread cannot be stopped from outside. Work that owns its data ([`run`]) is abandoned when a handler raises an
 //! exception: the call returns at once, the work ends when it next checks [`Stop`] or when it is done, and the next
-//! call gets new threads. Work that writes to memory of the caller ([`within`]) is waited for, and is divided into
-//! parts of some milliseconds ([`in_parts`]).
+//! call gets new threads. Work that writes to the caller's memory ([`within`]) is always waited for, and is divided
+//! into parts that take some milliseconds ([`in_parts`]).
 
 use crate::error::{Error, Result};
 use crate::threads;
@@ -25,10 +25,10 @@ use std::time::Instant;
 /// Time between checks for signals.
 const PERIOD: Duration = Duration::from_millis(25);
 
-/// Target time of a part of the work: far less than [`PERIOD`], and far more than the overhead of a part.
+/// Target duration of a part of the work: far less than [`PERIOD`], and far more than the overhead of a part.
 const PART: Duration = Duration::from_millis(10);
 
-/// A callback for the progress of a synthesis, which can stop it.
+/// A progress callback of a synthesis, which can stop it.
 pub(crate) type Heard<'a> = &'a mut (dyn FnMut(Progress) -> ControlFlow<()> + Send);
 
 /// A flag that requests that work stops. Clones share it.
@@ -36,7 +36,7 @@ pub(crate) type Heard<'a> = &'a mut (dyn FnMut(Progress) -> ControlFlow<()> + Se
 pub(crate) struct Stop(Arc<AtomicBool>);
 
 thread_local! {
-    /// The stop flag of the work on this thread, for objects that are built from their descriptions deep within it.
+    /// The current stop flag of this thread, for objects that are built from their descriptions deep within the work.
     static CURRENT: RefCell<Stop> = RefCell::default();
 }
 
@@ -54,18 +54,18 @@ fn with_current<T>(stop: &Stop, work: impl FnOnce() -> T) -> T {
 }
 
 impl Stop {
-    /// The stop flag of the work on this thread.
+    /// Returns the current stop flag of this thread.
     pub(crate) fn current() -> Self {
         CURRENT.with_borrow(Self::clone)
     }
 
-    /// The flag in the form that options of textures take.
+    /// Returns the flag as the type that texture options use.
     pub(crate) fn cancel(&self) -> Cancel {
         let stop = self.clone();
         Cancel::by(move || stop.is_set())
     }
 
-    /// The flag as the return value of a progress callback.
+    /// Returns the flag as the return value of a progress callback.
     pub(crate) fn flow(&self) -> ControlFlow<()> {
         match self.is_set() {
             true => ControlFlow::Break(()),
@@ -73,12 +73,13 @@ impl Stop {
         }
     }
 
-    /// Whether the work should end.
+    /// Returns whether the work should end.
     pub(crate) fn is_set(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// Returns an error if a stop was requested. The error ends the work and is not shown, since the call has returned.
+    /// Returns an error if a stop was requested. The error ends the work but is never shown, since the call has
+    /// already returned.
     pub(crate) fn check(&self) -> Result<()> {
         match self.is_set() {
             true => Err(Error::new("interrupted", "the call was interrupted")),
@@ -89,14 +90,14 @@ impl Stop {
 
 /// A message from the work to the thread that waits for it.
 enum Message<T> {
-    /// The progress of the work, from 0 to 1.
+    /// The completed fraction of the work, from 0 to 1.
     Part(f64),
     /// The result, or the panic that ended the work.
     Done(std::thread::Result<T>),
 }
 
-/// Runs `work` on the threads of the package without the interpreter lock, and returns its result, unless a signal or
-/// `progress` raises an exception. `progress` is called with the fraction of the work that is done, from 0 to 1.
+/// Runs `work` on the package's threads without the interpreter lock, and returns its result, unless a signal or
+/// `progress` raises an exception. `progress` is called with the completed fraction of the work, from 0 to 1.
 pub(crate) fn run<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -109,7 +110,7 @@ pub(crate) fn run<T: Send + 'static>(
     let ended = stop.clone();
     pool.spawn(move || {
         let mut tell = |steps: Progress| {
-            // Ignore errors: after an exception, nobody receives the progress.
+            // Ignore errors: after an exception, nothing receives the progress.
             let _ = sender.send(Message::Part(steps.part()));
             ended.flow()
         };
@@ -131,7 +132,7 @@ pub(crate) fn run<T: Send + 'static>(
     }
 }
 
-/// Runs work that borrows data on the threads of the package, without the interpreter lock. It is waited for even
+/// Runs work that borrows data on the package's threads, without the interpreter lock. The call waits for it even
 /// after an exception, so `work` must check [`Stop`] often.
 pub(crate) fn within<T: Send>(
     py: Python<'_>,
@@ -158,8 +159,8 @@ pub(crate) fn within<T: Send>(
     made.unwrap_or_else(|| Err(Error::new("threads", "the work was not done")))
 }
 
-/// Processes `count` items in parts that take some milliseconds each; stops on request. `first` is the number of items
-/// of the first part.
+/// Processes `count` items in parts that take some milliseconds each; stops if requested. `first` is the number of
+/// items in the first part.
 #[expect(
     clippy::disallowed_methods,
     reason = "the clock decides how many items come at once, and no value depends on it"
@@ -176,7 +177,7 @@ pub(crate) fn in_parts(
         let end = begin.saturating_add(size).min(count);
         let start = Instant::now();
         work(begin..end)?;
-        // Choose the size of the next part by the time that this one took per item.
+        // Choose the size of the next part from the time per item of this part.
         let ratio = PART.as_secs_f64() / start.elapsed().as_secs_f64().max(1e-9);
         size = ((size as f64 * ratio.clamp(0.05, 4.0)) as usize).max(1);
         begin = end;

@@ -21,7 +21,7 @@ use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 use texture::Texture;
 
-/// The description of a field of cells.
+/// The description of a cellular field.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct CellsMade {
     seed: Seed,
@@ -38,9 +38,9 @@ pub(crate) struct CellsMade {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum CellsRange {
-    /// No range: values are unscaled distances.
+    /// No range: values are unscaled.
     Plain,
-    /// The measured range.
+    /// The measured range of the value.
     Normalized,
     /// A range given by the caller.
     Given([f32; 2]),
@@ -56,7 +56,7 @@ impl CellsMade {
         }
     }
 
-    /// The cellular basis, without a combination of distances.
+    /// Builds the cellular basis, without a combination of distances.
     fn basis<const N: usize>(&self) -> Result<Basis<N>>
     where
         Dimensions: Space<N>,
@@ -118,9 +118,9 @@ impl CellsMade {
     }
 }
 
-/// Worley's cells: a field of the distances to the nearest of scattered feature points.
+/// Worley's cells: a field computed from the distances to the nearest scattered feature points.
 ///
-/// It has all methods of `Field`, and access to the feature points.
+/// It has all methods of `Field`, and methods that return the feature points.
 #[pyclass(extends = Field, frozen, module = "dapple_textures")]
 pub(crate) struct Worley {
     made: CellsMade,
@@ -135,34 +135,34 @@ impl Worley {
         )?)
     }
 
-    /// Makes the field of a description of cells.
+    /// Builds the field from a description of cells.
     pub(crate) fn from_made(py: Python<'_>, made: CellsMade) -> Result<Py<PyAny>> {
         Ok(Self::with(py, made)?.into_any())
     }
 }
 
-/// Worley's cells, after Steven Worley's "A Cellular Texture Basis Function" (1996).
+/// Creates Worley's cells, after Steven Worley's "A Cellular Texture Basis Function" (1996).
 ///
 /// Positions and distances are in cells. The same seed gives the same bits on every machine.
 ///
 /// Parameters
 /// ----------
 /// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     The random seed, from 0 to 2**64 - 1.
 /// dims : int, default 2
-///     2, 3 or 4 axes.
+///     Number of axes: 2, 3 or 4.
 /// value : str or sequence of float, default "f1"
 ///     "f1" to "f4" (distance to the nearest, second, … feature point), a difference such as "f2_minus_f1",
-///     "cell_value" (a random number from 0 to 1 for each cell), "edge_distance" (to the nearest border of a cell), or
-///     the four coefficients of F1 to F4.
+///     "cell_value" (a random number from 0 to 1 for each cell), "edge_distance" (to the nearest border of a cell),
+///     or the four coefficients of F1 to F4.
 /// metric : {"euclidean", "manhattan", "chebyshev"} or dict, default "euclidean"
 ///     "euclidean", "manhattan", "chebyshev", or {"minkowski": 3}.
 /// scatter : dict or None, default None
-///     {"poisson": {"density": 3}}, the paper's; {"unclamped": {"density": 3}}; {"jittered": {"jitter": 1}}, one point
-///     in each cell.
+///     {"poisson": {"density": 3}}, as in the paper; {"unclamped": {"density": 3}}; {"jittered": {"jitter": 1}}, one
+///     point in each cell.
 /// period : int or tuple of int or None, default None
-///     The number of cells after which it repeats exactly: one number, or one for each axis, x first; None for an axis
-///     along which it does not.
+///     The period in cells, after which the field repeats exactly: one number, or one for each axis, x first; None
+///     for an axis without a period.
 /// octaves : dict or None, default None
 ///     A fractal sum, {"count": 6, "lacunarity": 2, "gain": 0.5, "seeds": "own"}.
 /// range : tuple of float or None, default None
@@ -171,12 +171,12 @@ impl Worley {
 /// Returns
 /// -------
 /// Worley
-///     The cells.
+///     The cellular field.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If a word is not one of those above, `dims` is not 2, 3 or 4, or a number is out of range.
+///     If a name is not one of those above, `dims` is not 2, 3 or 4, or a number is out of range.
 ///
 /// Examples
 /// --------
@@ -237,15 +237,15 @@ macro_rules! with_counts {
 
 #[pymethods]
 impl Worley {
-    /// These cells with values mapped so that about 0 to 1 is their range, which was measured. Cell values are returned as
-    /// they are; edge distances have no measured range.
+    /// Normalizes the values to about 0 to 1, based on their measured range. Cell values are returned unchanged; edge
+    /// distances have no measured range.
     ///
     /// Returns
     /// -------
     /// Worley
-    ///     The cells.
+    ///     The normalized field.
     fn normalized(&self, py: Python<'_>) -> Result<Py<Self>> {
-        // Cell values are from 0 to 1 as they are.
+        // Cell values already range from 0 to 1.
         if self.made.value == WorleyValue::CellValue {
             return Self::with(py, self.made.clone());
         }
@@ -261,18 +261,18 @@ impl Worley {
         )
     }
 
-    /// The nearest feature points of positions, nearest first.
+    /// Finds the feature points nearest to each position, nearest first.
     ///
-    /// `positions` has the shape (…, dims), x first, in cells; `count` is from 1 to 4. The result has `distance` (…,
-    /// count), float32, in cells in the metric; `vector` (…, count, dims), float64, from the feature point to the
-    /// position; `id` (…, count), uint64, the id of the point.
+    /// `positions` has shape (…, dims), x first, in cells; `count` is from 1 to 4. The result has `distance` (…,
+    /// count), float32, measured in cells with the field's metric; `vector` (…, count, dims), float64, from the
+    /// feature point to the position; and `id` (…, count), uint64, the id of each point.
     ///
     /// Parameters
     /// ----------
     /// positions : array_like
-    ///     Positions of the shape (…, axes), x first.
+    ///     Positions of shape (…, axes), x first.
     /// count : int, default 1
-    ///     The number of them.
+    ///     The number of feature points per position, from 1 to 4.
     ///
     /// Returns
     /// -------
@@ -282,7 +282,7 @@ impl Worley {
     /// Raises
     /// ------
     /// DappleError
-    ///     If the last axis of `positions` does not have the length `dims`, or `count` is out of range.
+    ///     If the last axis of `positions` does not have length `dims`, or `count` is out of range.
     #[pyo3(signature = (positions, *, count = 1))]
     fn features<'py>(
         &self,
@@ -306,30 +306,31 @@ impl Worley {
         arrays::features(py, arrays)
     }
 
-    /// The nearest feature points at the pixels of a plane: equal to those of `features`, bit for bit.
+    /// Finds the feature points nearest to each pixel of an array; the results equal those of `features`, bit for
+    /// bit.
     ///
-    /// `outputs` names the planes to compute; the others are None. With `count` points their shapes are (count, rows,
-    /// columns) and, for vectors, (count, rows, columns, dims), float32. Fields of more than two axes are cut at the
-    /// further coordinates `at`.
+    /// `outputs` names the arrays to compute; the others are None. For `count` points their shapes are (count, rows,
+    /// columns) and, for vectors, (count, rows, columns, dims), float32. Fields with more than two axes are sliced at
+    /// the remaining coordinates `at`.
     ///
     /// Parameters
     /// ----------
     /// size : int or tuple of int
-    ///     (rows, columns), or a number for both.
+    ///     (rows, columns), or one number for both.
     /// count : int, default 1
-    ///     The number of them.
+    ///     The number of feature points per pixel.
     /// outputs : sequence of {"distance", "vector", "id"}, optional
-    ///     The planes to compute.
+    ///     The arrays to compute.
     /// extent : float or tuple of float or None, default None
-    ///     The size of the rectangle of the array, x first, as in `Field.render`.
+    ///     The size of the rendered rectangle, x first, as in `Field.render`.
     /// origin : float or tuple of float or None, default None
-    ///     The corner of the first pixel, x first.
+    ///     The corner of the first pixel, x first, as in `Field.render`.
     /// window : tuple of slice or None, default None
-    ///     The part to compute, a slice for each axis of `size`.
+    ///     The part to compute, one slice per axis of `size`.
     /// samples : str, default "centers"
-    ///     The positions of the samples, "centers" or "corners", as in `Field.render`.
+    ///     The sample positions, "centers" or "corners", as in `Field.render`.
     /// at : sequence of float or None, default None
-    ///     The further coordinates of a field of more than two axes; 0 by default.
+    ///     The coordinates along the axes after the first two; 0 by default.
     ///
     /// Returns
     /// -------
@@ -410,24 +411,24 @@ impl Worley {
         arrays::features(py, arrays)
     }
 
-    /// The gradients of the value at positions of the shape (…, dims), per cell: float64 of the same shape.
+    /// Computes the gradients of the value at positions of shape (…, dims), per cell: float64 of the same shape.
     ///
-    /// On the borders between cells the gradient jumps. Cell values and edge distances have none.
+    /// The gradient is discontinuous at the borders between cells. Cell values and edge distances have no gradient.
     ///
     /// Parameters
     /// ----------
     /// positions : array_like
-    ///     Positions of the shape (…, axes), x first.
+    ///     Positions of shape (…, axes), x first.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray of float64
-    ///     The gradients, of the shape of `positions`.
+    ///     The gradients, with the shape of `positions`.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If the last axis of `positions` does not have the length `dims`, or the value has no gradient.
+    ///     If the last axis of `positions` does not have length `dims`, or the value has no gradient.
     fn gradient<'py>(
         &self,
         py: Python<'py>,
@@ -444,12 +445,12 @@ impl Worley {
         arrays::array(py, gradients, &shape)
     }
 
-    /// The feature points of a cell, as (positions, ids): float64 of the shape (n, dims), in cells, and uint64.
+    /// Returns the feature points of a cell as (positions, ids): float64 of shape (n, dims), in cells, and uint64.
     ///
     /// Parameters
     /// ----------
     /// cell : sequence of int
-    ///     The numbers of the cell, x first.
+    ///     The indices of the cell, x first.
     ///
     /// Returns
     /// -------
@@ -459,7 +460,7 @@ impl Worley {
     /// Raises
     /// ------
     /// DappleError
-    ///     If `cell` does not have `dims` whole numbers.
+    ///     If `cell` does not have `dims` integers.
     fn cell_points<'py>(
         &self,
         py: Python<'py>,
@@ -478,5 +479,5 @@ impl Worley {
     }
 }
 
-/// The planes that `render_features` can compute.
+/// Names of the arrays that `render_features` can compute.
 const OUTPUTS: [&str; 3] = ["distance", "vector", "id"];

@@ -22,7 +22,7 @@ pub(crate) struct GradientMade {
     octaves: Option<OctavesMade>,
 }
 
-/// The options of a fractal sum, in which each octave has a separate seed.
+/// Options of a fractal sum in which each octave has a separate seed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct OctavesMade {
     count: u32,
@@ -58,30 +58,33 @@ impl GradientMade {
     }
 }
 
-/// Perlin's gradient noise: smooth bumps of one size, after "Improving Noise" (2002), with a seed and exact periods.
+/// Creates Perlin's gradient noise: smooth bumps of similar size, after "Improving Noise" (2002), with a seed and
+/// exact periods.
 ///
-/// Positions are in cells. The mean is 0; values are from -1 to 1 in the plane, and at most 1.04 and 1.54 from 0 in three
-/// and four dimensions. Without octaves, the standard deviation is 0.31, 0.27 and 0.29. At positions whose coordinates are
-/// all whole numbers the value is 0: sample between them, for instance half a cell aside.
+/// Positions are in cells. The mean is 0. Values are from -1 to 1 in the plane, and their magnitude is at most 1.04
+/// and 1.54 in three and four dimensions. Without octaves, the standard deviation is 0.31, 0.27 and 0.29. The value
+/// is 0 wherever all coordinates are integers, so sample between these positions, for instance with an offset of half
+/// a cell.
 ///
-/// Octaves are summed and not divided by the sum w of their heights, 1 + gain + gain**2 + … (1.94 for 5 octaves and a gain of
-/// 0.5): with a gain from 0 to 1, values are from -w to w for the shape "sum", and from 0 to w for "ridged" and "billow".
+/// Octaves are summed without dividing by w = 1 + gain + gain**2 + …, the sum of their amplitudes (1.94 for 5 octaves
+/// and a gain of 0.5). With a gain from 0 to 1, values are from -w to w for the shape "sum", and from 0 to w for
+/// "ridged" and "billow".
 ///
 /// Parameters
 /// ----------
 /// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     The random seed, from 0 to 2**64 - 1.
 /// dims : int, default 2
-///     2, 3 or 4 axes.
+///     Number of axes: 2, 3 or 4.
 /// period : int or tuple of int or None, default None
-///     The number of cells after which it repeats exactly: one number, or one for each axis, x first; None for an axis
-///     along which it does not.
+///     The period in cells, after which the field repeats exactly: one number, or one for each axis, x first; None
+///     for an axis without a period.
 /// octaves : int or None, default None
-///     The number of octaves that are summed (fBm), each with its own seed; 1 to 32.
+///     The number of octaves to sum (fBm), each with its own seed; 1 to 32.
 /// gain : float, default 0.5
-///     The ratio of the heights of an octave and the one before, -1 to 1.
+///     The ratio of an octave's amplitude to the previous one's, from -1 to 1.
 /// lacunarity : float, default 2.0
-///     The ratio of the frequencies of an octave and the one before, 1 to 16; whole if there is a period.
+///     The ratio of an octave's frequency to the previous one's, from 1 to 16; an integer if there is a period.
 /// shape : {"sum", "ridged", "billow"}, default "sum"
 ///     "sum", "ridged" or "billow" (turbulence).
 ///
@@ -93,7 +96,7 @@ impl GradientMade {
 /// Raises
 /// ------
 /// DappleError
-///     If `dims` is not 2, 3 or 4, the period does not fit it, or a number is out of range.
+///     If `dims` is not 2, 3 or 4, the period does not match it, or a number is out of range.
 ///
 /// Examples
 /// --------

@@ -43,21 +43,21 @@ impl Build for WaveletMade {
     }
 }
 
-/// Wavelet noise: bands of frequencies that neither alias nor blur, after Cook and DeRose (2005).
+/// Creates wavelet noise: frequency bands that neither alias nor blur, after Cook and DeRose (2005).
 ///
-/// Positions are in cells. The mean is 0; the variance is about the sum of the squares of the weights.
+/// Positions are in cells. The mean is 0; the variance is about the sum of the squared weights.
 ///
 /// Parameters
 /// ----------
 /// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     The random seed, from 0 to 2**64 - 1.
 /// dims : int, default 2
-///     2 or 3 axes.
+///     Number of axes: 2 or 3.
 /// period : int or tuple of int, default 64
-///     The number of cells after which it repeats, an even number of at least 4: one number, or one for each axis, x
-///     first. The tile is kept in memory: 4 bytes for each of its cells.
+///     The period in cells, an even number of at least 4: one number, or one for each axis, x first. The tile is
+///     stored in memory, with 4 bytes per cell.
 /// weights : sequence of float, default [1.0]
-///     The weight of each band, coarsest first; each is twice as fine as the one before. 1 to 16 of them.
+///     The weights of 1 to 16 bands, coarsest first; each band has twice the frequency of the previous one.
 ///
 /// Returns
 /// -------

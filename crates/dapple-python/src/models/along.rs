@@ -1,4 +1,4 @@
-//! Synthesis in the plane along an orientation field and with scales.
+//! Synthesizes textures in the plane along an orientation field and with varying scales.
 
 use super::bake;
 use super::surface_guides::bounds;
@@ -11,18 +11,19 @@ use dapple::mesh::CREASE;
 use dapple::synth::{PlaneAlong, PlaneScales, SynthError, synthesize_plane_along};
 use pyo3::prelude::*;
 
-/// A texture that runs along directions, with features of different sizes.
+/// Synthesizes a texture that follows given directions, with features of varying size.
 ///
 /// Parameters
 /// ----------
 /// exemplar : dict of array_like or array_like
 ///     As for `synthesize`, without alpha.
 /// directions : array_like
-///     (rows, columns), angles in radians: at 0 the example's down is down, at pi / 2 it points to the right.
+///     (rows, columns), angles in radians: at 0 the example's downward axis points down, at pi / 2 it points to the
+///     right.
 /// scales : array_like or None, default None
-///     (rows, columns), how large a pixel of the example is, in pixels of the texture, from 1/8 to 8; by default 1. Or
-///     two bounds, between which sizes follow the directions: features grow where these spread and shrink where they
-///     meet.
+///     (rows, columns), the size of an example pixel in pixels of the texture, from 1/8 to 8; by default 1. Or two
+///     bounds, between which sizes follow the directions: features grow where the directions diverge and shrink where
+///     they converge.
 /// seed : int, default 0
 ///     As for `synthesize`.
 /// edges : {"cut", "wrap"}, default "cut"
@@ -46,7 +47,7 @@ use pyo3::prelude::*;
 /// Raises
 /// ------
 /// DappleError
-///     If the example is too small, or a map of sizes or directions has another shape, or an option is out of range.
+///     If the example is too small, `scales` or `directions` has a different shape, or an option is out of range.
 ///
 /// Examples
 /// --------

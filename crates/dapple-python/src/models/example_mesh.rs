@@ -1,4 +1,4 @@
-//! An example that is a textured mesh.
+//! Reads an example that is a textured mesh.
 
 use super::{directions, own_uvs, uvs_of};
 use crate::error::{Error, Result};
@@ -8,7 +8,7 @@ use dapple::mesh::{Mesh, Surface};
 use dapple::synth::{Direction, Exemplar, HierarchyOptions, MeshExemplar, Synthesizer};
 use pyo3::prelude::*;
 
-/// A mesh as the example: its texture coordinates, and the options of its sites.
+/// A mesh used as the example: its texture coordinates, and the options for placing its sites.
 pub(super) struct ExampleMesh {
     mesh: Mesh,
     uvs: Vec<[f64; 2]>,
@@ -17,7 +17,7 @@ pub(super) struct ExampleMesh {
 }
 
 impl ExampleMesh {
-    /// Reads the arguments that describe the mesh; `None` without a mesh.
+    /// Reads the arguments that describe the mesh; `None` if there is no mesh.
     pub(super) fn read(
         example_mesh: Option<&Bound<'_, PyAny>>,
         n_sites: Option<usize>,
@@ -34,7 +34,7 @@ impl ExampleMesh {
         Self::new(example_mesh, "example_mesh", n_sites, directions).map(Some)
     }
 
-    /// Reads a mesh and the directions of its texture. `name` is the argument of the caller, for error messages.
+    /// Reads a mesh and its texture directions. `name` is the caller's argument name, for error messages.
     pub(super) fn new(
         of: &Bound<'_, PyAny>,
         name: &str,
@@ -51,7 +51,7 @@ impl ExampleMesh {
     }
 
     /// Places sites on the mesh and samples its texture. Returns the exemplar, and the texture coordinates of the
-    /// repaired mesh. `sites` are the options of the mesh that gets the texture, with another seed.
+    /// repaired mesh. `sites` holds the options of the target mesh, which are used with a different seed.
     pub(super) fn textured(
         self,
         sites: &HierarchyOptions,

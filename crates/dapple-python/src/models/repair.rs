@@ -1,4 +1,4 @@
-//! Repair of the texture of a mesh.
+//! Repairs the texture of a mesh.
 
 use super::example_mesh::ExampleMesh;
 use super::{bake, refuse_alpha};
@@ -13,41 +13,41 @@ use dapple::synth::{Atlas, HierarchyOptions, SynthError};
 use dapple::tile::Map;
 use pyo3::prelude::*;
 
-/// The texture of a mesh in which a part is made again, such as a stain, from what is around it on the mesh.
+/// Re-synthesizes part of a mesh's texture, such as a stain, from its surroundings on the mesh.
 ///
 /// Parameters
 /// ----------
 /// mesh : mesh
-///     Anything with `.vertices` (n, 3), `.faces` (m, 3) and `.uv` (m, 3, 2), v down, such as a `MeshFile` or a
+///     Any object with `.vertices` (n, 3), `.faces` (m, 3) and `.uv` (m, 3, 2), v down, such as a `MeshFile` or a
 ///     `Model`.
 /// texture : dict of array_like or array_like
 ///     (rows, columns), or (rows, columns, 3) in linear light, at the texture coordinates of the mesh; or a dictionary
 ///     of maps, of which the first is matched and the others follow it.
 /// hole : array_like
-///     (rows, columns), at least 0.5 where the texture is made again; nothing is taken from there.
+///     (rows, columns), at least 0.5 where the texture is re-synthesized; nothing is copied from there.
 /// sites : int, default 65536
-///     The number of points of the surface that get a color, 1 to 2**28.
+///     The number of points on the surface that get a color, 1 to 2**28.
 /// directions : tuple of array_like or None, default None
-///     (positions, vectors), each (n, 3): which way the texture runs at these positions; elsewhere they are
-///     interpolated, and without any it runs down.
+///     (positions, vectors), each (n, 3): the direction of the texture at these positions. Elsewhere directions are
+///     interpolated; by default the texture points down.
 /// seed : int, default 0
-///     As for `synthesize`. More levels fill larger holes.
+///     As for `synthesize`.
 /// levels : int, default 3
-///     As for `synthesize`. More levels fill larger holes.
+///     As for `synthesize`; more levels fill larger holes.
 /// coherence : float, {"auto"} or None, default None
-///     As for `synthesize`. More levels fill larger holes.
+///     As for `synthesize`.
 /// progress : callable or None, default None
-///     As for `synthesize`. More levels fill larger holes.
+///     As for `synthesize`.
 ///
 /// Returns
 /// -------
 /// dict or numpy.ndarray of float32
-///     The texture, in the form that was given: an array, or a dictionary of arrays.
+///     The texture, in the same form as the input: an array, or a dictionary of arrays.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If the mesh has no texture coordinates, the mask has another size or leaves too little to copy from, or an
+///     If the mesh has no texture coordinates, the mask differs in size or leaves too little to copy from, or an
 ///     option is out of range.
 ///
 /// Examples

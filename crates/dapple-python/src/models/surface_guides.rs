@@ -1,4 +1,4 @@
-//! The arguments `guides` and `scales` of synthesis on a mesh: numbers that vary over the surface.
+//! The arguments `guides` and `scales` of synthesis on a mesh, which vary over the surface.
 
 use super::at_corners;
 use crate::error::{Error, Result};
@@ -10,7 +10,7 @@ use dapple::synth::{Exemplar, Synthesizer};
 use numpy::{AllowTypeChange, PyArrayLike1, PyArrayLikeDyn};
 use pyo3::prelude::*;
 
-/// A guide as an argument: its values in the example, its values on the mesh, and its weight.
+/// A guide argument: its values in the example, its values on the mesh, and its weight.
 pub(super) type Guide<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, f32);
 
 /// The guides, with their values in the example and on the mesh.
@@ -21,16 +21,16 @@ pub(super) struct SurfaceGuides {
 
 /// The argument `scales`.
 pub(super) enum SurfaceScales {
-    /// Scales between two bounds that follow from the directions.
+    /// Scales between two bounds, derived from the directions.
     Conformal([f32; 2]),
     OfMesh(OfMesh),
 }
 
-/// Numbers that vary over a mesh.
+/// A scalar that varies over a mesh.
 pub(super) enum OfMesh {
     /// A number for each vertex, interpolated within faces.
     Vertices(Vec<f32>),
-    /// An image, read at the mesh's own texture coordinates; it repeats.
+    /// An image, sampled at the mesh's own texture coordinates; it repeats.
     Image(Raster<f32>),
 }
 
@@ -48,19 +48,19 @@ impl SurfaceGuides {
         })
     }
 
-    /// Whether texture coordinates are needed.
+    /// Returns whether texture coordinates are needed.
     pub(super) fn have_images(&self) -> bool {
         self.of_mesh.iter().any(OfMesh::is_image)
     }
 
-    /// Refuses numbers for another number of vertices than the mesh has.
+    /// Returns an error unless every list has as many numbers as the mesh has vertices.
     pub(super) fn check(&self, mesh: &Mesh) -> Result<()> {
         self.of_mesh
             .iter()
             .try_for_each(|guide| guide.check("a guide", mesh))
     }
 
-    /// Adds the guides to an exemplar.
+    /// Adds the guides' example values to an exemplar.
     pub(super) fn of_example(&self, exemplar: Exemplar) -> Result<Exemplar> {
         let planes = self.of_example.iter();
         let planes: Vec<_> = planes.map(|(plane, weight)| (plane, *weight)).collect();
@@ -85,12 +85,12 @@ impl SurfaceScales {
         })
     }
 
-    /// Whether texture coordinates are needed.
+    /// Returns whether texture coordinates are needed.
     pub(super) fn are_image(&self) -> bool {
         matches!(self, Self::OfMesh(numbers) if numbers.is_image())
     }
 
-    /// Refuses numbers for another number of vertices than the mesh has.
+    /// Returns an error unless the list has as many numbers as the mesh has vertices.
     pub(super) fn check(&self, mesh: &Mesh) -> Result<()> {
         match self {
             Self::Conformal(_) => Ok(()),
@@ -119,18 +119,18 @@ impl SurfaceScales {
     }
 }
 
-/// Reads two numbers, which are bounds; `None` for other data, such as an image or a number for each vertex.
+/// Reads two numbers as bounds; `None` for other data, such as an image or one number per vertex.
 pub(super) fn bounds(scales: &Bound<'_, PyAny>) -> Option<[f32; 2]> {
     let numbers: PyArrayLike1<'_, f32, AllowTypeChange> = scales.extract().ok()?;
     numbers.as_array().to_vec().try_into().ok()
 }
 
-/// Sites on a repaired mesh, with the mesh before its repair.
+/// Sites on a repaired mesh, together with the mesh before its repair.
 pub(super) struct SitesOfMesh<'a> {
     pub(super) synthesizer: &'a Synthesizer,
     pub(super) before: &'a Mesh,
     pub(super) repair: &'a Repair,
-    /// The texture coordinates of the corners of all faces; empty if no image is read.
+    /// Texture coordinates of all face corners; empty if no image is sampled.
     pub(super) uvs: &'a [[DVec2; 3]],
 }
 

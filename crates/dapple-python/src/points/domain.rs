@@ -6,10 +6,9 @@ use dapple::raster::glam::DVec2;
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
 
-/// A rectangle whose left and right sides, and whose top and bottom, may be joined: a torus, a cylinder or a plain
-/// rectangle.
+/// A rectangle whose opposite sides may be joined along each axis: a torus, a cylinder or a plain rectangle.
 ///
-/// Points and textures in a domain repeat along the axes that wrap, after the length of its side.
+/// Along an axis that wraps, points and textures in the domain repeat after the length of that side.
 ///
 /// Parameters
 /// ----------
@@ -34,7 +33,7 @@ use pyo3::types::PyBool;
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Domain(pub(crate) dapple::points::Domain);
 
-/// The arguments that make a domain: size, origin and wrap.
+/// The constructor arguments of a domain: size, origin and wrap.
 type Arguments = ((f64, f64), (f64, f64), (bool, bool));
 
 impl Domain {
@@ -78,7 +77,7 @@ impl Domain {
         self.0.origin.into()
     }
 
-    /// Whether x and y wrap around.
+    /// Whether x and y wrap.
     #[getter]
     fn wrap(&self) -> (bool, bool) {
         self.0.wrap.into()
@@ -98,7 +97,7 @@ impl Domain {
         let [x, y] = self.0.wrap.map(u64::from);
         let numbers = [self.0.size, self.0.origin].map(|v| (v + 0.0).to_array());
         let bits = numbers.as_flattened().iter().map(|number| number.to_bits());
-        // FNV-1a, word by word.
+        // FNV-1a, one word at a time.
         bits.chain([x, y])
             .fold(0xcbf2_9ce4_8422_2325, |hash, word| {
                 (hash ^ word).wrapping_mul(0x0100_0000_01b3)

@@ -11,25 +11,25 @@ use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// The description of the construction of a graph.
+/// How a graph is constructed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum GraphMade {
     /// The Delaunay graph.
     Delaunay,
-    /// The Gabriel graph: pairs of points whose circle is empty.
+    /// The Gabriel graph, which connects pairs of points whose diametral circle is empty.
     Gabriel,
-    /// The Yao graph: the nearest point in each cone.
+    /// The Yao graph, which connects each point with the nearest point in each cone.
     Yao {
         cones: u32,
         direction: EdgeDirection,
     },
-    /// The graph of the `k` nearest points.
+    /// The graph that connects each point with its `k` nearest points.
     KNearest { k: u32, direction: EdgeDirection },
 }
 
 impl GraphMade {
-    /// Makes the graph of points.
+    /// Builds the graph of `points`.
     pub(crate) fn build(
         self,
         points: &PointSet,
@@ -51,8 +51,8 @@ impl GraphMade {
 
 /// The neighbors of points, and the vectors to them.
 ///
-/// Graphs are made by `delaunay`, `gabriel`, `yao` and `k_nearest`. Where axes wrap, edges lead around, a point may be
-/// its own neighbor, and two points may be neighbors several times, with different vectors.
+/// Graphs are created by `delaunay`, `gabriel`, `yao` and `k_nearest`. Where axes wrap, edges may cross the boundary,
+/// a point may be its own neighbor, and two points may be neighbors several times, with different vectors.
 #[pyclass(frozen, module = "dapple_textures")]
 pub(crate) struct Graph {
     points: Arc<PointSet>,
@@ -71,22 +71,23 @@ impl Graph {
         })
     }
 
-    /// The points of the graph.
+    /// Returns the points of the graph.
     pub(crate) fn set(&self) -> &Arc<PointSet> {
         &self.points
     }
 
-    /// The description of the construction.
+    /// Returns how the graph was constructed.
     pub(crate) fn made(&self) -> GraphMade {
         self.made
     }
 
-    /// The graph.
+    /// Returns the graph.
     pub(crate) fn graph(&self) -> Arc<dapple::graph::Graph> {
         Arc::clone(&self.graph)
     }
 
-    /// Iterates over the edges, each once, as the first point and its axis. A directed graph lists each of its edges.
+    /// Iterates over the edges, each once, as the first point and its axis. For a directed graph, all edges are
+    /// listed.
     fn each_edge(&self) -> impl Iterator<Item = (u32, &Axis)> {
         let one_way = !self.graph.is_symmetric();
         let from = (0..self.graph.n_points() as u32).map(PointIdx);
@@ -98,7 +99,7 @@ impl Graph {
         .map(|(from, axis)| (from.0, axis))
     }
 
-    /// The triangles of a Delaunay graph; an error for other graphs.
+    /// Returns the triangles of a Delaunay graph; an error for other graphs.
     fn each_triangle(&self, py: Python<'_>) -> Result<Vec<dapple::graph::Triangle>> {
         if self.made != GraphMade::Delaunay {
             return Err(Error::new(
@@ -113,7 +114,7 @@ impl Graph {
     }
 }
 
-/// Converts rows of `N` point indices to an array of int64, as NumPy and SciPy take them.
+/// Converts rows of `N` point indices to an int64 array, the index type of NumPy and SciPy.
 fn indices<const N: usize>(
     py: Python<'_>,
     rows: impl Iterator<Item = [u32; N]>,
@@ -131,24 +132,25 @@ impl Graph {
         Points::shared_with(&self.points)
     }
 
-    /// Whether every edge leads both ways.
+    /// Whether every edge exists in both directions.
     #[getter]
     fn is_symmetric(&self) -> bool {
         self.graph.is_symmetric()
     }
 
-    /// Each edge once, as pairs of points: int64 of the shape (m, 2). In a symmetric graph the smaller index is first;
-    /// else an edge leads from the first to the second.
+    /// Returns each edge once, as a pair of point indices: int64 of shape (m, 2). In a symmetric graph the smaller
+    /// index is first; otherwise an edge leads from the first point to the second.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray of int64
-    ///     The indices of both points, (m, 2).
+    ///     The indices of both points of each edge, (m, 2).
     fn edges<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         indices(py, self.each_edge().map(|(from, axis)| [from, axis.to.0]))
     }
 
-    /// The vector of each edge, from its first point to its second, around axes that wrap: float64 of the shape (m, 2).
+    /// Returns the vector of each edge, from its first point to its second, across the boundary where axes wrap:
+    /// float64 of shape (m, 2).
     ///
     /// Returns
     /// -------
@@ -159,16 +161,16 @@ impl Graph {
         set::positions(py, &vectors)
     }
 
-    /// The neighbors of all points in compressed rows: those of point i are `indices[indptr[i]:indptr[i + 1]]`, sorted
-    /// by the angle of the vectors to them, `vectors`.
+    /// Returns the neighbors of all points in compressed rows: the neighbors of point i are
+    /// `indices[indptr[i]:indptr[i + 1]]`, sorted by the angle of the vectors to them, `vectors`.
     ///
-    /// `scipy.sparse.csr_array((lengths, indices, indptr))` is the matrix of a graph on a domain without wrapping; with
-    /// wrapping, pairs may occur more than once.
+    /// `scipy.sparse.csr_array((lengths, indices, indptr))` is the matrix of a graph on a domain that does not wrap;
+    /// if it wraps, pairs may occur more than once.
     ///
     /// Returns
     /// -------
     /// Axes
-    ///     The neighbors.
+    ///     The neighbors in compressed rows.
     fn axes<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let offsets: Vec<i64> = self.graph.offsets().iter().map(|&at| at.into()).collect();
         let axes = self.graph.all_axes();
@@ -183,7 +185,7 @@ impl Graph {
         arrays::result(py, "Axes", parts)
     }
 
-    /// The triangles of Delaunay's triangulation, as points: int64 of the shape (t, 3), in the direction from x to y.
+    /// Returns the Delaunay triangles as point indices: int64 of shape (t, 3), ordered in the direction from x to y.
     ///
     /// Where more than three points lie on an empty circle, one of several triangulations is chosen.
     ///
@@ -201,8 +203,8 @@ impl Graph {
         )
     }
 
-    /// The corners of the triangles: float64 of the shape (t, 3, 2). Where axes wrap, the second and the third corner
-    /// may lie outside of the domain, so that a triangle is in one piece.
+    /// Returns the corner positions of the triangles: float64 of shape (t, 3, 2). Where axes wrap, the second and the
+    /// third corner may be outside the domain, so that the triangle is in one piece.
     ///
     /// Returns
     /// -------
@@ -243,7 +245,7 @@ impl Graph {
     }
 }
 
-/// Makes the graph of a description.
+/// Builds a graph from its description.
 #[pyfunction]
 pub(crate) fn _graph_from_description(
     py: Python<'_>,
@@ -255,7 +257,7 @@ pub(crate) fn _graph_from_description(
     Graph::new(py, Points::read(points, None)?, made)
 }
 
-/// The direction of edges, from a flag.
+/// Returns the edge direction for the argument `symmetric`.
 fn direction(symmetric: bool) -> EdgeDirection {
     if symmetric {
         EdgeDirection::Symmetric
@@ -264,20 +266,21 @@ fn direction(symmetric: bool) -> EdgeDirection {
     }
 }
 
-/// Delaunay's graph: two points are neighbors if a circle through both has no other point on it or in it ("Sur la sphère
-/// vide", 1934).
+/// Builds the Delaunay graph: two points are neighbors if some circle through both has no other point on it or in it
+/// ("Sur la sphère vide", 1934).
 ///
 /// `points` are `Points`, or an array (n, 2) in `domain`; by default the domain of an array is the smallest rectangle
-/// around it, which does not wrap. Positions are snapped to a lattice first, whose step is between 2**-50 and 2**-49 of the
-/// larger side of the domain; all decisions are exact for the snapped positions. So points closer than a step may coincide,
-/// which is an error of the kind "coincident". Copies of points across axes that wrap count.
+/// around it, which does not wrap. Positions are first snapped to a lattice, whose step is between 2**-50 and 2**-49
+/// of the larger side of the domain; all decisions are exact for the snapped positions. Points closer than a step may
+/// therefore coincide, which is an error of the kind "coincident". Copies of points across axes that wrap are
+/// included.
 ///
 /// Parameters
 /// ----------
 /// points : array_like or Points
-///     Points, or an array of the shape (n, 2).
+///     Points, or an array of shape (n, 2).
 /// domain : Domain or None, default None
-///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+///     The domain of the points; by default that of the `Points`, or the smallest rectangle around an array.
 ///
 /// Returns
 /// -------
@@ -287,7 +290,7 @@ fn direction(symmetric: bool) -> EdgeDirection {
 /// Raises
 /// ------
 /// DappleError
-///     If two points coincide, or the domain wraps and is too thin for the distance of its points.
+///     If two points coincide, or the domain wraps and is too thin relative to the spacing of its points.
 ///
 /// Examples
 /// --------
@@ -307,17 +310,17 @@ pub(crate) fn delaunay(
     Graph::new(py, Points::read(points, domain)?, GraphMade::Delaunay)
 }
 
-/// Gabriel's graph: two points are neighbors if the circle whose diameter they are has no other point on it or in it
-/// ("A New Statistical Approach to Geographic Variation Analysis", 1969).
+/// Builds the Gabriel graph: two points are neighbors if the circle whose diameter is the segment between them has no
+/// other point on it or in it ("A New Statistical Approach to Geographic Variation Analysis", 1969).
 ///
-/// `points` and `domain` are those of `delaunay`.
+/// `points` and `domain` are as for `delaunay`.
 ///
 /// Parameters
 /// ----------
 /// points : array_like or Points
-///     Points, or an array of the shape (n, 2).
+///     Points, or an array of shape (n, 2).
 /// domain : Domain or None, default None
-///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+///     The domain of the points; by default that of the `Points`, or the smallest rectangle around an array.
 ///
 /// Returns
 /// -------
@@ -327,7 +330,7 @@ pub(crate) fn delaunay(
 /// Raises
 /// ------
 /// DappleError
-///     If two points coincide, or the domain wraps and is too thin for the distance of its points.
+///     If two points coincide, or the domain wraps and is too thin relative to the spacing of its points.
 ///
 /// Examples
 /// --------
@@ -344,22 +347,22 @@ pub(crate) fn gabriel(
     Graph::new(py, Points::read(points, domain)?, GraphMade::Gabriel)
 }
 
-/// Yao's graph: each point leads to the nearest one in each of some equal cones, the first of which begins at the x axis
-/// ("On Constructing Minimum Spanning Trees", 1982).
+/// Builds the Yao graph: the plane around each point is divided into equal cones, of which the first begins at the x
+/// axis, and an edge leads to the nearest point in each cone ("On Constructing Minimum Spanning Trees", 1982).
 ///
-/// `points` and `domain` are those of `delaunay`. `cones` is from 1 to 32; with `symmetric`, every edge leads both
-/// ways.
+/// `points` and `domain` are as for `delaunay`. `cones` is from 1 to 32; with `symmetric`, every edge exists in both
+/// directions.
 ///
 /// Parameters
 /// ----------
 /// points : array_like or Points
-///     Points, or an array of the shape (n, 2).
+///     Points, or an array of shape (n, 2).
 /// cones : int, default 6
 ///     The number of cones, from 1 to 32.
 /// symmetric : bool, default False
-///     Whether every edge leads both ways.
+///     Whether every edge exists in both directions.
 /// domain : Domain or None, default None
-///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+///     The domain of the points; by default that of the `Points`, or the smallest rectangle around an array.
 ///
 /// Returns
 /// -------
@@ -390,20 +393,20 @@ pub(crate) fn yao(
     Graph::new(py, Points::read(points, domain)?, made)
 }
 
-/// The graph in which each point leads to the `k` nearest ones, 1 to 4096.
+/// Builds the graph in which edges lead from each point to its `k` nearest points, 1 to 4096.
 ///
-/// `points` and `domain` are those of `delaunay`; with `symmetric`, every edge leads both ways.
+/// `points` and `domain` are as for `delaunay`; with `symmetric`, every edge exists in both directions.
 ///
 /// Parameters
 /// ----------
 /// points : array_like or Points
-///     Points, or an array of the shape (n, 2).
+///     Points, or an array of shape (n, 2).
 /// k : int
 ///     The number of neighbors, from 1 to 4096.
 /// symmetric : bool, default False
-///     Whether every edge leads both ways.
+///     Whether every edge exists in both directions.
 /// domain : Domain or None, default None
-///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+///     The domain of the points; by default that of the `Points`, or the smallest rectangle around an array.
 ///
 /// Returns
 /// -------
@@ -413,7 +416,7 @@ pub(crate) fn yao(
 /// Raises
 /// ------
 /// DappleError
-///     If `k` is 0 or larger than the number of neighbors, or two points coincide.
+///     If `k` is 0 or larger than the number of possible neighbors, or two points coincide.
 ///
 /// Examples
 /// --------

@@ -1,4 +1,4 @@
-//! Sampling of point sets.
+//! Generates point sets.
 
 use super::{Domain, Points, varying};
 use crate::data;
@@ -13,16 +13,16 @@ use pyo3::prelude::*;
 
 /// The requested distance or number of points.
 enum Wanted {
-    /// At least this distance, in units of the domain.
+    /// Minimum distance, in units of the domain.
     Distance(Varying),
-    /// About this number, with uniform density.
+    /// Approximate number of points, with uniform density.
     Count(u32),
-    /// About this number, following a density that is given up to a factor.
+    /// Approximate number of points, with the given relative density.
     CountAfter(Varying, u32),
 }
 
 impl Wanted {
-    /// Places the points.
+    /// Generates the points.
     fn place(
         self,
         domain: dapple::points::Domain,
@@ -55,36 +55,38 @@ impl Wanted {
     }
 }
 
-/// Columns and rows at which a density is sampled: about two per mean distance of points, from 64 to 4096.
+/// Returns the columns and rows at which a density is sampled: about two per mean point spacing, from 64 to 4096.
 fn places(domain: &dapple::points::Domain, count: u32) -> [u32; 2] {
     let distance = (RSA_DENSITY * domain.area() / f64::from(count.max(1))).sqrt();
     let along = |side: f64| (2.0 * side / distance).clamp(64.0, 4096.0) as u32;
     [along(domain.size.x), along(domain.size.y)]
 }
 
-/// Random points that keep a distance from each other, with room for no further one ("blue noise"); maximal
-/// Poisson-disk sets, after Cook, "Stochastic Sampling in Computer Graphics" (1986).
+/// Generates a maximal Poisson-disk set ("blue noise"): random points at least a given distance apart, with no room
+/// for another point, after Cook, "Stochastic Sampling in Computer Graphics" (1986).
 ///
-/// Give `distance`, `density`, `count`, or `count` and `density`. A distance or density may vary: it is a number,
-/// {"ramp": {"from": [x, y], "to": [x, y], "start": a, "end": b}}, {"geometric_ramp": …} with equal ratios over equal
-/// lengths, an array (rows, columns) that covers the domain, or a `Field`.
+/// Pass `distance`, `density`, `count`, or `count` and `density`. A distance or density may vary with the position:
+/// it is a number, {"ramp": {"from": [x, y], "to": [x, y], "start": a, "end": b}}, {"geometric_ramp": …} with equal
+/// ratios over equal lengths, an array (rows, columns) that covers the domain, or a `Field`.
 ///
 /// Parameters
 /// ----------
 /// domain : Domain
 ///     The domain of the points; distances are measured around axes that wrap.
 /// distance : float, dict, Field, array_like or None, default None
-///     The smallest distance of two points, above 0. If it varies, its slope must be below 1; a larger slope is the
-///     error "too_steep".
+///     The minimum distance between two points, above 0. If it varies, its slope must be below 1; a larger slope is
+///     the error "too_steep".
 /// density : float, dict, Field, array_like or None, default None
-///     Points per area: a distance of sqrt(0.697 / density). With `count` it is given up to a factor, may be 0, and may
-///     change as abruptly as in a photograph: points thin out slowly around dense parts.
+///     The number of points per unit area, which corresponds to a distance of sqrt(0.697 / density). With `count` the
+///     density is relative, may be 0, and may change as abruptly as in a photograph; points then thin out gradually
+///     around dense parts.
 /// count : int or None, default None
 ///     The approximate number of points.
 /// rule : {"average", "larger", "smaller"}, default "average"
-///     The distance of two points with different ones: "average", "larger" or "smaller".
+///     The minimum distance between two points whose own distances differ: "average", "larger" or "smaller" of the
+///     two.
 /// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     The random seed, from 0 to 2**64 - 1.
 ///
 /// Returns
 /// -------
@@ -149,30 +151,31 @@ pub(crate) fn poisson_disk(
     Ok(Points::new(set))
 }
 
-/// A maximal Poisson-disk set that begins with given points, which are at least `distance` apart.
+/// Extends given points, which are at least `distance` apart, to a maximal Poisson-disk set.
 ///
-/// `points` are `Points`, or an array (n, 2) in `domain`; by default the domain of an array is the rectangle around it.
+/// `points` are `Points`, or an array (n, 2) in `domain`; by default the domain of an array is the rectangle around
+/// it.
 ///
 /// Parameters
 /// ----------
 /// points : array_like or Points
-///     Points, or an array of the shape (n, 2).
+///     Points, or an array of shape (n, 2).
 /// distance : float
-///     The distance, in units of the domain.
+///     The minimum distance between two points, in units of the domain.
 /// domain : Domain or None, default None
-///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+///     The domain of the points; by default that of the `Points`, or the smallest rectangle around an array.
 /// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     The random seed, from 0 to 2**64 - 1.
 ///
 /// Returns
 /// -------
 /// Points
-///     The points.
+///     The extended set; it begins with the given points.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If the distance is not above 0 and finite, or two of the given points are closer than it.
+///     If the distance is not above 0 and finite, or two of the given points are closer than `distance`.
 ///
 /// Examples
 /// --------
@@ -198,18 +201,19 @@ pub(crate) fn extend_poisson_disk(
     Ok(Points::new(set))
 }
 
-/// Maximal Poisson-disk sets for distances that do not grow, coarsest first; each begins with the points of the one before.
+/// Generates maximal Poisson-disk sets for non-increasing distances, coarsest first; each set begins with the points
+/// of the previous one.
 ///
-/// For twice the points, divide the distance by the square root of two.
+/// To double the number of points, divide the distance by the square root of two.
 ///
 /// Parameters
 /// ----------
 /// domain : Domain
-///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+///     The domain of the points.
 /// distances : sequence of float
-///     The distances, from the largest to the smallest.
+///     The minimum distances, from the largest to the smallest.
 /// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     The random seed, from 0 to 2**64 - 1.
 ///
 /// Returns
 /// -------
@@ -219,7 +223,7 @@ pub(crate) fn extend_poisson_disk(
 /// Raises
 /// ------
 /// DappleError
-///     If a distance is not above 0 or larger than the one before, or a set would have too many points.
+///     If a distance is not above 0 or is larger than the previous one, or a set would have too many points.
 ///
 /// Examples
 /// --------
@@ -245,7 +249,7 @@ pub(crate) fn nested_poisson_disk(
     Ok(levels.map(Points::new).collect())
 }
 
-/// One point in each cell of a grid, row by row.
+/// Generates one point in each cell of a grid, row by row.
 ///
 /// Parameters
 /// ----------
@@ -254,9 +258,9 @@ pub(crate) fn nested_poisson_disk(
 /// cells : int or tuple of int
 ///     Columns and rows, (x, y), or a number for both.
 /// jitter : float, default 1.0
-///     The distance from the center of the cell, from 0 to 1, anywhere in it.
+///     The range of random displacements, from 0 (cell centers) to 1 (anywhere in the cell).
 /// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     The random seed, from 0 to 2**64 - 1.
 ///
 /// Returns
 /// -------
@@ -295,16 +299,16 @@ pub(crate) fn jittered_grid(
     Ok(Points::new(set))
 }
 
-/// Independent random points of uniform density; those of a smaller count are the first of a larger one.
+/// Generates independent random points with uniform density; a smaller count gives the first points of a larger one.
 ///
 /// Parameters
 /// ----------
 /// domain : Domain
-///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+///     The domain of the points.
 /// count : int
-///     The number of them.
+///     The number of points.
 /// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     The random seed, from 0 to 2**64 - 1.
 ///
 /// Returns
 /// -------

@@ -12,22 +12,23 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyList};
 use std::sync::Arc;
 
-/// Points in a domain, in a fixed order: an array of the shape (n, 2) with the periods of its domain.
+/// Points in a domain, in a fixed order: an array of shape (n, 2) with the periods of its domain.
 ///
-/// NumPy treats it as its array, as in `np.asarray(points)` or `scipy.spatial.KDTree(points)`; `np.array(points)` is a
-/// copy that can be written. Sets are equal if all of their points and domains are; like arrays they cannot be keys.
+/// NumPy treats it as its array, as in `np.asarray(points)` or `scipy.spatial.KDTree(points)`; `np.array(points)` is
+/// a writable copy. Two sets are equal if all of their points and their domains are equal; like arrays, they cannot
+/// be dictionary keys.
 ///
 /// Parameters
 /// ----------
 /// array : array_like
-///     Positions of the shape (n, 2), x first. Along axes that wrap they are brought into the domain.
+///     Positions of shape (n, 2), x first. Along axes that wrap they are wrapped into the domain.
 /// domain : Domain or None, default None
-///     Their domain; by default the smallest rectangle around them, which does not wrap.
+///     The domain of the points; by default the smallest rectangle around them, which does not wrap.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If the positions are not (n, 2), or one is outside of the domain.
+///     If the positions do not have shape (n, 2), or one is outside the domain.
 ///
 /// Examples
 /// --------
@@ -42,7 +43,7 @@ pub(crate) struct Points {
     array: PyOnceLock<Py<PyAny>>,
 }
 
-/// Maximum magnitude of coordinates for which the corners of a rectangle around points stay finite.
+/// Maximum magnitude of coordinates for which the corners of a rectangle around the points stay finite.
 const FARTHEST: f64 = 1e299;
 
 impl Points {
@@ -53,7 +54,7 @@ impl Points {
         }
     }
 
-    /// A set that shares its points with others.
+    /// Returns a Python set that shares the given points.
     pub(crate) fn shared_with(set: &Arc<PointSet>) -> Self {
         Self {
             set: Arc::clone(set),
@@ -61,7 +62,7 @@ impl Points {
         }
     }
 
-    /// The set.
+    /// Returns the point set.
     pub(crate) fn set(&self) -> Arc<PointSet> {
         Arc::clone(&self.set)
     }
@@ -94,7 +95,7 @@ impl Points {
         Ok(Arc::new(PointSet::new(domain, positions)?))
     }
 
-    /// The positions as a read-only array, made once.
+    /// Returns the positions as a read-only array, which is built once.
     fn shared<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let array = self.array.get_or_try_init(py, || -> Result<Py<PyAny>> {
             let array = positions(py, self.set.positions())?;
@@ -107,13 +108,13 @@ impl Points {
     }
 }
 
-/// Positions as an array of the shape (n, 2).
+/// Converts positions to an array of shape (n, 2).
 pub(crate) fn positions<'py>(py: Python<'py>, positions: &[DVec2]) -> Result<Bound<'py, PyAny>> {
     let numbers: Vec<[f64; 2]> = positions.iter().map(DVec2::to_array).collect();
     arrays::array(py, numbers.into_flattened(), &[positions.len(), 2])
 }
 
-/// The smallest rectangle around positions, with sides of positive length.
+/// Returns the smallest rectangle around positions, with sides of positive length.
 fn rectangle_around(positions: &[DVec2]) -> dapple::points::Domain {
     // Clamp infinite positions; `PointSet::new` reports them with their index.
     let held = || {
@@ -126,7 +127,7 @@ fn rectangle_around(positions: &[DVec2]) -> dapple::points::Domain {
     let largest = (high - low).max_element();
     let least = if largest > 0.0 { largest * 1e-6 } else { 1.0 };
     let size = (high - low).max(DVec2::splat(least));
-    // Enlarge the rectangle if rounding, far from the origin, loses its size or excludes the last point.
+    // Enlarge the rectangle if, far from the origin, rounding makes it empty or excludes the last point.
     let rounding = low.abs().max(high.abs()) * (2.0 * f64::EPSILON);
     let is_lost = (low + size).cmplt(high) | (low + size).cmple(low);
     let size = DVec2::select(is_lost, size + rounding, size);
@@ -144,7 +145,7 @@ impl Points {
         })
     }
 
-    /// The positions, float64 of the shape (n, 2), x first. They cannot be written.
+    /// The positions, float64 of shape (n, 2), x first. The array is read-only.
     #[getter]
     fn array<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         self.shared(py)
@@ -156,19 +157,20 @@ impl Points {
         Domain(*self.set.domain())
     }
 
-    /// The smallest distance of two points, around axes that wrap where that is shorter; None for fewer than two
+    /// Returns the minimum distance between two points, across the boundary where axes wrap; None for fewer than two
     /// points.
     ///
     /// Returns
     /// -------
     /// float or None
-    ///     The distance, in units of the domain.
+    ///     The minimum distance, in units of the domain.
     fn minimum_distance(&self, py: Python<'_>) -> Result<Option<f64>> {
         let set = self.set();
         threads::run(py, move || set.minimum_distance())
     }
 
-    /// The largest circle without a point in it whose center lies in the domain, or None without points.
+    /// Finds the largest circle that contains no point and whose center is in the domain, or None if there are no
+    /// points.
     ///
     /// Returns
     /// -------
@@ -184,7 +186,7 @@ impl Points {
         circle.transpose()
     }
 
-    /// The mean number of other points within a distance of a point.
+    /// Returns the mean number of other points within `distance` of a point.
     ///
     /// Parameters
     /// ----------
@@ -194,7 +196,7 @@ impl Points {
     /// Returns
     /// -------
     /// float
-    ///     The number.
+    ///     The mean number of neighbors.
     ///
     /// Raises
     /// ------
@@ -205,18 +207,18 @@ impl Points {
         threads::run(py, move || set.mean_neighbor_count(distance))
     }
 
-    /// The number of points per square of side `distance`: 0.697 for random points that keep this distance until no more
-    /// fit, at most 1.155.
+    /// Returns the number of points per square of side `distance`. It is 0.697 for random points that are added at
+    /// this minimum distance until no more fit, and at most 1.155.
     ///
     /// Parameters
     /// ----------
     /// distance : float
-    ///     The distance, in units of the domain.
+    ///     The minimum distance between two points, in units of the domain.
     ///
     /// Returns
     /// -------
     /// float
-    ///     The number.
+    ///     The normalized density.
     ///
     /// Raises
     /// ------
@@ -226,7 +228,7 @@ impl Points {
         self.set.normalized_density(distance)
     }
 
-    /// The positions, converted to another type if requested; NumPy calls it.
+    /// Returns the positions, converted to another type if requested; called by NumPy.
     #[pyo3(signature = (dtype = None, copy = None))]
     fn __array__<'py>(
         &self,
@@ -276,20 +278,21 @@ impl Points {
     }
 }
 
-/// The power spectrum of points, averaged over rings of equal frequency, and over several sets of one domain.
+/// Computes the power spectrum of points, averaged over rings of equal frequency, and over several sets in the same
+/// domain.
 ///
-/// Frequencies are in units of sqrt(n / area): 1 is about one over the distance of neighbors. White noise has a power
-/// of 1 everywhere; points that keep a distance have little power at low frequencies ("blue noise"). Lagae and Dutré,
-/// "A Comparison of Methods for Generating Poisson Disk Distributions" (2008).
+/// Frequencies are in units of sqrt(n / area): 1 is about the inverse of the distance between neighbors. White noise
+/// has a power of 1 everywhere; points that are a minimum distance apart have little power at low frequencies ("blue
+/// noise"). Lagae and Dutré, "A Comparison of Methods for Generating Poisson Disk Distributions" (2008).
 ///
 /// Parameters
 /// ----------
 /// points : array_like, Points or list of Points
 ///     Points, or a list of them with the same domain, which must wrap along both axes.
 /// highest_frequency : float, default 2.0
-///     The highest frequency of the spectrum, above 0.
+///     The maximum frequency of the spectrum, above 0.
 /// ring_width : float, default 0.05
-///     The width of a ring, above 0.
+///     The width of a frequency ring, above 0.
 ///
 /// Returns
 /// -------
@@ -299,8 +302,8 @@ impl Points {
 /// Raises
 /// ------
 /// DappleError
-///     If there is no point, the sets lie in different domains, or there would be more than 2**24 frequencies or 65,536
-///     rings.
+///     If there are no points, the sets have different domains, or there would be more than 2**24 frequencies or
+///     65,536 rings.
 ///
 /// Examples
 /// --------

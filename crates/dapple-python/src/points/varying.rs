@@ -1,4 +1,4 @@
-//! Numbers that depend on the position, from Python: a number, a ramp, an array over a domain, or a field.
+//! Reads numbers that may depend on the position: a number, a ramp, an array over a domain, or a field.
 
 use crate::error::Result;
 use crate::field::Field;
@@ -9,8 +9,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// Reads a number that may vary: a number, `{"ramp": …}` or `{"geometric_ramp": …}`, a field of the plane, or an array
-/// (rows, columns) that covers the domain. `what` names it in messages.
+/// Reads a number that may vary with the position: a number, `{"ramp": …}` or `{"geometric_ramp": …}`, a 2-D field,
+/// or an array (rows, columns) that covers the domain. `what` names it in error messages.
 pub(crate) fn varying(what: &str, data: &Bound<'_, PyAny>, domain: &Domain) -> Result<Varying> {
     if let Ok(number) = data.extract::<f64>() {
         return Ok(Varying::Constant(number));

@@ -1,4 +1,4 @@
-//! Values, labels and orientations for control points.
+//! Assigns values, labels and orientations to control points.
 
 use crate::arrays;
 use crate::error::Result;
@@ -9,14 +9,14 @@ use dapple::pups::ReferenceImage;
 use dapple::raster::glam::{DVec2, DVec3};
 use pyo3::prelude::*;
 
-/// Labels as an integer array.
+/// Converts labels to an integer array.
 fn labels<'py>(py: Python<'py>, labels: &[u32]) -> Result<Bound<'py, PyAny>> {
     let labels: Vec<i64> = labels.iter().copied().map(i64::from).collect();
     let shape = [labels.len()];
     arrays::array(py, labels, &shape)
 }
 
-/// Vectors as an array of the shape (n, 3).
+/// Converts vectors to an array of shape (n, 3).
 fn vectors<'py>(py: Python<'py>, vectors: Vec<DVec3>) -> Result<Bound<'py, PyAny>> {
     let shape = [vectors.len(), 3];
     let numbers: Vec<[f64; 3]> = vectors
@@ -26,14 +26,14 @@ fn vectors<'py>(py: Python<'py>, vectors: Vec<DVec3>) -> Result<Bound<'py, PyAny
     arrays::array(py, numbers.into_flattened(), &shape)
 }
 
-/// Independent random values from 0 to below 1, float32 of the shape (count,): those that the textures use.
+/// Draws independent random values in [0, 1), float32 of shape (count,); the named textures use the same values.
 ///
 /// Parameters
 /// ----------
 /// count : int
-///     The number of them.
+///     The number of values.
 /// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     The random seed, from 0 to 2**64 - 1.
 ///
 /// Returns
 /// -------
@@ -63,16 +63,16 @@ pub(crate) fn random_values(
     arrays::array(py, dapple::pups::random_values(count, seed.0), &[count])
 }
 
-/// Independent random labels from 0 to below `n_labels`, all equally probable, int64 of the shape (count,).
+/// Draws independent random labels from 0 to `n_labels` - 1, all equally probable, int64 of shape (count,).
 ///
 /// Parameters
 /// ----------
 /// count : int
-///     The number of them.
+///     The number of points to label.
 /// n_labels : int
 ///     The number of labels.
 /// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     The random seed, from 0 to 2**64 - 1.
 ///
 /// Returns
 /// -------
@@ -103,7 +103,7 @@ pub(crate) fn random_labels(
     labels(py, &dapple::pups::random_labels(count, n_labels, seed.0)?)
 }
 
-/// Checks that the number of points fits in a set.
+/// Checks that `count` does not exceed the maximum number of points in a set.
 fn check_count(count: usize) -> Result<()> {
     if count <= 1 << 31 {
         return Ok(());
@@ -112,20 +112,20 @@ fn check_count(count: usize) -> Result<()> {
     Err(crate::error::Error::new("too_many", message))
 }
 
-/// Random labels 0 and 1, int64 of the shape (n,): 1 with a probability that may depend on the position.
+/// Draws random labels 0 and 1, int64 of shape (n,); the probability of label 1 may depend on the position.
 ///
 /// `probability` is a number from 0 to 1, a ramp, an array over the domain, or a `Field`, as in `poisson_disk`.
 ///
 /// Parameters
 /// ----------
 /// points : array_like or Points
-///     Points, or an array of the shape (n, 2).
+///     Points, or an array of shape (n, 2).
 /// probability : float, dict, Field or array_like
-///     The probability of label 1: it may vary over the domain.
+///     The probability of label 1, which may vary over the domain.
 /// domain : Domain or None, default None
-///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+///     The domain of the points; by default that of the `Points`, or the smallest rectangle around an array.
 /// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     The random seed, from 0 to 2**64 - 1.
 ///
 /// Returns
 /// -------
@@ -163,18 +163,18 @@ pub(crate) fn biased_labels<'py>(
     labels(py, &found)
 }
 
-/// Labels of groups of points that a graph connects, int64 of the shape (n,), from 0 without gaps.
+/// Assigns labels to groups of points connected by a graph, int64 of shape (n,), from 0 without gaps.
 ///
-/// A group has from `sizes[0]` to `sizes[1]` points, 1 to 16, or fewer if this is impossible.
+/// A group has from `sizes[0]` to `sizes[1]` points, 1 to 16, or fewer if that is impossible.
 ///
 /// Parameters
 /// ----------
 /// graph : Graph
-///     A graph of the points; Delaunay's by default.
+///     A graph of the points.
 /// sizes : tuple of int, default (3, 4)
-///     The smallest and the largest number of points in a group.
+///     The minimum and the maximum number of points in a group.
 /// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     The random seed, from 0 to 2**64 - 1.
 ///
 /// Returns
 /// -------
@@ -206,20 +206,21 @@ pub(crate) fn grouped_labels<'py>(
     labels(py, &found)
 }
 
-/// Random labels 0 and 1 by a gray image, int64 of the shape (n,): 1 with the probability of the pixel under the point.
+/// Draws random labels 0 and 1 from a gray image, int64 of shape (n,); the probability of label 1 is the value of the
+/// pixel at the point.
 ///
-/// `image` has the shape (rows, columns) and values from 0 to 1; it covers the domain of the points.
+/// `image` has shape (rows, columns) and values from 0 to 1; it covers the domain of the points.
 ///
 /// Parameters
 /// ----------
 /// points : array_like or Points
-///     Points, or an array of the shape (n, 2).
+///     Points, or an array of shape (n, 2).
 /// image : array_like
-///     An image.
+///     The probabilities, (rows, columns), from 0 to 1.
 /// domain : Domain or None, default None
-///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+///     The domain of the points; by default that of the `Points`, or the smallest rectangle around an array.
 /// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     The random seed, from 0 to 2**64 - 1.
 ///
 /// Returns
 /// -------
@@ -229,7 +230,7 @@ pub(crate) fn grouped_labels<'py>(
 /// Raises
 /// ------
 /// DappleError
-///     If a value of the image is not from 0 to 1.
+///     If an image value is not from 0 to 1.
 ///
 /// Examples
 /// --------
@@ -256,14 +257,14 @@ pub(crate) fn reference_labels<'py>(
     labels(py, &found)
 }
 
-/// Independent random unit vectors, uniform on the sphere: float64 of the shape (count, 3).
+/// Draws independent random unit vectors, uniformly distributed on the sphere: float64 of shape (count, 3).
 ///
 /// Parameters
 /// ----------
 /// count : int
-///     The number of them.
+///     The number of vectors.
 /// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     The random seed, from 0 to 2**64 - 1.
 ///
 /// Returns
 /// -------
@@ -293,17 +294,17 @@ pub(crate) fn random_orientations(
     vectors(py, dapple::pups::random_orientations(count, seed.0))
 }
 
-/// Unit vectors in the plane that point away from a center (x, y), by the shortest way around axes that wrap: float64 of
-/// the shape (n, 3).
+/// Returns unit vectors in the plane that point away from a center (x, y), along the shortest path where axes wrap:
+/// float64 of shape (n, 3).
 ///
 /// Parameters
 /// ----------
 /// points : array_like or Points
-///     Points, or an array of the shape (n, 2).
+///     Points, or an array of shape (n, 2).
 /// center : tuple of float
-///     (x, y).
+///     The center, (x, y).
 /// domain : Domain or None, default None
-///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+///     The domain of the points; by default that of the `Points`, or the smallest rectangle around an array.
 ///
 /// Returns
 /// -------
@@ -336,18 +337,18 @@ pub(crate) fn outward_orientations<'py>(
     )
 }
 
-/// Unit vectors in the plane at an angle in radians, from x towards y: float64 of the shape (n, 3).
+/// Returns unit vectors in the plane at an angle in radians, from x to y: float64 of shape (n, 3).
 ///
 /// `angle` is a number, a ramp, an array over the domain, or a `Field`, as in `poisson_disk`.
 ///
 /// Parameters
 /// ----------
 /// points : array_like or Points
-///     Points, or an array of the shape (n, 2).
+///     Points, or an array of shape (n, 2).
 /// angle : float, dict, Field or array_like
-///     In radians, from x to y.
+///     The angle in radians, from x to y.
 /// domain : Domain or None, default None
-///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+///     The domain of the points; by default that of the `Points`, or the smallest rectangle around an array.
 ///
 /// Returns
 /// -------

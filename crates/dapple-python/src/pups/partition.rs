@@ -1,4 +1,4 @@
-//! Control points with weights that sum to 1 at every position, and the fields of their values.
+//! Control points with weights that sum to 1 at every position, and the fields interpolated from their values.
 
 use super::vectors::Values;
 use crate::arrays::{self, Positions};
@@ -22,7 +22,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use serde::{Deserialize, Serialize};
 
-/// The description of a net of control points.
+/// The description of a net of control points as data.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct NetMade {
     domain: dapple::points::Domain,
@@ -49,12 +49,12 @@ impl Build for NetMade {
     }
 }
 
-/// The description of a field of values at control points.
+/// The description, as data, of a field interpolated from control-point values.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PupsMade {
     net: Shared<NetMade>,
     values: Vec<f32>,
-    /// Number of values per control point; `None` for single numbers.
+    /// Number of values per control point; `None` for scalars.
     channels: Option<usize>,
     labels: Option<Vec<u32>>,
 }
@@ -72,12 +72,12 @@ impl Build for PupsMade {
     }
 }
 
-/// Control points, and weights for them that sum to 1 at every position: Caron and Mould, "Partition of Unity Parametrics
-/// for Texture Synthesis" (2013).
+/// Control points, with weights that sum to 1 at every position: Caron and Mould, "Partition of Unity Parametrics for
+/// Texture Synthesis" (2013).
 ///
-/// The weight of a point falls off along its axes, which are its edges in a graph, and is 0 beyond its neighbors. With
-/// values at the points, the weighted mean is a smooth field; with labels, the labels of the points with the largest
-/// weight make cells.
+/// The weight of a point falls off along its axes, which are its edges in a graph, and is 0 beyond its neighbors.
+/// With values at the points, the weighted mean is a smooth field. With labels, each position takes the label of the
+/// point with the largest weight, which gives cells.
 ///
 /// Parameters
 /// ----------
@@ -86,10 +86,10 @@ impl Build for PupsMade {
 /// domain : Domain or None, default None
 ///     The domain of an array of points; by default the smallest rectangle around it, which does not wrap.
 /// graph : Graph or None, default None
-///     A graph of the points; Delaunay's by default.
+///     A graph of the points; by default the Delaunay graph.
 /// axis_scale : float, default 1.0
-///     The length of axes as a multiple of their edges, above 0.5 and at most 16. Up to 1 the field equals the value at
-///     a control point; above it is smoother.
+///     The length of axes as a multiple of their edges, above 0.5 and at most 16. Up to 1, the field interpolates the
+///     values at the control points; above 1, it is smoother.
 /// weight : {"cubic", "quintic"} or dict, default "cubic"
 ///     The falloff of the weight: "cubic", "quintic", or {"oscillating": {"dips": 3, "depth": 0.5}} with 1 to 16 dips
 ///     and a depth of 0 to 0.99.
@@ -99,10 +99,10 @@ impl Build for PupsMade {
 /// strength : float, default 0.5
 ///     How strongly orientations shift weights, from 0 to below 1.
 /// fade : float, default 0.0
-///     The length of the border that an axis leaves on its point's cell, as a fraction of its edge, below which the
-///     axis fades, from 0, never, to 1. With 0.25 the field changes smoothly if points move.
-/// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     Fades axes whose edge crosses only a short border of their point's cell. An axis fades if the border is
+///     shorter than this fraction of the edge, from 0 (never) to 1. With 0.25, the field changes smoothly when points
+///     move.
+///     The random seed, from 0 to 2**64 - 1.
 ///
 /// Raises
 /// ------
@@ -123,7 +123,7 @@ pub(crate) struct Partition {
     pups: Pups,
 }
 
-/// The arguments for the net of control points, in the form of the caller.
+/// The arguments for the net of control points, as the caller passes them.
 struct NetArguments<'a, 'py> {
     points: &'a Bound<'py, PyAny>,
     domain: Option<&'a Domain>,
@@ -163,7 +163,7 @@ impl NetArguments<'_, '_> {
         Ok(Partition { net, pups })
     }
 
-    /// Reads the vectors of the orientations.
+    /// Reads the orientation vectors.
     fn vectors(&self, points: &PointSet) -> Result<Option<Vec<DVec3>>> {
         let Some(orientations) = self.orientations else {
             return Ok(None);
@@ -191,7 +191,7 @@ impl NetArguments<'_, '_> {
     }
 }
 
-/// Reads values of control points, and the number of values per control point; `None` for single numbers.
+/// Reads control-point values, and the number of values per control point; `None` for scalars.
 fn read_values(values: &Bound<'_, PyAny>) -> Result<(Vec<f32>, Option<usize>)> {
     let array: PyArrayLikeDyn<'_, f32, AllowTypeChange> = values.extract()?;
     let array = array.as_array();
@@ -241,18 +241,19 @@ impl Partition {
         arguments.partition(py)
     }
 
-    /// The field of the control points' values: a `Field` for values of the shape (n,), a `ColorField` for (n, channels)
-    /// with 1 to 8 channels.
+    /// Returns the field interpolated from the control points' values: a `Field` for values of shape (n,), a
+    /// `ColorField` for (n, channels) with 1 to 8 channels.
     ///
-    /// With `labels`, a whole number for each point, `values` are those of the labels, and every position has the value
-    /// of the label of its strongest point: cells with sharp borders. `labels=range(n)` makes each point a cell.
+    /// With `labels`, an integer for each point, `values` has one entry per label, and every position has the value
+    /// of the label of the point with the largest weight: cells with sharp borders. `labels=range(n)` makes each
+    /// point a cell.
     ///
     /// Parameters
     /// ----------
     /// values : array_like
-    ///     The values: an array.
+    ///     The values, one per point, or one per label if `labels` is given.
     /// labels : sequence of int, numpy.ndarray of int or None, default None
-    ///     A label for each point; the values are then those of labels.
+    ///     A label for each point; `values` then has one entry per label.
     ///
     /// Returns
     /// -------
@@ -262,7 +263,7 @@ impl Partition {
     /// Raises
     /// ------
     /// DappleError
-    ///     If there is not one value for each point, or one is not finite.
+    ///     If the number of values does not match the points, or a value is not finite.
     #[pyo3(signature = (values, *, labels = None))]
     fn field(
         &self,
@@ -280,15 +281,15 @@ impl Partition {
         color_field::object(py, Made::Pups(Shared::new(made)))
     }
 
-    /// The points with a weight at positions of the shape (…, 2), and their weights, which sum to 1: those of position
-    /// i are `indices[indptr[i]:indptr[i + 1]]` and `weights[…]`, as in `scipy.sparse.csr_array`.
+    /// Finds the points with nonzero weight at positions of shape (…, 2), and their weights, which sum to 1. For
+    /// position i they are `indices[indptr[i]:indptr[i + 1]]` and `weights[…]`, as in `scipy.sparse.csr_array`.
     ///
-    /// A point may occur more than once if its copies across axes that wrap have weights.
+    /// A point may occur more than once if its copies across axes that wrap have nonzero weights.
     ///
     /// Parameters
     /// ----------
     /// positions : array_like
-    ///     Positions of the shape (…, axes), x first.
+    ///     Positions of shape (…, axes), x first.
     ///
     /// Returns
     /// -------
@@ -298,7 +299,7 @@ impl Partition {
     /// Raises
     /// ------
     /// DappleError
-    ///     If the last axis of `positions` does not have the length 2.
+    ///     If the last axis of `positions` does not have length 2.
     fn weights<'py>(
         &self,
         py: Python<'py>,
@@ -329,23 +330,23 @@ impl Partition {
         arrays::result(py, "Weights", parts)
     }
 
-    /// The point with the largest weight at the pixels of an array (rows, columns), uint32: `labels[…]` of it are the
-    /// labels of the pixels.
+    /// Returns the index of the point with the largest weight at each pixel of an array (rows, columns), uint32:
+    /// indexing `labels` with it gives the labels of the pixels.
     ///
-    /// The parameters are those of `Field.render`.
+    /// The parameters are the same as for `Field.render`.
     ///
     /// Parameters
     /// ----------
     /// size : int or tuple of int
-    ///     (rows, columns), or a number for both.
+    ///     (rows, columns), or one number for both.
     /// extent : float or tuple of float or None, default None
-    ///     The size of the rectangle of the array, x first, as in `Field.render`.
+    ///     The size of the rendered rectangle, x first, as in `Field.render`.
     /// origin : float or tuple of float or None, default None
-    ///     The corner of the first pixel, x first.
+    ///     The corner of the first pixel, x first, as in `Field.render`.
     /// window : tuple of slice or None, default None
-    ///     The part to compute, a slice for each axis of `size`.
+    ///     The part to compute, one slice per axis of `size`.
     /// samples : str, default "centers"
-    ///     The positions of the samples, "centers" or "corners", as in `Field.render`.
+    ///     The sample positions, "centers" or "corners", as in `Field.render`.
     ///
     /// Returns
     /// -------
@@ -419,7 +420,7 @@ impl Partition {
     }
 }
 
-/// Makes the partition of a description.
+/// Builds a partition from its description.
 #[pyfunction]
 pub(crate) fn _partition_from_description(py: Python<'_>, description: &str) -> Result<Partition> {
     let net: core::result::Result<Shared<NetMade>, _> = serde_json::from_str(description);
@@ -429,35 +430,35 @@ pub(crate) fn _partition_from_description(py: Python<'_>, description: &str) -> 
     Ok(Partition { net, pups })
 }
 
-/// The field of values at control points: smooth, exact at the points, and repeating where their domain wraps; Caron and
-/// Mould, "Partition of Unity Parametrics for Texture Synthesis" (2013).
+/// Creates a field interpolated from values at control points: smooth, exact at the points, and repeating where their
+/// domain wraps; Caron and Mould, "Partition of Unity Parametrics for Texture Synthesis" (2013).
 ///
 /// It equals `Partition(points, …).field(values, labels=labels)`, with the same parameters.
 ///
 /// Parameters
 /// ----------
 /// points : array_like or Points
-///     Points, or an array of the shape (n, 2).
+///     Points, or an array of shape (n, 2).
 /// values : array_like
-///     The values: an array.
+///     The values, one per point, or one per label if `labels` is given.
 /// labels : sequence of int, numpy.ndarray of int or None, default None
-///     A label for each point; the values are then those of labels.
+///     A label for each point; `values` then has one entry per label.
 /// domain : Domain or None, default None
-///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+///     The domain of the points; by default that of the `Points`, or the smallest rectangle around an array.
 /// graph : Graph or None, default None
-///     A graph of the points; Delaunay's by default.
+///     A graph of the points; by default the Delaunay graph.
 /// axis_scale : float, default 1.0
-///     The length of the axes of a point in units of the distances to its neighbors.
+///     The length of a point's axes as a multiple of the distances to its neighbors.
 /// weight : {"cubic", "quintic"} or dict, default "cubic"
-///     How the weight of a point falls off.
+///     The falloff of the weight, as for `Partition`.
 /// orientations : {"none", "random"}, dict, array_like or None, default None
-///     Directions in which the weights lean: "random", a dictionary, or an array of rows of 2 or 3 numbers.
+///     Directions in which the weights lean: "random", a dictionary, or an array of 2-D or 3-D vectors.
 /// strength : float, default 0.5
-///     How far the weights lean, from 0 to 1.
+///     How strongly the weights lean, from 0 to 1.
 /// fade : float, default 0.0
-///     From 0, off, to 1: neighbors that share a short border count less.
+///     From 0 (off) to 1: neighbors across a short border have less influence.
 /// seed : int, default 0
-///     From 0 to 2**64 - 1.
+///     The random seed, from 0 to 2**64 - 1.
 ///
 /// Returns
 /// -------
@@ -467,7 +468,8 @@ pub(crate) fn _partition_from_description(py: Python<'_>, description: &str) -> 
 /// Raises
 /// ------
 /// DappleError
-///     If there is not one value for each point, one is not finite, two points coincide, or an option is out of range.
+///     If the number of values does not match the points, a value is not finite, two points coincide, or an option is
+///     out of range.
 ///
 /// Examples
 /// --------

@@ -1,4 +1,4 @@
-//! The textures of the paper, by name, with options as data.
+//! The paper's textures, by name, with options as data.
 
 use super::vectors::Values;
 use crate::arrays;
@@ -20,11 +20,11 @@ use serde_json::{Map, Value};
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-/// The description of a texture of the paper.
+/// The description of one of the paper's textures as data.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct TextureMade {
     kind: String,
-    /// All options; the domain among them is replaced by `domain` if that is given.
+    /// All options; `domain`, if it is set, replaces the domain in the options.
     options: Value,
     domain: Option<dapple::points::Domain>,
     image: Option<Image>,
@@ -49,17 +49,17 @@ impl Build for TextureMade {
     }
 }
 
-/// A kind of textures.
+/// An entry of the table of textures.
 struct Kind {
     name: &'static str,
     about: &'static str,
     follows_image: bool,
-    /// The options with all their defaults.
+    /// Returns the options with all defaults filled in.
     complete: fn(Value) -> Result<Value>,
     build: fn(&TextureMade) -> Result<PupsField>,
 }
 
-/// The options of a kind of textures.
+/// The options type of a texture.
 trait Texture {
     const FOLLOWS_IMAGE: bool;
     type Options: DeserializeOwned + Serialize;
@@ -67,7 +67,7 @@ trait Texture {
     fn build(options: Self::Options, made: &TextureMade) -> Result<PupsField>;
 }
 
-/// The options of a texture that is guided by an image.
+/// The options type of a texture guided by an image.
 struct Referenced<T>(PhantomData<T>);
 
 impl<T: PupsRecipe + DeserializeOwned + Serialize> Texture for T {
@@ -92,7 +92,7 @@ impl<T: PupsRecipe<ReferenceImage> + DeserializeOwned + Serialize> Texture for R
     }
 }
 
-/// Sets the domain of the options. It does not wrap along axes along which the default domain of the texture does not
+/// Sets the domain of the options. It never wraps along an axis along which the texture's default domain does not
 /// wrap.
 fn placed<T: PupsRecipe<I>, I>(mut options: T, domain: Option<dapple::points::Domain>) -> T {
     if let Some(domain) = domain {
@@ -106,7 +106,7 @@ fn placed<T: PupsRecipe<I>, I>(mut options: T, domain: Option<dapple::points::Do
     options
 }
 
-/// The table row of a kind of textures.
+/// Returns the table entry of a texture.
 const fn row<T: Texture>(name: &'static str, about: &'static str) -> Kind {
     Kind {
         name,
@@ -122,14 +122,14 @@ const fn row<T: Texture>(name: &'static str, about: &'static str) -> Kind {
 
 macro_rules! kinds {
     ($(#[doc = $about:literal] $name:literal $variant:ident($options:ty),)*) => {
-        /// All kinds of textures.
+        /// The table of all textures.
         const KINDS: &[Kind] = &[$(row::<$options>($name, $about)),*];
     };
 }
 
 dapple::pups::recipes!(kinds);
 
-/// The kind with a name.
+/// Returns the texture called `name`.
 fn kind(name: &str) -> Result<&'static Kind> {
     let found = KINDS.iter().find(|kind| kind.name == name);
     found.ok_or_else(|| {
@@ -138,7 +138,7 @@ fn kind(name: &str) -> Result<&'static Kind> {
     })
 }
 
-/// Makes a texture of a kind with these options.
+/// Builds the texture called `name` with the given options.
 #[pyfunction]
 pub(crate) fn _texture(
     py: Python<'_>,
@@ -165,11 +165,12 @@ pub(crate) fn _texture(
     color_field::object(py, Made::Texture(Shared::new(made)))
 }
 
-/// All kinds of textures as JSON: a sentence, whether an image guides it, and the options with their defaults.
+/// Returns all textures as JSON: a one-sentence description, whether an image guides it, and the options with their
+/// defaults.
 #[pyfunction]
 pub(crate) fn _texture_defaults() -> Result<String> {
     let described = KINDS.iter().map(|kind| {
-        // `points` is a required option; describe it as an empty list.
+        // `points` is a required option, so describe it as an empty list.
         let given = if kind.name == "points" {
             "{\"points\": []}"
         } else {

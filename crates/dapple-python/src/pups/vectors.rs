@@ -1,4 +1,4 @@
-//! Functions of the plane with several numbers at each position, as one type for all counts.
+//! Functions of the plane with several values at each position, as one type for all channel counts.
 
 use crate::error::{Error, Result};
 use dapple::pups::{LabelTexture, Pups, VectorLabelTexture, VectorTexture};
@@ -6,18 +6,18 @@ use dapple::raster::glam::DVec2;
 use dapple::raster::{Field, RasterError, RasterViewMut, Window};
 use std::sync::Arc;
 
-/// A function of the plane with several numbers at each position.
+/// A function of the plane with several values at each position.
 pub(crate) trait Vectors: Send + Sync {
-    /// The number of channels.
+    /// Returns the number of channels.
     fn n_channels(&self) -> usize;
 
-    /// The period along each axis; `None` for an axis without a period.
+    /// Returns the period along each axis; `None` for an axis without a period.
     fn period(&self) -> [Option<f64>; 2];
 
-    /// Writes the numbers at a position.
+    /// Writes the values at `position`.
     fn sample(&self, position: DVec2, vector: &mut [f32]);
 
-    /// Writes the numbers at the pixels of a window, pixel by pixel.
+    /// Writes the values at the pixels of a window, pixel by pixel.
     fn render(&self, window: &Window, values: &mut [f32]) -> core::result::Result<(), RasterError>;
 }
 
@@ -52,7 +52,7 @@ macro_rules! vectors {
 
 vectors!(VectorTexture: |this| this.pups(), Labels: |this| this.pups);
 
-/// A texture of labels with vectors, and its net, which determines the period.
+/// A label texture with a vector per label, and its net, which determines the period.
 struct Labels<const N: usize> {
     texture: VectorLabelTexture<N>,
     pups: Pups,
@@ -72,12 +72,12 @@ impl<const N: usize> Labels<N> {
     }
 }
 
-/// The field of values at control points.
+/// A field interpolated from control-point values.
 #[derive(Clone)]
 pub(crate) enum Values {
-    /// A number at each position.
+    /// One value at each position.
     Numbers(Arc<dyn Field>),
-    /// Several numbers at each position.
+    /// Several values at each position.
     Vectors(Arc<dyn Vectors>),
 }
 
@@ -85,8 +85,8 @@ pub(crate) enum Values {
 pub(crate) const MOST_CHANNELS: usize = 8;
 
 impl Values {
-    /// Makes the field of values at control points or, with `labels`, of the values of their labels. `channels` is the
-    /// number of values per control point or label; `None` for single numbers.
+    /// Builds the field from values at control points or, with `labels`, from one value per label. `channels` is the
+    /// number of values per control point or label; `None` for scalars.
     pub(crate) fn new(
         pups: Pups,
         values: &[f32],
@@ -118,7 +118,7 @@ impl Values {
         }))
     }
 
-    /// The field; an error unless it has a single number at each position.
+    /// Returns the field; an error unless it has a single value at each position.
     pub(crate) fn numbers(self) -> Result<Arc<dyn Field>> {
         match self {
             Self::Numbers(field) => Ok(field),

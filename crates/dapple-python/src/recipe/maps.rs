@@ -1,4 +1,4 @@
-//! The maps of a material: their names and contents.
+//! A material's maps: their names and contents.
 
 use crate::data;
 use crate::error::{Error, Result};
@@ -7,7 +7,7 @@ use dapple::recipe::MapKind;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
-/// The kind of a map: its content and number of channels.
+/// Returns the kind of a map: its content and number of channels.
 pub(super) fn kind_of(map: MapKind) -> Kind {
     let (content, n_channels) = match map {
         MapKind::Albedo => (Content::Color, 3),
@@ -21,13 +21,13 @@ pub(super) fn kind_of(map: MapKind) -> Kind {
     }
 }
 
-/// The content of an image with the name of a map, if it has several channels and is not a color.
+/// Returns the content that the map called `name` has, if it has several channels and is not a color.
 pub(crate) fn content_of(name: &str) -> Option<Content> {
     let kind = kind_of(MapKind::from_name(name)?);
     (kind.n_channels > 1 && kind.content != Content::Color).then_some(kind.content)
 }
 
-/// Reads one name of a map or several; an error for a name that is given twice.
+/// Reads one map name or several; an error if a name is listed twice.
 pub(super) fn maps(names: &Bound<'_, PyAny>) -> Result<Vec<MapKind>> {
     let names: Vec<String> = match names.cast::<PyString>() {
         Ok(name) => vec![name.to_str()?.to_owned()],
@@ -51,13 +51,13 @@ pub(super) fn maps(names: &Bound<'_, PyAny>) -> Result<Vec<MapKind>> {
     Ok(maps)
 }
 
-/// The map with a name.
+/// Returns the map called `name`.
 fn map(name: &str) -> Result<MapKind> {
     MapKind::from_name(name)
         .ok_or_else(|| data::unknown_name("map", name, &MapKind::ALL.map(MapKind::name)))
 }
 
-/// All maps by their names, as `MapInfo`.
+/// Returns all maps by name, as `MapInfo`.
 #[pyfunction]
 pub(crate) fn _map_info(py: Python<'_>) -> Result<Bound<'_, PyDict>> {
     let info = py.import("dapple_textures._types")?.getattr("MapInfo")?;
@@ -77,12 +77,12 @@ pub(crate) fn _map_info(py: Python<'_>) -> Result<Bound<'_, PyDict>> {
     Ok(all)
 }
 
-/// The names of all maps of a material.
+/// Returns the names of all maps of a material.
 ///
 /// Returns
 /// -------
 /// list of str
-///     The names, in the order of the library.
+///     The names, in the library's order.
 #[pyfunction]
 pub(crate) fn map_names() -> Vec<&'static str> {
     MapKind::ALL.map(MapKind::name).to_vec()

@@ -1,4 +1,4 @@
-//! Nodes of recipes as fields.
+//! Recipe nodes as fields.
 
 use crate::error::Result;
 use crate::function::Function;
@@ -8,12 +8,12 @@ use dapple::recipe::{Images, Plan, PlanLimits, Recipe, RecipeError};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// The description of a field of a recipe.
+/// The description of a field defined by a recipe.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct NodeMade {
     /// The recipe as JSON.
     pub(super) recipe: String,
-    /// The name of the node; `None` for the height.
+    /// The name of the node; `None` for the material's height.
     pub(super) node: Option<String>,
     pub(super) time: f64,
 }
@@ -31,7 +31,7 @@ impl Build for NodeMade {
     }
 }
 
-/// Makes the plan of a recipe; stops on request.
+/// Builds the plan of a recipe; stops if requested.
 pub(super) fn plan(
     recipe: &Recipe,
     images: &Images,

@@ -46,17 +46,18 @@ impl Plan {
     }
 }
 
-/// The text of a recipe, its images, and the time.
+/// A plan's inputs: the recipe text, its images, and the time.
 type PlanParts<'py> = (String, Bound<'py, PyDict>, f64);
 
-/// The numbers of a map, gathered band by band.
+/// The values of a map, collected band by band.
 struct Gathered {
     map: MapKind,
     values: Vec<f32>,
 }
 
 impl Gathered {
-    /// Appends rows of a map that has `n_values` numbers in total. Rows of the whole map are moved instead of copied.
+    /// Appends rows of a map that has `n_values` values in total. If the rows are the whole map, they are moved
+    /// instead of copied.
     fn push(&mut self, rows: MapRows, n_values: usize) -> Result<()> {
         let rows = match rows {
             MapRows::Gray(raster) => raster.into_pixels(),
@@ -76,7 +77,7 @@ impl Gathered {
     }
 }
 
-/// Flattens pixels to numbers, which reuse the memory of the pixels.
+/// Flattens pixels to numbers, reusing the memory of the pixels.
 fn flat<T>(pixels: Vec<T>, numbers: impl Fn(T) -> [f32; 3]) -> Vec<f32> {
     pixels
         .into_iter()
@@ -85,7 +86,7 @@ fn flat<T>(pixels: Vec<T>, numbers: impl Fn(T) -> [f32; 3]) -> Vec<f32> {
         .into_flattened()
 }
 
-/// Bakes all bands of the maps; stops on request. Returns columns and rows, and the maps.
+/// Bakes all bands of the maps; stops if requested. Returns the columns and rows, and the maps.
 fn bake_all(
     plan: &RustPlan,
     options: &BakeOptions,
@@ -114,7 +115,7 @@ fn bake_all(
     Ok(([columns, rows], gathered))
 }
 
-/// The baked maps as a dictionary of arrays.
+/// Converts the baked maps to a dictionary of arrays.
 fn dictionary<'py>(
     py: Python<'py>,
     [columns, rows]: [usize; 2],
@@ -151,33 +152,34 @@ fn region(size: &Bound<'_, PyAny>, window: &Bound<'_, PyAny>) -> Result<Region> 
 
 #[pymethods]
 impl Plan {
-    /// The maps of the material, each a float32 array: (rows, columns) for `height`, `ao`, `curvature`, `roughness` and
-    /// `metallic`, (rows, columns, 3) for `normal`, `albedo` (linear) and `orm`.
+    /// Bakes the maps of the material as float32 arrays: (rows, columns) for `height`, `ao`, `curvature`, `roughness`
+    /// and `metallic`, (rows, columns, 3) for `normal`, `albedo` (linear) and `orm`.
     ///
     /// Parameters
     /// ----------
     /// size : int or tuple of int
-    ///     (rows, columns) of the whole tile, or a number for both. It may be far larger than memory.
+    ///     (rows, columns) of the whole tile, or one number for both. The tile may be far larger than memory.
     /// maps : str or iterable of str, default "height"
-    ///     The name of a map, or the names of several, each once: see `map_names`.
+    ///     The name of a map, or several distinct names; see `map_names`.
     /// window : tuple of slice or None, default None
-    ///     The part to bake, such as `np.s_[100:150, 33:94]`: bit for bit the crop of the whole. It must lie inside.
+    ///     The part to bake, such as `np.s_[100:150, 33:94]`. The result is bit for bit a crop of the whole. The
+    ///     window must be inside the tile.
     /// samples : str, default "centers"
-    ///     The positions of the samples: "centers" of pixels, or "corners" of a grid that reaches the sides of the tile, as
-    ///     heights of terrains have them. On corners the last row and column equal the first ones where the tile repeats.
+    ///     The sample positions: "centers" of pixels, or "corners" of a grid that reaches the sides of the tile, as
+    ///     terrain heights use. With corners, the last row and column equal the first ones where the tile repeats.
     /// as_xarray : bool, default False
-    ///     Return an `xarray.Dataset` with coordinates in units of the plane instead of a dictionary.
+    ///     Whether to return an `xarray.Dataset` with coordinates in units of the plane instead of a dictionary.
     ///
     /// Returns
     /// -------
     /// dict or xarray.Dataset
-    ///     The arrays by the names of the maps.
+    ///     The arrays by map name.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If `size` or `window` is out of range, a map is unknown or named twice, or a node fails; `node` of the error
-    ///     names it.
+    ///     If `size` or `window` is out of range, a map is unknown or named twice, or a node fails; the error's
+    ///     `node` names it.
     #[pyo3(signature = (size, maps = None, *, window = None, samples = None, as_xarray = false),
         text_signature = "(self, size, maps='height', *, window=None, samples='centers', as_xarray=False)")]
     fn bake<'py>(
@@ -217,7 +219,7 @@ impl Plan {
         Ok(dataset.call1((maps, pixel, (x, y)))?)
     }
 
-    /// The recipe of the plan.
+    /// The recipe that the plan was built from.
     #[getter]
     fn recipe(&self) -> Recipe {
         Recipe {
@@ -225,19 +227,19 @@ impl Plan {
         }
     }
 
-    /// The elapsed part of a loop.
+    /// The elapsed fraction of the looping animation, as passed to `Recipe.plan`.
     #[getter]
     fn time(&self) -> f64 {
         self.time
     }
 
-    /// Whether every map can be baked in parts: no node depends on the whole tile.
+    /// Whether every map can be baked in parts, that is, whether no node depends on the whole tile.
     #[getter]
     fn is_local(&self) -> bool {
         self.plan.check_local().is_ok()
     }
 
-    /// Fails for a plan with a node that depends on the whole tile.
+    /// Raises an error if a node of the plan depends on the whole tile.
     fn check_local(&self) -> Result<()> {
         Ok(self.plan.check_local()?)
     }
@@ -249,12 +251,12 @@ impl Plan {
         _map_info(py)
     }
 
-    /// The numbers of a node as a field, by its name; those of the height of the material by default.
+    /// Returns the values of the node called `node` as a field; by default the material's height.
     ///
     /// Parameters
     /// ----------
     /// node : str or None, default None
-    ///     The name of the node; the height of the material by default.
+    ///     The name of the node; by default the material's height.
     ///
     /// Returns
     /// -------
@@ -280,7 +282,7 @@ impl Plan {
         })))
     }
 
-    /// The SHA-256 of all inputs of the plan, including its images: the same on every machine.
+    /// The SHA-256 of all inputs of the plan, including its images; it is the same on every machine.
     #[getter]
     fn hash(&self) -> Result<String> {
         let text = self.recipe.to_json()?;
@@ -342,7 +344,7 @@ impl Plan {
     }
 }
 
-/// Makes the plan of a recipe in JSON, with its images.
+/// Builds a plan from a recipe in JSON, with its images.
 #[pyfunction]
 pub(crate) fn _plan_from_parts(
     py: Python<'_>,

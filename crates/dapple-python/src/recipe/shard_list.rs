@@ -1,4 +1,4 @@
-//! Shards: the regions of a map for independent bakes.
+//! Shards: regions of a map that are baked independently.
 
 use crate::error::Result;
 use crate::grid::size as size_of;
@@ -7,17 +7,18 @@ use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// The windows of the shards of a picture, as pairs of (first row, first column) and (rows, columns), row by row.
+/// Splits an image into shards. Each is a window as a pair of (first row, first column) and (rows, columns), row by
+/// row.
 ///
-/// A shard is a part that one machine bakes; the last ones of a row and of a column are cropped at the border. They are
-/// those of `dapple shards`.
+/// A shard is the region that one machine bakes; the last shards in each row and column are cropped at the border.
+/// The shards are the same as those of `dapple shards`.
 ///
 /// Parameters
 /// ----------
 /// size : int or tuple of int
-///     (rows, columns), or a number for both.
+///     (rows, columns), or one number for both.
 /// shard : int or tuple of int
-///     The size of a shard, (rows, columns) or a number for both.
+///     The size of a shard, (rows, columns), or one number for both.
 ///
 /// Returns
 /// -------
@@ -27,14 +28,14 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 /// Raises
 /// ------
 /// DappleError
-///     If a size is not one or two whole numbers of at least 1.
+///     If a size is not one or two integers of at least 1.
 #[pyfunction]
 pub(crate) fn shards(size: &Bound<'_, PyAny>, shard: &Bound<'_, PyAny>) -> Result<ShardList> {
     let shards = Shards::new(size_of(size)?, size_of(shard)?)?;
     Ok(ShardList { shards })
 }
 
-/// The shards of a picture: a sequence that takes no memory, however long it is.
+/// The shards of an image: a sequence that takes no memory, however long it is.
 #[pyclass(frozen, module = "dapple_textures")]
 pub(crate) struct ShardList {
     shards: Shards,
@@ -45,7 +46,7 @@ type Sides = (u32, u32);
 
 #[pymethods]
 impl ShardList {
-    /// The numbers of shards one below another and side by side.
+    /// Returns the number of shards along each column and each row.
     #[getter]
     fn grid(&self) -> Sides {
         let [columns, rows] = self.shards.grid();

@@ -1,4 +1,4 @@
-//! Feature points of cells, and gradients of their distances, at many positions.
+//! Finds feature points, and gradients of their distances, at many positions.
 
 use super::CellsMade;
 use super::texture::{Texture, plane};
@@ -59,7 +59,7 @@ where
     Ok(found)
 }
 
-/// The requested planes of the nearest feature points, nearest point first.
+/// The requested arrays of the nearest feature points, nearest point first.
 pub(super) struct Drawn {
     pub(super) distance: Option<Vec<f32>>,
     pub(super) vector: Option<Vec<f32>>,
@@ -151,7 +151,7 @@ where
     Ok(gradients)
 }
 
-/// The positions and ids of the feature points of a cell.
+/// Returns the positions and ids of the feature points in a cell.
 pub(super) fn cell_points<const N: usize>(
     made: &CellsMade,
     cell: &[i64],

@@ -1,4 +1,4 @@
-//! Textures of cells: distances, their sums at several scales, borders and cell values.
+//! Cellular textures: distances, their fractal sums, edge distances and cell values.
 
 use dapple::raster::Field;
 use dapple::worley::{
@@ -6,7 +6,7 @@ use dapple::worley::{
 };
 use std::sync::Arc;
 
-/// A texture of cells, by the kind of its values.
+/// A cellular texture, by the kind of its values.
 pub(super) enum Texture<const N: usize>
 where
     Dimensions: Space<N>,
@@ -31,7 +31,7 @@ where
     }
 }
 
-/// The plane along the first two axes, at fixed coordinates along the other axes.
+/// Returns the plane along the first two axes, at fixed coordinates along the other axes.
 pub(super) fn plane<const N: usize>(rest: &[f64]) -> Plane<N>
 where
     Dimensions: Space<N>,
