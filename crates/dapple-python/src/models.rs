@@ -34,14 +34,14 @@ use std::path::PathBuf;
 use surface_guides::{Guide, SitesOfMesh, SurfaceGuides, SurfaceScales};
 
 dapple::raster::named! {
-    /// How the faces of a mesh are laid out in a texture.
+    /// The layout of a mesh in a texture.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     enum AtlasKind {
-        /// Charts: large pieces of the surface, each flattened as a whole.
+        /// Large pieces of the surface, each flattened as a whole.
         Charts = "charts",
-        /// Right triangles whose sizes follow the face areas.
+        /// Right triangles whose sizes follow the areas of the faces.
         Area = "area",
-        /// Right triangles of equal size, as in the paper.
+        /// Right triangles of one size, as in the paper.
         Uniform = "uniform",
         /// The mesh's own texture coordinates.
         Uv = "uv",

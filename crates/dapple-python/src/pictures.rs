@@ -17,16 +17,16 @@ use pyo3::types::{PyDict, PyMapping};
 use std::borrow::Cow;
 
 dapple::raster::named! {
-    /// What the values of an image mean.
+    /// The content of a picture.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub(crate) enum Content {
-        /// Heights, masks and similar scalars.
+        /// Heights, masks and similar numbers.
         Gray = "gray",
         /// Color in linear light, with or without alpha.
         Color = "color",
         /// Unit vectors.
         Normal = "normal",
-        /// Independent values.
+        /// Independent numbers.
         Data = "data",
     }
 }

@@ -20,7 +20,7 @@ dapple::raster::named! {
     /// The argument `method`.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     enum Method {
-        /// A window of an infinite texture.
+        /// A window of a texture without ends.
         Endless = "endless",
         /// Pixel by pixel, as in the paper.
         Sweep = "sweep",
