@@ -5,15 +5,16 @@ use crate::{ModelError, polygonize_n};
 use dapple_mesh::Mesh;
 use glam::DVec3;
 
-/// The distance from the origin to the center of the tubes. The tubes meet at this distance on the axes.
+/// Distance from the origin to the center lines of the tubes. The tubes meet at this distance on the axes.
 pub const RING: f64 = 0.78;
-/// The radius of the tubes.
+/// Radius of the tubes.
 pub const TUBE: f64 = 0.2;
 
-/// Side of the lattice, small enough for all parts.
+/// Side of the lattice's cubes, small enough to find all details.
 const SIDE: f64 = 0.1;
 
-/// Three tori around the axes x, y and z, blended together. Four tubes meet on each axis at +[`RING`] and -[`RING`].
+/// Builds three tori around the axes x, y and z, blended together. Four tubes meet on each axis at +[`RING`] and
+/// -[`RING`].
 ///
 /// The surface has seven handles.
 ///

@@ -6,17 +6,17 @@ use crate::{ModelError, polygonize_n};
 use dapple_mesh::Mesh;
 use glam::DVec3;
 
-/// The tip of the nose.
+/// Position of the tip of the nose.
 pub const NOSE: DVec3 = DVec3::new(0.0, 0.28, 0.55);
-/// The tip of the left ear.
+/// Position of the tip of the left ear.
 pub const LEFT_EAR: DVec3 = DVec3::new(0.25, 1.05, -0.05);
-/// The end of the tail.
+/// Position of the end of the tail.
 pub const TAIL: DVec3 = DVec3::new(0.0, -0.68, -0.67);
 
-/// Side of the lattice, small enough for all parts.
+/// Side of the lattice's cubes, small enough to find all details.
 const SIDE: f64 = 0.08;
 
-/// The animal sits upright and faces +z.
+/// Builds the bunny. It sits upright and faces +z.
 ///
 /// # Errors
 ///

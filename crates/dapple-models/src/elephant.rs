@@ -6,17 +6,17 @@ use crate::{ModelError, polygonize_n};
 use dapple_mesh::Mesh;
 use glam::DVec3;
 
-/// The tip of the trunk.
+/// Position of the tip of the trunk.
 pub const TRUNK: DVec3 = DVec3::new(0.0, -0.43, 1.34);
-/// The middle of the forehead.
+/// Position of the middle of the forehead.
 pub const FOREHEAD: DVec3 = DVec3::new(0.0, 0.6, 0.75);
-/// The middle of the back.
+/// Position of the middle of the back.
 pub const BACK: DVec3 = DVec3::new(0.0, 0.62, -0.25);
 
-/// Side of the lattice, small enough for all parts.
+/// Side of the lattice's cubes, small enough to find all details.
 const SIDE: f64 = 0.045;
 
-/// The animal stands on four thick legs with its ears spread and faces +z.
+/// Builds the elephant. It stands on four thick legs with its ears spread and faces +z.
 ///
 /// # Errors
 ///

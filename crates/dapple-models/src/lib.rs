@@ -1,4 +1,4 @@
-//! Procedural test models for textures, made of blended shapes. They replace the models of Turk's figure 5.
+//! Procedural test models for textures, built from blended shapes. They replace the models of Turk's figure 5.
 //!
 //! Each model is one smooth closed surface, about two units large and centered at the origin. Animals face +z with y
 //! up, so their left is +x. Their modules define named positions on the surface from which direction fields can

@@ -6,10 +6,10 @@ use crate::{ModelError, polygonize_n};
 use dapple_mesh::Mesh;
 use glam::DVec3;
 
-/// The top of the head.
+/// Position of the top of the head.
 pub const CROWN: DVec3 = DVec3::new(0.0, 0.96, -0.16);
 
-/// Side of the lattice, small enough for all parts.
+/// Side of the lattice's cubes, small enough to find all details.
 const SIDE: f64 = 0.05;
 
 /// The horizontal directions of the arms as cosine and sine, at odd multiples of π/8.
@@ -28,7 +28,8 @@ const DIRECTIONS: [[f64; 2]; 8] = {
     ]
 };
 
-/// The points of an arm, starting at its root: distance outward, height, distance to the left, and radius.
+/// Two arm shapes as points along an arm, starting at its root: distance outward, height, distance to the left, and
+/// radius.
 const ARMS: [[[f64; 4]; 7]; 2] = [
     [
         [0.06, 0.02, 0.0, 0.16],
@@ -50,7 +51,7 @@ const ARMS: [[[f64; 4]; 7]; 2] = [
     ],
 ];
 
-/// The octopus has its head up, eyes facing +z, and arms spread in all directions.
+/// Builds the octopus. Its head is up, its eyes face +z, and its arms spread in all directions.
 ///
 /// # Errors
 ///
@@ -73,7 +74,7 @@ fn solid() -> Blend {
     body
 }
 
-/// An arm in a horizontal direction.
+/// Returns an arm that extends in the horizontal direction `[x, z]`.
 fn arm(points: &[[f64; 4]; 7], [x, z]: [f64; 2]) -> Tube {
     let placed =
         points.map(|[out, up, left, radius]| [out * x - left * z, up, out * z + left * x, radius]);

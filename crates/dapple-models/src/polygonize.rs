@@ -4,10 +4,10 @@
 //! Tetrahedral Cells", IEICE Transactions E74 (1991), for marching tetrahedra; Mario Botsch and Leif Kobbelt, "A
 //! Remeshing Approach to Multiresolution Modeling", SGP 2004, doi 10.1145/1057432.1057457, for remeshing.
 //!
-//! The congruent tetrahedra of a body-centered cubic lattice are used. Every tetrahedron that the surface crosses
-//! gets one or two triangles with corners on its edges. So two triangles meet at every edge for any solid, which
-//! marching cubes and surface nets do not guarantee. Remeshing then collapses the shortest edges where the topology
-//! allows it, flips edges, and moves vertices along the surface. Every vertex lies on the surface within
+//! The lattice is body-centered cubic and divides space into congruent tetrahedra. Every tetrahedron that the surface
+//! crosses gets one or two triangles with corners on its edges. Two triangles therefore meet at every edge for any
+//! solid, which marching cubes and surface nets do not guarantee. Remeshing then collapses the shortest edges where
+//! the topology allows it, flips edges, and moves vertices along the surface. Every vertex is on the surface within
 //! [`TOLERANCE`].
 
 mod sheet;
@@ -20,19 +20,19 @@ use glam::DVec3;
 use sheet::Sheet;
 
 /// Maximum distance of a vertex from the surface, as measured by the solid, relative to the side of the lattice's
-/// cells.
+/// cubes.
 pub const TOLERANCE: f64 = 1e-6;
 
-/// The fraction of the lattice's triangles that remains after short edges are collapsed.
+/// Fraction of the lattice's triangles that remain after short edges are collapsed.
 const KEPT: f64 = 0.5;
 /// Maximum number of cells along an axis.
 const CELLS_MAX: f64 = 4096.0;
-/// Maximum number of triangles of a mesh.
+/// Maximum number of triangles in a mesh.
 const TRIANGLES_MAX: usize = 1 << 24;
 
-/// Converts a solid to a mesh, on a lattice of cubes with the given side.
+/// Converts a solid to a mesh, on a lattice of cubes with sides of length `side`.
 ///
-/// Parts thinner than about half a side may be missed. The edges of the mesh are about as long as the side. A solid
+/// Parts thinner than about half of `side` may be missed. The edges of the mesh are about as long as `side`. A solid
 /// that extends beyond its bounds is clipped.
 ///
 /// # Errors
@@ -47,7 +47,8 @@ pub fn polygonize(solid: &dyn Solid, side: f64) -> Result<Mesh, ModelError> {
     evened(&cut, sheet, count as usize)
 }
 
-/// Converts a solid to a mesh with a given number of triangles, on a lattice of cubes with the given side or smaller.
+/// Converts a solid to a mesh with the given number of triangles, on a lattice of cubes with sides of length `side`
+/// or less.
 ///
 /// The side determines which parts and holes are found. The number of triangles determines how finely they are
 /// meshed. It is met exactly (one less if odd), unless it is too small for the shape: a mesh of a few hundred
@@ -55,7 +56,7 @@ pub fn polygonize(solid: &dyn Solid, side: f64) -> Result<Mesh, ModelError> {
 ///
 /// # Errors
 ///
-/// The errors of [`polygonize`], and [`ModelErrorKind::Range`] unless `n_triangles` is from 16 to 2^24.
+/// Same as [`polygonize`], and [`ModelErrorKind::Range`] unless `n_triangles` is from 16 to 2^24.
 pub fn polygonize_n(solid: &dyn Solid, side: f64, n_triangles: usize) -> Result<Mesh, ModelError> {
     let holds = (16..=TRIANGLES_MAX).contains(&n_triangles);
     let wanted = n_triangles as f64;
@@ -73,7 +74,7 @@ pub fn polygonize_n(solid: &dyn Solid, side: f64, n_triangles: usize) -> Result<
     evened(&cut, sheet, n_triangles / 2 * 2)
 }
 
-/// A solid clipped at its bounds, with the side of the lattice.
+/// A solid clipped at its bounds, and the side of the lattice's cubes.
 struct Cut<'a> {
     solid: &'a dyn Solid,
     bounds: [DVec3; 2],
@@ -111,7 +112,7 @@ impl<'a> Cut<'a> {
         distance.max(box_distance(self.bounds, at))
     }
 
-    /// Marches the tetrahedra of the lattice.
+    /// Marches the tetrahedra of the lattice and returns the surface.
     fn sheet(&self) -> Result<Sheet, ModelError> {
         let (positions, faces) = tetrahedra::march(self);
         if faces.is_empty() {

@@ -6,17 +6,17 @@ use crate::{ModelError, polygonize_n};
 use dapple_mesh::Mesh;
 use glam::DVec3;
 
-/// The tip of the snout.
+/// Position of the tip of the snout.
 pub const SNOUT: DVec3 = DVec3::new(0.0, 0.0, 0.86);
-/// The tip of the left wing.
+/// Position of the tip of the left wing.
 pub const LEFT_WING: DVec3 = DVec3::new(1.0, 0.16, 0.0);
-/// The end of the tail.
+/// Position of the end of the tail.
 pub const TAIL: DVec3 = DVec3::new(0.04, 0.0, -1.42);
 
-/// Side of the lattice, small enough for all parts.
+/// Side of the lattice's cubes, small enough to find all details.
 const SIDE: f64 = 0.04;
 
-/// The stingray swims toward +z with its wings lifted and its tail behind it.
+/// Builds the stingray. It swims toward +z with its wings lifted and its tail behind it.
 ///
 /// # Errors
 ///

@@ -1,7 +1,7 @@
 //! Solids made of a few shapes that blend into each other, defined by distance functions.
 //!
-//! A [`Solid`] is defined by the distance of a position from its surface. The shapes are [`Ball`], [`Ellipsoid`],
-//! [`RoundCone`], [`Tube`] along a curve, [`Torus`] and [`RoundBox`]. [`Blend`] joins solids with rounded seams.
+//! A [`Solid`] is defined by a signed distance function. The shapes are [`Ball`], [`Ellipsoid`], [`RoundCone`],
+//! [`Tube`] along a curve, [`Torus`] and [`RoundBox`]. [`Blend`] joins solids with rounded seams.
 //! [`Placed`], [`Mirrored`], [`Scaled`], [`Grown`] and [`Bent`] transform a solid;
 //! [`rotation`](dapple_mesh::rotation) gives the rotation of a [`Placed`] solid. [`polygonize`](crate::polygonize())
 //! converts a solid to a mesh.
@@ -41,17 +41,17 @@ use glam::DVec3;
 ///
 /// Invalid sizes (negative or not finite) give an empty or distorted solid, never a panic.
 pub trait Solid: Sync {
-    /// The signed distance to the surface, negative inside.
+    /// Returns the signed distance from `at` to the surface, negative inside.
     ///
     /// It may be inexact. It must change by at most 1.2 times the change of the position; otherwise parts of the
     /// surface may be missed.
     fn distance(&self, at: DVec3) -> f64;
 
-    /// The minimum and maximum corners of a bounding box. The distance is only used within it.
+    /// Returns the minimum and maximum corners of a bounding box. The distance is only used within it.
     fn bounds(&self) -> [DVec3; 2];
 }
 
-/// The signed distance to a box, negative inside.
+/// Returns the signed distance to a box, negative inside.
 pub(crate) fn box_distance([low, high]: [DVec3; 2], at: DVec3) -> f64 {
     let out = (low - at).max(at - high);
     out.max(DVec3::ZERO).length() + out.max_element().min(0.0)

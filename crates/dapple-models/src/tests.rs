@@ -1,4 +1,4 @@
-//! Tests of the models: closed, connected, and with the requested number of triangles.
+//! Tests that the models are closed, connected, and have the requested number of triangles.
 
 use super::{blended_tori, bunny, elephant, octopus, ray, zebra};
 use crate::polygonize::tests::euler;

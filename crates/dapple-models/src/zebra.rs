@@ -6,15 +6,15 @@ use crate::{ModelError, polygonize_n};
 use dapple_mesh::Mesh;
 use glam::DVec3;
 
-/// The tip of the muzzle.
+/// Position of the tip of the muzzle.
 pub const MUZZLE: DVec3 = DVec3::new(0.0, 0.54, 1.13);
-/// The middle of the back.
+/// Position of the middle of the back.
 pub const BACK: DVec3 = DVec3::new(0.0, 0.39, -0.1);
 
-/// Side of the lattice, small enough for all parts.
+/// Side of the lattice's cubes, small enough to find all details.
 const SIDE: f64 = 0.04;
 
-/// The animal stands on four legs with its head up and faces +z.
+/// Builds the zebra. It stands on four legs with its head up and faces +z.
 ///
 /// # Errors
 ///

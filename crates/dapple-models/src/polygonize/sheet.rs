@@ -9,22 +9,22 @@ use glam::DVec3;
 pub(super) struct Sheet {
     positions: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
-    /// The indices of the faces at each vertex. Empty for a removed vertex.
+    /// For each vertex, the indices of its faces. Empty for a removed vertex.
     fans: Vec<Vec<u32>>,
     n_faces: usize,
 }
 
-/// Marks a removed face.
+/// Vertex indices that mark a removed face.
 const GONE: [u32; 3] = [u32::MAX; 3];
-/// Minimum cosine between the normals of a face before and after a change.
+/// Minimum cosine of the angle between a face's normals before and after a change.
 const TURN: f64 = 0.5;
-/// Changes may lower the evenness of faces above this value.
+/// Evenness above which a change may make a face less even.
 const EVEN: f64 = 0.3;
-/// Step of a vertex, as a fraction of the distance to the centroid of its neighbors.
+/// Step length in smoothing, as a fraction of the distance from a vertex to the centroid of its neighbors.
 const SLIDE: f64 = 0.8;
 
 impl Sheet {
-    /// Creates the surface of the given triangles.
+    /// Builds the surface from triangles.
     ///
     /// # Errors
     ///
@@ -55,8 +55,8 @@ impl Sheet {
         self.n_faces
     }
 
-    /// Collapses the shortest third of the edges, shortest first, until `count` faces are left. Collapses in one call
-    /// are not adjacent.
+    /// Collapses the shortest third of the edges, shortest first, until `count` faces are left. Edges collapsed in
+    /// the same call are never adjacent.
     pub(super) fn collapse(&mut self, cut: &Cut, count: usize) {
         let mut edges: Vec<(f64, u32, u32)> = self
             .edges(|_, from, to| from < to)
@@ -195,8 +195,9 @@ impl Sheet {
         self.fans[c as usize].push(right);
     }
 
-    /// Whether the faces at `vertices` keep their orientation and evenness if all these vertices move to the position
-    /// `to` with the normal `normal`. Faces with two of the vertices are ignored, since they will be removed.
+    /// Returns whether the faces at `vertices` keep their orientation and evenness if all these vertices move to the
+    /// position `to` with the normal `normal`. Faces that have two of the vertices are ignored, since they will be
+    /// removed.
     fn keeps_shape(&self, vertices: &[u32], to: DVec3, normal: DVec3) -> bool {
         let (mut least_before, mut least_after) = (EVEN, EVEN);
         for &vertex in vertices {
@@ -232,7 +233,7 @@ impl Sheet {
         least_after >= least_before
     }
 
-    /// The directed edges of the faces that satisfy `wanted`, in the order of the faces.
+    /// Returns the directed edges of the faces that satisfy `wanted`, in face order.
     fn edges(&self, wanted: impl Fn(&Self, u32, u32) -> bool) -> Vec<[u32; 2]> {
         let mut edges = Vec::new();
         for &[a, b, c] in self.faces.iter().filter(|&&face| face != GONE) {
@@ -245,20 +246,20 @@ impl Sheet {
         edges
     }
 
-    /// The neighbors of a vertex: in each face, the corner after it.
+    /// Returns the neighbors of a vertex: for each of its faces, the corner after it.
     fn neighbors(&self, vertex: u32) -> Vec<u32> {
         let fan = self.fans[vertex as usize].iter();
         fan.map(|&face| next(self.faces[face as usize], vertex))
             .collect()
     }
 
-    /// The face with a directed edge from one vertex to another.
+    /// Returns the face that contains the directed edge `from`–`to`.
     fn face_of(&self, from: u32, to: u32) -> Option<u32> {
         let mut fan = self.fans[from as usize].iter().copied();
         fan.find(|&face| next(self.faces[face as usize], from) == to)
     }
 
-    /// The corner of a face other than `a` and `b`.
+    /// Returns the corner of a face other than `a` and `b`.
     fn third(&self, face: u32, a: u32, b: u32) -> u32 {
         let [x, y, z] = self.faces[face as usize];
         if x != a && x != b {
@@ -280,7 +281,7 @@ impl Sheet {
         self.positions[to as usize] - self.positions[from as usize]
     }
 
-    /// The unit normal of the faces around several vertices.
+    /// Returns the unit normal of the faces around several vertices.
     fn normal_at(&self, vertices: &[u32]) -> DVec3 {
         let mut sum = DVec3::ZERO;
         for &vertex in vertices {
@@ -293,7 +294,7 @@ impl Sheet {
     }
 }
 
-/// The corner that follows a corner of a face.
+/// Returns the corner of a face that follows `corner`.
 fn next([a, b, c]: [u32; 3], corner: u32) -> u32 {
     if corner == a {
         b
@@ -325,12 +326,12 @@ fn settled(cut: &Cut, from: DVec3, along: DVec3) -> Option<DVec3> {
     None
 }
 
-/// The normal of a triangle. Its length is twice the area.
+/// Returns the normal of a triangle. Its length is twice the area.
 fn area_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// The evenness of a triangle, from 0 for a degenerate triangle to 1 for an equilateral one.
+/// Returns the evenness of a triangle, from 0 for a degenerate triangle to 1 for an equilateral one.
 fn evenness([a, b, c]: [DVec3; 3]) -> f64 {
     let sides = (b - a).length_squared() + (c - b).length_squared() + (a - c).length_squared();
     // Twice the area of an equilateral triangle, as a fraction of the sum of its squared sides.

@@ -1,4 +1,4 @@
-//! Tests of meshes of solids: closed, manifold, and on the surface.
+//! Tests that meshes of solids are closed, manifold, and on the surface.
 
 use super::{TOLERANCE, polygonize, polygonize_n};
 use crate::ModelErrorKind;
@@ -8,7 +8,8 @@ use dapple_mesh::Mesh;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// The Euler characteristic of a mesh. Checks that the mesh is closed, manifold, consistently wound and connected.
+/// Returns the Euler characteristic of a mesh. Checks that the mesh is closed, manifold, consistently wound and
+/// connected.
 pub(crate) fn euler(mesh: &Mesh) -> i64 {
     let mut edges = BTreeMap::new();
     let mut after = vec![BTreeMap::new(); mesh.positions().len()];
@@ -62,7 +63,7 @@ fn volume(mesh: &Mesh) -> f64 {
     corners.map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
 }
 
-/// The smallest angle of each face in degrees, sorted.
+/// Returns the smallest angle of each face in degrees, sorted.
 fn least_angles(mesh: &Mesh) -> Vec<f64> {
     let angle = |[a, b, c]: [DVec3; 3]| libm::acos((b - a).normalize().dot((c - a).normalize()));
     let mut least: Vec<f64> = mesh
@@ -150,7 +151,7 @@ fn points_of_the_lattice_on_the_surface_leave_no_slivers() {
     assert!(angles[0] > 15.0, "least {}", angles[0]);
 }
 
-/// A solid given by a distance function and half the side of its bounds.
+/// A solid given by a distance function, and the half-side length of its bounding cube.
 struct Odd(fn(DVec3) -> f64, f64);
 
 impl Solid for Odd {

@@ -1,14 +1,14 @@
 //! Marching tetrahedra on a body-centered cubic lattice.
 //!
-//! The points of the lattice have integer coordinates (i, j, k) along the three short diagonals [`BASIS`]. Kuhn's six
-//! tetrahedra of the unit cube (H. W. Kuhn, "Some Combinatorial Lemmas in Topology", 1960) become the tetrahedra of
-//! the lattice. Each connects a corner of the cube to the opposite corner along three edges.
+//! Lattice points have integer coordinates (i, j, k) along the three short diagonals [`BASIS`]. In these coordinates,
+//! the lattice's tetrahedra are Kuhn's six tetrahedra of the unit cube (H. W. Kuhn, "Some Combinatorial Lemmas in
+//! Topology", 1960). Each connects a corner of the cube to the opposite corner along three edges.
 
 use super::Cut;
 use crate::solid::box_distance;
 use glam::DVec3;
 
-/// The basis vectors of the lattice, in sides of a cube.
+/// The basis vectors of the lattice, in multiples of the cube's side.
 const BASIS: [DVec3; 3] = [
     DVec3::new(-0.5, 0.5, 0.5),
     DVec3::new(0.5, -0.5, 0.5),
@@ -26,12 +26,12 @@ const TETRAHEDRA: [[usize; 4]; 6] = [
     [0, 5, 1, 7],
 ];
 
-/// Number of cells along each side of a leaf block.
+/// Number of cells along each side of a leaf block. Leaf blocks are not subdivided further.
 const LEAF: i64 = 4;
-/// Distance from the center of a block to its farthest corners, in sides of the block. It is half of the longest
-/// diagonal, √11 / 2.
+/// Distance from the center of a block to its farthest corners, in multiples of the block's side. It is half of the
+/// longest diagonal, √11 / 2.
 const REACH: f64 = 0.5 * 1.658_312_395_177_7;
-/// Maximum ratio of the change of a distance to the change of the position.
+/// Maximum change of a distance, relative to the change of the position.
 const STRETCH: f64 = 1.2;
 
 /// A point of the lattice.
@@ -52,8 +52,8 @@ pub(super) fn march(cut: &Cut) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (positions, faces.collect())
 }
 
-/// The key of a lattice edge that the surface crosses: the coordinates of its lower point, and the basis vectors to
-/// the other point in the lowest 3 bits.
+/// Key of a lattice edge that the surface crosses: the coordinates of its lower point, and in the lowest 3 bits the
+/// basis vectors that lead to the other point.
 type Crossing = u64;
 
 /// Bits per coordinate in a key.
@@ -61,9 +61,9 @@ const BITS: u32 = 20;
 
 struct March<'a> {
     cut: &'a Cut<'a>,
-    /// The lattice coordinates of the first point.
+    /// Lattice coordinates of the first point.
     low: Point,
-    /// The number of cells along each axis of the lattice.
+    /// Number of cells along each axis of the lattice.
     size: i64,
     triangles: Vec<[Crossing; 3]>,
 }
@@ -91,7 +91,7 @@ impl<'a> March<'a> {
         (BASIS[0] * i + BASIS[1] * j + BASIS[2] * k) * self.cut.side
     }
 
-    /// Subdivides a block recursively, down to the leaves that the surface may cross.
+    /// Subdivides a block recursively, down to the leaf blocks that the surface may cross.
     fn block(&mut self, first: Point, size: i64) {
         let last = first.map(|coordinate| coordinate + size);
         let center = (self.position(first) + self.position(last)) * 0.5;
@@ -138,7 +138,7 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Adds the triangles that separate the inside corners of a tetrahedron from the outside ones.
+    /// Adds the triangles that separate a tetrahedron's inside corners from its outside corners.
     fn tetrahedron(&mut self, cell: Point, corners: [usize; 4], inside: &[bool; 8]) {
         let n_inside = corners.iter().filter(|&&corner| inside[corner]).count();
         // Sort the inside corners first. An odd number of swaps mirrors the tetrahedron; one more swap restores its
@@ -169,7 +169,7 @@ impl<'a> March<'a> {
         }
     }
 
-    /// The point where the surface crosses an edge.
+    /// Returns the point where the surface crosses an edge.
     fn crossing(&self, edge: Crossing) -> DVec3 {
         // Unpack the ends of the edge.
         let coordinate = |axis: u32| (edge >> (3 + BITS * axis) & ((1 << BITS) - 1)) as i64;
@@ -184,10 +184,10 @@ impl<'a> March<'a> {
     }
 }
 
-/// Finds a root of a function between 0 and 1, within a tolerance, or a jump over zero. `ends` are the values at 0
-/// and 1, of opposite signs. Alternates regula falsi with bisection.
+/// Finds a root of a function between 0 and 1, within a tolerance, or a jump across zero. `ends` are the values at 0
+/// and 1, which have opposite signs. Alternates regula falsi with bisection.
 fn root(ends: [f64; 2], tolerance: f64, value: impl Fn(f64) -> f64) -> f64 {
-    /// Maximum number of steps. A third of them bisect, which is enough to reach the last bits.
+    /// Maximum number of steps. A third of them are bisections, which is enough to reach the last bits.
     const STEPS: u32 = 150;
     let [mut low, mut high] = [0.0, 1.0];
     let [mut at_low, mut at_high] = ends;
@@ -211,8 +211,8 @@ fn root(ends: [f64; 2], tolerance: f64, value: impl Fn(f64) -> f64) -> f64 {
     middle
 }
 
-/// The key of the edge between two corners of a cell. The basis vectors of one corner must be a subset of those of
-/// the other.
+/// Returns the key of the edge between two corners of a cell. One corner's set of basis vectors must be a subset of
+/// the other's.
 fn crossing(cell: Point, from: usize, to: usize) -> Crossing {
     let point = sum(cell, corner(from & to));
     let steps = (from ^ to) as u64;
@@ -232,7 +232,7 @@ fn sum(a: Point, b: Point) -> Point {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// The points of a cube, with the first coordinate varying fastest.
+/// Iterates over the points of a cube, with the first coordinate varying fastest.
 fn points(size: i64) -> impl Iterator<Item = Point> {
     (0..size).flat_map(move |k| (0..size).flat_map(move |j| (0..size).map(move |i| [i, j, k])))
 }

@@ -66,12 +66,12 @@ impl<S: Solid> Solid for Scaled<S> {
     }
 }
 
-/// A solid with a layer of uniform thickness, which rounds its edges.
+/// A solid thickened by a layer of uniform thickness, which rounds its edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grown<S> {
     /// The solid without the layer.
     pub solid: S,
-    /// The thickness of the layer.
+    /// Thickness of the layer.
     pub by: f64,
 }
 
@@ -94,7 +94,7 @@ pub struct Bent<S> {
     solid: S,
     lift: f64,
     bounds: [DVec3; 2],
-    /// Factor applied to distances: a lower bound of their change by the bend.
+    /// Factor applied to distances: a lower bound of their change caused by the bend.
     shrink: f64,
 }
 
@@ -133,7 +133,7 @@ impl<S: Solid> Solid for Bent<S> {
     }
 }
 
-/// The bounding box of the transformed corners of a box.
+/// Returns the bounding box of a box's transformed corners.
 fn around_corners([low, high]: [DVec3; 2], moved: impl Fn(DVec3) -> DVec3) -> [DVec3; 2] {
     let corners = (0..8).map(|corner| {
         let part = DVec3::from_array([0, 1, 2].map(|axis| f64::from(corner >> axis & 1)));

@@ -1,4 +1,4 @@
-//! Solids that blend into each other.
+//! Blends solids into each other.
 
 use super::{Solid, box_distance};
 use core::fmt;
@@ -23,7 +23,7 @@ impl Blend {
     }
 
     /// Joins a solid. The seam is rounded where the distances to the two sides differ by less than `width`, and is
-    /// thicker by at most a sixth of the width. A width of 0 gives a sharp seam.
+    /// thicker by at most a sixth of `width`. A width of 0 gives a sharp seam.
     #[must_use]
     pub fn with(mut self, solid: impl Solid + Send + 'static, width: f64) -> Self {
         let bounds = solid.bounds();
@@ -80,7 +80,7 @@ impl fmt::Debug for Blend {
     }
 }
 
-/// The minimum of two distances, rounded where they differ by less than `width`.
+/// Returns the minimum of two distances, rounded where they differ by less than `width`.
 ///
 /// Reference: Inigo Quilez, "Smooth minimum", 2013, <https://iquilezles.org/articles/smin/>: the cubic version, whose
 /// curvature is continuous.

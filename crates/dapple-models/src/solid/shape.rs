@@ -49,7 +49,7 @@ impl Solid for Ellipsoid {
     }
 }
 
-/// The distance from a point to an ellipsoid around the origin. The point is outside.
+/// Returns the distance from a point outside an ellipsoid centered at the origin.
 ///
 /// The nearest point is `r² p / (r² + t)` for the t above 0 at which it lies on the ellipsoid. The function whose
 /// root is t is decreasing and convex, so Newton steps from 0 converge without overshooting.
@@ -93,17 +93,17 @@ impl Solid for RoundCone {
     }
 }
 
-/// A round cone, with precomputed values for its distance.
+/// A round cone with precomputed values for its distance function.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Spindle {
     from: DVec3,
-    /// The unit direction to the other end.
+    /// Unit vector to the other end.
     axis: DVec3,
     length: f64,
     radius: f64,
-    /// Decrease of the radius per unit of length along the axis.
+    /// Decrease of the radius per unit length along the axis.
     taper: f64,
-    /// Displacement along the axis of a normal of the lateral surface, per unit of distance outward.
+    /// Displacement along the axis per unit distance outward, along a normal of the lateral surface.
     lean: f64,
 }
 
@@ -140,7 +140,7 @@ impl Spindle {
         let reach = at - self.from;
         let height = reach.dot(self.axis);
         let aside = (reach - self.axis * height).length();
-        // The point on the axis where the normal of the lateral surface through the point starts.
+        // The point on the axis at which the lateral surface's normal through `at` starts.
         let foot = (height - aside * self.lean).clamp(0.0, self.length);
         let along = height - foot;
         (aside * aside + along * along).sqrt() - (self.radius - self.taper * foot)
@@ -152,11 +152,11 @@ impl Spindle {
 pub struct Torus {
     /// The center of the torus.
     pub center: DVec3,
-    /// The unit direction of the axis of rotation.
+    /// Unit vector along the axis of rotation.
     pub axis: DVec3,
-    /// The radius of the circle in the middle of the tube.
+    /// Radius of the tube's center line.
     pub ring: f64,
-    /// The radius of the tube.
+    /// Radius of the tube.
     pub tube: f64,
 }
 
@@ -183,7 +183,7 @@ pub struct RoundBox {
     pub center: DVec3,
     /// The distances from the center to the faces.
     pub half: DVec3,
-    /// The radius of the edges, at most the smallest component of `half`.
+    /// Radius of the rounded edges, at most the smallest component of `half`.
     pub rounding: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Compares distances of solids with sampled distances.
+//! Compares the solids' distances with sampled distances.
 
 use super::{
     Ball, Bent, Blend, Ellipsoid, Grown, Mirrored, Placed, RoundBox, RoundCone, Scaled, Solid,
@@ -80,7 +80,7 @@ fn solids() -> Vec<(&'static str, Box<dyn Solid>)> {
     ]
 }
 
-/// Positions in a cube that contains the solids.
+/// Iterates over positions in a cube that contains the solids.
 fn positions() -> impl Iterator<Item = DVec3> {
     let part =
         |number: u64| (Seed(5).child("position", number).0 >> 11) as f64 / (1_u64 << 53) as f64;

@@ -14,7 +14,7 @@ pub struct Tube {
     bounds: [DVec3; 2],
 }
 
-/// A piece of a tube with its bounding sphere.
+/// A segment of a tube with its bounding sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Link {
     cone: Spindle,
@@ -22,7 +22,7 @@ struct Link {
     reach: f64,
 }
 
-/// Number of links between two given points. The angles between them are too small to see in figures.
+/// Number of links between two consecutive curve points. The angles between links are too small to see in figures.
 const LINKS: u32 = 5;
 
 impl Tube {
@@ -92,7 +92,7 @@ fn link(cone: &RoundCone) -> Link {
     }
 }
 
-/// Evaluates the spline between its second point, at `part` 0, and its third point, at 1.
+/// Evaluates the spline between its second point (`part` 0) and its third point (`part` 1).
 fn on_spline(points: &[[f64; 4]; 4], part: f64) -> [f64; 4] {
     core::array::from_fn(|number| {
         let [before, from, to, after] = points.map(|point| point[number]);
