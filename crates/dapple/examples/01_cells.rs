@@ -1,4 +1,4 @@
-//! An image of Worley's cells: the distance from each pixel to the nearest of many scattered points.
+//! Renders Worley's cells: the distance from each pixel to the nearest of many scattered points.
 //!
 //! ```sh
 //! cargo run -p dapple --example 01_cells

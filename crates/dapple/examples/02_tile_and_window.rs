@@ -1,7 +1,7 @@
-//! A texture with a period: an image that repeats exactly, and windows of it that equal its crops exactly.
+//! Renders a texture with a period: an image that repeats exactly, and windows whose pixels equal its crops exactly.
 //!
-//! The image repeats without blending or mirroring, so it looks the same everywhere. With windows, a large image can be
-//! made in parts, sequentially or on several machines.
+//! The image repeats without blending or mirroring, so it looks equally natural everywhere. With windows, a large
+//! image can be rendered in parts, sequentially or on several machines.
 //!
 //! ```sh
 //! cargo run -p dapple --example 02_tile_and_window
@@ -16,7 +16,7 @@ use dapple::raster::{Field, FieldExt as _, Window, glam::DVec2};
 use dapple::worley::{Combination, Worley2};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // 6 cells to the right and 4 down, then the same again.
+    // The texture repeats after 6 cells to the right and 4 cells down.
     let cracks = Worley2::new(Seed(7))
         .with_period([Some(6), Some(4)])?
         .combine(Combination::F2_MINUS_F1)

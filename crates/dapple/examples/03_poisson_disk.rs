@@ -1,5 +1,5 @@
-//! Points with a minimum distance from each other, also across the edges of a tile: positions for trees, stars or
-//! rivets.
+//! Generates points that are a minimum distance apart, also across the edges of a tile, for example as positions for
+//! trees, stars or rivets.
 //!
 //! ```sh
 //! cargo run -p dapple --example 03_poisson_disk
@@ -16,7 +16,8 @@ use dapple::raster::{Raster, Window, glam::DVec2};
 const SIDE: u32 = 512;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // Points at least 0.04 apart on a unit square whose opposite sides are joined. No further point fits.
+    // Points at least 0.04 apart on a unit square whose opposite sides are joined. There is no room for another
+    // point.
     let domain = Domain::torus(DVec2::ZERO, DVec2::ONE);
     let points = poisson_disk(domain, 0.04, Seed(7))?;
     let closest = points.minimum_distance().unwrap_or(f64::INFINITY);

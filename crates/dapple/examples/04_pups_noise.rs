@@ -1,5 +1,5 @@
-//! Noise from scattered control points (partition-of-unity parametrics): five octaves as a terrain, with its normal
-//! map.
+//! Renders noise from scattered control points (partition-of-unity parametrics): five octaves as a terrain, with its
+//! normal map.
 //!
 //! ```sh
 //! cargo run -p dapple --example 04_pups_noise
@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let noise = octaves(&options, Seed(7))?.normalized();
     let height = noise.to_raster(&window)?;
 
-    // Most values are in the middle of the range, so the colors are spread over this part.
+    // Most values are in the middle of the range, so spread the colors over this part.
     let land = height.map(|&height| 0.5 + 2.0 * (height - 0.5));
     let path = out::path("04_pups_noise.png")?;
     write_color_png(&path, &Palette::Terrain.ramp().apply(&land), Depth::Eight)?;

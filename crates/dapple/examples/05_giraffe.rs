@@ -1,4 +1,5 @@
-//! The coat of a space giraffe: every point of the plane belongs to the control point with the largest weight there.
+//! Renders a space giraffe's coat: every position of the plane belongs to the control point with the largest weight
+//! there.
 //!
 //! ```sh
 //! cargo run -p dapple --example 05_giraffe

@@ -1,4 +1,4 @@
-//! Wavelet noise: bands of one octave each, so that nothing flickers if distant views omit a band.
+//! Renders wavelet noise in bands of one octave each, so that nothing flickers if distant views omit a band.
 //!
 //! ```sh
 //! cargo run -p dapple --example 06_wavelet_noise
@@ -18,8 +18,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let window = Window::new(DVec2::ZERO, DVec2::splat(16.0), [512, 512])?;
     let values = noise.to_raster(&window)?;
 
-    // Values are nearly normal around 0, and their variance is the sum of the squared weights: three standard
-    // deviations to both sides fill the range of the file.
+    // Values are nearly normally distributed around 0, and their variance is the sum of the squared weights. Map
+    // three standard deviations on both sides to the range of the file.
     let variance: f32 = weights.iter().map(|weight| weight * weight).sum();
     let gray = values.map(|value| 0.5 + value / (6.0 * variance.sqrt()));
 

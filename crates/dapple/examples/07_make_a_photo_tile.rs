@@ -1,6 +1,6 @@
-//! An image that does not repeat is made into a tile, with a report of the changes.
+//! Makes an image that does not repeat into a seamless tile, and reports the changes.
 //!
-//! The example uses a part of a paving instead of a photograph, in a light that fades to the right. To read your own
+//! Instead of a photograph, the example uses a crop of a paving with light that fades to the right. To read your own
 //! photograph, use `dapple::image::read_image("photo.png", &Default::default())?.color()?`.
 //!
 //! ```sh
@@ -19,8 +19,8 @@ use dapple::tile::{Method, SeamOptions, SeamReport, Seamless, SoftCut};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let photo = photo()?;
 
-    // First take the periodic part, which evens out the light. Then a margin of 48 pixels is laid over the opposite
-    // side and cut where the cut is least visible.
+    // First take the periodic part, which evens out the light. Then overlap a margin of 48 pixels with the opposite
+    // side, and cut it where the cut is least visible.
     let even = Seamless::new(Method::Periodic).apply_color(&photo)?;
     let cut = SoftCut {
         margin: 48,
@@ -28,7 +28,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let tile = Seamless::new(Method::SoftCut(cut)).apply_color(&even)?;
 
-    // Steps across the seam relative to steps inside, at four distances, and the detail that was kept.
+    // Measure differences across the seam relative to differences inside, at four distances, and the preserved
+    // detail.
     let [before, after] = [&photo, &tile].map(|picture| picture.map(|color| color.luminance()));
     let options = SeamOptions::default();
     println!("before:\n{}\n", SeamReport::of(&before, &options)?);

@@ -1,5 +1,5 @@
-//! Two materials blended along the features of one of them: moss grows from the joints of stones, and more toward the
-//! right.
+//! Blends two materials along the features of one of them: moss grows from the joints between stones, and more so
+//! toward the right.
 //!
 //! ```sh
 //! cargo run -p dapple --example 08_blend_materials

@@ -1,4 +1,5 @@
-//! A material as text, baked to maps: cobbles in sand, 512 × 512, with height, normals, occlusion, color and roughness.
+//! Bakes a material described as text to maps: cobbles in sand, 512 × 512, with height, normals, occlusion, color and
+//! roughness.
 //!
 //! `Recipe::builtin("flagstone")` is a ready-made recipe, and `Recipe::builtin_names()` lists all of them.
 //!
@@ -11,7 +12,7 @@ mod out;
 use dapple::image::{Depth, write_color_png, write_gray_png, write_normal_png};
 use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe};
 
-/// The nodes by name, and the material that they make. The README of `dapple-recipe` describes the format.
+/// The nodes by name, and the material that uses them. The README of `dapple-recipe` describes the format.
 const COBBLES: &str = include_str!("09_recipe_bake.toml");
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -1,8 +1,8 @@
-//! A raster in the layout of a graphics API: the bytes of all mip levels, rows padded to 256 bytes, and the texture
-//! format.
+//! Converts a raster to the layout of a graphics API: the bytes of all mip levels, rows padded to 256 bytes, and the
+//! texture format.
 //!
-//! This needs no engine. `upload/mod.rs` makes the bytes; `tests/gpu/main.rs` of this repository uploads them to a real
-//! GPU with `wgpu` and reads them back.
+//! This needs no engine. `upload/mod.rs` computes the bytes; `tests/gpu/main.rs` of this repository uploads them to a
+//! real GPU with `wgpu` and reads them back.
 //!
 //! ```sh
 //! cargo run -p dapple --example 10_gpu_texture
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         tell(upload);
     }
 
-    // The levels next to each other, read from their bytes.
+    // Place the levels next to each other, read from their bytes.
     let widths: Vec<u32> = upload.levels.iter().map(|level| level.size[0]).collect();
     let mut picture = Raster::filled([widths.iter().sum(), 256], [0, 0, 0, 0])?;
     let mut left = 0;

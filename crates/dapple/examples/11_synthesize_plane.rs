@@ -1,4 +1,4 @@
-//! A tile of 192 × 192 pixels, synthesized from an exemplar of 56 × 56.
+//! Synthesizes a tile of 192 × 192 pixels from an exemplar of 56 × 56 pixels.
 //!
 //! The exemplar is drawn here; any small image works.
 //!
@@ -20,8 +20,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let exemplar = Exemplar::new(&example, Edges::Cut)?;
     let texture = synthesize_plane(&exemplar, [192, 192], [Edges::Wrap; 2], &Options::default())?;
 
-    // A texture maps each pixel to one of the exemplar, so other maps of the exemplar can be transferred in the same
-    // way.
+    // A texture maps each pixel to a pixel of the exemplar, so the exemplar's other maps can be transferred in the
+    // same way.
     let tile = texture.transfer(&example)?;
 
     for (name, picture) in [("example", &example), ("tile", &tile)] {
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Cells with one color each. The image does not repeat.
+/// Returns an image of cells with one color each. It does not repeat.
 fn example() -> Result<Raster<LinearRgb>, Box<dyn std::error::Error>> {
     let window = Window::new(DVec2::ZERO, DVec2::splat(0.9), [56, 56])?;
     let cells = cells(&CellsOptions::default(), Seed(7))?;

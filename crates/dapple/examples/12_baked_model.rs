@@ -1,7 +1,7 @@
-//! A texture synthesized on a mesh from a small exemplar, baked to a texture map and written as a model: a GLB file
-//! that viewers and engines open.
+//! Synthesizes a texture on a mesh from a small exemplar, bakes it to a texture map and writes the model as a GLB
+//! file that viewers and engines open.
 //!
-//! The mesh is a torus made here; `dapple::mesh_io::read_model` reads your own.
+//! The mesh is a torus built here; use `dapple::mesh_io::read_model` to read your own.
 //!
 //! ```sh
 //! cargo run -p dapple --example 12_baked_model
@@ -23,7 +23,7 @@ use dapple::synth::{
 };
 use std::f64::consts::TAU;
 
-/// Returns a torus around the y axis with the radii 0.7 and 0.28, made of 48 by 24 squares.
+/// Returns a torus around the y axis with radii of 0.7 and 0.28, built from 48 by 24 squares.
 fn ring() -> Result<mesh::Mesh, MeshError> {
     let [columns, rows] = [48, 24];
     let turn = |part: u32, of: u32| TAU * f64::from(part) / f64::from(of);
@@ -43,7 +43,7 @@ fn ring() -> Result<mesh::Mesh, MeshError> {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // Slightly bent stripes, which run down the exemplar and, on the torus, around its tube.
+    // Slightly bent stripes, which run down the exemplar and around the tube of the torus.
     let stripes = Raster::from_window(&Window::unit([48, 48])?, |at| {
         let across = 5.0 * at.x + 0.6 * (at.y - at.y * at.y);
         LinearRgb::gray(if across - across.floor() < 0.5 {

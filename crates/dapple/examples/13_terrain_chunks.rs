@@ -1,4 +1,4 @@
-//! An infinite world, made chunk by chunk: heights, biomes and trees match wherever two chunks meet.
+//! Generates an infinite world chunk by chunk; heights, biomes and trees match wherever two chunks meet.
 //!
 //! ```sh
 //! cargo run -p dapple --example 13_terrain_chunks
@@ -22,15 +22,15 @@ const CHUNKS: u32 = 4;
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-/// Everything that a chunk is made from. It stores no chunks and can be shared between threads.
+/// All inputs for generating a chunk. It stores no chunks and can be shared between threads.
 struct World<H, B> {
-    /// Height in units of 40 meters, with the sea at 0.
+    /// Height in multiples of 40 meters, with sea level at 0.
     heights: H,
-    /// Random number from 0 to 1 for each cell of about 100 meters.
+    /// Random number from 0 to 1 for each cell, about 100 meters wide.
     biomes: B,
-    /// Positions at least 3 meters apart.
+    /// Positions of trees, at least 3 meters apart.
     trees: EndlessPoissonDisk,
-    /// Pixels of the chunk at the origin. All other chunks are crops of the same grid.
+    /// Pixels of the chunk at the origin. All other chunks are windows of the same grid.
     grid: Window,
 }
 
@@ -55,7 +55,7 @@ fn world(seed: Seed) -> Result<World<impl Field, impl Field>> {
 }
 
 impl<H: Field, B: Field> World<H, B> {
-    /// Returns the chunk in a column and a row, of `size` chunks along each side.
+    /// Returns a square of `size` × `size` chunks as one chunk, whose first chunk is at the given column and row.
     fn chunk(&self, [column, row]: [i64; 2], size: u32) -> Result<Chunk> {
         let side = i64::from(CHUNK);
         let window = self
@@ -78,7 +78,7 @@ impl<H: Field, B: Field> World<H, B> {
     }
 }
 
-/// Renders an image of several chunks, each made separately.
+/// Renders an image of several chunks, each generated separately.
 fn draw(seed: Seed) -> Result<Raster<LinearRgb>> {
     let world = world(seed)?;
     let side = CHUNK * CHUNKS;
@@ -123,7 +123,7 @@ mod tests {
     #[test]
     fn chunks_are_crops_of_a_larger_piece_of_the_world() {
         let world = world(Seed(7)).unwrap();
-        // Around the origin, and at a distance of a hundred thousand kilometers from it.
+        // Test around the origin, and a hundred thousand kilometers away from it.
         for corner in [-1, 1_562_500] {
             let whole = world.chunk([corner, -1], 2).unwrap();
             let mut n_trees = 0;

@@ -1,5 +1,4 @@
-//! A material that a game makes from its recipe while it loads: on a separate thread, with a progress bar, until it is
-//! cancelled.
+//! Bakes a material while a game loads, on a separate thread, with a progress bar, and stops if loading is cancelled.
 //!
 //! One callback reports all work, from the first node to the last row, and can stop it. Here the first attempt is
 //! cancelled after a tenth of its work, as when a player leaves the level, and the second one completes.
@@ -23,11 +22,11 @@ use std::thread;
 /// Maps of a material.
 type Maps = Vec<(MapKind, MapRows)>;
 
-/// A material in progress.
+/// A material that is being baked.
 struct Loading {
     /// Completed fraction of the work, from 0 to 1, sent whenever it grows.
     parts: mpsc::Receiver<f64>,
-    /// Whether the work is cancelled.
+    /// Whether the work has been cancelled.
     is_over: Arc<AtomicBool>,
     maps: thread::JoinHandle<Result<Maps, RecipeError>>,
 }
@@ -62,7 +61,8 @@ impl Loading {
         }
     }
 
-    /// Shows the progress up to a fraction of the work. Returns the maps, or the error that the work was cancelled.
+    /// Shows the progress up to the fraction `end` of the work. Returns the maps, or an error if the work was
+    /// cancelled.
     fn until(self, end: f64) -> Result<Maps, RecipeError> {
         let mut shown = 0;
         // A game polls once per frame, with `try_iter`.

@@ -1,4 +1,4 @@
-//! Cracked ground as the textures of a game: color and normals with mip levels, in bytes for a GPU. It tiles exactly.
+//! Renders cracked ground as game textures: color and normals with mip levels, in bytes for a GPU. It tiles exactly.
 //!
 //! ```sh
 //! cargo run -p dapple --example 15_cracked_ground
@@ -17,7 +17,7 @@ use dapple::worley::{Combination, Worley2};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-/// Returns the heights of ground that repeats after one unit.
+/// Returns the heights of ground that repeats after one unit of the plane.
 fn ground(seed: Seed) -> Result<impl Field> {
     let plates = Worley2::new(seed.child("plates", 0)).with_period([Some(6); 2])?;
     // 0 in the cracks between plates and 1 inside the plates.

@@ -1,4 +1,4 @@
-//! A map of regions that tiles: Voronoi cells of points on a torus, each colored by its area.
+//! Renders a map of regions that tiles: Voronoi cells of points on a torus, each colored by its area.
 //!
 //! ```sh
 //! cargo run -p dapple --example 16_voronoi
@@ -15,13 +15,13 @@ use dapple::raster::{Raster, Window, glam::DVec2};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-/// Regions of the unit square, whose opposite sides are joined.
+/// Returns the Voronoi regions of the unit square, whose opposite sides are joined.
 fn regions(seed: Seed) -> Result<Voronoi> {
     let domain = Domain::torus(DVec2::ZERO, DVec2::ONE);
     Ok(Voronoi::new(&poisson_disk(domain, 0.08, seed)?)?)
 }
 
-/// Draws each region with a brightness by its area. Borders are dark.
+/// Draws each region with a brightness that depends on its area. Borders are dark.
 fn draw(regions: &Voronoi, size: u32) -> Result<Raster<LinearRgb>> {
     let n_cells = regions.n_cells() as f64;
     let window = Window::unit([size; 2])?;
@@ -29,7 +29,7 @@ fn draw(regions: &Voronoi, size: u32) -> Result<Raster<LinearRgb>> {
     let mut site = PointIdx(0);
     for (row, pixels) in (0..).zip(image.view_mut().rows_mut()) {
         for (column, pixel) in (0..).zip(pixels) {
-            // The walk starts at the site of the previous pixel.
+            // Start the walk at the site of the previous pixel.
             let nearest = regions.locate(window.position(column, row), site)?;
             site = nearest.site;
             let cell = regions.cell(site);

@@ -1,4 +1,4 @@
-//! An animal coat that moves in a loop: 24 frames, and the last one leads to the first.
+//! Renders an animal coat as a looping animation of 24 frames; the last frame leads back to the first.
 //!
 //! ```sh
 //! cargo run -p dapple --example 17_moving_coat
@@ -14,10 +14,10 @@ use dapple::raster::{Raster, prelude::*};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-/// Frames of the loop.
+/// Number of frames in the loop.
 const N_FRAMES: u32 = 24;
 
-/// Returns the values of the coat at a time, from 0 to 1.
+/// Returns the values of the coat in a frame of the loop.
 fn frame(index: u32, size: u32) -> Result<Raster<f32>> {
     let mut options = CellsOptions::of_three_or_four();
     options.spacing = 0.2.into();

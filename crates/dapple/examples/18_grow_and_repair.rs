@@ -1,4 +1,4 @@
-//! A larger texture from a small one, and a scratch that is replaced with texture.
+//! Synthesizes a larger texture from a small one, and replaces a scratch with texture.
 //!
 //! ```sh
 //! cargo run -p dapple --example 18_grow_and_repair
@@ -16,7 +16,7 @@ use dapple::synth::{Edges, Exemplar, Options, PlaneTexture, synthesize_plane};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-/// A drawn photograph with a scratch, and a mask of its clean pixels.
+/// Returns a drawn photograph with a scratch, and a mask of its clean pixels.
 fn photo() -> Result<(Raster<LinearRgb>, Raster<bool>)> {
     let window = Window::new([0.0; 2], [8.0; 2], [64, 64])?;
     let rock = GradientNoise2::new(Seed(7)).fractal(3, 0.5, 2.0, FractalShape::Ridged)?;

@@ -1,9 +1,9 @@
-//! The output folder of the examples: the first argument, or `target/examples-out`.
+//! Chooses the output folder of the examples: the first argument, or `target/examples-out`.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Returns the path of a file in the folder, which is created if it does not exist.
+/// Returns the path of the file called `name` in the output folder, which is created if it does not exist.
 #[expect(clippy::disallowed_methods, reason = "an example writes files")]
 pub(crate) fn path(name: &str) -> io::Result<PathBuf> {
     let folder = std::env::args_os()

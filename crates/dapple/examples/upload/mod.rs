@@ -1,4 +1,4 @@
-//! The bytes of a texture with its mip levels, for any graphics API.
+//! Computes the bytes of a texture with its mip levels, for any graphics API.
 //!
 //! * Color has 8 bits per channel, encoded with the sRGB curve; the GPU decodes it to linear light when it samples.
 //!   Data, such as normals, is linear in the file and on the GPU, so its format must not be sRGB.
@@ -15,11 +15,11 @@ const ROW_ALIGNMENT: usize = 256;
 /// A texture in the layout of a graphics API.
 pub(crate) struct Upload {
     pub(crate) format: Format,
-    /// Mip levels, the largest first.
+    /// Mip levels, largest first.
     pub(crate) levels: Vec<Level>,
 }
 
-/// Format of a pixel of four bytes, with the name in WebGPU.
+/// Format of a four-byte pixel, named as in WebGPU.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Format {
     Rgba8UnormSrgb,
@@ -63,7 +63,7 @@ impl Upload {
 }
 
 impl Level {
-    /// Pads rows to the alignment.
+    /// Pads the rows of a level to the alignment.
     fn new(size: [u32; 2], pixels: &[u8]) -> Self {
         let width = 4 * size[0] as usize;
         let bytes_per_row = width.next_multiple_of(ROW_ALIGNMENT);
