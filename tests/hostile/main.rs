@@ -1,4 +1,4 @@
-//! Tests all readers with malformed inputs: every reader returns a result or an error, in a short time.
+//! Tests all readers with malformed inputs: every reader must return a result or an error within a short time.
 //!
 //! libFuzzer can run the same functions for any length of time; see `tests/fuzz`.
 

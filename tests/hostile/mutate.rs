@@ -1,8 +1,8 @@
-//! Random mutations of inputs, which keep much of an input valid. They are the same in every run.
+//! Applies random mutations that leave much of an input valid. They are the same in every run.
 
 use dapple::hash::{Seed, rand_core::Rng};
 
-/// The numbers that replace numbers in texts.
+/// Numbers that replace numbers in text inputs.
 const NUMBERS: [&str; 16] = [
     "0",
     "-1",
@@ -22,7 +22,7 @@ const NUMBERS: [&str; 16] = [
     "18446744073709551616",
 ];
 
-/// The bytes that replace numbers in binary files.
+/// Bytes that replace numbers in binary inputs.
 const BYTES: [[u8; 4]; 8] = [
     [0; 4],
     [0xff; 4],
@@ -34,7 +34,7 @@ const BYTES: [[u8; 4]; 8] = [
     [0, 0, 0xc0, 0x7f],
 ];
 
-/// Makes random mutations of inputs.
+/// A source of random mutations.
 pub(crate) struct Mutator {
     random: Box<dyn FnMut() -> u64>,
 }
@@ -83,7 +83,7 @@ impl Mutator {
         bytes
     }
 
-    /// Inserts a part of `other`, 1 to 40 bytes, at a position. The part replaces at most as many bytes.
+    /// Inserts 1 to 40 bytes of `other` at position `at`. They replace at most as many bytes.
     fn splice(&mut self, bytes: &mut Vec<u8>, at: usize, other: &[u8]) {
         if other.is_empty() {
             return;
@@ -94,7 +94,7 @@ impl Mutator {
         bytes.splice(at..end, part.iter().copied());
     }
 
-    /// Replaces the first number in a text at or after a position.
+    /// Replaces the first number in a text at or after position `at`.
     fn replace_number(&mut self, bytes: &mut Vec<u8>, at: usize) {
         let is_digit = |byte: &u8| byte.is_ascii_digit() || matches!(byte, b'.' | b'-');
         let Some(start) = bytes[at..].iter().position(is_digit) else {

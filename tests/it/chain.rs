@@ -7,7 +7,7 @@ use dapple_points::{Domain, PointSet};
 use dapple_pups::{Pups, Texture};
 use dapple_raster::{Field, Window, glam::DVec2};
 
-/// Makes a texture of 200 random points on the unit torus, with random values.
+/// Builds a texture from 200 random points on the unit torus, with random values.
 fn texture(seed: Seed) -> Texture {
     let unit = |index: u32, purpose| unit_f64(hash2(seed, [i64::from(index), 0], purpose));
     let positions = (0..200)

@@ -1,4 +1,4 @@
-//! Checks the images in the documentation of the crates: they are up to date, small, and included.
+//! Checks that the images in the crates' documentation are up to date, small, and included.
 //!
 //! `cargo xtask docs-images` rewrites them.
 #![expect(
@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Maximum total size of a crate's images, in bytes. Users download them with the source.
+/// Maximum total size of a crate's images, in bytes. Users download the images with the source.
 const BYTES_MAX: u64 = 350_000;
 
 fn folder(documented: &Documented, name: &str) -> PathBuf {

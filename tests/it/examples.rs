@@ -6,7 +6,7 @@ use std::path::Path;
 
 const README: &str = include_str!("../../crates/dapple/README.md");
 
-/// Returns the names of the examples in order, with their texts.
+/// Returns the names and source texts of the examples, in order.
 fn examples() -> Vec<(String, String)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/dapple/examples");
     let mut examples = Vec::new();

@@ -1,4 +1,5 @@
-//! Golden images: small images of the output of a crate, compared with the files in `tests/golden/` pixel by pixel.
+//! Compares golden images, which are small images of a crate's output, with the files in `tests/golden/` pixel by
+//! pixel.
 //!
 //! `cargo xtask golden --bless` rewrites the files. A failed run leaves the new image as `<name>.new.png` in
 //! `target/tmp/golden/`, for comparison with the old one. Every image shows one subject and has at most 8 KiB.
@@ -26,13 +27,13 @@ use dapple_worley::{Combination, Metric, Octaves, Plane, Worley2, Worley3};
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// Maximum size of a file, in bytes.
+/// Maximum size of a golden image file, in bytes.
 const BYTES_MAX: usize = 8 * 1024;
 
 /// Width and height of most images, in pixels.
 const SIZE: u32 = 96;
 
-/// A golden image: its name, and the function that makes its file.
+/// A golden image: its name, and the function that renders its file.
 type Golden = (&'static str, fn() -> anyhow::Result<Vec<u8>>);
 
 /// All golden images.
@@ -77,7 +78,7 @@ fn golden_folder_holds_nothing_else() {
     }
 }
 
-/// Compares an image with its file, or rewrites the file if the environment variable asks for it.
+/// Compares an image with its file, or rewrites the file if the environment variable is set.
 fn check((name, draw): &Golden) -> anyhow::Result<()> {
     let bytes = draw().with_context(|| format!("{name} was not drawn"))?;
     ensure!(
@@ -189,7 +190,7 @@ fn pups_noise() -> anyhow::Result<Vec<u8>> {
     gray(&noise.to_raster(&window()?)?)
 }
 
-/// Makes a jittered grid: one random point in each of 6 × 6 cells of the unit torus.
+/// Generates a jittered grid: one random point in each of 6 × 6 cells of the unit torus.
 fn jittered_points() -> anyhow::Result<PointSet> {
     let jitter = |cell, axis| unit_f64(hash2(Seed(1), cell, axis));
     let position = |cell: [i64; 2]| {
@@ -200,7 +201,7 @@ fn jittered_points() -> anyhow::Result<PointSet> {
     Ok(PointSet::new(unit_torus(), positions.collect())?)
 }
 
-/// Draws corner tiles with random corner colors, made from two source tiles of cracks, one finer than the other.
+/// Draws corner tiles with random corner colors, built from two source tiles of cracks, one finer than the other.
 fn tile_corner_tiles() -> anyhow::Result<Vec<u8>> {
     let cracks = |cells: u16| {
         let period = Some(u32::from(cells));
@@ -217,7 +218,7 @@ fn tile_corner_tiles() -> anyhow::Result<Vec<u8>> {
     gray(map)
 }
 
-/// Draws black and white blended by a tile of noise, with more white to the right.
+/// Draws black and white blended by a noise tile, with more white to the right.
 fn tile_mask() -> anyhow::Result<Vec<u8>> {
     let tile = rank_equalize(&wavelet_tile([32; 2], &[0.0, 0.5, 1.0], Seed(5))?)?;
     let tile = repeat(&tile, [SIZE; 2])?;

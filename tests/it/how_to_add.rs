@@ -10,13 +10,13 @@ use std::path::Path;
 
 const CONTRIBUTING: &str = include_str!("../../CONTRIBUTING.md");
 
-/// An existing item of a kind, whose files are counted.
+/// An existing item of one kind, whose files are counted.
 struct Example {
-    /// The start of its row in the section.
+    /// Start of the kind's row in the section.
     row: &'static str,
-    /// Words that name the item in code; files that contain one of them are counted.
+    /// Words that name the item in code. Files that contain any of them are counted.
     words: &'static [&'static str],
-    /// The text that `NAME` in the row's file names stands for.
+    /// Text that replaces `NAME` in the row's file names.
     file: &'static str,
     /// Maximum number of files.
     most: usize,

@@ -1,4 +1,4 @@
-//! Workspace-wide tests, one binary.
+//! Workspace-wide tests, compiled into one binary.
 
 mod chain;
 mod docs;

@@ -12,7 +12,7 @@ use dapple_worley::{Combination, Octaves, Worley2, Worley4};
 
 const SEED: Seed = Seed(7);
 
-/// Returns fields that repeat after 4 and 2 units.
+/// Returns fields with periods of 4 and 2 units along x and y.
 fn fields() -> Result<Vec<(&'static str, Box<dyn Field>)>> {
     let periods = [Some(4), Some(2)];
     let worley = Worley2::new(SEED).with_period(periods)?;
@@ -66,7 +66,7 @@ fn fields_repeat_after_the_period_that_they_state() -> Result<()> {
     for (name, field) in fields()? {
         assert_eq!(field.period(), [Some(4.0), Some(2.0)], "{name}");
         let tile = field.tile_raster([64, 32])?;
-        // The pixel size is a power of two, so that the positions of repeats are exact.
+        // The pixel size is a power of two, so that positions one period apart are exact.
         let window = Window::new(DVec2::new(-4.0, 2.0), DVec2::new(12.0, 6.0), [192, 96])?;
         let repeats = field.to_raster(&window)?;
         assert!(

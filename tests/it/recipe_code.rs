@@ -1,5 +1,5 @@
-//! Checks the Rust program of a recipe: the file equals the output of `Recipe::to_rust`, it compiles, and it
-//! reproduces the bits of the recipe's maps.
+//! Checks a Rust program generated from a recipe: the file equals the output of `Recipe::to_rust`, it compiles, and
+//! it reproduces the bits of the recipe's maps.
 //!
 //! `DAPPLE_BLESS=1 cargo test -p dapple-tests recipe_code` rewrites the file.
 #![expect(clippy::disallowed_methods, reason = "the program lies in a file")]

@@ -1,4 +1,4 @@
-//! Checks the statements of the README of `dapple-recipe` about recipes.
+//! Checks the statements about recipes in the README of `dapple-recipe`.
 #![expect(clippy::disallowed_methods, reason = "the workspace is made of files")]
 
 use dapple::color::LinearRgb;
@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 const README: &str = include_str!("../../crates/dapple-recipe/README.md");
 
-/// A recipe for the examples of nodes, which are added to it. `a` and `b` are numbers, `c` is a color.
+/// A recipe to which the README's example nodes are added. `a` and `b` are scalars, `c` is a color.
 const AROUND: &str = r##"
 dapple = 1
 extent = [8.0, 8.0]
@@ -26,7 +26,7 @@ b = { coordinate = { along = [0.125, 0.0] } }
 c = { ramp = { input = "a", palette = "lagoon" } }
 "##;
 
-/// Iterates over the rows of the tables of nodes, as the kind of node and its example.
+/// Iterates over the rows of the README's node tables, as the kind of node and its example.
 fn rows() -> impl Iterator<Item = (&'static str, &'static str)> {
     README.lines().filter_map(|line| {
         let (kind, rest) = line.strip_prefix("| `")?.split_once('`')?;
@@ -88,7 +88,7 @@ fn readme_shows_errors_as_they_are() {
     assert_eq!(errors.concat(), block("text"), "the errors of the README");
 }
 
-/// Returns the first code block in a language.
+/// Returns the README's first code block in `language`.
 fn block(language: &str) -> &'static str {
     let start = format!("```{language}\n");
     let block = README.split(&start).nth(1).expect("a block");
@@ -129,7 +129,7 @@ fn fur_has_no_bands_across_its_height() {
         });
         let rows = means.expect("a row for each").statistics().deviation;
         let contrast = rows / height.statistics().deviation;
-        // Independent pixels have a contrast of 1/16 between rows. Hair, 2 pixels wide, has 0.07 to 0.10.
+        // Independent pixels have a contrast of 1/16 between rows. Hair that is 2 pixels wide has 0.07 to 0.10.
         assert!(contrast < 0.13, "{name}: rows differ by {contrast}");
     }
 }
@@ -154,7 +154,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 fn kinds_of_nodes_and_textures_are_named_by_their_tables_alone() {
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
     let matched = |text: &str| {
-        // A variant of `Node` or `PupsNode` begins with a capital letter followed by a small one.
+        // A variant of `Node` or `PupsNode` begins with an uppercase letter followed by a lowercase one.
         let mut after = text.split("Node::").skip(1).map(str::as_bytes);
         after.any(|name| {
             matches!(name, [first, second, ..] if first.is_ascii_uppercase() && second.is_ascii_lowercase())

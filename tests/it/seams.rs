@@ -1,9 +1,9 @@
-//! Checks the seams of tiles that repeat by construction: they look like any other boundary.
+//! Checks that the seams of tiles that repeat by construction look like any other boundary.
 //!
-//! Every periodic generator of the workspace draws one period of 32 × 32 units, with 8 or 16 pixels per unit, for each
-//! of 50 seeds. On average and at every scale, the step across the seam must equal the step across inner boundaries of
-//! the same kind: boundaries of cells for textures made of cells, and any boundary between pixels for textures without
-//! a lattice.
+//! Every periodic generator of the workspace draws one period of 32 × 32 units, with 8 or 16 pixels per unit, for
+//! each of 50 seeds. On average and at every scale, the step across the seam must equal the step across inner
+//! boundaries of the same kind. These are cell boundaries for cellular textures, and any boundary between pixels for
+//! textures without a lattice.
 
 mod generators;
 
@@ -14,23 +14,23 @@ use dapple_tile::{SeamOptions, SeamReport};
 use generators::GENERATORS;
 use rayon::prelude::*;
 
-/// The period of a tile in units. A unit is a cell of cellular noise.
+/// Period of a tile, in units. A unit is a cell of cellular noise.
 const PERIOD: u32 = 32;
 
-/// The width of a unit in pixels.
+/// Width of a unit in pixels.
 const UNIT: u32 = 8;
 
-/// Number of tiles of a generator that are averaged.
+/// Number of tiles averaged per generator.
 const N_TILES: u64 = 50;
 
-/// Number of tiles of a generator that must pass individually. Of a larger number, some would fail by chance.
+/// Number of tiles per generator that must pass individually. With more tiles, some would fail by chance.
 const N_PASSING: usize = 8;
 
-/// Number of crops that are averaged: fewer than tiles, since their ratios are far from 1.
+/// Number of crops averaged. It is smaller than the number of tiles, since the crops' ratios are far from 1.
 const N_CROPS: u64 = 8;
 
-/// Maximum standard error of a mean ratio. Most errors are below 0.01; the error of spots is near the limit, since they
-/// have few edges.
+/// Maximum standard error of a mean ratio. Most errors are below 0.01. The error for spots is near the limit, since
+/// spots have few edges.
 const LARGEST_ERROR: f64 = 0.03;
 
 /// A generator that draws a window of a periodic texture.
@@ -83,7 +83,7 @@ fn crops_of_generators_have_a_seam() -> Result<()> {
 }
 
 impl Generator {
-    /// Returns the reports on square images with a side of this many units, one per seed.
+    /// Returns the seam reports of square images with sides of `units` units, one per seed.
     fn reports(&self, units: u32, n_seeds: u64) -> Result<Vec<SeamReport>> {
         let extent = DVec2::splat(f64::from(units));
         let window = &Window::new(DVec2::ZERO, extent, [units * self.unit; 2])?;

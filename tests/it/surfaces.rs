@@ -1,5 +1,5 @@
-//! Checks textures on surfaces: features follow the orientation, colors are continuous across edges of faces, and real
-//! meshes and photographs go through the whole chain.
+//! Checks textures on surfaces: features follow the orientation, colors are continuous across the edges between
+//! faces, and real meshes and photographs pass through the whole chain.
 
 use dapple_color::LinearRgb;
 use dapple_hash::Seed;
@@ -14,7 +14,7 @@ use dapple_synth::{
 };
 use std::path::{Path, PathBuf};
 
-/// Makes vertical stripes with a period of `width` pixels. The texture changes only along P.
+/// Builds vertical stripes with a period of `width` pixels. The texture changes only along P.
 fn stripes(width: u32) -> Exemplar {
     let image = Raster::from_fn([4 * width, 32], |x, _| {
         let turns = f64::from(x % width) / f64::from(width);
@@ -24,11 +24,11 @@ fn stripes(width: u32) -> Exemplar {
     Exemplar::new(&image.unwrap(), Edges::Wrap).unwrap()
 }
 
-/// Returns the median angle between the orientation field and the direction of the texture, in degrees. The direction
-/// of the texture is the direction of least change of the structure tensor (Bigün and Granlund 1987).
+/// Returns the median angle between the orientation field and the direction of the texture, in degrees. The texture's
+/// direction is the direction of least change according to the structure tensor (Bigün and Granlund 1987).
 ///
-/// The tensor is summed over the gradients in a ball whose diameter is the period of the stripes, `stripe` spacings of
-/// sites, so that it always contains an edge of a stripe.
+/// The tensor is summed over the gradients in a ball whose diameter is the period of the stripes, which is `stripe`
+/// site spacings, so that it always contains an edge of a stripe.
 fn median_turn(synthesizer: &Synthesizer, values: &[f64], stripe: u32) -> f64 {
     let hierarchy = synthesizer.hierarchy();
     let (sites, level) = (hierarchy.sites(), &hierarchy.levels()[0]);
@@ -62,7 +62,7 @@ fn median_turn(synthesizer: &Synthesizer, values: &[f64], stripe: u32) -> f64 {
 
 /// Returns the gradient that best fits the differences to the neighbors of a site.
 ///
-/// A tensor summed over edges, each with its own difference, would be cheaper. But it is biased where neighbors are
+/// Summing a tensor over edges, each with its own difference, would be cheaper. But it is biased where neighbors are
 /// unevenly distributed: by 3 degrees in the median for a correct texture.
 fn gradient(hierarchy: &Hierarchy, site: SiteIdx, values: &[f64]) -> DVec3 {
     let sites = hierarchy.sites();
@@ -88,7 +88,7 @@ fn gradient(hierarchy: &Hierarchy, site: SiteIdx, values: &[f64]) -> DVec3 {
     right * along_right + down * ((xx * of_y - xy * of_x) / determinant)
 }
 
-/// Returns a synthesizer for each set of directions, all with the same sites of a mesh.
+/// Returns a synthesizer for each set of directions, all with the same sites on the mesh.
 fn with_fields(mesh: Mesh, fields: &[&[[DVec3; 2]]]) -> Vec<Synthesizer> {
     let surface = Surface::new(mesh).unwrap();
     let hierarchy = Hierarchy::new(&surface, &sites(40_000, 3)).unwrap();
@@ -157,8 +157,8 @@ fn turn_of_a_texture_that_is_right_is_none() {
     let [synthesizer] = &with_fields(models::bunny(4000).unwrap(), &[&[]])[..] else {
         panic!("one field");
     };
-    // Rings around the y axis are perpendicular to the field. So the stripes are turned by 90 degrees, less an
-    // error due to the curvature of the surface within the tensor's ball.
+    // Rings around the y axis are perpendicular to the field. The stripes are therefore rotated by 90 degrees, less
+    // an error due to the curvature of the surface within the tensor's ball.
     let hierarchy = synthesizer.hierarchy();
     let spacing = hierarchy.levels()[0].spacing();
     let heights = hierarchy
@@ -217,7 +217,7 @@ fn data(file: &str) -> Option<PathBuf> {
     None
 }
 
-/// Synthesizes a texture from files and bakes a texture map.
+/// Synthesizes a texture from an exemplar file on a mesh, and bakes it to a texture map.
 fn texture_map(mesh: Mesh, exemplar: &Path, n_sites: usize) -> Raster<[f32; 3]> {
     let image = read_image(exemplar, &Limits::default())
         .unwrap()

@@ -1,4 +1,4 @@
-//! Checks images that are made to repeat: they have no seam and keep their detail.
+//! Checks that images made tileable have no seam and preserve their detail.
 //!
 //! Fractal noise and gravel are generated. Photographs are read from `shared/data/exemplars`, next to the workspace,
 //! and are skipped if they do not exist.
@@ -26,7 +26,7 @@ const PHOTOGRAPHS: [&str; 6] = [
     "rock023_cc0_256.png",
 ];
 
-/// Means of the reports on all crops of an image.
+/// Mean values from the reports on all crops of an image.
 #[derive(Debug, Default)]
 struct Means {
     seam_at_1: f64,
@@ -34,7 +34,7 @@ struct Means {
     top_octave: f64,
     /// Maximum deviation of the top octave's ratio from 1.
     furthest: f64,
-    /// The lowest local detail, as a multiple of that of the source.
+    /// Minimum local detail, as a multiple of the source's local detail.
     local: f64,
 }
 
@@ -84,22 +84,23 @@ fn sources() -> Result<Vec<(&'static str, Raster<f32>)>> {
     Ok(images)
 }
 
-/// Makes four octaves of noise, the first with ten cells per crop. The lattice does not align with the pixels, so that
-/// crops begin anywhere in a cell.
+/// Generates four octaves of noise, the first with ten cells per crop. The lattice does not align with the pixels, so
+/// that crops begin at arbitrary positions within a cell.
 fn fractal_noise() -> Result<Raster<f32>> {
     let noise = WaveletNoise2::new(64, Seed(5))?.with_weights(&[1.0, 0.5, 0.25, 0.125])?;
     let window = Window::new(DVec2::ZERO, DVec2::splat(41.0), [512; 2])?;
     Ok(noise.to_raster(&window)?)
 }
 
-/// Makes Worley cells, 12 pixels each.
+/// Generates Worley cells that are 12 pixels wide.
 fn gravel() -> Result<Raster<f32>> {
     let window = Window::new(DVec2::ZERO, DVec2::splat(512.0 / 12.0), [512; 2])?;
     let texture = Worley2::new(Seed(6)).combine(Combination::F2_MINUS_F1);
     Ok(texture.to_raster(&window)?)
 }
 
-/// Returns the means over all crops of an image. The crops are made to repeat by a method, or unchanged without one.
+/// Returns the means over all crops of an image. Crops are made tileable with `method`; if it is `None`, they are
+/// unchanged.
 fn means(image: &Raster<f32>, method: Option<Method>) -> Result<Means> {
     let [columns, rows] = image.size().map(|side| side / CROP);
     let n = f64::from(columns * rows);
@@ -110,7 +111,7 @@ fn means(image: &Raster<f32>, method: Option<Method>) -> Result<Means> {
             Some(method) => Seamless::new(method).apply(&crop)?,
             None => crop.clone(),
         };
-        // A soft cut leaves out the last columns and rows. Compare with a source of equal size, so that the report
+        // A soft cut removes the last columns and rows. Compare with a source of the same size, so that the report
         // shows the effect of the method and not the difference between parts of an image.
         let source = crop.crop([0; 2], tile.size())?;
         let report = SeamReport::beside(&source, &tile, &SeamOptions::default())?;

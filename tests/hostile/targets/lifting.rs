@@ -12,16 +12,16 @@ use dapple::synth::{
     Synthesizer, bake_values,
 };
 
-/// Maximum numbers of vertices, faces and sites.
+/// Maximum number of vertices; the constants below limit faces and sites.
 const MOST_VERTICES: u8 = 8;
 const MOST_FACES: u8 = 12;
 const MOST_SITES: u8 = 64;
-/// Sides of the example and of the baked map, in pixels.
+/// Side of the example and of the baked map, in pixels.
 const SIDE: u32 = 16;
 const MAP_SIDE: u32 = 64;
 
-/// Synthesizes a texture on a mesh from an image or from the mesh's own texture, or repairs that texture. The input is
-/// rejected, or all baked values are within the range of the example.
+/// Synthesizes a texture on a mesh from an image or from the mesh's own texture, or repairs that texture. Either the
+/// input is rejected, or all baked values are within the range of the example.
 pub fn lift(bytes: &[u8]) {
     let mut bytes = Bytes(bytes);
     let choice = bytes.byte();
@@ -83,7 +83,7 @@ pub fn lift(bytes: &[u8]) {
     }
 }
 
-/// Makes a small mesh with sites; `None` if it is rejected.
+/// Builds a small mesh with sites; `None` if it is rejected.
 fn synthesizer(bytes: &mut Bytes<'_>, n_levels: usize) -> Option<Synthesizer> {
     let [n_vertices, n_faces, n_sites] =
         [MOST_VERTICES, MOST_FACES, MOST_SITES].map(|most| 1 + bytes.byte() % most);
@@ -102,7 +102,7 @@ fn synthesizer(bytes: &mut Bytes<'_>, n_levels: usize) -> Option<Synthesizer> {
     accepted(Synthesizer::new(surface, &[], &sites))
 }
 
-/// Bakes the texture to a map of the mesh.
+/// Bakes the texture to a texture map for the mesh.
 fn baked(
     synthesizer: &Synthesizer,
     made: &SurfaceTexture,
@@ -113,7 +113,7 @@ fn baked(
 }
 
 pub(super) fn seeds() -> Vec<Vec<u8>> {
-    // The coordinates of the corners of a tetrahedron, as the codes of 0 and 1.
+    // The corner coordinates of a tetrahedron, as the codes for 0 and 1.
     let corners = [[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]];
     let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
     let seed = |choice: u8| {
@@ -123,7 +123,7 @@ pub(super) fn seeds() -> Vec<Vec<u8>> {
         if choice & 32 != 0 {
             seed.extend([4, 5]); // From 0.5 to 2.
         }
-        // Texture coordinates from 0 to 1: a code, and two bytes with the number.
+        // Texture coordinates from 0 to 1, each as a code and two bytes with the number.
         seed.extend((0..24_u8).flat_map(|at| [200, at, at.wrapping_mul(53)]));
         seed.extend([0xf0, 0x7e]);
         seed

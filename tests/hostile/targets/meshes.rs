@@ -88,7 +88,7 @@ fn check_mesh(mesh: &Mesh) {
     assert!(surface.area() > 0.0, "the area is {}", surface.area());
 }
 
-/// A cube with every kind of data that a model may have.
+/// Returns a cube with every kind of data that a model may have.
 fn model() -> Model {
     let corner = |index: u32| DVec3::from([0, 1, 2].map(|axis| f64::from(index >> axis & 1)));
     let faces = [

@@ -9,7 +9,7 @@ use dapple::points::{Domain, PointSet, SpectrumOptions, spectrum};
 /// Maximum number of points. It is small, since some steps take time proportional to its square.
 const MOST_POINTS: usize = 32;
 
-/// Makes a point set. It is rejected, or its statistics and its graph are computed or rejected.
+/// Builds a point set. Either it is rejected, or its statistics and its graph are computed or rejected.
 pub fn points(bytes: &[u8]) {
     let mut bytes = Bytes(bytes);
     let choice = bytes.byte();
@@ -44,7 +44,7 @@ pub fn points(bytes: &[u8]) {
         EdgeDirection::Symmetric
     };
     let count = u32::from(choice >> 6) * 3;
-    // Build only one graph per input: on thin domains, each graph may use its whole limit of work.
+    // Build only one graph per input: on thin domains, each graph may use its entire work limit.
     let graph = match choice >> 4 & 3 {
         0 => delaunay(&points),
         1 => gabriel(&points),

@@ -16,8 +16,8 @@ const LIMITS: PlanLimits = PlanLimits {
     pixels: 1 << 12,
 };
 
-/// Reads a recipe. It is rejected, or it is unchanged when written and read again, and its bake is within limits or
-/// rejected.
+/// Reads a recipe. Either it is rejected, or it is unchanged when written and read again, and its bake is within the
+/// limits or rejected.
 pub fn recipe(bytes: &[u8]) {
     let Ok(text) = core::str::from_utf8(bytes) else {
         return;
@@ -98,7 +98,7 @@ fn check_bake(recipe: &Recipe) {
     }
 }
 
-/// A recipe for the README's examples of nodes, which are added to it. `a` and `b` are numbers, `c` is a color.
+/// A recipe to which the README's example nodes are added. `a` and `b` are scalars, `c` is a color.
 const AROUND: &str = r##"
 dapple = 1
 seed = 3

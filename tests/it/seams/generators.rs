@@ -1,7 +1,7 @@
-//! All periodic generators of the workspace.
+//! Lists all periodic generators of the workspace.
 //!
-//! Left out are progressions and the ramp of labels, which are the cow and the giraffe with other options, and textures
-//! after a reference image, which are only as uniform as the image, so that their seams prove nothing.
+//! Two groups are left out. Progressions and the ramp of labels are the cow and the giraffe with other options.
+//! Textures that follow a reference image are only as uniform as the image, so their seams prove nothing.
 
 use super::{Generator, PERIOD, UNIT};
 use anyhow::Result;
@@ -23,20 +23,20 @@ use dapple_worley::{
     Worley2, Worley3, Worley4,
 };
 
-/// Options for textures with a lattice that has one cell, or two half-unit cells, along a unit. Boundaries of cells may
-/// differ from other places.
+/// Options for textures with a lattice that has one cell, or two half-unit cells, per unit. Cell boundaries may
+/// differ from other boundaries.
 const CELLS: SeamOptions = SeamOptions {
     axes: [true; 2],
     lattice: [UNIT; 2],
 };
 
-/// Options for a map of a sphere, which has cells and repeats along x only.
+/// Options for a map of a sphere, which has cells and repeats only along x.
 const AROUND: SeamOptions = SeamOptions {
     axes: [true, false],
     ..CELLS
 };
 
-/// Options for textures without a lattice, whose statistics are equal everywhere.
+/// Options for textures without a lattice, whose statistics are the same everywhere.
 const ANYWHERE: SeamOptions = SeamOptions {
     axes: [true; 2],
     lattice: [1; 2],
@@ -93,7 +93,7 @@ impl Generator {
         }
     }
 
-    /// Draws with twice as many pixels per unit, for edges of patches, which vary more than smooth fields.
+    /// Doubles the number of pixels per unit. Use it for patches, whose edges vary more than smooth fields.
     const fn twice_as_fine(self) -> Self {
         Self {
             unit: 2 * UNIT,
@@ -104,10 +104,10 @@ impl Generator {
 
 // Worley's cellular basis.
 
-/// The distance over which the nearest points are smoothed, in cells.
+/// Distance over which the nearest feature points are smoothed, in cells.
 const SMOOTH: f32 = 0.25;
 
-/// Returns the basis of the plane, with a period.
+/// Returns the 2-D basis with a period.
 fn worley(seed: Seed) -> Result<Worley2> {
     Ok(Worley2::new(seed).with_period([Some(PERIOD); 2])?)
 }
@@ -241,7 +241,7 @@ fn placed_points(seed: Seed, window: &Window) -> Result<Raster<f32>> {
 
 // Partition-of-unity parametrics.
 
-/// Returns the torus of the control points.
+/// Returns the torus that contains the control points.
 fn domain() -> Domain {
     Domain::torus(DVec2::ZERO, DVec2::splat(f64::from(PERIOD)))
 }
@@ -346,10 +346,10 @@ fn ridged_noise(seed: Seed, window: &Window) -> Result<Raster<f32>> {
 
 // Wavelets.
 
-/// The weights of the bands of wavelet noise; the first band has two cells per unit.
+/// Weights of the wavelet noise bands; the first band has two cells per unit.
 const WEIGHTS: [f32; 2] = [1.0, 0.5];
 
-/// Converts a window from units to cells of wavelet noise. A period has `2 * PERIOD` cells.
+/// Converts a window from units to wavelet noise cells. A period has `2 * PERIOD` cells.
 fn in_half_units(window: &Window) -> Result<Window> {
     let extent = DVec2::new(f64::from(window.size[0]), f64::from(window.size[1]));
     Ok(Window::new(
@@ -369,7 +369,7 @@ fn wavelet_noise_in_space(seed: Seed, window: &Window) -> Result<Raster<f32>> {
     Ok(noise.slice([4.625]).to_raster(&in_half_units(window)?)?)
 }
 
-/// Draws a tile of three bands, whose lattice has 2^3 pixels.
+/// Draws a tile with three bands, whose lattice cells are 2^3 pixels wide.
 fn tile_of_wavelets(seed: Seed, window: &Window) -> Result<Raster<f32>> {
     let tile = wavelet_tile([PERIOD * UNIT; 2], &[0.5, 1.0, 1.0], seed)?;
     Ok(tile.crop([0; 2], window.size)?)
