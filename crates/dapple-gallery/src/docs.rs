@@ -1,13 +1,14 @@
-//! Images in the documentation of the crates: small Markdown files that contain their images as data URIs.
+//! Renders the images in the crates' documentation: small Markdown files that contain their images as data URIs.
 //!
-//! A [`Strip`] is a row of images that shows one option, such as a metric in all its kinds. All images of a strip use
-//! the same seed and the same window, so that only the option differs. `cargo xtask docs-images` writes each strip as
-//! `docs/<name>.md` into the folder of its crate, where the source includes it in a doc comment. The images therefore
-//! need no network and are part of the published package. READMEs cannot contain data URIs: their image is the file
-//! `docs/gallery.png` next to them. A test compares the files with new images, pixel by pixel.
+//! A [`Strip`] is a row of images that shows one option in several settings, such as all metrics. All images of a
+//! strip use the same seed and the same window, so that only the option differs. `cargo xtask docs-images` writes
+//! each strip as `docs/<name>.md` into its crate's folder, where the source includes it in a doc comment. The images
+//! therefore need no network and are part of the published package. READMEs cannot contain data URIs; their image is
+//! the file `docs/gallery.png` next to them. A test compares the files with newly rendered images, pixel by pixel.
 //!
-//! The source includes strips under `cfg(doc)`: rustdoc shows them, also for a crate that another one depends on, but
-//! editors do not. Strips are omitted where the documentation of another crate inlines the item (`#[doc(inline)]`).
+//! The source includes strips under `cfg(doc)`. They therefore appear in rustdoc, also for a crate that another one
+//! depends on, but not in editors. Strips are omitted where another crate's documentation inlines the item
+//! (`#[doc(inline)]`).
 //!
 //! [`documented`] lists the images of all crates. Each crate has its own file.
 
@@ -32,30 +33,29 @@ use core::fmt::Write as _;
 use dapple_color::Code;
 use dapple_image::{Limits, PngImage, Transfer, decode_png, encode_png};
 
-/// A folder with a README and with documentation, and their images.
+/// A folder with a README and documentation, and their images.
 #[derive(Clone, Copy, Debug)]
 pub struct Documented {
-    /// Path of the folder from the root of the workspace; empty for the root itself.
+    /// Path of the folder relative to the workspace root; empty for the root itself.
     pub folder: &'static str,
-    /// Strips of its documentation, written to `docs/<name>.md`.
+    /// Strips in its documentation, written to `docs/<name>.md`.
     pub strips: &'static [Strip],
-    /// Makes the image of its README, written to `docs/gallery.png`.
+    /// Renders the README's image, which is written to `docs/gallery.png`.
     pub banner: fn() -> anyhow::Result<Panel>,
 }
 
-/// A row of images that shows one option in different settings.
+/// A row of images that show one option in different settings.
 #[derive(Clone, Copy, Debug)]
 pub struct Strip {
     /// Name of the file, without `.md`.
     pub name: &'static str,
-    /// Common text of all images of the row. If it is empty, the row has no line of text.
+    /// Text shared by all images of the row. If it is empty, the row has no line of text.
     pub caption: &'static str,
-    /// Makes the images. Their labels say how they differ.
+    /// Renders the images. Their labels say how they differ.
     pub render: fn() -> anyhow::Result<Vec<Panel>>,
 }
 
-/// Returns all folders that have images in their documentation: the workspace, then its crates in the order of the
-/// README.
+/// Returns all folders that have images in their documentation: the workspace, then its crates in README order.
 // A function that is not inlined, because a unit test compiles everything that a `static` of its crate references, and
 // every user of a `const` compiles it again.
 #[inline(never)]
@@ -77,7 +77,7 @@ pub fn documented() -> &'static [Documented] {
     ]
 }
 
-/// A file in the folder `docs` of a [`Documented`].
+/// A file in the `docs` folder of a [`Documented`].
 #[derive(Clone, Debug)]
 pub struct File {
     /// Name of the file, which ends in `.md` or `.png`.
@@ -90,11 +90,11 @@ pub struct File {
 const DATA: &str = "data:image/png;base64,";
 
 impl Documented {
-    /// Makes all files of the folder `docs`.
+    /// Renders all files of the `docs` folder.
     ///
     /// # Errors
     ///
-    /// If the code of a strip or of the banner fails, or if a strip has no image.
+    /// If rendering a strip or the banner fails, or if a strip has no image.
     pub fn files(&self) -> anyhow::Result<Vec<File>> {
         let mut files = vec![File {
             name: "gallery.png".to_owned(),

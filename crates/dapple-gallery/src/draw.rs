@@ -1,7 +1,7 @@
-//! Drawing for figures: points, graphs, lines and contours with smooth edges, in the coordinates of the plane.
+//! Draws points, graphs, lines and contours for figures, with smooth edges, in the coordinates of the plane.
 //!
-//! Drawings use only arithmetic and square roots, so they have the same bits on every machine. Shapes on a domain that
-//! wraps are drawn at every position where the window shows them.
+//! Drawing uses only arithmetic and square roots, so results have the same bits on every machine. On a domain that
+//! wraps, shapes are drawn at every position that the window shows.
 
 mod diagram;
 mod enlarged;
@@ -43,11 +43,11 @@ impl<T: Texel> Canvas<T> {
         })
     }
 
-    /// Returns a canvas that starts with an image, whose pixels are the pixels of `window`.
+    /// Returns a canvas that starts with an image; the image's pixels correspond to the pixels of `window`.
     ///
     /// # Errors
     ///
-    /// If the sizes differ.
+    /// If the image and `window` differ in size.
     pub fn over(window: &Window, picture: Raster<T>) -> Result<Self, RasterError> {
         picture.check_same_size(window.size)?;
         Ok(Self {
@@ -106,14 +106,14 @@ impl<T: Texel> Canvas<T> {
         self.lines(&lines, width_px, ink);
     }
 
-    /// Draws contours of a field, given by its values at the pixels. The line width is in pixels.
+    /// Draws contours of a field, given by its values at the pixels. `width_px` is the line width in pixels.
     ///
     /// The distance to a contour is a first-order estimate, `|value − level| / |gradient|`. There is no contour where
     /// the gradient is zero.
     ///
     /// # Errors
     ///
-    /// If the sizes differ.
+    /// If the raster and the canvas differ in size.
     pub fn iso_lines(
         &mut self,
         field: &Raster<f32>,
@@ -145,8 +145,8 @@ impl<T: Texel> Canvas<T> {
         self.raster
     }
 
-    /// Returns the copies of a line that the window may show, on a domain that may wrap. Positions and `margin_px`,
-    /// the margin on both sides, are in pixels.
+    /// Returns the copies of a line that may be visible in the window, on a domain that may wrap. Positions, and the
+    /// margin `margin_px` on both sides, are in pixels.
     fn copies(&self, domain: &Domain, [from, to]: [DVec2; 2], margin_px: f64) -> Vec<[DVec2; 2]> {
         let [shift, size] = [domain.origin, domain.origin + domain.size]
             .map(|corner| self.pixel_from_plane(corner));
@@ -288,7 +288,8 @@ mod tests {
         assert_same(&here, &far);
     }
 
-    /// Shifted copies of a line are rounded at their ends, so their coverage may differ in the last bits.
+    /// Compares rasters with a small tolerance. Shifted copies of a line are rounded at their ends, so their coverage
+    /// may differ in the last bits.
     fn assert_same(a: &Raster<f32>, b: &Raster<f32>) {
         let largest = a
             .zip_map(b, |a, b| (a - b).abs())

@@ -1,4 +1,4 @@
-//! A figure of a paper: the file that makes it, and its data.
+//! A figure of a paper: the file that renders it, and its data.
 
 use crate::Panel;
 use crate::lock::{Hash, hash_panels};
@@ -6,30 +6,30 @@ use anyhow::{Context, ensure};
 
 /// A figure: a file under `src/figures/<paper>/` that renders one or several images.
 ///
-/// The name and the caption are not stored here; they come from the name of the file and its header.
+/// The name and the caption are not stored here; they come from the file's name and header.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure {
     /// The number of the figure in the paper, such as `"3a"`, or `"extra"` for a figure that the paper does not have.
     pub number: &'static str,
-    /// Parameters shown on the page: pairs of a name and a value. The value of `recipe` is a built-in recipe similar
-    /// to the figure; the page has a command to open it.
+    /// Parameters shown on the page, as pairs of a name and a value. The value of `recipe` is a built-in recipe
+    /// similar to the figure; the page shows a command that opens it.
     pub parameters: &'static [(&'static str, &'static str)],
-    /// The source file of the figure: always `source!()`.
+    /// Source file of the figure, always `source!()`.
     pub source: Source,
-    /// Makes the images, with `size` pixels along the longer side of each.
+    /// Renders the images, with `size` pixels along the longer side of each.
     pub render: fn(size: u32) -> anyhow::Result<Vec<Panel>>,
 }
 
 /// A paper and its figures, in the order of the paper.
 #[derive(Clone, Copy, Debug)]
 pub struct Paper {
-    /// Folder of its figures, and the first part of their names.
+    /// Name of the folder that contains its figures, and prefix of their names.
     pub key: &'static str,
-    /// The title of the paper.
+    /// Title of the paper.
     pub title: &'static str,
-    /// The authors, the publication and the year.
+    /// Authors, publication and year.
     pub reference: &'static str,
-    /// Its figures.
+    /// Figures of the paper.
     pub figures: &'static [Figure],
 }
 
@@ -58,8 +58,8 @@ impl Figure {
     ///
     /// # Errors
     ///
-    /// If the code of the figure fails, with the name of the figure as context, or if it makes no image or one of the
-    /// wrong size.
+    /// If rendering fails, with the name of the figure as context, or if the figure returns no images or an image of
+    /// the wrong size.
     pub fn render(&self, size: u32) -> anyhow::Result<Vec<Panel>> {
         let panels = (self.render)(size).with_context(|| format!("figure {}", self.name()))?;
         ensure!(!panels.is_empty(), "figure {} made no picture", self.name());
@@ -74,17 +74,17 @@ impl Figure {
         Ok(panels)
     }
 
-    /// Returns the hash of the images at `size` pixels. `figures.lock` contains the hash for
+    /// Returns the hash of the figure's images, rendered at `size` pixels. `figures.lock` contains the hash for
     /// [`LOCK_SIZE`](crate::LOCK_SIZE).
     ///
     /// # Errors
     ///
-    /// If [`render`](Self::render) fails.
+    /// Same as [`render`](Self::render).
     pub fn hash(&self, size: u32) -> anyhow::Result<Hash> {
         Ok(hash_panels(&self.render(size)?))
     }
 
-    /// Returns the name of the figure, from its file: `figures/pups/fig_03a.rs` is `pups-fig-03a`.
+    /// Returns the name of the figure, derived from its file: `figures/pups/fig_03a.rs` is `pups-fig-03a`.
     #[must_use]
     pub fn name(&self) -> String {
         let stem = self.source.path.trim_end_matches(".rs");

@@ -1,4 +1,4 @@
-//! The list of all figures, paper by paper.
+//! Lists all figures, paper by paper.
 
 mod fractal;
 mod house;
@@ -11,7 +11,7 @@ pub use surface::own::{Own, OwnTextured};
 
 use crate::{Figure, Paper};
 
-/// Returns the papers in the order of the page.
+/// Returns the papers in page order.
 // A function that is not inlined, because a unit test compiles everything that a `static` of its crate references, and
 // every user of a `const` compiles it again.
 #[inline(never)]
@@ -26,7 +26,7 @@ pub fn papers() -> &'static [Paper] {
     ]
 }
 
-/// Iterates over all figures, in the order of the page.
+/// Iterates over all figures, in page order.
 pub fn figures() -> impl Iterator<Item = &'static Figure> {
     papers().iter().flat_map(|paper| paper.figures)
 }

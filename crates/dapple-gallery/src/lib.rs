@@ -1,12 +1,12 @@
-//! The figures of the papers, one file each, and the page that shows them.
+//! Renders the figures of the papers, one file each, and the page that shows them.
 //!
-//! A [`Figure`] is a small file under `src/figures/<paper>/fig_<number>.rs`: its header is the caption, and its body
-//! makes the images with the public interfaces of the crates, short enough to learn from. [`papers`] lists all
+//! A [`Figure`] is a small file under `src/figures/<paper>/fig_<number>.rs`. Its header is the caption, and its body
+//! renders the images with the public API of the crates, in code short enough to learn from. [`papers`] lists all
 //! figures. The library renders figures in memory ([`Figure::render`]), hashes them ([`Figure::hash`]), compares the
-//! hashes with `figures.lock` ([`Lock`]) and writes the page as a string ([`page`]). The binary `dapple-gallery`, which
-//! `cargo xtask gallery` runs, writes the files for a browser.
+//! hashes with `figures.lock` ([`Lock`]) and writes the page as a string ([`page`]). The binary `dapple-gallery`,
+//! which `cargo xtask gallery` runs, writes the files for a browser.
 //!
-//! **A new figure** takes three steps:
+//! **Adding a figure** takes three steps:
 //!
 //! 1. write `src/figures/<paper>/fig_<number>.rs` with `pub(super) const FIGURE: Figure` (copy a neighbor);
 //! 2. add its `mod` and its `FIGURE` to `src/figures/<paper>.rs`;
@@ -21,9 +21,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`docs`] makes the small images that the crates show in their own documentation and READMEs.
+//! [`docs`] renders the small images that the crates show in their documentation and READMEs.
 //!
-//! Figures are deterministic: the same bits on every machine and for any number of threads.
+//! Figures are deterministic: they have the same bits on every machine and for any number of threads.
 
 #![forbid(unsafe_code)]
 

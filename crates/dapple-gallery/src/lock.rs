@@ -1,4 +1,4 @@
-//! The file `figures.lock`: a hash of every figure at one small size, which detects every change of a figure.
+//! The file `figures.lock`: a hash of every figure at one small size, which detects any change to a figure.
 //!
 //! A line is `<hash> <name>`, lines are sorted by name, and `#` begins a comment. The hash is FNV-1a in 64 bits (Glenn
 //! Fowler, Landon Curt Noll and Kiem-Phong Vo; <https://www.rfc-editor.org/rfc/rfc9923>). It covers for each panel: its
@@ -9,7 +9,7 @@ use crate::Panel;
 use core::fmt;
 use std::collections::BTreeMap;
 
-/// Size at which figures are hashed, in pixels along the longer side.
+/// Size at which figures are hashed, in pixels along the longer side of an image.
 pub const LOCK_SIZE: u32 = 128;
 
 const COMMENT: &str = "# FNV-1a of every figure's 8-bit pixels at 128 px. Accept changes with `cargo xtask gallery --bless`.";
@@ -18,7 +18,7 @@ const COMMENT: &str = "# FNV-1a of every figure's 8-bit pixels at 128 px. Accept
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hash(pub u64);
 
-/// Hashes of `figures.lock`, keyed by the names of the figures.
+/// The hashes in `figures.lock`, keyed by figure name.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Lock {
     hashes: BTreeMap<String, Hash>,
@@ -55,7 +55,7 @@ impl Lock {
         Ok(Self { hashes })
     }
 
-    /// Records the hash of a figure, replacing an older one.
+    /// Records a figure's hash, replacing an older one.
     pub fn insert(&mut self, name: String, hash: Hash) {
         self.hashes.insert(name, hash);
     }
@@ -65,13 +65,13 @@ impl Lock {
         self.hashes.retain(|name, _| keep(name));
     }
 
-    /// Returns the recorded hash of a figure.
+    /// Returns the recorded hash of the figure called `name`.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<Hash> {
         self.hashes.get(name).copied()
     }
 
-    /// Returns the changes from `self` to `now`, in the order of the names.
+    /// Returns the changes from `self` to `now`, sorted by name.
     #[must_use]
     pub fn changes(&self, now: &Self) -> Vec<Change> {
         let gone = self.hashes.keys().filter(|name| now.get(name).is_none());
@@ -123,7 +123,7 @@ impl fmt::Display for Change {
     }
 }
 
-/// Returns the hash of images, in their order.
+/// Returns the hash of a sequence of images.
 #[must_use]
 pub fn hash_panels(panels: &[Panel]) -> Hash {
     let mut hash = Fnv::default();

@@ -1,4 +1,4 @@
-//! The page that shows the figures: one HTML file that needs only the images next to it.
+//! Generates the page that shows the figures: one HTML file that needs only the images next to it.
 //!
 //! It shows thumbnails by paper. A thumbnail links to the full image; arrow keys go to adjacent images, and images
 //! that repeat can be shown tiled. Each figure has its source and the command that renders it. Without scripts,
@@ -6,7 +6,7 @@
 
 use crate::{Figure, Paper, papers};
 
-/// A rendered figure, as shown on the page.
+/// A rendered figure, as listed on the page.
 #[derive(Clone, Debug)]
 pub struct Entry {
     /// The figure that was rendered.
@@ -15,22 +15,22 @@ pub struct Entry {
     pub images: Vec<Image>,
 }
 
-/// An image of a figure, as shown on the page.
+/// An image of a figure, as listed on the page.
 #[derive(Clone, Debug)]
 pub struct Image {
-    /// Name of the file next to the page.
+    /// Name of the image file next to the page.
     pub file: String,
     /// Label of the panel.
     pub label: String,
-    /// Measurements on the image as text; empty if there are none.
+    /// Measurements of the image as text; empty if there are none.
     pub note: String,
-    /// Whether copies of the image continue each other along x and y.
+    /// Whether copies of the image tile seamlessly along x and y.
     pub repeats: [bool; 2],
     /// Width and height in pixels.
     pub size: [u32; 2],
 }
 
-/// Returns the page of some figures. `root` is the path from the page's folder to the root of the workspace, and may
+/// Returns the page for the given figures. `root` is the path from the page's folder to the workspace root, and may
 /// be empty.
 #[must_use]
 pub fn html(entries: &[Entry], root: &str) -> String {
@@ -151,10 +151,10 @@ fn command(line: &str) -> String {
     format!("<div class=\"code\"><pre class=\"command\">{line}</pre>{COPY}</div>")
 }
 
-/// Name of a parameter whose value is a built-in recipe.
+/// Name of the parameter whose value is a built-in recipe.
 const RECIPE: &str = "recipe";
 
-/// Button that copies the text before it.
+/// HTML of a button that copies the text before it.
 const COPY: &str = "<button class=\"scripted\" data-copy>Copy</button>";
 
 /// Escapes a text for an HTML element or an attribute in double quotes.

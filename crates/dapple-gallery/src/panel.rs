@@ -1,4 +1,4 @@
-//! One image of a figure, and its bytes in a file.
+//! One image of a figure, and its bytes in an image file.
 
 use dapple_color::{Code, LinearRgb};
 use dapple_raster::Raster;
@@ -6,12 +6,12 @@ use dapple_raster::Raster;
 /// One image of a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// Label that distinguishes the image from the others of the figure; empty if there is only one.
+    /// Label that distinguishes the image from the figure's other images; empty if there is only one.
     pub label: String,
-    /// Measurements on the image, as text in columns; empty if there are none. The page shows the note below the
+    /// Measurements of the image, as text in columns; empty if there are none. The page shows the note below the
     /// image, and the lock ignores it.
     pub note: String,
-    /// Whether copies of the image continue each other along x and y. The page shows such images tiled, and the lock
+    /// Whether copies of the image tile seamlessly along x and y. The page shows such images tiled, and the lock
     /// ignores this field.
     pub repeats: [bool; 2],
     /// Pixels of the image.
@@ -28,7 +28,7 @@ pub enum Picture {
 }
 
 impl Panel {
-    /// Makes a panel from shades of gray, from 0 (black) to 1 (white).
+    /// Creates a panel from shades of gray, from 0 (black) to 1 (white).
     #[must_use]
     pub fn gray(label: impl Into<String>, raster: Raster<f32>) -> Self {
         Self {
@@ -39,7 +39,7 @@ impl Panel {
         }
     }
 
-    /// Makes a panel from linear color.
+    /// Creates a panel from linear color.
     #[must_use]
     pub fn color(label: impl Into<String>, raster: Raster<LinearRgb>) -> Self {
         Self {
@@ -68,13 +68,13 @@ impl Panel {
         }
     }
 
-    /// Marks the image as repeating along both axes.
+    /// Marks the image as tiling along both axes.
     #[must_use]
     pub fn repeating(self) -> Self {
         self.repeating_along([true; 2])
     }
 
-    /// Sets the axes, x and y, along which the image repeats.
+    /// Sets whether the image tiles along x and y.
     #[must_use]
     pub fn repeating_along(self, repeats: [bool; 2]) -> Self {
         Self { repeats, ..self }

@@ -1,4 +1,4 @@
-//! Base64, the encoding of bytes in a data URI.
+//! Encodes and decodes Base64, the encoding of bytes in a data URI.
 //!
 //! Reference: S. Josefsson, "The Base16, Base32, and Base64 Data Encodings", RFC 4648, 2006,
 //! <https://www.rfc-editor.org/rfc/rfc4648>, section 4.

@@ -1,4 +1,4 @@
-//! The strips of `dapple-color`.
+//! Strips for the documentation of `dapple-color`.
 
 use super::picture::{BANNER, COLORS, GRAYS, banner_of, colored, rounded, shaded};
 use super::{Documented, Strip};
@@ -11,7 +11,7 @@ use dapple_raster::{Field, Raster, Window, Wrap};
 use dapple_worley::{Combination, Worley2, hash::Seed};
 use glam::DVec2;
 
-/// The crate with its strips, in the order of its documentation.
+/// The crate and its strips, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-color",
     strips: &[
@@ -46,7 +46,7 @@ pub(super) const DOCUMENTED: Documented = Documented {
 /// Width and height of a bar, in pixels.
 const BAR: [u32; 2] = [192, 20];
 
-/// Number of pixels along a side of an image.
+/// Width and height of an image, in pixels.
 const SMALL: u32 = 72;
 
 const INTERPOLATION: Strip = Strip {
@@ -115,7 +115,7 @@ const fn palette(name: &'static str, render: fn() -> anyhow::Result<Vec<Panel>>)
     }
 }
 
-/// Makes the bar of a palette; the categorical palettes get bands without transitions.
+/// Renders a palette as a bar; categorical palettes get bands without transitions.
 fn of(palette: Palette) -> anyhow::Result<Vec<Panel>> {
     let ramp = match palette {
         Palette::Cow | Palette::Labels => ColorRamp::bands(&palette.colors())?,
@@ -124,7 +124,7 @@ fn of(palette: Palette) -> anyhow::Result<Vec<Panel>> {
     Ok(vec![bar("its colors", &ramp, 1.0)?])
 }
 
-/// A ramp whose stops are unevenly spaced.
+/// Returns a ramp with unevenly spaced stops.
 fn ramp() -> anyhow::Result<ColorRamp> {
     let stops = [
         (0.0, [20_u8, 24, 60]),
@@ -140,14 +140,14 @@ fn ramp() -> anyhow::Result<ColorRamp> {
     Ok(ColorRamp::new(stops)?)
 }
 
-/// Makes a bar with the colors of the values from 0 to `end`, from left to right.
+/// Renders a bar with the colors for the values from 0 to `end`, from left to right.
 fn bar(label: &str, ramp: &ColorRamp, end: f32) -> anyhow::Result<Panel> {
     let value = |column: u32| (column as f32 + 0.5) * end / BAR[0] as f32;
     let colors = Raster::from_fn(BAR, |column, _| ramp.at(value(column)))?;
     Ok(Panel::color(label, colors))
 }
 
-/// A height map that repeats, of `side` × `side` pixels.
+/// Returns a height map that repeats, with `side` × `side` pixels.
 fn height(side: u32) -> anyhow::Result<Raster<f32>> {
     let bumps = Worley2::new(Seed(5))
         .with_period([Some(3); 2])?
@@ -157,7 +157,7 @@ fn height(side: u32) -> anyhow::Result<Raster<f32>> {
     Ok(bumps.to_raster(&window)?.map(|value| 1.0 - value))
 }
 
-/// A height map colored by a palette, reduced to as many colors as a gray image has shades.
+/// Returns a height map colored by a palette, reduced to as many colors as a gray image has shades.
 fn painted(label: &str, palette: Palette, height: &Raster<f32>) -> Panel {
     let height = height.map(|&value| rounded(value, GRAYS));
     Panel::color(label, palette.ramp().apply(&height))

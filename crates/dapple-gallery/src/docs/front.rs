@@ -1,4 +1,4 @@
-//! The image of the workspace's README: models covered from exemplars, and below them lit built-in recipes.
+//! Renders the image for the workspace's README: models covered from exemplars, and below them lit built-in recipes.
 
 use super::Documented;
 use super::picture::{below, colored, of_figures, row};

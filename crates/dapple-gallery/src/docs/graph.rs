@@ -1,4 +1,4 @@
-//! The strips of `dapple-graph`.
+//! Strips for the documentation of `dapple-graph`.
 
 use super::picture::{BANNER, GRAYS, LARGE, banner_of, shaded};
 use super::{Documented, Strip};
@@ -8,7 +8,7 @@ use dapple_graph::{EdgeDirection, Graph, delaunay, gabriel, k_nearest, yao};
 use dapple_points::{Domain, PointSet, hash::Seed, poisson_disk};
 use dapple_raster::Window;
 
-/// The crate with its strips, in the order of its documentation.
+/// The crate and its strips, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-graph",
     strips: &[DELAUNAY, GABRIEL, YAO, K_NEAREST],
@@ -96,7 +96,7 @@ fn points() -> anyhow::Result<PointSet> {
     Ok(poisson_disk(Domain::paper_torus(), 0.26, Seed(3))?)
 }
 
-/// Draws the edges and points of a graph, in the square of its domain.
+/// Draws the edges and points of a graph within its square domain.
 fn edges(label: &str, points: &PointSet, graph: &Graph, side: u32) -> anyhow::Result<Panel> {
     let domain = points.domain();
     let window = Window::new(domain.origin, domain.size, [side; 2])?;

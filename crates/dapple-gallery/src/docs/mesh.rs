@@ -1,4 +1,4 @@
-//! The image of `dapple-mesh`: the models of `dapple-models`.
+//! Renders the README image for `dapple-mesh`: the models of `dapple-models`.
 
 use super::Documented;
 use super::picture::{BANNER, row};
@@ -7,7 +7,7 @@ use crate::figures::surface::stage::lit;
 use crate::figures::surface::subject::{SUBJECTS, Subject};
 use dapple_color::LinearRgb;
 
-/// Number of triangles of a model: enough for a small image.
+/// Number of triangles per model, enough for a small image.
 const N_TRIANGLES: usize = 3000;
 
 pub(super) const DOCUMENTED: Documented = Documented {

@@ -1,4 +1,4 @@
-//! The strips of `dapple-noise`.
+//! Strips for the documentation of `dapple-noise`.
 
 use super::picture::{BANNER, SIDE, SMOOTH_GRAYS, banner_of, shaded};
 use super::{Documented, Strip};
@@ -6,14 +6,14 @@ use crate::Panel;
 use dapple_noise::{GradientNoise2, hash::Seed};
 use dapple_raster::{Field, FieldExt, FractalShape};
 
-/// The crate with its strips, in the order of its documentation.
+/// The crate and its strips, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-noise",
     strips: &[GRADIENT_NOISE],
     banner: || banner_of(&panels(BANNER, ["", "", "", "", ""])?),
 };
 
-/// Number of noise cells along a side.
+/// Number of noise cells along each side of an image.
 const CELLS: u32 = 6;
 
 const GRADIENT_NOISE: Strip = Strip {
@@ -25,7 +25,7 @@ const GRADIENT_NOISE: Strip = Strip {
     },
 };
 
-/// One period of the noise, of three fractal sums, and of noise displaced by noise.
+/// Renders one period of the noise, of three fractal sums, and of noise displaced by noise.
 fn panels(side: u32, labels: [&str; 5]) -> anyhow::Result<[Panel; 5]> {
     let noise = |seed| GradientNoise2::new(Seed(seed)).with_period([Some(CELLS); 2]);
     let [noise, right, down] = [noise(1)?, noise(2)?, noise(3)?];

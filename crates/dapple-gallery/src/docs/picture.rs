@@ -8,22 +8,22 @@ use dapple_color::{Code, LinearRgb};
 use dapple_raster::{Field, Raster, Window};
 use glam::DVec2;
 
-/// Number of pixels along a side of an image.
+/// Width and height of an image, in pixels.
 pub(super) const SIDE: u32 = 92;
 
-/// Number of pixels along a side of an image of dots, lines or flat areas, which compresses well.
+/// Width and height, in pixels, of an image of dots, lines or flat areas, which compresses well.
 pub(super) const LARGE: u32 = 108;
 
-/// Number of samples along the side of a pixel, for images with edges.
+/// Number of samples along each side of a pixel, for images with edges.
 pub(super) const SAMPLES: u32 = 3;
 
-/// Number of gray levels of a smooth image; with fewer, steps would be visible.
+/// Number of gray levels in a smooth image; with fewer, steps would be visible.
 pub(super) const SMOOTH_GRAYS: f32 = 32.0;
 
-/// Number of gray levels of other images; a file with all 256 is several times as large.
+/// Number of gray levels in other images; a file with all 256 levels is several times as large.
 pub(super) const GRAYS: f32 = 16.0;
 
-/// Number of shades of each channel of a color image.
+/// Number of shades per channel in a color image.
 pub(super) const COLORS: f32 = 10.0;
 
 /// Height of an image in a README, in pixels.
@@ -32,36 +32,37 @@ pub(super) const BANNER: u32 = 96;
 /// Gap between the images of a row, in pixels.
 const GAP: u32 = 8;
 
-/// A square window, `units` wide and centered at the origin, with `side` × `side` pixels.
+/// Returns a square window, `units` wide and centered at the origin, with `side` × `side` pixels.
 pub(super) fn square(units: f64, side: u32) -> anyhow::Result<Window> {
     let corner = DVec2::splat(-0.5 * units);
     Ok(Window::new(corner, DVec2::splat(units), [side; 2])?)
 }
 
-/// An image of a smooth field with values from 0 to 1.
+/// Renders a smooth field with values from 0 to 1.
 pub(super) fn smooth(label: &str, field: &dyn Field, window: &Window) -> anyhow::Result<Panel> {
     Ok(shaded(label, &field.to_raster(window)?, SMOOTH_GRAYS))
 }
 
-/// An image of a field with edges, with values from 0 to 1; `window` is the window of the finished image.
+/// Renders a field with edges, with values from 0 to 1, by supersampling. `window` is the window of the finished
+/// image.
 pub(super) fn edged(label: &str, field: &dyn Field, window: &Window) -> anyhow::Result<Panel> {
     let fine = field.to_raster(&finer(window)?)?;
     Ok(shaded(label, &shrink(&fine, SAMPLES)?, GRAYS))
 }
 
-/// The window of all samples, [`SAMPLES`] along each side of a pixel.
+/// Returns the window of all samples, with [`SAMPLES`] along each side of a pixel.
 pub(super) fn finer(window: &Window) -> anyhow::Result<Window> {
     let size = window.size.map(|pixels| pixels * SAMPLES);
     let extent = DVec2::from(window.size.map(f64::from)) * DVec2::from(window.pixel);
     Ok(Window::new(window.origin, extent, size)?)
 }
 
-/// A gray image with the given number of shades.
+/// Returns a gray image with the given number of shades.
 pub(super) fn shaded(label: &str, raster: &Raster<f32>, shades: f32) -> Panel {
     Panel::gray(label, raster.map(|&value| rounded(value, shades)))
 }
 
-/// A color image with the given number of shades in each sRGB channel.
+/// Returns a color image with the given number of shades in each sRGB channel.
 pub(super) fn colored(label: &str, raster: &Raster<LinearRgb>, shades: f32) -> Panel {
     let colors = raster.map(|color| {
         let codes = color
@@ -78,8 +79,8 @@ pub(super) fn rounded(value: f32, shades: f32) -> f32 {
     (value.clamp(0.0, 1.0) * last).round() / last
 }
 
-/// Returns panels of figures, all `height` pixels high. A place is the name of a figure and the index of its panel,
-/// starting at 0.
+/// Returns panels of figures, all `height` pixels high. Each of `places` is the name of a figure and the index of its
+/// panel, starting at 0.
 pub(super) fn of_figures(places: &[(&str, usize)], height: u32) -> anyhow::Result<Vec<Panel>> {
     places
         .iter()
@@ -102,17 +103,17 @@ fn of_figure(name: &str, number: usize, height: u32) -> anyhow::Result<Panel> {
     }
 }
 
-/// Puts panels of figures in a row: the image of a README.
+/// Joins panels of figures in a row, as the image for a README.
 pub(super) fn banner(figures: &[(&str, usize)]) -> anyhow::Result<Panel> {
     banner_of(&of_figures(figures, BANNER)?)
 }
 
-/// Puts panels in a row: the image of a README.
+/// Joins panels in a row, as the image for a README.
 pub(super) fn banner_of(panels: &[Panel]) -> anyhow::Result<Panel> {
     Ok(colored("", &row(panels)?, COLORS))
 }
 
-/// Puts images in a row with white gaps, cropped to the height of the lowest image.
+/// Joins images in a row with white gaps, cropped to the smallest height.
 pub(super) fn row(panels: &[Panel]) -> anyhow::Result<Raster<LinearRgb>> {
     let height = panels.iter().map(|panel| panel.size()[1]).min();
     let height = height.context("there is no picture for the row")?;

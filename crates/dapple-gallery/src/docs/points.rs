@@ -1,4 +1,4 @@
-//! The strips of `dapple-points`.
+//! Strips for the documentation of `dapple-points`.
 
 use super::picture::{GRAYS, LARGE, banner_of, shaded};
 use super::{Documented, Strip};
@@ -11,7 +11,7 @@ use dapple_points::{
 use dapple_raster::{Ramp, Varying, Window};
 use glam::DVec2;
 
-/// The crate with its strips, in the order of its documentation.
+/// The crate and its strips, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-points",
     strips: &[POISSON_DISK, EXTENDED, NESTED, VARIABLE, WHITE, JITTERED],
@@ -33,7 +33,7 @@ pub(super) const DOCUMENTED: Documented = Documented {
 
 const SEED: Seed = Seed(4);
 
-/// Radius of a point in pixels.
+/// Radius of a drawn point, in pixels.
 const RADIUS: f64 = 1.6;
 
 const POISSON_DISK: Strip = Strip {
@@ -113,7 +113,7 @@ fn domain() -> Domain {
     Domain::paper_torus()
 }
 
-/// Points whose radius varies from left to right, and which wrap from top to bottom.
+/// Returns points whose radius varies from left to right, on a domain that wraps from top to bottom.
 fn variable() -> anyhow::Result<PointSet> {
     let domain = Domain {
         wrap: [false, true],

@@ -1,4 +1,4 @@
-//! The strips of `dapple-preview`.
+//! Strips for the documentation of `dapple-preview`.
 
 use super::picture::{SIDE, banner, colored};
 use super::{Documented, Strip};
@@ -12,7 +12,7 @@ use dapple_preview::{
 };
 use glam::DVec3;
 
-/// The crate with its strips, in the order of its documentation.
+/// The crate and its strips, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-preview",
     strips: &[SHAPE, CUT, SHADOWS, MATERIAL, MIRROR],
@@ -27,7 +27,7 @@ pub(super) const DOCUMENTED: Documented = Documented {
     },
 };
 
-/// Number of shades of each channel: more than elsewhere, since light changes smoothly.
+/// Number of shades per channel. It is higher than in other strips, since light changes smoothly.
 const COLORS: f32 = 20.0;
 
 const SHAPE: Strip = Strip {
@@ -162,7 +162,7 @@ fn scene<'a>(label: &str, fill: impl FnOnce(Scene<'a>) -> Scene<'a>) -> anyhow::
     Ok(colored(label, &picture, COLORS))
 }
 
-/// A checkerboard in space, in two colors.
+/// Returns a material with a solid checkerboard in two colors.
 fn boards(surface: &Surface) -> Material {
     let board = (surface.position * 4.0 + 0.01).floor().element_sum() * 0.5;
     let color = if board == board.floor() {

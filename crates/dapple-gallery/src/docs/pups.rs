@@ -1,4 +1,4 @@
-//! The strips of `dapple-pups`.
+//! Strips for the documentation of `dapple-pups`.
 
 mod labels;
 mod net;
@@ -9,7 +9,7 @@ use super::picture::{LARGE, SIDE, banner, edged, smooth, square};
 use crate::Panel;
 use dapple_raster::Field;
 
-/// The crate with its strips, in the order of its documentation.
+/// The crate and its strips, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-pups",
     strips: &[
@@ -50,12 +50,12 @@ pub(super) const DOCUMENTED: Documented = Documented {
     },
 };
 
-/// A square of smooth values, `units` wide.
+/// Renders a square of smooth values, `units` wide.
 fn values(label: &str, units: f64, texture: &dyn Field) -> anyhow::Result<Panel> {
     smooth(label, texture, &square(units, SIDE)?)
 }
 
-/// A square of labels, `units` wide.
+/// Renders a square of labels, `units` wide.
 fn labels(label: &str, units: f64, texture: &dyn Field) -> anyhow::Result<Panel> {
     edged(label, texture, &square(units, LARGE)?)
 }

@@ -1,4 +1,4 @@
-//! The strips of `dapple-synth`.
+//! Strips for the documentation of `dapple-synth`.
 
 use super::picture::{BANNER, COLORS, banner_of, colored, of_figures};
 use super::{Documented, Strip};
@@ -9,7 +9,7 @@ use dapple_color::LinearRgb;
 use dapple_raster::Raster;
 use dapple_synth::{Coherence, Edges, Exemplar, Options, synthesize_plane};
 
-/// The crate with its strips, in the order of its documentation.
+/// The crate and its strips, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-synth",
     strips: &[PLANE, COHERENCE],
@@ -28,7 +28,7 @@ pub(super) const DOCUMENTED: Documented = Documented {
     },
 };
 
-/// Number of pixels along a side of a texture.
+/// Width and height of a texture, in pixels.
 const SMALL: u32 = 80;
 
 const PLANE: Strip = Strip {
@@ -59,7 +59,7 @@ const COHERENCE: Strip = Strip {
     },
 };
 
-/// Draws an exemplar of the figures with 64 pixels along its side; returns the image and the exemplar made of it.
+/// Draws one of the figures' exemplars with 64 × 64 pixels; returns the image and the exemplar built from it.
 fn exemplar(name: &str) -> anyhow::Result<(Raster<LinearRgb>, Exemplar)> {
     let of_figures = EXEMPLARS.iter().find(|exemplar| exemplar.name == name);
     let exemplar = of_figures.with_context(|| format!("no exemplar {name}"))?;
@@ -72,7 +72,7 @@ fn exemplar(name: &str) -> anyhow::Result<(Raster<LinearRgb>, Exemplar)> {
     Ok((image, exemplar))
 }
 
-/// Synthesizes a texture that repeats.
+/// Synthesizes a texture that tiles.
 fn grown(
     label: &str,
     image: &Raster<LinearRgb>,
@@ -85,7 +85,7 @@ fn grown(
     Ok(colored(label, &colors, COLORS))
 }
 
-/// Centers an exemplar on a white image that is as high as the others of its row.
+/// Centers an exemplar on a white image that is as high as the other images of its row.
 fn on_white(image: &Raster<LinearRgb>) -> anyhow::Result<Panel> {
     let [width, height] = image.size();
     let above = BANNER.saturating_sub(height) / 2;

@@ -1,4 +1,4 @@
-//! The strips of `dapple-tile`.
+//! Strips for the documentation of `dapple-tile`.
 
 mod blending;
 mod methods;
@@ -10,7 +10,7 @@ use dapple_raster::{Field, Raster, Window};
 use dapple_worley::{Combination, Worley2, hash::Seed};
 use glam::DVec2;
 
-/// The crate with its strips, in the order of its documentation.
+/// The crate and its strips, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-tile",
     strips: &[
@@ -44,8 +44,8 @@ pub(super) const DOCUMENTED: Documented = Documented {
     },
 };
 
-/// A height map of pebbles with dark borders, `cells` cells and `side` pixels wide. It either repeats or is a crop
-/// that does not repeat.
+/// Returns a height map of pebbles with dark borders, `cells` cells and `side` pixels wide. It either repeats or is a
+/// crop that does not repeat.
 fn pebbles(cells: u32, side: u32, repeats: bool, seed: Seed) -> anyhow::Result<Raster<f32>> {
     let period = repeats.then_some(cells);
     let worley = Worley2::new(seed).with_period([period; 2])?;

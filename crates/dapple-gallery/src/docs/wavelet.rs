@@ -1,4 +1,4 @@
-//! The strips of `dapple-wavelet`.
+//! Strips for the documentation of `dapple-wavelet`.
 
 use super::picture::{BANNER, GRAYS, SIDE, SMOOTH_GRAYS, banner_of, shaded};
 use super::{Documented, Strip};
@@ -9,7 +9,7 @@ use dapple_wavelet::{Border, Degree, SplineFilter, WaveletNoise2, wavelet_tile};
 use dapple_worley::{Combination, Worley2, hash::Seed};
 use glam::DVec2;
 
-/// The crate with its strips, in the order of its documentation.
+/// The crate and its strips, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-wavelet",
     strips: &[SPLINE_FILTER, DEGREE, ANALYZE, NOISE, WEIGHTS, TILE],
@@ -29,7 +29,7 @@ pub(super) const DOCUMENTED: Documented = Documented {
 
 const BORDERS: [Border; 2] = [Border::Periodic; 2];
 
-/// Number of noise cells along a side.
+/// Number of noise cells along each side of an image.
 const CELLS: f64 = 24.0;
 
 const SPLINE_FILTER: Strip = Strip {
@@ -127,7 +127,7 @@ const TILE: Strip = Strip {
     },
 };
 
-/// An image that repeats and contains edges.
+/// Returns an image that repeats and contains edges.
 fn picture(side: u32) -> anyhow::Result<Raster<f32>> {
     let cells = Worley2::new(Seed(6)).with_period([Some(4); 2])?;
     let cracks = cells.combine(Combination::F2_MINUS_F1).normalized()?;
@@ -136,7 +136,7 @@ fn picture(side: u32) -> anyhow::Result<Raster<f32>> {
     Ok(cracks.to_raster(&window)?.map(crack))
 }
 
-/// The two finest bands of an image, amplified by 2 and shown around middle gray.
+/// Renders the two finest bands of an image, amplified by 2 and centered on middle gray.
 fn details(picture: &Raster<f32>, side: u32) -> anyhow::Result<[Panel; 2]> {
     let bands = SplineFilter::default().analyze(picture, 2, BORDERS)?;
     let panel = |band: usize| -> anyhow::Result<Panel> {
@@ -150,14 +150,14 @@ fn noise(weights: &[f32]) -> anyhow::Result<WaveletNoise2> {
     Ok(WaveletNoise2::new(64, Seed(1))?.with_weights(weights)?)
 }
 
-/// Noise shown around middle gray.
+/// Renders noise centered on middle gray.
 fn signed(label: &str, noise: &WaveletNoise2, side: u32) -> anyhow::Result<Panel> {
     let window = Window::new(DVec2::ZERO, DVec2::splat(CELLS), [side; 2])?;
     let gray = noise.to_raster(&window)?.map(|value| half_gray(*value));
     Ok(shaded(label, &gray, GRAYS))
 }
 
-/// Maps a nearly normal value of variance 1 to a shade.
+/// Maps a roughly normally distributed value with variance 1 to a shade.
 fn half_gray(value: f32) -> f32 {
     0.5 + 0.18 * value
 }

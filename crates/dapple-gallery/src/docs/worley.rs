@@ -1,4 +1,4 @@
-//! The strips of `dapple-worley`.
+//! Strips for the documentation of `dapple-worley`.
 
 mod cells;
 mod combinations;
@@ -16,7 +16,7 @@ use dapple_raster::{Raster, Window};
 use dapple_worley::{Cellular, Dimensions, Space, Worley2, WorleyError, hash::Seed};
 use glam::DVec2;
 
-/// The crate with its strips, in the order of its documentation.
+/// The crate and its strips, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-worley",
     strips: &[
@@ -73,32 +73,32 @@ pub(super) const DOCUMENTED: Documented = Documented {
     },
 };
 
-/// Number of shades of a gray image.
+/// Number of shades in a gray image.
 const SHADES: f32 = 32.0;
 
-/// Number of shades of an image with edges, and of each channel of a color image.
+/// Number of shades in an image with edges, and per channel in a color image.
 const SHADES_WITH_EDGES: f32 = 16.0;
 
 /// Number of positions at which a range is measured.
 const N_POSITIONS: u32 = 4000;
 
-/// The Worley basis that most strips show.
+/// Returns the Worley basis used by most strips.
 fn basis() -> Worley2 {
     Worley2::new(Seed(3))
 }
 
-/// A square window, `cells` wide, with its corner at the origin.
+/// Returns a square window, `cells` wide, with its corner at the origin.
 fn square(cells: f64) -> anyhow::Result<Window> {
     Ok(Window::new(DVec2::ZERO, DVec2::splat(cells), [SIDE; 2])?)
 }
 
-/// An image of smooth values from 0 to 1.
+/// Renders smooth values from 0 to 1 as a gray image.
 fn gray(label: &str, cells: f64, value: impl Fn(DVec2) -> f32 + Sync) -> anyhow::Result<Panel> {
     let raster = Raster::from_window(&square(cells)?, value)?;
     Ok(shaded(label, &raster, SHADES))
 }
 
-/// A gray image of values with edges, from 0 to 1.
+/// Renders values with edges, from 0 to 1, as a gray image.
 fn gray_with_edges(
     label: &str,
     cells: f64,
@@ -108,7 +108,7 @@ fn gray_with_edges(
     Ok(shaded(label, &shrink(&fine, SAMPLES)?, SHADES_WITH_EDGES))
 }
 
-/// A color image with edges.
+/// Renders colors with edges.
 fn color_with_edges(
     label: &str,
     cells: f64,
@@ -123,7 +123,7 @@ fn fine(cells: f64) -> anyhow::Result<Window> {
     Ok(Window::new(DVec2::ZERO, DVec2::splat(cells), size)?)
 }
 
-/// Scales a texture so that its measured range becomes 0 to 1.
+/// Scales a texture so that its measured range is mapped to 0 to 1.
 fn ranged<const N: usize>(texture: Cellular<N>) -> Result<Cellular<N>, WorleyError>
 where
     Dimensions: Space<N>,
@@ -132,7 +132,7 @@ where
     texture.with_range(range)
 }
 
-/// The Voronoi cells of a basis in flat grays, with its feature points as black dots.
+/// Renders the Voronoi cells of a basis in flat grays, with its feature points as black dots.
 fn flat(label: &str, cells: f64, worley: &Worley2) -> anyhow::Result<Panel> {
     let dot = 1.6 * cells as f32 / SIDE as f32;
     gray_with_edges(label, cells, |at| {
@@ -145,7 +145,8 @@ fn flat(label: &str, cells: f64, worley: &Worley2) -> anyhow::Result<Panel> {
     })
 }
 
-/// The color of a direction: red grows to the right and green downward, and the zero vector is gray.
+/// Returns the color for a vector: red increases to the right and green downward, and the zero vector is gray.
+/// `longest` is the length with full saturation.
 fn color_of(vector: DVec2, longest: f64) -> LinearRgb {
     let code = |part: f64| (128.0 + 120.0 * (part / longest).clamp(-1.0, 1.0)).round() as u8;
     LinearRgb::from_srgb([code(vector.x), code(vector.y), 128])

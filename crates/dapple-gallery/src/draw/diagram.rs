@@ -1,4 +1,4 @@
-//! Parts of diagrams other than points and lines: arrows, dashed lines and labels.
+//! Draws elements of diagrams other than points and plain lines: arrows, dashed lines and labels.
 
 use super::Canvas;
 use super::letters::strokes;
@@ -9,7 +9,7 @@ use dapple_raster::{Texel, glam::DVec2};
 const STROKE: f64 = 0.14;
 
 impl<T: Texel> Canvas<T> {
-    /// Draws a straight line with an arrowhead at its end. The width is in pixels.
+    /// Draws a straight line with an arrowhead at its end. `width_px` is in pixels.
     pub fn arrow(&mut self, [from, to]: [DVec2; 2], width_px: f64, ink: T) {
         let back = (from - to).normalize_or_zero()
             * (5.0 * width_px)
@@ -20,7 +20,7 @@ impl<T: Texel> Canvas<T> {
         self.lines(&[[from, to], head[0], head[1]], width_px, ink);
     }
 
-    /// Draws a straight line of `n` dashes with gaps of the same length. The width is in pixels.
+    /// Draws a straight line of `n` dashes with gaps of the same length. `width_px` is in pixels.
     pub fn dashes(&mut self, [from, to]: [DVec2; 2], n: u32, width_px: f64, ink: T) {
         let n_parts = f64::from(2 * n.max(1) - 1);
         let part = |index: u32| from.lerp(to, f64::from(index) / n_parts);

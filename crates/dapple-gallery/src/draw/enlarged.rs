@@ -1,4 +1,4 @@
-//! Enlarged images, whose pixels become visible squares.
+//! Enlarges images so that their pixels become visible squares.
 
 use dapple_raster::{Raster, RasterError};
 

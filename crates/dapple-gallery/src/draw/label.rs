@@ -1,11 +1,11 @@
-//! Colors and shades for labels.
+//! Assigns colors and shades to labels.
 
 use dapple_color::LinearRgb;
 use dapple_graph::Graph;
 use dapple_points::PointIdx;
 use std::collections::BTreeSet;
 
-/// Returns the color of a label, which is always the same. Consecutive labels get very different colors.
+/// Returns a fixed color for a label. Consecutive labels get very different colors.
 #[must_use]
 pub fn label_color(label: u32) -> LinearRgb {
     // Steps of the golden section around the color wheel keep hues apart for any number of labels.
@@ -30,9 +30,9 @@ pub fn label_gray(label: u32) -> f32 {
 /// Returns a shade of gray, from 0.25 to 1, for each label of the points of a graph. Two labels connected by an edge
 /// get different shades out of six, so that they are easy to distinguish.
 ///
-/// Labels are consecutive numbers from 0. The next label to get a shade is always the one with the largest number of
-/// different shades around it. It gets the shade that differs most from these. (D. Brélaz, "New methods to color the
-/// vertices of a graph", 1979, `doi:10.1145/359094.359101`.)
+/// Labels are consecutive numbers from 0. The next label to be shaded is always the one whose neighbors have the most
+/// distinct shades. It gets the shade that differs most from theirs. (D. Brélaz, "New methods to color the vertices
+/// of a graph", 1979, `doi:10.1145/359094.359101`.)
 #[must_use]
 pub fn graph_grays(graph: &Graph, labels: &[u32]) -> Vec<f32> {
     let neighbors = neighbors(graph, labels);
@@ -64,7 +64,7 @@ pub fn graph_grays(graph: &Graph, labels: &[u32]) -> Vec<f32> {
         .collect()
 }
 
-/// Number of shades for a graph in the plane. Four are enough for every such graph, but this method needs up to six.
+/// Number of shades for a planar graph. Four are enough for every such graph, but this method needs up to six.
 const SHADES: u32 = 6;
 
 /// Returns for each label the set of labels connected to it by an edge.

@@ -1,4 +1,4 @@
-//! A small alphabet of strokes, for labels and for text as an image.
+//! A small stroke font, for labels and for text as an image.
 //!
 //! A letter is drawn on a grid: `y` is 0 at the top of capitals, 3 at the top of small letters, 9 on the baseline and
 //! 12 at the bottom of descenders. It is a list of strokes, separated by spaces. A stroke is a list of grid points
@@ -7,7 +7,7 @@
 
 use dapple_raster::glam::DVec2;
 
-/// Height of a capital, in grid lines.
+/// Height of a capital letter, in grid lines.
 const CAPITAL: f64 = 9.0;
 
 /// Gap between letters, in grid lines.
@@ -19,8 +19,8 @@ const SPACE: f64 = 2.5;
 /// Number of corner-cutting iterations for a curve.
 const N_CUTS: usize = 3;
 
-/// Returns the straight lines of a text whose capitals have the height 1. It starts at `x = 0` with its baseline at `y
-/// = 0`; `y` points down.
+/// Returns text as straight line segments, with capital letters of height 1. The text starts at `x = 0` with its
+/// baseline at `y = 0`; `y` points down.
 ///
 /// A character that is not in the alphabet leaves a space.
 pub(super) fn strokes(text: &str) -> Vec<[DVec2; 2]> {
@@ -54,7 +54,7 @@ fn corners(stroke: &str) -> Vec<DVec2> {
         .collect();
     let curve = stroke.starts_with(['~', '@']);
     if stroke.starts_with('@') {
-        // A closed curve starts and ends at the middle of a side.
+        // A closed curve starts and ends at the midpoint of a side.
         let middle = 0.5 * (points[0] + points[points.len() - 1]);
         points.insert(0, middle);
         points.push(middle);
@@ -65,8 +65,8 @@ fn corners(stroke: &str) -> Vec<DVec2> {
     points
 }
 
-/// Cuts the corners of a line once and keeps its two ends (Chaikin, An algorithm for high-speed curve generation,
-/// 1974).
+/// Cuts the corners of a polyline once; its two ends stay in place (Chaikin, An algorithm for high-speed curve
+/// generation, 1974).
 fn cut(points: &[DVec2]) -> Vec<DVec2> {
     let last = points.len().saturating_sub(2);
     let mut finer = vec![points[0]];

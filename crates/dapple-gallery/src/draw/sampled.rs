@@ -1,8 +1,8 @@
-//! Images from a function that gives a color at every position.
+//! Renders images from a function that returns a color for every position.
 
 use dapple_raster::{Raster, RasterError, Texel, Window, glam::DVec2};
 
-/// Draws the unit square, row 0 at `y = 0`: every pixel is the mean of `side` × `side` samples of `value`.
+/// Renders the unit square, with row 0 at `y = 0`. Every pixel is the mean of `side` × `side` samples of `value`.
 ///
 /// # Errors
 ///
@@ -32,7 +32,7 @@ pub fn sampled<T: Texel + Send>(
     })
 }
 
-/// A smooth step from 0 at `from` to 1 at `to`.
+/// Returns a smooth step from 0 at `from` to 1 at `to`.
 #[must_use]
 pub fn smooth_step(from: f64, to: f64, value: f64) -> f64 {
     let t = ((value - from) / (to - from)).clamp(0.0, 1.0);

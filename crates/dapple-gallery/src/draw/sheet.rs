@@ -1,15 +1,15 @@
-//! Several images on one sheet.
+//! Arranges several images on one sheet.
 
 use dapple_raster::{Raster, RasterError};
 
-/// Makes a sheet of `size` pixels with a grid of columns × rows images, row by row, and gaps between them.
+/// Builds a sheet of `size` pixels with a grid of columns × rows images, row by row, and gaps between them.
 ///
-/// `picture` makes the image with a given index, counted from 0 along the rows, in a given size. Sizes differ by at
-/// most one pixel, so that the sheet is filled.
+/// `picture` renders the image with the given index, counted from 0 along the rows, at the given size. Sizes differ
+/// by at most one pixel, so that the images fill the sheet.
 ///
 /// # Errors
 ///
-/// If the sheet is too small for its images, if `picture` fails, or if it makes an image of a different size.
+/// If the sheet is too small for its images, if `picture` fails, or if it returns an image of a different size.
 pub fn sheet<T: Copy>(
     size: [u32; 2],
     grid: [u32; 2],
@@ -28,7 +28,7 @@ pub fn sheet<T: Copy>(
     Ok(sheet)
 }
 
-/// Returns the position and the size of an image of the sheet.
+/// Returns the position and the size, in pixels, of the image at a column and row of the sheet.
 fn cell(size: [u32; 2], grid: [u32; 2], gap: u32, place: [u32; 2]) -> [[u32; 2]; 2] {
     let edge = |axis: usize, index: u32| {
         let whole = u64::from(size[axis]) + u64::from(gap);

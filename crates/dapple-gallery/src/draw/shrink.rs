@@ -1,8 +1,8 @@
-//! Smooth edges by supersampling: every pixel is the mean of many samples.
+//! Smooths edges by supersampling: every pixel is the mean of many samples.
 
 use dapple_raster::{Raster, RasterError, Texel};
 
-/// Makes a raster `side` times smaller along each axis: every pixel is the mean of `side` × `side` samples.
+/// Returns a raster `side` times smaller along each axis. Every pixel is the mean of `side` × `side` samples.
 ///
 /// Samples at the right and the bottom that do not fill a whole pixel are ignored.
 ///

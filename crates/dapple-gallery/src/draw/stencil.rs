@@ -1,4 +1,4 @@
-//! The fraction of each pixel that a drawing covers.
+//! Computes the fraction of each pixel that a drawing covers.
 //!
 //! Coverage is computed for an edge one pixel wide, from the distance to the shape. Where shapes overlap the larger
 //! coverage is used, so that lines can cross or join without a blot.
@@ -22,7 +22,7 @@ impl Stencil {
         }
     }
 
-    /// Covers all positions within `reach` of the straight line between two positions, which may be equal.
+    /// Covers all positions within `reach` of the line segment between two positions, which may be equal.
     ///
     /// A line thinner than a pixel is drawn paler to keep its weight.
     pub(super) fn segment(&mut self, [from, to]: [DVec2; 2], reach: f64) {
@@ -39,7 +39,7 @@ impl Stencil {
         }
     }
 
-    /// Covers a pixel to the given fraction, unless its coverage is already larger.
+    /// Sets a pixel's coverage, unless its coverage is already larger.
     pub(super) fn cover(&mut self, column: u32, row: u32, coverage: f32) {
         let pixel = &mut self.coverage[row as usize * self.size[0] as usize + column as usize];
         *pixel = pixel.max(coverage);
@@ -55,7 +55,7 @@ impl Stencil {
     }
 }
 
-/// Clamps `coordinate` to a side of `n` pixels and rounds it down to a whole pixel.
+/// Clamps `coordinate` to the range of a side with `n` pixels and rounds it down to a pixel index.
 fn clamped(coordinate: f64, n: u32) -> u32 {
     coordinate.clamp(0.0, f64::from(n)) as u32
 }

@@ -1,18 +1,18 @@
-//! Fractal noise for the figures of several papers.
+//! Fractal noise used by the figures of several papers.
 
 use dapple_points::Domain;
 use dapple_pups::{OctavesOptions, Spacing, hash::Seed, octaves};
 use dapple_raster::{Field, Raster, Window, Wrap};
 use glam::DVec2;
 
-/// A tile of fractal noise that repeats after 1 along both axes, with values from 0 to 1.
+/// A tile of fractal noise with a period of 1 along both axes and values from 0 to 1.
 #[derive(Clone, Debug)]
 pub(super) struct FractalNoise {
     tile: Raster<f32>,
 }
 
 impl FractalNoise {
-    /// Adds up octaves of noise; the control points of the first are `spacing` apart.
+    /// Sums octaves of noise; the control points of the first octave are `spacing` apart.
     pub(super) fn new(spacing: f64, seed: Seed) -> anyhow::Result<Self> {
         let options = OctavesOptions {
             domain: Domain::torus(DVec2::ZERO, DVec2::ONE),

@@ -1,4 +1,4 @@
-//! Our own figures, which reproduce no paper.
+//! Figures of our own, which reproduce no paper.
 
 mod fig_01;
 mod fig_02;

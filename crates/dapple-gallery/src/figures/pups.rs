@@ -30,7 +30,7 @@ use crate::{Panel, Paper};
 use dapple_points::Domain;
 use dapple_raster::{Field, RasterError, Window};
 
-/// The paper, with its figures in the order of the paper.
+/// The paper, with its figures in order.
 pub(super) const PAPER: Paper = Paper {
     key: "pups",
     title: "Partition of Unity Parametrics for Texture Synthesis",
@@ -61,13 +61,12 @@ pub(super) const PAPER: Paper = Paper {
     ],
 };
 
-/// Renders a texture on the paper's square `[-1, 1]²` in shades of gray. The square is a torus, so the image repeats.
+/// Renders a texture on the paper's square `[-1, 1]²` in shades of gray. The square is a torus, so the image tiles.
 fn picture(label: impl Into<String>, texture: &dyn Field, size: u32) -> Result<Panel, RasterError> {
     Ok(Panel::gray(label, texture.to_raster(&square(size)?)?).repeating())
 }
 
-/// Renders a texture of labels on the paper's square in shades of gray, with its hard edges smoothed. The image
-/// repeats.
+/// Renders a label texture on the paper's square in shades of gray, with its hard edges smoothed. The image tiles.
 fn picture_of_labels(
     label: impl Into<String>,
     texture: &dyn Field,
@@ -77,7 +76,7 @@ fn picture_of_labels(
     Ok(Panel::gray(label, shrink(&fine, SIDE)?).repeating())
 }
 
-/// Number of samples along each side of a pixel, which smooth a hard edge.
+/// Number of samples along each side of a pixel, used to smooth hard edges.
 const SIDE: u32 = 4;
 
 /// Returns the window of all samples of the paper's square, for an image of `size` × `size` pixels.

@@ -33,7 +33,7 @@ mod wobble;
 
 use crate::Paper;
 
-/// The paper, with its figures in the order of the paper.
+/// The paper, with its figures in order.
 pub(super) const PAPER: Paper = Paper {
     key: "surface",
     title: "Texture Synthesis on Surfaces",

@@ -35,7 +35,7 @@ use pebble::pebble;
 use perlin::perlin;
 use stone::stone;
 
-/// The paper, with its figures in the order of the paper.
+/// The paper, with its figures in order.
 pub(super) const PAPER: Paper = Paper {
     key: "wavelet",
     title: "Wavelet and Blend maps for texture synthesis",
@@ -53,7 +53,7 @@ pub(super) const PAPER: Paper = Paper {
     ],
 };
 
-/// Blend tile of the paper: halved and doubled once, in the phase that leaves the smaller step.
+/// The paper's blend tile: halved and doubled once, with the phase that leaves the smaller step at the seam.
 const BLEND_TILE: SplineProject = SplineProject {
     levels: 1,
     phase: Phase::CookDeRose,
@@ -67,7 +67,7 @@ fn tile_side(size: u32) -> u32 {
     (size / 32 * 8).max(8)
 }
 
-/// Returns a margin in pixels, and the cut with this margin that makes a tile of `side` pixels. The image must be
+/// Returns a margin in pixels, and the soft cut with this margin for a tile of `side` pixels. The image must be
 /// larger than the tile by the margin.
 fn cut(side: u32) -> (u32, Method) {
     let margin = side / 4;
@@ -79,13 +79,14 @@ fn cut(side: u32) -> (u32, Method) {
     (margin, Method::SoftCut(cut))
 }
 
-/// Returns the size of a stone or a pebble in an image `side` pixels wide: a sixth of it, which suits the larger ones.
+/// Returns the size of a stone or pebble, in pixels, in an image `side` pixels wide. It is a sixth of `side`, which
+/// suits the larger stones.
 fn stone_px(side: u32) -> f64 {
     (0.16 * f64::from(side)).max(1.0)
 }
 
-/// Makes the source images of the paper's blend tiles, by name: features of two textures, and noise. None of them
-/// repeats.
+/// Returns the source images for the paper's blend tiles, by name: features of two textures, and noise. None of them
+/// tiles.
 fn originals(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
     let features = |ground: Material| {
         let features = BlendMap::new(stone_px(side)).with_wrap([Wrap::Mirror; 2]);
@@ -99,7 +100,7 @@ fn originals(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
     ])
 }
 
-/// Makes gray images that do not repeat, by name, for the comparison of the methods.
+/// Returns gray images that do not tile, by name, for the comparison of the methods.
 fn crops(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
     let gray = |ground: Material| ground.color.map(|color| color.luminance().sqrt());
     Ok([
@@ -110,7 +111,7 @@ fn crops(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
     ])
 }
 
-/// Returns the [`SeamReport`] of a tile compared with its original in four short lines, and a verdict.
+/// Returns the [`SeamReport`] of a tile compared with its original, as four short lines and a verdict.
 fn report(original: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<String> {
     let options = SeamOptions {
         lattice: [1 << BLEND_TILE.levels; 2],
@@ -145,7 +146,7 @@ fn verdict(report: &SeamReport) -> String {
     }
 }
 
-/// Makes a sheet `width` pixels wide with a tile at the upper left and, on the right, two by two copies of it.
+/// Builds a sheet `width` pixels wide with a tile at the upper left and, on the right, two by two copies of it.
 fn beside(tile: &Raster<f32>, width: u32) -> anyhow::Result<Raster<f32>> {
     let map = repeat(tile, tile.size().map(|side| 2 * side))?;
     let left = width.saturating_sub(map.width());

@@ -23,7 +23,7 @@ use dapple_raster::{Raster, Window, Wrap};
 use dapple_worley::{Cellular, Plane};
 use glam::{DVec2, DVec3};
 
-/// The paper, with its figures in the order of the paper.
+/// The paper, with its figures in order.
 pub(super) const PAPER: Paper = Paper {
     key: "worley",
     title: "A Cellular Texture Basis Function",
@@ -42,10 +42,10 @@ pub(super) const PAPER: Paper = Paper {
     ],
 };
 
-/// Number of positions at which the range of a texture is measured. The paper has "several thousand".
+/// Number of positions at which a texture's range is measured. The paper uses "several thousand".
 const N_POSITIONS: u32 = 8000;
 
-/// Renders the slice `z = 0.5` of a texture in space, `cells` cells wide, with the texture's range scaled to 0 to 1.
+/// Renders the slice `z = 0.5` of a 3-D texture, `cells` cells wide, with the texture's range scaled to 0 to 1.
 fn slice(texture: Cellular<3>, cells: f64, size: [u32; 2]) -> anyhow::Result<Raster<f32>> {
     let range = texture.measure_range(Seed(1), N_POSITIONS)?;
     let height = cells * f64::from(size[1]) / f64::from(size[0]);
@@ -60,7 +60,7 @@ fn slice(texture: Cellular<3>, cells: f64, size: [u32; 2]) -> anyhow::Result<Ras
 /// Renders a height map as a colored surface, lit from the upper left. The height selects the color and bends the
 /// normals.
 ///
-/// `depth` is the height difference between 0 and 1, in widths of the image.
+/// `depth` is the height difference between the values 0 and 1, in multiples of the image width.
 fn relief(height: &Raster<f32>, ramp: &ColorRamp, depth: f64) -> anyhow::Result<Raster<LinearRgb>> {
     let [width, rows] = height.size().map(f64::from);
     let options = NormalOptions {

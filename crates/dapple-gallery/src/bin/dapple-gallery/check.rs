@@ -1,4 +1,4 @@
-//! The options `--check` and `--bless`, which compare the figures with `figures.lock` or rewrite it.
+//! Implements the options `--check` and `--bless`, which compare the figures with `figures.lock` or rewrite it.
 #![expect(clippy::disallowed_methods, reason = "the lock is a file")]
 
 use crate::{draw_each, say};
@@ -43,7 +43,7 @@ pub(crate) fn bless(selected: &[&'static Figure], path: &Path) -> anyhow::Result
     fs::write(path, new.to_string()).with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// Returns the old lock with new hashes of `selected`, and without the lines of deleted figures.
+/// Returns the old lock with updated hashes for `selected`, and without the lines of deleted figures.
 fn updated(old: &Lock, selected: &[&'static Figure]) -> anyhow::Result<Lock> {
     let mut lock = old.clone();
     let names: Vec<String> = figures().map(Figure::name).collect();

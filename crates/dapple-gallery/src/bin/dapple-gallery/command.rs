@@ -1,4 +1,4 @@
-//! The command line.
+//! Parses the command line.
 
 use crate::own::OwnArguments;
 use anyhow::{Result, anyhow, bail, ensure};
@@ -40,7 +40,7 @@ A mesh and an exemplar of your own:
       --levels N          how many levels the points have: 4 for large features (3)
       --coherence auto|K  how much worse a match may be that continues its neighbors; 0 as in the paper (auto)";
 
-/// The names of all options that begin with two dashes.
+/// Names of all options that begin with two dashes.
 const OPTIONS: [&str; 18] = [
     "size",
     "full",
@@ -62,7 +62,7 @@ const OPTIONS: [&str; 18] = [
     "coherence",
 ];
 
-/// Each of these options with the options that it cannot be combined with.
+/// Options with the options that they cannot be combined with.
 const CONFLICTS: [(&str, &[&str]); 7] = [
     ("full", &["size"]),
     ("check", &["bless", "out", "open", "size"]),
@@ -73,7 +73,7 @@ const CONFLICTS: [(&str, &[&str]); 7] = [
     ("docs", &["list", "bless", "out", "open", "size", "ranges"]),
 ];
 
-/// The options that need `--mesh`.
+/// Options that require `--mesh`.
 const OF_MESH: [&str; 6] = [
     "exemplar",
     "tiles",
@@ -83,7 +83,7 @@ const OF_MESH: [&str; 6] = [
     "coherence",
 ];
 
-/// Longer side of an image in pixels, without `--size` and with `--full`.
+/// Size of an image along its longer side, in pixels: the default, and with `--full`.
 const SIZE: u32 = 512;
 const FULL_SIZE: u32 = 1024;
 
@@ -96,7 +96,7 @@ const LEVELS: usize = 3;
 pub(crate) struct Command {
     /// The task to run.
     pub(crate) task: Task,
-    /// Parts of figure names that select figures; an empty list selects all.
+    /// Substrings of figure names that select figures; an empty list selects all.
     pub(crate) filter: Vec<String>,
     /// Number of pixels along the longer side of an image.
     pub(crate) size: u32,
@@ -112,7 +112,7 @@ pub(crate) enum Task {
         /// Open the page in the browser.
         open: bool,
     },
-    /// Render a mesh that the user provides.
+    /// Render a mesh provided by the user.
     Own(OwnArguments),
     /// Compare the figures with the lock.
     Check,
@@ -199,7 +199,7 @@ impl Typed {
         Ok(())
     }
 
-    /// Fails if two options exclude each other, or if an option is missing that another one requires.
+    /// Returns an error if two options conflict, or if an option is missing that another one requires.
     fn refuse_conflicts(&self) -> Result<()> {
         for (name, others) in CONFLICTS {
             if let Some(other) = others

@@ -1,4 +1,4 @@
-//! The option `--docs`: writes or checks the images in the documentation of the crates and in their READMEs.
+//! Implements the option `--docs`, which writes or checks the images in the crates' documentation and READMEs.
 #![expect(
     clippy::disallowed_methods,
     reason = "the pictures are files beside the source"
@@ -35,7 +35,7 @@ pub(crate) fn write() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Fails if an image on disk differs from a new one.
+/// Fails if an image on disk differs from a newly rendered one.
 pub(crate) fn check() -> anyhow::Result<()> {
     let mut old = Vec::new();
     for documented in documented() {

@@ -72,7 +72,7 @@ fn relative_root(out: &Path) -> anyhow::Result<String> {
     Ok(up + &down.collect::<String>())
 }
 
-/// Opens a file with the default program of the system.
+/// Opens a page with the system's default program.
 pub(crate) fn open(page: &Path) -> anyhow::Result<()> {
     let opener = match std::env::consts::OS {
         "windows" => "explorer",

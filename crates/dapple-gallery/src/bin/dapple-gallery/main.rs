@@ -65,7 +65,7 @@ fn selected(command: &Command) -> anyhow::Result<Vec<&'static Figure>> {
     Ok(figures)
 }
 
-/// The root of the workspace.
+/// Returns the root folder of the workspace.
 fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
 }
@@ -74,8 +74,8 @@ fn lock_path() -> PathBuf {
     root().join("crates/dapple-gallery/figures.lock")
 }
 
-/// Draws figures, several at a time on several cores, since few figures use all cores on their own. Prints a line
-/// before each one if standard error is a terminal.
+/// Calls `draw` for each figure, several at a time on several cores, since few figures use all cores on their own.
+/// Prints a line before each one if standard error is a terminal.
 fn draw_each<T: Send>(
     figures: &[&'static Figure],
     draw: impl Fn(&'static Figure) -> anyhow::Result<T> + Sync,

@@ -1,4 +1,4 @@
-//! Renders a mesh and an exemplar that the user provides (`--mesh`).
+//! Renders a mesh and an exemplar provided by the user (`--mesh`).
 #![expect(clippy::disallowed_methods, reason = "files are read and written here")]
 
 use crate::say;
@@ -13,19 +13,20 @@ use std::path::{Path, PathBuf};
 /// The arguments of `--mesh`: a mesh, the exemplar of its texture, and the options of the synthesis.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct OwnArguments {
-    /// The file of the mesh, in any supported format.
+    /// Path of the mesh file, in any supported format.
     pub(crate) mesh: PathBuf,
-    /// The image (PNG, JPEG) that the texture is synthesized from.
+    /// Path of the exemplar image (PNG, JPEG) that the texture is synthesized from.
     pub(crate) exemplar: PathBuf,
     /// Whether the exemplar tiles.
     pub(crate) tiles: bool,
-    /// File of directions for the texture's down, as lines `x,y,z,dx,dy,dz`. Without it, down is -y everywhere.
+    /// Path of a file with the directions in which the exemplar's downward axis points, as lines `x,y,z,dx,dy,dz`. If
+    /// it is `None`, the direction is -y everywhere.
     pub(crate) directions: Option<PathBuf>,
-    /// Number of points that get a color.
+    /// Number of points on the mesh that get a color.
     pub(crate) points: usize,
-    /// Number of levels of points: 4 for large features.
+    /// Number of levels of points; 4 suits large features.
     pub(crate) levels: usize,
-    /// How much worse a match may be if it continues its neighbors. The paper uses 0.
+    /// Tolerance for worse matches that continue their neighbors. The paper uses 0.
     pub(crate) coherence: Coherence,
 }
 

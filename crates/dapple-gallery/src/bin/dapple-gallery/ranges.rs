@@ -5,8 +5,8 @@ use dapple_worley::{
 };
 use std::fmt::Write as _;
 
-/// Returns the table in the form of `crates/dapple-worley/src/ranges.rs`: scatters, metrics, numbers of axes,
-/// combinations.
+/// Returns the table in the form of `crates/dapple-worley/src/ranges.rs`, nested by scatter, metric, number of axes
+/// and combination.
 pub(crate) fn table() -> anyhow::Result<String> {
     let mut text = String::from("[\n");
     for scatter in [Scatter::default(), Scatter::Jittered { jitter: 1.0 }] {
@@ -25,7 +25,7 @@ pub(crate) fn table() -> anyhow::Result<String> {
     Ok(text)
 }
 
-/// Returns the row of a scatter and a metric: the ranges of all combinations with `N` axes.
+/// Returns the table row for a scatter and a metric: the ranges of all combinations with `N` axes.
 fn row<const N: usize>(scatter: Scatter, metric: Metric) -> Result<String, WorleyError>
 where
     Dimensions: Space<N>,

@@ -1,4 +1,4 @@
-//! Recipes with labels, which have edges.
+//! Strips about recipes with labels, which have edges.
 
 use super::labels;
 use crate::Panel;
@@ -13,7 +13,7 @@ use dapple_pups::{
     reference_texture, space_giraffe,
 };
 
-/// Number of units along a side: the square of the paper, a whole tile.
+/// Side of an image in units of the domain: the paper's square, that is, a whole tile.
 const TILE: f64 = 2.0;
 
 pub(super) const CELLS: Strip = Strip {
@@ -164,7 +164,7 @@ fn giraffe(label: &str, pairs: [u32; 2], spots: Spots) -> anyhow::Result<Panel> 
     labels(label, TILE, &space_giraffe(&options, Seed(12))?)
 }
 
-/// The flower of figure 13.
+/// Returns the flower of figure 13 as a reference image.
 fn image() -> anyhow::Result<ReferenceImage> {
     Ok(ReferenceImage::new(flower(&square(TILE, 256)?)?)?)
 }

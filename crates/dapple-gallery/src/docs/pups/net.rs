@@ -1,4 +1,4 @@
-//! Control points and their weights.
+//! Strips about control points and their weights.
 
 use super::{labels, values};
 use crate::Panel;
@@ -13,10 +13,10 @@ use dapple_pups::{
 use dapple_raster::Raster;
 use glam::{DVec2, DVec3};
 
-/// Number of units of the domain along a side: room for a few control points.
+/// Side of an image in units of the domain, large enough for a few control points.
 const UNITS: f64 = 1.4;
 
-/// The distance between control points.
+/// Distance between control points, in units of the domain.
 const DISTANCE: f64 = 0.3;
 
 pub(super) const PUPS: Strip = Strip {

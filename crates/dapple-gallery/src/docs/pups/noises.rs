@@ -1,4 +1,4 @@
-//! Recipes whose values change smoothly, and their sums.
+//! Strips about recipes whose values change smoothly, and about their sums.
 
 use super::{labels, values};
 use crate::docs::Strip;
@@ -9,7 +9,7 @@ use dapple_pups::{
     cellular_noise, color_noise, hash::Seed, noise, octaves, turbulence,
 };
 
-/// Number of units of the domain along a side: half of the square of the paper.
+/// Side of an image in units of the domain: half of the paper's square.
 const UNITS: f64 = 1.0;
 
 pub(super) const NOISE: Strip = Strip {

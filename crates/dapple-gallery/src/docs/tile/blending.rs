@@ -1,4 +1,4 @@
-//! Blend maps, and blending of two textures along a ramp.
+//! Strips about blend maps, and about blending two textures along a ramp.
 
 use super::pebbles;
 use crate::Panel;
@@ -11,7 +11,7 @@ use dapple_tile::{
 };
 use dapple_worley::hash::Seed;
 
-/// Number of pixels along a side of an image.
+/// Width and height of an image, in pixels.
 const SMALL: u32 = 72;
 
 pub(super) const BLEND_MAP: Strip = Strip {
@@ -75,7 +75,7 @@ pub(super) const MIXING: Strip = Strip {
     },
 };
 
-/// Brown grains with dark gaps.
+/// Returns brown grains with dark gaps.
 fn grains(side: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let height = pebbles(7, side, true, Seed(4))?;
     Ok(Palette::Ember
@@ -83,7 +83,7 @@ fn grains(side: u32) -> anyhow::Result<Raster<LinearRgb>> {
         .apply(&height.map(|value| 0.3 + 0.5 * value)))
 }
 
-/// Blends grains on the left with a coarser blue texture on the right.
+/// Blends grains on the left with a coarser blue texture on the right, using `how`.
 fn blended(label: &str, how: &Blend) -> anyhow::Result<Panel> {
     let left = [Map::Color(grains(SMALL)?)];
     let coarse = pebbles(4, SMALL, true, Seed(5))?.map(|value| 0.2 + 0.6 * value);

@@ -1,4 +1,4 @@
-//! Each method of `Seamless` next to its source.
+//! Strips that show each method of `Seamless` next to its source.
 
 use super::pebbles;
 use crate::Panel;
@@ -11,13 +11,13 @@ use dapple_tile::{
 use dapple_wavelet::{WaveletNoise2, hash::Seed};
 use glam::DVec2;
 
-/// Number of pixels along the side of a tile; an image shows two by two of them.
+/// Width and height of a tile, in pixels; an image shows two by two copies.
 const TILE: u32 = 48;
 
-/// The margin that some methods cut off, in pixels.
+/// Margin that some methods cut off, in pixels.
 const MARGIN: u32 = 12;
 
-/// The caption of all strips about a method.
+/// Caption of all strips about a method.
 const CAPTION: &str = "Two by two copies";
 
 pub(super) const PERIODIC: Strip = Strip {
@@ -119,7 +119,7 @@ pub(super) const CROSSFADE: Strip = Strip {
     },
 };
 
-/// Makes images of two by two copies: of the crop, then of the result of each method.
+/// Renders two by two copies of the crop, then of the result of each method.
 fn beside(crop: &Raster<f32>, methods: &[(&str, Method)]) -> anyhow::Result<Vec<Panel>> {
     let copies = |label: &str, tile: &Raster<f32>| -> anyhow::Result<Panel> {
         let map = repeat(tile, [2 * TILE; 2])?;
@@ -132,7 +132,7 @@ fn beside(crop: &Raster<f32>, methods: &[(&str, Method)]) -> anyhow::Result<Vec<
     Ok(panels)
 }
 
-/// A crop of noise that does not repeat.
+/// Returns a crop of noise that does not repeat.
 fn noise(side: u32) -> anyhow::Result<Raster<f32>> {
     let noise = WaveletNoise2::new(64, Seed(3))?.with_weights(&[1.0, 0.6, 0.35])?;
     let window = Window::new(DVec2::ZERO, DVec2::splat(3.7), [side; 2])?;

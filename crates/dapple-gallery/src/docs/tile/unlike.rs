@@ -1,4 +1,4 @@
-//! Maps in which the copies of a tile differ inside.
+//! Strips about maps in which the copies of a tile differ inside.
 
 use super::pebbles;
 use crate::docs::Strip;
@@ -7,10 +7,10 @@ use dapple_raster::Raster;
 use dapple_tile::{CornerTiles, Disturbance, Map, MatchBorders, repeat};
 use dapple_worley::hash::Seed;
 
-/// Number of pixels along the side of a tile.
+/// Width and height of a tile, in pixels.
 const TILE: u32 = 40;
 
-/// Number of pixels along the sides of an image, which is three tiles wide.
+/// Size of an image in pixels; it is three tiles wide and high.
 const MAP: [u32; 2] = [3 * TILE; 2];
 
 pub(super) const DISTURBANCE: Strip = Strip {
@@ -61,7 +61,7 @@ pub(super) const CORNER_TILES: Strip = Strip {
     },
 };
 
-/// Two tiles with different cells.
+/// Returns two tiles with different cells.
 fn tiles() -> anyhow::Result<[Raster<f32>; 2]> {
     Ok([
         pebbles(3, TILE, true, Seed(8))?,
@@ -69,7 +69,7 @@ fn tiles() -> anyhow::Result<[Raster<f32>; 2]> {
     ])
 }
 
-/// A checkerboard of two tiles.
+/// Lays two tiles out as a checkerboard.
 fn board(tiles: &[Raster<f32>]) -> anyhow::Result<Raster<f32>> {
     Ok(Raster::from_fn(MAP, |column, row| {
         let tile = &tiles[((column / TILE + row / TILE) % 2) as usize];

@@ -5,7 +5,7 @@ use crate::docs::Strip;
 use crate::draw::label_color;
 use dapple_worley::{Combination, Profile};
 
-/// Cells along a side.
+/// Width and height of an image, in cells.
 const CELLS: f64 = 2.5;
 
 /// A value that F1 almost never exceeds.

@@ -1,4 +1,4 @@
-//! Combinations of F1 to F4, metrics, ranges and gradients.
+//! Strips about combinations of F1 to F4, metrics, ranges and gradients.
 
 use super::{N_POSITIONS, basis, color_of, color_with_edges, gray, gray_with_edges, ranged};
 use crate::Panel;
@@ -6,7 +6,7 @@ use crate::docs::Strip;
 use dapple_worley::{Combination, Metric, hash::Seed};
 use glam::DVec3;
 
-/// Cells along a side.
+/// Width and height of an image, in cells.
 const CELLS: f64 = 2.5;
 
 const fn one(name: &'static str, render: fn() -> anyhow::Result<Vec<Panel>>) -> Strip {
@@ -44,7 +44,7 @@ pub(super) const TWO_F3_MINUS_F2_MINUS_F1: Strip =
         only("2 F3 − F2 − F1", Combination::TWO_F3_MINUS_F2_MINUS_F1)
     });
 
-/// A combination without a predefined name.
+/// A strip about a combination without a predefined name.
 pub(super) const NEW: Strip = Strip {
     name: "combination-new",
     caption: "One that has no name, F1 − 2 F2 + F3",

@@ -1,4 +1,4 @@
-//! Fractal sums.
+//! Strips about fractal sums.
 
 use super::{N_POSITIONS, SHADES, SIDE, basis, shaded};
 use crate::Panel;
@@ -7,7 +7,7 @@ use dapple_raster::{Field, Window};
 use dapple_worley::{Combination, OctaveSeeds, Octaves, hash::Seed};
 use glam::DVec2;
 
-/// Cells of the first octave along a side.
+/// Width and height of an image, in cells of the first octave.
 const CELLS: f64 = 2.0;
 
 fn sum(label: &str, combination: Combination, octaves: Octaves) -> anyhow::Result<Panel> {

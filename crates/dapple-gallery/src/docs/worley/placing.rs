@@ -1,4 +1,4 @@
-//! Radial cells, and feature points that the caller has placed.
+//! Strips about radial cells, and about feature points placed by the caller.
 
 use super::{SAMPLES, fine, gray_with_edges, shaded};
 use crate::Panel;
@@ -8,10 +8,10 @@ use dapple_raster::Raster;
 use dapple_worley::{Combination, FeatureSet, Metric, Radial, RadialCells, Worley3, hash::Seed};
 use glam::{DVec2, DVec3};
 
-/// The value of pixels outside the sphere.
+/// Value of pixels outside the sphere.
 const OUTSIDE: f32 = 1.0;
 
-/// Number of shades of a globe: more than in other images with edges, since its shading changes slowly.
+/// Number of shades in a globe. It is higher than in other images with edges, since shading changes slowly.
 const SHADES: f32 = 22.0;
 
 fn radial(metric: Metric, around: u32, polar: f64, radial: f64) -> anyhow::Result<Radial> {
@@ -25,13 +25,13 @@ fn radial(metric: Metric, around: u32, polar: f64, radial: f64) -> anyhow::Resul
     Ok(Radial::new(texture, cells)?)
 }
 
-/// A smooth image of a disk.
+/// Renders a smooth image of a disk.
 fn disk(label: &str, value: impl Fn(DVec2) -> f32 + Sync) -> anyhow::Result<Panel> {
     let samples = Raster::from_window(&fine(2.0)?, value)?;
     Ok(shaded(label, &shrink(&samples, SAMPLES)?, SHADES))
 }
 
-/// The unit sphere, seen from slightly above its equator.
+/// Renders the unit sphere, seen from slightly above its equator.
 fn globe(label: &str, radial: &Radial) -> anyhow::Result<Panel> {
     disk(label, |at| {
         let [right, up] = [at.x - 1.0, 1.0 - at.y];
@@ -39,7 +39,7 @@ fn globe(label: &str, radial: &Radial) -> anyhow::Result<Panel> {
         if depth_sq < 0.0 {
             return OUTSIDE;
         }
-        // The view is rotated by 37 degrees, whose sine is 0.6.
+        // The view is rotated by 37 degrees; the sine of this angle is 0.6.
         let toward = depth_sq.sqrt();
         let on_sphere = DVec3::new(right, 0.6 * up - 0.8 * toward, 0.8 * up + 0.6 * toward);
         let light = 0.35 + 0.65 * toward as f32;
@@ -47,7 +47,7 @@ fn globe(label: &str, radial: &Radial) -> anyhow::Result<Panel> {
     })
 }
 
-/// The cross-section of the unit ball along its equator.
+/// Renders the cross-section of the unit ball at its equator.
 fn cut(label: &str, radial: &Radial) -> anyhow::Result<Panel> {
     disk(label, |at| {
         let at = at - DVec2::ONE;
@@ -86,10 +86,10 @@ pub(super) const RADIAL_CELLS: Strip = Strip {
     },
 };
 
-/// The golden angle, 137.5 degrees: its cosine and sine.
+/// Cosine and sine of the golden angle, 137.5 degrees.
 const GOLDEN: DVec2 = DVec2::new(-0.737_368_878_078_319_7, 0.675_490_294_261_523_8);
 
-/// Points on a spiral around the center of the unit square, arranged like the seeds of a sunflower.
+/// Returns `n` points on a spiral around the center of the unit square, arranged like the seeds of a sunflower.
 fn sunflower(n: u32) -> Vec<DVec2> {
     let turns = core::iter::successors(Some(DVec2::X), |turn| Some(turn.rotate(GOLDEN)));
     let radii = (0..n).map(|index| 0.4 * ((f64::from(index) + 0.5) / f64::from(n)).sqrt());

@@ -6,13 +6,13 @@ use crate::docs::Strip;
 use dapple_worley::{Scatter, hash::Seed};
 use glam::DVec2;
 
-/// Cells along a side.
+/// Width and height of an image, in cells.
 const CELLS: f64 = 4.0;
 
-/// The densities to show.
+/// Densities to show, in feature points per cell.
 const DENSITIES: [f64; 3] = [1.0, 3.0, 8.0];
 
-/// Draws one scatter for each of the given values.
+/// Renders the scatter for each of `values`.
 fn scattered(
     what: &str,
     values: [f64; 3],

@@ -1,4 +1,4 @@
-//! Strips about textures with two, three and four axes, and planes through them.
+//! Strips about textures with two, three and four axes, and 2-D slices through them.
 
 use super::{SHADES, SIDE, basis, gray, ranged, shaded, square};
 use crate::Panel;
@@ -7,7 +7,7 @@ use dapple_raster::Raster;
 use dapple_worley::{Combination, Plane, Worley3, Worley4, hash::Seed};
 use glam::{DVec3, DVec4};
 
-/// Cells along a side.
+/// Width and height of an image, in cells.
 const CELLS: f64 = 2.5;
 
 pub(super) const AXES: Strip = Strip {

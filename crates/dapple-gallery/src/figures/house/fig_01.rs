@@ -54,7 +54,7 @@ impl Field for Distance {
     }
 }
 
-/// Returns a corner of a regular dodecagon, rotated by 30° each from the first: no sine is needed.
+/// Returns corner number `corner` of a regular dodecagon, rotated by 30° from the previous one; no sine is needed.
 fn ring(corner: u32) -> DVec2 {
     let (cos, sin) = (0.75_f64.sqrt(), 0.5);
     let turn = |at: DVec2| DVec2::new(cos * at.x - sin * at.y, sin * at.x + cos * at.y);

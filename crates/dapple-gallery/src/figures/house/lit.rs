@@ -1,14 +1,14 @@
-//! A baked material, lit and seen straight from above, so that the image repeats as the maps do.
+//! Lights a baked material as seen straight from above, so that the image repeats as the maps do.
 
 use dapple_color::{LinearRgb, Normal};
 use dapple_raster::Raster;
 use dapple_recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe};
 use glam::DVec3;
 
-/// Reflectance of a dielectric (anything but metal) at normal incidence.
+/// Reflectance of a dielectric (any material except metal) at normal incidence.
 const DIELECTRIC: f32 = 0.04;
 
-/// Bakes and lights a recipe that needs no images, `size` pixels along its longer side.
+/// Bakes and lights a recipe that needs no images; the image has `size` pixels along its longer side.
 pub(super) fn lit(recipe: &Recipe, size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let plan = Plan::new(recipe, &Images::new(), 0.0)?;
     let sides = plan.extent() / plan.extent().max_element() * f64::from(size);
@@ -39,8 +39,8 @@ fn maps(plan: &Plan, size: [u32; 2]) -> anyhow::Result<Maps> {
     }
 }
 
-/// The light that a point reflects: diffuse unless it is metal, plus a reflection that is blurrier where the surface is
-/// rough.
+/// Returns the light that a point reflects: diffuse unless it is metal, plus a reflection that is blurrier where the
+/// surface is rough.
 fn shaded(normal: Normal, [free, roughness, metallic]: [f32; 3], color: LinearRgb) -> LinearRgb {
     let normal = DVec3::from_array(normal.to_array().map(f64::from));
     let toward = DVec3::new(-0.5, 0.6, 0.75).normalize();

@@ -33,7 +33,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     ])
 }
 
-/// Draws at each position the label with the larger sum of weights.
+/// Draws, at each position, the label with the larger sum of weights.
 fn summed(label: &str, cow: &LabelTexture, size: u32) -> anyhow::Result<Panel> {
     let white = cow.labels().iter().map(|&label| label as f32).collect();
     let share = cow.pups().texture(white)?.to_raster(&fine_square(size)?)?;

@@ -23,7 +23,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Rate of change, in units of value per loop, that is drawn as white.
+/// Rate of change, in values per loop, that is drawn as white.
 const WHITE: f32 = 8.0;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
@@ -53,7 +53,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     Ok(panels)
 }
 
-/// Returns the texture at a time, from 0 to 1 in a loop.
+/// Returns the texture at a time within the loop, from 0 to 1.
 fn moving(time: f64) -> anyhow::Result<Texture> {
     let options = NoiseOptions {
         spacing: Spacing::from(0.2),
@@ -67,13 +67,13 @@ fn moving(time: f64) -> anyhow::Result<Texture> {
     Ok(noise(&options, Seed(4))?)
 }
 
-/// Returns a texture with the points and values of another one, whose axes do not fade.
+/// Returns a copy of a texture with the same points and values, but without fading axes.
 fn still(texture: &Texture) -> anyhow::Result<Texture> {
     let pups = Pups::delaunay(texture.pups().points())?;
     Ok(pups.texture(texture.values().to_vec())?)
 }
 
-/// Stacks images of one line of pixels: row by row at `n_times` times evenly spaced over the loop.
+/// Stacks renderings of one line of pixels: row by row at `n_times` times evenly spaced over the loop.
 fn through_time(
     line: &Window,
     n_times: u32,

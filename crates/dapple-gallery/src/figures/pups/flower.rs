@@ -15,7 +15,8 @@ pub(crate) fn flower(window: &Window) -> Result<Raster<f32>, RasterError> {
     })
 }
 
-/// Returns a soft edge: 0 outside to 1 inside, for a position that is `inside` units within the edge.
+/// Returns the intensity of a soft edge, from 0 outside to 1 inside, for a position that is `inside` units within the
+/// edge.
 fn soft(inside: f64) -> f64 {
     (inside / EDGE + 0.5).clamp(0.0, 1.0)
 }

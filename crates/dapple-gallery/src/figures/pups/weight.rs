@@ -6,7 +6,7 @@ use dapple_pups::{Pups, PupsError, PupsOptions, hash::Seed};
 use dapple_raster::{RasterError, Window};
 use glam::DVec2;
 
-/// A point set and its point nearest to the center, with its axes.
+/// A point set, and the point nearest to its center, with that point's axes.
 pub(super) struct Star {
     pub(super) points: PointSet,
     pub(super) graph: Graph,
@@ -27,7 +27,7 @@ impl Star {
         })
     }
 
-    /// Returns a square window around the point that its axes fit into.
+    /// Returns a square window around the point, large enough for its axes.
     pub(super) fn window(&self, size: u32) -> Result<Window, RasterError> {
         let center = self.points.position(self.center);
         let axes = self.graph.axes(self.center).iter();
@@ -36,7 +36,7 @@ impl Star {
         Window::new(center - half, 2.0 * half, [size; 2])
     }
 
-    /// Returns the parametrics of all points, whose weights are drawn.
+    /// Builds the partition-of-unity parametrics of all points, whose weights are drawn.
     pub(super) fn pups(&self, options: PupsOptions) -> Result<Pups, PupsError> {
         Pups::new(&self.points, &self.graph, options)
     }

@@ -1,6 +1,6 @@
-//! A wall of bricks in running bond: mortar between them, a shade for each, and a little roughness.
+//! Draws a wall of bricks in running bond, with mortar, an individual shade for each brick, and slight roughness.
 //!
-//! It repeats.
+//! The image tiles.
 
 use super::super::fractal::FractalNoise;
 use crate::draw::{sampled, smooth_step};
@@ -9,20 +9,20 @@ use dapple_points::hash::{CellHash, Seed, unit_f64};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// Numbers of bricks along a row and of rows. The number of rows is even, since every other row is shifted by half a
-/// brick.
+/// Number of bricks per row, and number of rows. The number of rows is even, since every other row is shifted by half
+/// a brick.
 const N_BRICKS: [i64; 2] = [4, 8];
 
-/// Length of a brick with its mortar, in heights of a brick with its mortar.
+/// Length of a brick including its mortar, in multiples of the height of a brick including its mortar.
 const LENGTH: f64 = 2.0;
 
-/// Half the width of the mortar, in heights of a brick.
+/// Half the width of the mortar, in multiples of the brick height.
 const MORTAR: f64 = 0.09;
 
-/// Radius of a brick's corners, in heights of a brick.
+/// Radius of a brick's corners, in multiples of the brick height.
 const CORNER: f64 = 0.12;
 
-/// Number of samples along the side of a pixel.
+/// Number of samples along each side of a pixel.
 const N_SAMPLES: u32 = 4;
 
 /// Draws bricks, `size` pixels wide and high.
@@ -46,7 +46,8 @@ pub(super) fn bricks(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     })?)
 }
 
-/// Returns the brick at a position, and the vector to the position from the brick's center, in heights of a brick.
+/// Returns the brick at a position, and the vector from the brick's center to the position, in multiples of the brick
+/// height.
 fn brick(at: DVec2) -> ([i64; 2], DVec2) {
     let row = (at.y * N_BRICKS[1] as f64).floor();
     let shift = 0.5 * (row as i64).rem_euclid(2) as f64;
@@ -63,7 +64,8 @@ fn brick(at: DVec2) -> ([i64; 2], DVec2) {
     )
 }
 
-/// Returns the depth of a position inside a brick with round corners, in heights of a brick; negative in the mortar.
+/// Returns how deep a position is inside a brick with round corners, in multiples of the brick height; negative in
+/// the mortar.
 fn depth(place: DVec2) -> f64 {
     let half = DVec2::new(0.5 * LENGTH, 0.5) - DVec2::splat(MORTAR + CORNER);
     let past = place.abs() - half;

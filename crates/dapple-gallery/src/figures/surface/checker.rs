@@ -1,6 +1,6 @@
-//! The wiggly checker that many papers on texture synthesis have: a checkerboard whose lines are not quite straight.
+//! Draws the wiggly checkerboard found in many papers on texture synthesis, whose lines are not quite straight.
 //!
-//! It repeats.
+//! The image tiles.
 
 use super::wobble::{Wave, wobble};
 use crate::draw::sampled;
@@ -8,13 +8,13 @@ use dapple_color::LinearRgb;
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// Number of squares along a side: even, so that the board repeats.
+/// Number of squares along each side, even so that the board tiles.
 const N_SQUARES: f64 = 6.0;
 
-/// Number of samples along the side of a pixel.
+/// Number of samples along each side of a pixel.
 const N_SAMPLES: u32 = 8;
 
-/// The waves that bend the vertical lines.
+/// Waves that bend the vertical lines.
 const ACROSS: [Wave; 3] = [
     Wave {
         periods: [1, 5],
@@ -33,7 +33,7 @@ const ACROSS: [Wave; 3] = [
     },
 ];
 
-/// The waves that bend the horizontal lines.
+/// Waves that bend the horizontal lines.
 const DOWN: [Wave; 3] = [
     Wave {
         periods: [5, -1],

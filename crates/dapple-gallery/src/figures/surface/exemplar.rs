@@ -1,36 +1,36 @@
-//! The exemplars: the images from which textures are synthesized, all drawn by procedures.
+//! The exemplars, that is, the images from which textures are synthesized. All are drawn procedurally.
 //!
-//! The images of the paper are not available; these have the same character and the same size. Features scale with the
-//! size. At 16 pixels all exemplars except the text are still distinguishable.
+//! The paper's images are not available; these have the same character and are the same size. Features scale with the
+//! image size. At 16 pixels all exemplars except the text are still distinguishable.
 
 use super::{bricks, checker, hooks, letter, puzzle, scales, stripes, suckers, text};
 use anyhow::Context;
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
 
-/// An exemplar: an image to synthesize from.
+/// An exemplar image.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Exemplar {
-    /// Name of the image's content.
+    /// Name of the image's subject.
     pub(crate) name: &'static str,
-    /// Width and height of the image in its figure, in pixels.
+    /// Width and height of the image in the figure that uses it, in pixels.
     pub(crate) side: u32,
-    /// Whether opposite sides fit together.
+    /// Whether the image tiles.
     pub(crate) edges: Edges,
     /// Draws the image, with `size` pixels along each side.
     pub(crate) draw: fn(size: u32) -> anyhow::Result<Raster<LinearRgb>>,
 }
 
-/// Behavior of an exemplar at its edges, when two copies lie next to each other.
+/// Behavior at the edges of an exemplar when two copies are placed next to each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Edges {
-    /// The image repeats exactly.
+    /// The image tiles exactly.
     Repeating,
-    /// Opposite sides do not fit.
+    /// Opposite sides do not match.
     Cropped,
 }
 
-/// The exemplars, the six of figure 5 first, in the order of table 1.
+/// All exemplars; the first six belong to figure 5 and are in the order of table 1.
 pub(crate) const EXEMPLARS: [Exemplar; 9] = [
     Exemplar {
         name: "wiggly checker",
@@ -88,7 +88,7 @@ pub(crate) const EXEMPLARS: [Exemplar; 9] = [
     },
 ];
 
-/// Returns a square crop of an exemplar that is drawn a quarter larger, so that the crop does not repeat.
+/// Returns a square crop of an exemplar that is drawn a quarter larger, so that the crop does not tile.
 pub(super) fn cut_out(name: &str, side: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let exemplar = EXEMPLARS.iter().find(|exemplar| exemplar.name == name);
     let whole = (exemplar.context("no such exemplar")?.draw)(side * 5 / 4)?;

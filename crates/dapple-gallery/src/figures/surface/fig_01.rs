@@ -25,7 +25,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Radius of a drawn point in spacings of its level, small enough that points do not touch.
+/// Radius of a drawn point, in multiples of its level's site spacing, small enough that points do not touch.
 const RADIUS: f64 = 0.45;
 
 const VIEW: View = View {
@@ -63,8 +63,8 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     (0..3).rev().map(panel).collect()
 }
 
-/// Returns the color at a position for the points of a level: the color of the point there, darker toward its edge, or
-/// dark gray between points.
+/// Returns the color at a position for the points of a level: a point's color, darker toward the edge of the point,
+/// or dark gray between points.
 fn point_color(
     hierarchy: &Hierarchy,
     texture: &SurfaceTexture,

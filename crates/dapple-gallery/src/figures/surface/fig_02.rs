@@ -23,17 +23,17 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Length and half width of a vector given by the user, in units of the mesh.
+/// Length and half width of the arrow for a direction given by the user, in units of the mesh.
 const DIRECTION: [f64; 2] = [0.3, 0.02];
-/// Length and half width of a vector of the field, in spacings of the drawn level.
+/// Length and half width of the arrow for a vector of the field, in multiples of the drawn level's site spacing.
 const FIELD: [f64; 2] = [0.8, 0.1];
-/// Sweep distance that one cycle of colors covers, in units of the mesh.
+/// Sweep distance covered by one cycle of colors, in units of the mesh.
 const CYCLE: f64 = 0.35;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let surface = Surface::new((TORI.model)(14_000)?)?;
     let mut sites = TORI.sites(1024);
-    // The field and its sweep look the same with fewer points.
+    // The field and its sweep distance look the same with fewer points.
     sites.n_sites = 16_000;
     let synthesizer = Synthesizer::new(surface, &TORI.directions(), &sites)?;
     let mesh = synthesizer.surface().mesh();
@@ -76,8 +76,8 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     ])
 }
 
-/// Returns whether a position lies in an arrow. `from` is the position relative to the start of the arrow; the arrow
-/// is `length` long and twice `half_width` wide.
+/// Returns whether a position is in an arrow. `from` is the position relative to the start of the arrow; the arrow is
+/// `length` long and twice `half_width` wide.
 fn is_arrow(from: DVec3, vector: DVec3, [length, half_width]: [f64; 2]) -> bool {
     let vector = vector.normalize_or(DVec3::X);
     let along = from.dot(vector) / length;
@@ -91,7 +91,7 @@ fn is_arrow(from: DVec3, vector: DVec3, [length, half_width]: [f64; 2]) -> bool 
     (0.0..1.0).contains(&along) && aside < width
 }
 
-/// Returns whether a position lies in the arrow of a site of the second coarsest level.
+/// Returns whether a position is in the arrow of a site on the second coarsest level.
 fn is_field(synthesizer: &Synthesizer, position: DVec3) -> bool {
     let (hierarchy, level) = (
         synthesizer.hierarchy(),
@@ -108,8 +108,8 @@ fn is_field(synthesizer: &Synthesizer, position: DVec3) -> bool {
     hit
 }
 
-/// Returns the sweep distance at a position: the distance of the nearest site, plus how far the position is ahead of
-/// it. A mean over several sites would blur the lines where the distance jumps.
+/// Returns the sweep distance at a position, that is, the nearest site's distance plus how far the position is ahead
+/// of that site along the field. A mean over several sites would blur the lines where the distance jumps.
 fn distance(synthesizer: &Synthesizer, position: DVec3) -> f64 {
     let (hierarchy, level) = (
         synthesizer.hierarchy(),
@@ -127,7 +127,7 @@ fn distance(synthesizer: &Synthesizer, position: DVec3) -> f64 {
     nearest.1
 }
 
-/// Returns a ramp for the colors of a cycle, which ends with its first color.
+/// Returns a color ramp for one cycle, which ends with its first color.
 fn cycle() -> Result<ColorRamp, ColorError> {
     ColorRamp::from_hex(&[
         "#1b2a6b", "#2f9bd0", "#f4f0c8", "#e8743b", "#7a1b4b", "#1b2a6b",

@@ -15,11 +15,11 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// A vertex: its position and its orientation, which need not have length 1.
+/// A vertex of the diagram: its position and its orientation, which need not have length 1.
 const V: [DVec2; 2] = [DVec2::new(0.70, 0.22), DVec2::new(0.95, 0.10)];
 const W: [DVec2; 2] = [DVec2::new(0.26, 0.40), DVec2::new(0.85, 0.45)];
 
-/// Other edges of the mesh, which have no role in the diagram.
+/// The other edges of the mesh, which are drawn only as context.
 const MESH: [[DVec2; 2]; 8] = {
     let [v, w] = [V[0], W[0]];
     let [above, below] = [DVec2::new(0.42, 0.08), DVec2::new(0.62, 0.56)];
@@ -78,7 +78,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     Ok(vec![Panel::gray("", canvas.into_raster())])
 }
 
-/// Draws a letter with the subscript of both vertices.
+/// Draws a letter with the subscript "vw", which stands for both vertices.
 fn with_subscript(canvas: &mut Canvas<f32>, start: DVec2, pixel: f64, letter: &str) {
     canvas.text(start, 34.0 * pixel, letter, 0.0);
     let below = start + DVec2::new(0.065, 0.02);

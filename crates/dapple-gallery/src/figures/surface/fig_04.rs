@@ -17,11 +17,11 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Number of pixels along the side of a neighborhood.
+/// Width and height of a neighborhood, in pixels.
 const SIDE: u32 = 5;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
-    // A margin of half a neighborhood pixel remains on all sides.
+    // Leave a margin of half a neighborhood pixel on all sides.
     let reach = 0.5 * f64::from(SIDE + 1);
     let window = Window::new(DVec2::splat(-reach), DVec2::splat(2.0 * reach), [size; 2])?;
     let pixel = f64::from(size) / 512.0;
@@ -40,7 +40,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     Ok(panels)
 }
 
-/// Returns the corners of a pixel.
+/// Returns the corners of the pixel centered at `center`.
 fn square(center: DVec2) -> [DVec2; 4] {
     [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]].map(|corner| center + DVec2::from(corner))
 }

@@ -25,10 +25,10 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Width and height of the exemplars and of the textures in pixels.
+/// Width and height of the exemplars and the textures, in pixels.
 const SIDE: u32 = 64;
 const LARGE: u32 = 256;
-/// Maximum scale of an exemplar pixel.
+/// Maximum scale of an exemplar pixel, in pixels of the texture.
 const LARGEST: f64 = 2.5;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
@@ -59,7 +59,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     Ok(panels)
 }
 
-/// Returns a texture from an exemplar along directions, given the exemplar's name and its edges.
+/// Synthesizes a texture along directions from an exemplar, given by its name and its edges.
 fn grown(
     exemplar: (&str, Edges),
     directions: &Raster<f32>,

@@ -25,7 +25,7 @@ const VIEW: View = View {
     target: DVec3::new(0.0, 0.05, 0.0),
     fov: 0.62,
 };
-/// Side of the squares in the unit square of the map.
+/// Side of the drawn squares, in the unit square of the texture map.
 const SQUARE: f64 = 1.0 / 64.0;
 
 /// A model with its atlas.
@@ -63,7 +63,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
 }
 
 impl Charts {
-    /// Returns the color of the normal, in light and dark squares of the map.
+    /// Returns a color that shows the normal, alternating between light and dark squares of the map.
     fn squares(&self, face: FaceIdx, [of_a, of_b, of_c]: [f64; 3]) -> LinearRgb {
         let [a, b, c] = self.uvs[face.index()];
         let [column, row] = ((a * of_a + b * of_b + c * of_c) / SQUARE)
@@ -79,14 +79,14 @@ impl Charts {
         LinearRgb { r, g, b }
     }
 
-    /// Returns white, or a color that is redder the more a face is stretched.
+    /// Returns white for a face without stretch, and a redder color the more the face is stretched.
     fn stretched(&self, face: FaceIdx) -> LinearRgb {
         let off = ((self.stretches[face.index()] - 1.0) * 10.0).clamp(-1.0, 1.0) as f32;
         let [r, g, b] = [1.0 + off.min(0.0), 1.0 - off.abs(), 1.0 - off.max(0.0)];
         LinearRgb { r, g, b } * 0.8
     }
 
-    /// Renders the model in the colors of its faces.
+    /// Renders the model, with `color` applied to its faces.
     fn model(
         &self,
         size: u32,
@@ -100,7 +100,7 @@ impl Charts {
         })
     }
 
-    /// Renders the map in the colors of its faces, without padding.
+    /// Renders the texture map without padding, with `color` applied to its faces.
     fn map(
         &self,
         size: u32,

@@ -22,7 +22,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Exemplars, each with its name in the labels and its side in pixels.
+/// Exemplars: the name, the text for the label, and the side in pixels.
 const SUBJECTS: [(&str, &str, u32); 3] = [
     ("color bricks", "bricks", 128),
     ("woven hooks", "hooks", 64),

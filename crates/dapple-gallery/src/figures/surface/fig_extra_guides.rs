@@ -34,7 +34,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Width and height of the exemplars and of the textures in pixels.
+/// Width and height of the exemplars and the textures, in pixels.
 const SIDE: u32 = 96;
 const LARGE: u32 = 192;
 
@@ -77,7 +77,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     ])
 }
 
-/// Returns the texture of an exemplar with guides.
+/// Synthesizes a texture with guides from an exemplar.
 fn guided(
     exemplar: &Exemplar,
     targets: &[&Raster<f32>],
@@ -90,7 +90,7 @@ fn guided(
     )?)
 }
 
-/// Returns a ball with the first exemplar above a wavy line and the second below it.
+/// Renders a ball with the first exemplar above a wavy line and the second one below it.
 fn on_ball(
     size: u32,
     both: Raster<LinearRgb>,
@@ -133,7 +133,7 @@ fn on_ball(
     lit(mesh, &VIEW, [size; 2], |surface| textured.color(surface))
 }
 
-/// Returns 1 above the line and 0 below it.
+/// Returns 1 above the wavy line and 0 below it.
 fn is_above(at: DVec3) -> f32 {
     f32::from(at.y > 0.1 + 0.15 * libm::sin(4.0 * at.x))
 }
@@ -143,11 +143,11 @@ fn engraving(x: u32, y: u32) -> f32 {
     let part = f64::from(x) / f64::from(2 * SIDE);
     let bent = f64::from(y) + 2.0 * libm::sin(f64::from(x) / 9.0);
     let from_middle = (bent.rem_euclid(6.0) - 3.0).abs();
-    // Soft edges, one pixel wide.
+    // Edges are soft and one pixel wide.
     (from_middle - 3.2 * part + 0.5).clamp(0.0, 1.0) as f32
 }
 
-/// Returns the lightness of a ball lit from the upper left, before a wall that is darker at the top.
+/// Returns the lightness of a ball lit from the upper left, in front of a wall that is darker at the top.
 fn shaded(x: u32, y: u32) -> f32 {
     let [x, y] = [x, y].map(|at| 2.0 * f64::from(at) / f64::from(LARGE) - 1.0);
     let radius_sq = (x * x + y * y) / 0.6;

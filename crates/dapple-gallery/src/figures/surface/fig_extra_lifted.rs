@@ -26,10 +26,10 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Number of points of each model for a figure of 512 pixels, and the minimum number.
+/// Number of points on each model for a figure of 512 pixels, and the minimum number.
 const SITES: f64 = 40_000.0;
 const SITES_MIN: usize = 2000;
-/// Center of the stain.
+/// Position of the stain's center.
 const STAIN: DVec3 = DVec3::new(0.32, -0.3, 0.28);
 /// Number of triangles of each model.
 const TRIANGLES: usize = 6000;
@@ -79,7 +79,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     Ok(panels)
 }
 
-/// Renders the model with its texture.
+/// Renders the textured model.
 fn picture(
     textured: &Textured,
     view: &View,

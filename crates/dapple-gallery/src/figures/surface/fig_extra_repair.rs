@@ -66,7 +66,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     ])
 }
 
-/// Returns copies of a tile, one and a half along each side, with a seam in the middle.
+/// Returns one and a half copies of a tile along each side, with a seam in the middle.
 fn copies(tile: &Raster<LinearRgb>, size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let side = i64::from(tile.width().max(tile.height())) * 3 / 2;
     let picture = Raster::from_fn([side as u32; 2], |x, y| {

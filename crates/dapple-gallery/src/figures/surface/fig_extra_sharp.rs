@@ -25,7 +25,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Side of the exemplar in pixels, and the scale of its larger version.
+/// Side of the exemplar in pixels, and scale factor of its larger version.
 const SIDE: u32 = 128;
 const FACTOR: u32 = 8;
 

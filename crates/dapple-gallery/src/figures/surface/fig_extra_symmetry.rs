@@ -27,7 +27,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Panels: a label, the exemplar, its side in pixels, and the symmetry of the field.
+/// Panels, each with a label, an exemplar, its side in pixels, and the symmetry of the field.
 const PANELS: [(&str, &str, u32, Symmetry); 4] = [
     ("bricks, one direction", "color bricks", 96, Symmetry::One),
     ("bricks, two", "color bricks", 96, Symmetry::Two),
@@ -50,7 +50,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     PANELS.iter().map(panel).collect()
 }
 
-/// Renders a model with a texture from four sides.
+/// Renders a textured model from four sides.
 fn four_sides(
     size: u32,
     exemplar: &str,

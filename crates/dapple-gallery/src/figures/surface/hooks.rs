@@ -1,19 +1,21 @@
-//! Strands of hooks, woven: each hook reaches over the shank of one in the next strand and comes back under it.
+//! Draws woven strands of hooks; each hook reaches over the shank of a hook in the next strand and comes back under
+//! it.
 //!
-//! Strands run down to the right. It repeats.
+//! Strands run down to the right. The image tiles.
 
 use crate::draw::{sampled, smooth_step};
 use dapple_color::{ColorRamp, LinearRgb};
 use dapple_raster::Raster;
 use glam::{DVec2, DVec3};
 
-/// Number of hooks along a side of the image. There is one at each point of a square lattice.
+/// Number of hooks along each side of the image. There is one at each point of a square lattice.
 const N_HOOKS: i64 = 3;
 
-/// Radius of the wire. The unit of all lengths is half a diagonal of the lattice, the distance between strands.
+/// Radius of the wire. All lengths are in multiples of half a diagonal of the lattice, which is the distance between
+/// strands.
 const WIRE: f64 = 0.19;
 
-/// Center line of the wire: positions along the strand, toward the next strand, and up.
+/// Center line of the wire, as coordinates along the strand, toward the next strand, and up.
 const PATH: [[f64; 3]; 8] = [
     [-1.00, 0.00, -0.10],
     [0.20, 0.00, 0.00],
@@ -25,17 +27,17 @@ const PATH: [[f64; 3]; 8] = [
     [1.24, 0.50, -0.40],
 ];
 
-/// Number of straight lines in a bend of the wire.
+/// Number of line segments in a bend of the wire.
 const N_LINES: u32 = 6;
 
-/// Number of samples along the side of a pixel.
+/// Number of samples along each side of a pixel.
 const N_SAMPLES: u32 = 4;
 
-/// One hook.
+/// The wire of one hook.
 struct Wire {
-    /// Center line of the wire as short lines: straight along its path, rounded at the corners.
+    /// Center line of the wire as short segments: straight along its path, rounded at the corners.
     lines: Vec<[DVec3; 2]>,
-    /// Bounds of the hook, along and across its strand.
+    /// Bounds of the hook, with axes along and across its strand.
     bounds: [DVec2; 2],
 }
 
@@ -98,11 +100,12 @@ fn highest(wire: &Wire, at: DVec2) -> Option<DVec3> {
     top.1
 }
 
-/// Returns the height and the normal of a piece of wire with round ends, at a position along and across its strand.
+/// Returns the height and the normal of a piece of wire with round ends, at a position whose axes are along and
+/// across its strand.
 fn surface([from, to]: [DVec3; 2], at: DVec2) -> Option<(f64, DVec3)> {
     let length = (to - from).length();
     let axis = (to - from).normalize_or_zero();
-    // Point where the vertical line through the position leaves the wire, if the wire were infinitely long.
+    // Compute the point where a vertical line through the position leaves the wire, if the wire were infinitely long.
     let reach = at.extend(0.0) - from;
     let start = reach - reach.dot(axis) * axis;
     let climb = DVec3::Z - axis.z * axis;

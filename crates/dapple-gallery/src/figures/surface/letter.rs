@@ -1,6 +1,6 @@
-//! A single letter F, dark on light: it shows which way is up and whether anything is mirrored.
+//! Draws a single letter F, dark on light, which shows which way is up and whether the image is mirrored.
 //!
-//! It repeats, since its border has a single color.
+//! The image tiles, since its border has a single color.
 
 use crate::draw::Canvas;
 use dapple_color::LinearRgb;

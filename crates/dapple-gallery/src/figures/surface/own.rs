@@ -1,4 +1,4 @@
-//! Renders a mesh and an exemplar that the user provides, in the style of figure 5.
+//! Renders a mesh and an exemplar provided by the user, in the style of figure 5.
 
 use super::stage::{View, lit};
 use super::textured::{Job, Textured};
@@ -11,20 +11,20 @@ use dapple_synth::mesh::{CREASE, EncodedImage, Mesh, Model};
 use dapple_synth::{Coherence, Direction, Edges, HierarchyOptions, Sources, textured_model};
 use glam::DVec3;
 
-/// A mesh, an exemplar, and the options of the synthesis.
+/// A mesh, an exemplar image, and the synthesis options.
 #[derive(Clone, Debug)]
 pub struct Own {
-    /// Mesh, which is repaired as far as possible.
+    /// The mesh, which is repaired as far as possible.
     pub mesh: Mesh,
-    /// The exemplar.
+    /// The exemplar image.
     pub image: Raster<LinearRgb>,
     /// Whether the exemplar tiles.
     pub edges: Edges,
-    /// Directions of the texture's down; if there are none, down is -y of the mesh.
+    /// Directions in which the exemplar's downward axis points. If empty, the direction is -y of the mesh.
     pub directions: Vec<Direction>,
-    /// Numbers of points and levels.
+    /// Number of points and levels.
     pub sites: HierarchyOptions,
-    /// How much worse a match may be if it continues its neighbors.
+    /// Tolerance for worse matches that continue their neighbors.
     pub coherence: Coherence,
     /// Width and height of the texture map in texels.
     pub map_side: u32,
@@ -35,9 +35,9 @@ pub struct Own {
 pub struct OwnTextured {
     /// Images of the mesh from four sides.
     pub panels: Vec<Panel>,
-    /// Mesh with its texture map, for a file.
+    /// The mesh with its texture map, ready to be written to a file.
     pub model: Model,
-    /// List of repairs as text; empty if there were none.
+    /// Descriptions of the repairs as text; empty if there were none.
     pub mended: String,
 }
 

@@ -1,6 +1,6 @@
-//! Pieces of a jigsaw puzzle in several colors, with knobs that reach into their neighbors and dark outlines.
+//! Draws pieces of a jigsaw puzzle in several colors, with knobs that reach into their neighbors and dark outlines.
 //!
-//! It repeats.
+//! The image tiles.
 
 use super::wobble::{Wave, wobble};
 use crate::draw::sampled;
@@ -9,7 +9,7 @@ use dapple_points::hash::{CellHash, Seed, unit_f64};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// Number of pieces along a side of the image.
+/// Number of pieces along each side of the image.
 const N_PIECES: i64 = 4;
 
 /// Color indices of the pieces, by row. Adjacent pieces differ, also across the border of the image.
@@ -24,19 +24,19 @@ const PAINTS: [[u8; 3]; 5] = [
     [236, 232, 220],
 ];
 
-/// Radius of a knob. The unit of all lengths is the side of a piece.
+/// Radius of a knob. All lengths are in multiples of a piece's side.
 const KNOB: f64 = 0.15;
 
 /// Distance from the edge to the center of a knob.
 const OUT: f64 = 0.17;
 
-/// Half the width of the neck of a knob.
+/// Half the width of a knob's neck.
 const NECK: f64 = 0.08;
 
 /// Half the width of an outline.
 const OUTLINE: f64 = 0.045;
 
-/// Waves that bend the edges, in widths of the image.
+/// Waves that bend the edges, with heights in multiples of the image width.
 const SWAY: [Wave; 2] = [
     Wave {
         periods: [3, 2],
@@ -50,7 +50,7 @@ const SWAY: [Wave; 2] = [
     },
 ];
 
-/// Number of samples along the side of a pixel.
+/// Number of samples along each side of a pixel.
 const N_SAMPLES: u32 = 6;
 
 /// Draws puzzle pieces, `size` pixels wide and high.
@@ -70,7 +70,7 @@ pub(super) fn puzzle(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     })?)
 }
 
-/// Returns whether another piece is within half the width of an outline.
+/// Returns whether a position on piece `own` is within half an outline width of another piece.
 fn on_outline(place: DVec2, own: [i64; 2]) -> bool {
     let s = core::f64::consts::FRAC_1_SQRT_2;
     let ways = [[1.0, 0.0], [s, s], [0.0, 1.0], [-s, s]].map(|way| OUTLINE * DVec2::from(way));
@@ -78,7 +78,7 @@ fn on_outline(place: DVec2, own: [i64; 2]) -> bool {
         .any(|&way| piece(place + way) != own || piece(place - way) != own)
 }
 
-/// Returns the piece at a position: the piece of its square, or the adjacent piece whose knob reaches into it.
+/// Returns the piece at a position: the piece that owns the square, or an adjacent piece whose knob reaches into it.
 fn piece(place: DVec2) -> [i64; 2] {
     let square = place.floor();
     let [column, row] = [square.x as i64, square.y as i64];
@@ -101,9 +101,9 @@ fn piece(place: DVec2) -> [i64; 2] {
 
 /// The edge between a square and the previous one along an axis.
 struct Edge {
-    /// Whether the knob belongs to the previous square.
+    /// Whether the knob belongs to the piece in the previous square.
     forward: bool,
-    /// Position of the knob along the edge, from 0 to 1.
+    /// Position of the knob along the edge, as a fraction from 0 to 1.
     middle: f64,
 }
 

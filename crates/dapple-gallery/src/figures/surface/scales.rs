@@ -1,7 +1,7 @@
-//! Rows of overlapping fish scales, whose free ends point down.
+//! Draws rows of overlapping fish scales, whose free ends point down.
 //!
-//! It does **not** repeat: scales become narrower to the right and taller to the bottom, the rows bend, and the hue
-//! changes from the upper left to the lower right.
+//! The image does **not** tile: scales become narrower to the right and taller to the bottom, the rows bend, and the
+//! hue changes from the upper left to the lower right.
 
 use crate::draw::{sampled, smooth_step};
 use dapple_color::{ColorRamp, LinearRgb};
@@ -9,27 +9,27 @@ use dapple_points::hash::{CellHash, Seed, unit_f64};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// Length of a scale, in rows.
+/// Length of a scale, in multiples of the row spacing.
 const REACH: f64 = 1.6;
 
-/// Distance from the root of a scale to the start of its round end, in rows.
+/// Distance from the root of a scale to the start of its round end, in multiples of the row spacing.
 const SHOULDER: f64 = 0.5;
 
-/// Half the width of a scale, in spacings of a row: adjacent scales overlap slightly.
+/// Half the width of a scale, in multiples of the spacing of scales within a row. Adjacent scales overlap slightly.
 const HALF: f64 = 0.53;
 
-/// Number of samples along the side of a pixel.
+/// Number of samples along each side of a pixel.
 const N_SAMPLES: u32 = 5;
 
 /// A position on a scale, with its shading.
 struct OnScale {
     /// Row of the scale and its index in the row.
     scale: [i64; 2],
-    /// Position from the center line, −1 to 1, and from the root, 0 to 1.
+    /// Position on the scale: across from the center line, −1 to 1, and down from the root, 0 to 1.
     at: DVec2,
     /// Closeness to the rim: 0 in the middle, 1 on the rim.
     rim: f64,
-    /// Strength of the shadow of the scales above, from 0 to 1.
+    /// Strength of the shadow cast by the scales above, from 0 to 1.
     shadow: f64,
 }
 
@@ -45,7 +45,7 @@ pub(super) fn scales(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     })?)
 }
 
-/// Converts a position of the image to scales across and rows down.
+/// Converts an image position to a scale coordinate across and a row coordinate down.
 fn rows(at: DVec2) -> DVec2 {
     let across = 6.3 * at.x * (1.0 + 0.22 * at.x) + 0.3 * at.y;
     let bend = 0.5 * at.x * (1.0 - at.x);
@@ -78,7 +78,7 @@ fn on_scale(at: DVec2) -> OnScale {
     }
 }
 
-/// Returns the light on a scale, which is curved across, shines near its end and has a thin dark rim.
+/// Returns the brightness of a scale, which is curved across, shines near its end and has a thin dark rim.
 fn light(scale: &OnScale) -> f64 {
     let OnScale { at, rim, .. } = *scale;
     let bulge = 0.75 + 0.45 * smooth_step(0.1, 0.9, at.y) - 0.22 * at.x;

@@ -1,4 +1,4 @@
-//! Lit images of meshes.
+//! Renders lit images of meshes.
 
 use anyhow::Result;
 use dapple_color::LinearRgb;
@@ -18,8 +18,8 @@ pub(crate) struct View {
 }
 
 impl View {
-    /// Returns the view from the opposite side: at the same distance from the target, as far below it as the eye was
-    /// above.
+    /// Returns the view from the opposite side, at the same distance from the target, and as far below it as the eye
+    /// was above.
     pub(crate) fn opposite(self) -> Self {
         Self {
             eye: self.target * 2.0 - self.eye,

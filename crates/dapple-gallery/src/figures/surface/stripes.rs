@@ -1,6 +1,6 @@
-//! Straight, even, vertical stripes, whose direction on a surface can be measured.
+//! Draws straight, even, vertical stripes, whose direction on a surface can be measured.
 //!
-//! It repeats. Stripes run along `j`, so on a surface they follow the field of orientations.
+//! The image tiles. Stripes run along `j`, so on a surface they follow the orientation field.
 
 use crate::draw::sampled;
 use dapple_color::LinearRgb;
@@ -9,7 +9,7 @@ use dapple_raster::Raster;
 /// Number of dark stripes, with light stripes between them.
 const N_STRIPES: f64 = 7.0;
 
-/// Number of samples along the side of a pixel.
+/// Number of samples along each side of a pixel.
 const N_SAMPLES: u32 = 8;
 
 /// Draws stripes, `size` pixels wide and high.

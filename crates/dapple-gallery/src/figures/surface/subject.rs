@@ -1,4 +1,4 @@
-//! The six models of figure 5 and the textures that they get.
+//! The six models of figure 5 and their textures.
 
 use super::exemplar::{EXEMPLARS, Edges};
 use super::stage::{View, lit};
@@ -11,13 +11,14 @@ use dapple_synth::mesh::Mesh;
 use dapple_synth::{Coherence, Direction, HierarchyOptions, Sources};
 use glam::DVec3;
 
-/// Figure size in pixels from which a subject has as many sites as in the paper. It is the size on the page.
+/// Minimum figure size, in pixels, at which a subject has as many sites as in the paper. Figures on the page are this
+/// size.
 const FULL_SIZE: u32 = 512;
 /// Number of triangles of a model at full size (the paper has 10,000 to 20,000), and the minimum number.
 const TRIANGLES: [f64; 2] = [14_000.0, 2000.0];
 /// Minimum number of sites.
 const SITES_MIN: f64 = 1024.0;
-/// Number of texels along the side of a texture map, per pixel of the figure.
+/// Texture map width in texels per pixel of the figure.
 const TEXELS: u32 = 2;
 
 /// A model and its texture.
@@ -25,14 +26,14 @@ const TEXELS: u32 = 2;
 pub(crate) struct Subject {
     pub(crate) name: &'static str,
     pub(crate) model: fn(n_triangles: usize) -> Result<Mesh, ModelError>,
-    /// Name of its exemplar.
+    /// Name of the exemplar.
     exemplar: &'static str,
     /// Number of sites of the finest level at full size, and number of levels, from table 1.
     pub(crate) n_sites: usize,
     n_levels: usize,
-    /// Pairs of a position and the direction of the texture's down there.
+    /// Pairs of a position and the direction in which the exemplar's downward axis points there.
     directions: &'static [[DVec3; 2]],
-    /// Bounds of sizes that follow the directions; `None` for one size.
+    /// Bounds of feature sizes that follow the directions; `None` for a uniform size.
     pub(crate) sizes: Option<[f32; 2]>,
     pub(crate) view: View,
 }
@@ -183,8 +184,8 @@ pub(crate) const ELEPHANT: Subject = Subject {
 };
 
 impl Subject {
-    /// Returns the sites for a figure of a size: as many as in the paper at full size, and fewer below in proportion
-    /// to the pixels.
+    /// Returns the options for the sites in a figure of `size` pixels. At full size there are as many sites as in the
+    /// paper; smaller figures have fewer, in proportion to the number of pixels.
     pub(crate) fn sites(&self, size: u32) -> HierarchyOptions {
         HierarchyOptions {
             n_sites: (self.n_sites as f64 * part(size)).max(SITES_MIN) as usize,
@@ -201,7 +202,7 @@ impl Subject {
             .collect()
     }
 
-    /// Draws the exemplar, as large as in table 1.
+    /// Draws the exemplar at its size in table 1.
     pub(crate) fn image(&self) -> Result<(Raster<LinearRgb>, dapple_synth::Edges)> {
         let exemplar = EXEMPLARS
             .iter()
@@ -215,7 +216,7 @@ impl Subject {
         Ok(((exemplar.draw)(exemplar.side)?, edges))
     }
 
-    /// Returns the model with its texture, for a figure of a size.
+    /// Builds the textured model for a figure of `size` pixels.
     pub(super) fn textured(&self, size: u32) -> Result<Textured> {
         let n_triangles = (TRIANGLES[0] * part(size)).max(TRIANGLES[1]);
         let (image, edges) = self.image()?;
@@ -236,7 +237,7 @@ impl Subject {
         job.run()
     }
 
-    /// Returns an image of the model with its texture, and the number of sites.
+    /// Renders the textured model. Returns the image and the number of sites.
     pub(super) fn picture(&self, size: u32) -> Result<(Raster<LinearRgb>, usize)> {
         let textured = self.textured(size)?;
         let mesh = textured.synthesizer.surface().mesh();
@@ -247,7 +248,7 @@ impl Subject {
     }
 }
 
-/// Returns the number of pixels as a fraction of a full-size figure.
+/// Returns the figure's number of pixels as a fraction of that at full size.
 fn part(size: u32) -> f64 {
     let side = f64::from(size) / f64::from(FULL_SIZE);
     (side * side).min(1.0)

@@ -1,6 +1,6 @@
-//! Round suckers on the skin of an octopus: pale cups with a dark hollow, of several sizes, each with a rim.
+//! Draws round suckers on the skin of an octopus: pale cups of several sizes, each with a dark hollow and a rim.
 //!
-//! It repeats.
+//! The image tiles.
 
 use crate::draw::{sampled, smooth_step};
 use dapple_color::{ColorRamp, LinearRgb};
@@ -10,13 +10,13 @@ use dapple_raster::Raster;
 use dapple_worley::{Feature, FeatureSet};
 use glam::DVec2;
 
-/// Minimum distance between suckers, in widths of the image.
+/// Minimum distance between suckers, in multiples of the image width.
 const SPACING: f64 = 0.21;
 
 /// Maximum radius of a sucker, so that suckers do not touch.
 const RADIUS: f64 = 0.5 * SPACING;
 
-/// Number of samples along the side of a pixel.
+/// Number of samples along each side of a pixel.
 const N_SAMPLES: u32 = 5;
 
 /// Draws suckers, `size` pixels wide and high.
@@ -37,13 +37,14 @@ pub(super) fn suckers(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     })?)
 }
 
-/// Returns the radius of the sucker with an id.
+/// Returns the radius of the sucker with the given id.
 fn radius(id: u64) -> f64 {
     let part = unit_f64(CellHash::new(Seed(5), [id as i64]).at(0));
     RADIUS * (0.62 + 0.38 * part)
 }
 
-/// Returns the outward slope of a sucker at a fraction of its radius: it rises to the rim and falls beyond it.
+/// Returns the outward slope of a sucker at `part`, a fraction of its radius. The sucker rises to the rim and falls
+/// beyond it.
 fn slope(part: f64) -> f64 {
     if part < 0.62 {
         4.0 * part * (0.62 - part) / 0.62
@@ -52,7 +53,7 @@ fn slope(part: f64) -> f64 {
     }
 }
 
-/// Returns the light from the upper left on a surface that rises away from a center by `slope`.
+/// Returns the shade of a surface that rises away from `center` by `slope`, lit from the upper left.
 fn shade(center: &Feature<DVec2>, slope: f64) -> f32 {
     let light = DVec2::new(0.6, 0.8).dot(center.vector.normalize_or_zero());
     (1.0 + 0.35 * slope * light).max(0.0) as f32

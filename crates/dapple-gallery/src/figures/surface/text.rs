@@ -1,6 +1,7 @@
-//! Lines of English in upright letters, cropped from a page.
+//! Draws lines of English text in upright letters, cropped from a page.
 //!
-//! It does **not** repeat: words are cut off at the right, and the last line at the bottom. Mirroring would be obvious.
+//! The image does **not** tile: words are cut off at the right, and the last line at the bottom. Mirroring would be
+//! obvious.
 
 use crate::draw::Canvas;
 use dapple_color::LinearRgb;
@@ -25,15 +26,15 @@ const LINES: [&str; 14] = [
     "for a page, and so for any other skin of",
 ];
 
-/// Shift of each line to the left, in widths of the image.
+/// Shift of each line to the left, in multiples of the image width.
 const SHIFTS: [f64; 14] = [
     0.03, -0.01, 0.05, 0.02, -0.02, 0.06, 0.01, 0.04, -0.01, 0.07, 0.03, 0.00, 0.05, 0.02,
 ];
 
-/// Number of lines along the height of the image.
+/// Number of lines that fit in the height of the image.
 const N_LINES: f64 = 13.4;
 
-/// Height of capitals, in line spacings.
+/// Height of capital letters, in multiples of the line spacing.
 const CAPITAL: f64 = 0.56;
 
 /// Draws text, `size` pixels wide and high.

@@ -1,4 +1,4 @@
-//! The steps from a mesh and an exemplar to a texture map.
+//! Synthesizes a texture on a mesh from an exemplar and bakes it to a texture map.
 
 use anyhow::Result;
 use core::ops::ControlFlow;
@@ -22,22 +22,22 @@ pub(super) struct Job {
     pub(super) sites: HierarchyOptions,
     pub(super) coherence: Coherence,
     pub(super) sources: Sources,
-    /// Bounds of sizes that follow the directions; `None` for one size.
+    /// Bounds of feature sizes that follow the directions; `None` for a uniform size.
     pub(super) sizes: Option<[f32; 2]>,
-    /// Larger version of the image that is shown instead.
+    /// Larger version of the exemplar that the texture map samples instead, if any.
     pub(super) detail: Option<Raster<LinearRgb>>,
     /// Width and height of the texture map in texels.
     pub(super) map_side: u32,
-    /// Mask of the used pixels of the image; `None` for all.
+    /// Mask of the exemplar pixels that may be used; `None` for all.
     pub(super) mask: Option<Raster<bool>>,
     pub(super) guides: Vec<SiteGuide>,
 }
 
-/// What says where on the mesh which pixels of the image go.
+/// A guide that determines which exemplar pixels are used where on the mesh.
 #[derive(Clone, Debug)]
 pub(super) struct SiteGuide {
     pub(super) example: Raster<f32>,
-    /// Returns the guide value at a position.
+    /// Returns the guide value at a position on the mesh.
     pub(super) at: fn(DVec3) -> f32,
     pub(super) weight: f32,
 }
@@ -52,12 +52,12 @@ pub(super) struct Textured {
 }
 
 impl Job {
-    /// Synthesizes the texture and bakes it to a map of right triangles of one size, as in the paper.
+    /// Synthesizes the texture and bakes it to a map of right triangles of equal size, as in the paper.
     pub(super) fn run(self) -> Result<Textured> {
         self.run_symmetric(Symmetry::One)
     }
 
-    /// Runs like [`run`](Self::run), along a field with a symmetry.
+    /// Same as [`run`](Self::run), along a field with the given symmetry.
     pub(super) fn run_symmetric(self, symmetry: Symmetry) -> Result<Textured> {
         let surface = mesh::Surface::new(self.mesh)?;
         let options = Options {
@@ -104,7 +104,8 @@ impl Textured {
         }
     }
 
-    /// Returns the texture with a stain at some positions, and the texture with the stain replaced from the rest.
+    /// Returns two textured meshes: one with a stain where `is_stain` is true, and one with the stain replaced from
+    /// the rest of the texture.
     pub(super) fn stained(self, is_stain: fn(DVec3) -> bool) -> Result<[Self; 2]> {
         let surface = self.synthesizer.surface();
         let is_clean = Raster::from_fn(self.map.size(), |column, row| {
@@ -140,7 +141,7 @@ impl Textured {
         Ok([with_map(stained), with_map(repaired)])
     }
 
-    /// Lifts the texture, which is to be a regular one, onto another model, with a map as large.
+    /// Lifts the texture, which must be a regular one, onto another model, with a texture map of the same size.
     pub(super) fn lifted(
         &self,
         mesh: Mesh,
@@ -152,7 +153,7 @@ impl Textured {
         let synthesizer = Synthesizer::new(mesh::Surface::new(mesh)?, directions, sites)?;
         let options = Options {
             n_levels: sites.n_levels,
-            // The texture is regular, and this is not measured on a surface.
+            // The texture is regular; regularity is not measured on surfaces.
             coherence: Coherence::Factor(0.0),
             ..Options::default()
         };

@@ -3,10 +3,10 @@
 use core::f64::consts::TAU;
 use glam::DVec2;
 
-/// A wave over the unit square: its numbers of periods along both axes, its height and its phase.
+/// A wave over the unit square: its number of periods along each axis, its height and its phase.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wave {
-    /// Numbers of whole periods along x and y.
+    /// Number of periods along x and y, as integers so that the wave repeats.
     pub(super) periods: [i32; 2],
     /// Height from the mean to the crest.
     pub(super) height: f64,
@@ -14,7 +14,7 @@ pub(super) struct Wave {
     pub(super) phase: f64,
 }
 
-/// Returns the sum of waves at a position, which is the same in every copy of the unit square.
+/// Returns the sum of the waves at a position. It has the same value in every copy of the unit square.
 pub(super) fn wobble(waves: &[Wave], at: DVec2) -> f64 {
     let height = |wave: &Wave| {
         let [x, y] = wave.periods.map(f64::from);
@@ -40,7 +40,7 @@ mod tests {
             let at = DVec2::new(0.37 * f64::from(step), 0.11 * f64::from(step));
             let here = wobble(&waves, at);
             assert!(here.abs() <= 0.75, "{here} at {at}");
-            // The sines of large arguments lose a few of their last bits.
+            // Sines of large arguments lose a few of their last bits.
             let there = wobble(&waves, at + DVec2::new(3.0, -2.0));
             assert!((here - there).abs() < 1e-12, "{here} and {there} at {at}");
         }

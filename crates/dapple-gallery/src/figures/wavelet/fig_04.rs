@@ -34,7 +34,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Fraction of the ground that grass covers.
+/// Fraction of the ground covered by grass.
 const GRASS: f32 = 0.35;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
@@ -71,8 +71,8 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     ])
 }
 
-/// Makes the blend tile of a texture: its features, `feature` pixels large, are halved and doubled once, then replaced
-/// by ranks.
+/// Computes the blend tile of a texture: its features, which are `feature` pixels large, are halved and doubled once,
+/// then replaced by ranks.
 pub(super) fn blend_tile(ground: &Raster<LinearRgb>, feature: f64) -> anyhow::Result<Raster<f32>> {
     let features = BlendMap::new(feature).apply_color(ground)?;
     let tile = Seamless::new(Method::SplineProject(BLEND_TILE)).apply(&features)?;
@@ -121,7 +121,7 @@ mod tests {
             ("stone", stone(128, Seed(1), Edges::Repeating).unwrap()),
             ("pebble", pebble(128, Seed(1), Edges::Repeating).unwrap()),
         ] {
-            // A pixel is grass if it changes with the color of the grass.
+            // A pixel is grass if it changes with the grass color.
             let [on_black, on_white] = [0.0, 1.0].map(|gray| {
                 let grass = Raster::filled([128; 2], LinearRgb::gray(gray)).unwrap();
                 overgrown(&ground.color, stone_px(128), &grass).unwrap()

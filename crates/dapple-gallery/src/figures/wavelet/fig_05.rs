@@ -26,10 +26,10 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// A function that makes an image from a map of noise.
+/// A function that colors a map of noise.
 type Function = fn(&Raster<f32>) -> anyhow::Result<Raster<LinearRgb>>;
 
-/// Each function with its name, the number of cells across its tile, and whether it repeats with the map.
+/// Each function with its name, the number of cells across its tile, and whether its image tiles if the map does.
 const FUNCTIONS: [(&str, f64, bool, Function); 3] = [
     ("marble", 2.5, true, |noise| marble(noise, 8)),
     ("wood grain", 1.5, false, |noise| wood(noise, 12)),

@@ -42,7 +42,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     };
     let corners = CornerTiles::new(&maps)?.with_width(0.9)?;
     let (first, map) = ([0, 0], [size; 2]);
-    // Maps of whole copies repeat.
+    // Maps of whole copies tile.
     let whole = [size.is_multiple_of(side); 2];
     Ok(vec![
         Panel::color("copies of one tile", repeat(&tiles[0], map)?).repeating_along(whole),
@@ -63,7 +63,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     ])
 }
 
-/// Makes the image of the only map in `maps`.
+/// Builds the panel for the only map in `maps`.
 fn panel(label: &str, maps: Vec<Map>) -> anyhow::Result<Panel> {
     match maps.into_iter().next() {
         Some(Map::Color(color)) => Ok(Panel::color(label, color)),

@@ -33,8 +33,8 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Returns the margin in a figure of `size` pixels: about a quarter of the tile, rounded to a multiple that suits two
-/// levels.
+/// Returns the margin, in pixels, for a figure of `size` pixels. It is about a quarter of the tile, rounded to a
+/// multiple that suits two levels.
 pub(super) fn margin_of(size: u32) -> u32 {
     (tile_side(size) / 16 * 4).max(4)
 }
@@ -121,7 +121,7 @@ pub(super) fn methods(margin: u32) -> [(&'static str, Option<Method>); 12] {
     ]
 }
 
-/// Measures one tile and returns a line of the table.
+/// Measures one tile and returns its row of the table.
 fn line(name: &str, crop: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<String> {
     let [near, far, fine, contrast, least] = measured(crop, tile)?;
     let mut line = String::new();
@@ -132,8 +132,8 @@ fn line(name: &str, crop: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<St
     Ok(line)
 }
 
-/// Measures one tile: the seam ratios at 1 and at 4 pixels, the power kept in the finest octave, the contrast, and the
-/// minimum local detail relative to the source.
+/// Measures one tile: the seam ratios at 1 and at 4 pixels, the power preserved in the finest octave, the contrast,
+/// and the minimum local detail relative to the source.
 pub(super) fn measured(crop: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<[f64; 5]> {
     let options = SeamOptions {
         lattice: [4; 2],

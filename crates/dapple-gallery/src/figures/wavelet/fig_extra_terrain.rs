@@ -37,7 +37,7 @@ pub(super) const FIGURE: Figure = Figure {
 /// Size of a crumb of soil, as a fraction of the size of a stone.
 const CRUMB: f64 = 0.4;
 
-/// Textures over the whole terrain, and the blend tiles of stone and soil, which other textures cover.
+/// Textures over the whole terrain, and blend tiles for the stone and the soil, which other textures cover.
 struct Ground {
     stone: Raster<LinearRgb>,
     grass: Raster<LinearRgb>,
@@ -95,7 +95,8 @@ impl Ground {
         over([&self.stone, &lower], &shares.stone, None)
     }
 
-    /// Blends by blend tiles: grass appears first where the soil is low, and both appear first where the stone is low.
+    /// Blends with blend tiles: grass appears first where the soil's tile is low, and both appear first where the
+    /// stone's tile is low.
     fn by_tiles(&self, shares: &Shares) -> anyhow::Result<Raster<LinearRgb>> {
         let lower = over(
             [&self.grass, &self.soil],
@@ -107,7 +108,7 @@ impl Ground {
     }
 }
 
-/// Blends a texture over another one by its fraction: linearly, or first where a mask is low.
+/// Blends one texture over another by `share`: linearly if `mask` is `None`, otherwise first where the mask is low.
 fn over(
     textures: [&Raster<LinearRgb>; 2],
     share: &Raster<f32>,
@@ -132,8 +133,8 @@ fn over(
     }
 }
 
-/// Shades the colors by the slopes of the land. The textures are lit as level ground, so level ground keeps its
-/// colors.
+/// Shades the colors by the slopes of the terrain. The textures are lit as level ground, so level ground is
+/// unchanged.
 fn lit(color: &Raster<LinearRgb>, normals: &Raster<Normal>) -> anyhow::Result<Raster<LinearRgb>> {
     let toward = DVec3::new(-0.5, 0.5, 1.0);
     Ok(color.zip_map(normals, |&color, normal| {
@@ -142,7 +143,7 @@ fn lit(color: &Raster<LinearRgb>, normals: &Raster<Normal>) -> anyhow::Result<Ra
     })?)
 }
 
-/// Returns the fractions of stone and of grass, from the height rank and the levelness of the land.
+/// Computes the fractions of stone and of grass from the height rank and the levelness of the terrain.
 fn shares(land: &Raster<f32>, level: &Raster<f32>) -> anyhow::Result<Shares> {
     let rise = |from: f32, to: f32, value: f32| ((value - from) / (to - from)).clamp(0.0, 1.0);
     let lower = rank_equalize(land)?;

@@ -1,4 +1,4 @@
-//! Perlin's functions of noise: marble, wood grain and clouds.
+//! Perlin's functions of noise for marble, wood grain and clouds.
 //!
 //! Ken Perlin, "An Image Synthesizer", SIGGRAPH 1985. Each function colors a map of noise, with values from 0 to 1 and
 //! a mean of 0.5. A seam of the map shows as a seam of the color. On a map of n × n tiles, stripes and rings span the
@@ -8,7 +8,7 @@ use dapple_color::{ColorRamp, ColorStop, Interpolation, LinearRgb};
 use dapple_raster::{Raster, Wrap};
 use glam::DVec2;
 
-/// Marble: veins across the map, displaced by the noise. `n_veins` of them cross the upper edge.
+/// Returns marble: `n_veins` veins cross the upper edge of the map and are displaced by the noise.
 pub(super) fn marble(noise: &Raster<f32>, n_veins: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let colors = [
         (0.0, "#3d4450"),
@@ -24,7 +24,7 @@ pub(super) fn marble(noise: &Raster<f32>, n_veins: u32) -> anyhow::Result<Raster
     })
 }
 
-/// Wood: rings around an axis outside the map, perturbed by the noise, with fibers along the axis.
+/// Returns wood: rings around an axis outside the map, perturbed by the noise, with fibers along the axis.
 pub(super) fn wood(noise: &Raster<f32>, n_rings: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let colors = [
         (0.0, "#cda26c"),
@@ -42,7 +42,7 @@ pub(super) fn wood(noise: &Raster<f32>, n_rings: u32) -> anyhow::Result<Raster<L
     })
 }
 
-/// Clouds: white where the noise is high, blue sky where it is low.
+/// Returns clouds: white where the noise is high, blue sky where it is low.
 pub(super) fn cloud(noise: &Raster<f32>) -> anyhow::Result<Raster<LinearRgb>> {
     let colors = [
         (0.18, "#2f66b4"),
@@ -76,7 +76,7 @@ fn ramp(stops: &[(f32, &str)]) -> anyhow::Result<ColorRamp> {
     Ok(ColorRamp::new(stops?)?)
 }
 
-/// A smooth wave, from 0 at whole numbers to 1 halfway between them; it replaces |sin|.
+/// Returns a smooth wave, from 0 at integers to 1 halfway between them; it replaces |sin|.
 fn wave(phase: f64) -> f64 {
     let away = 1.0 - (2.0 * (phase - phase.floor()) - 1.0).abs();
     away * away * (3.0 - 2.0 * away)

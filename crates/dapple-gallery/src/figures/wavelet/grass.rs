@@ -1,4 +1,4 @@
-//! Short grass from above: many bent blades, drawn over each other, with dark roots and light tips.
+//! Draws short grass from above: many bent blades, drawn over each other, with dark roots and light tips.
 
 use super::patch::{Dice, Edges, Material, Patch, Spot};
 use crate::draw::smooth_step;
@@ -8,11 +8,11 @@ use dapple_points::{hash::Seed, white_noise};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// Area of the image per blade.
+/// Area of the image per blade, in square parts.
 const AREA: f64 = 8.0;
-/// Number of straight pieces of a blade.
+/// Number of straight segments per blade.
 const N_PIECES: u32 = 4;
-/// Depth of the relief.
+/// Depth of the relief, in parts.
 const DEPTH: f64 = 7.0;
 
 /// A blade of grass: a curve from the root over a bend to the tip, relative to the root.
@@ -22,7 +22,7 @@ struct Blade {
     tip: DVec2,
     width: f64,
     color: LinearRgb,
-    /// Height rank among all blades, from 0 to 1: higher blades lie over lower ones.
+    /// Height rank among all blades, from 0 to 1; higher blades cover lower ones.
     rank: f64,
 }
 

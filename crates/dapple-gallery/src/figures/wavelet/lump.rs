@@ -1,4 +1,4 @@
-//! Rounded lumps that lie on top of each other, for pebbles and crumbs.
+//! Draws rounded lumps that lie on top of each other, for pebbles and crumbs. Lengths are in parts, as in `patch`.
 
 use super::patch::{Dice, Patch, Spot};
 use crate::draw::smooth_step;
@@ -11,21 +11,21 @@ use glam::DVec2;
 /// A layer of adjacent lumps of about the same size.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layer {
-    /// Minimum distance between the centers of lumps.
+    /// Minimum distance between lump centers.
     pub(super) spacing: f64,
-    /// Minimum and maximum radius.
+    /// Minimum and maximum radius of a lump.
     pub(super) radius: [f64; 2],
     /// Height of the ground under the layer, from 0 to 1.
     pub(super) ground: f64,
-    /// Height of a lump divided by its radius. Heights are in depths of the relief.
+    /// Height of a lump divided by its radius. Heights are in multiples of the relief's depth.
     pub(super) steepness: f64,
-    /// Fraction of the positions that have a lump, from 0 to 1.
+    /// Fraction of the positions where there is a lump, from 0 to 1.
     pub(super) share: f64,
     /// Roughness of the surface, at least 0.
     pub(super) roughness: f64,
     /// Number of repetitions of the roughness noise across the torus, an integer.
     pub(super) noise_scale: f64,
-    /// Maximum ratio of length to width.
+    /// Maximum ratio of a lump's length to its width.
     pub(super) elongation: f64,
     /// Width of the dark gap around each lump.
     pub(super) gap: f64,
@@ -37,17 +37,17 @@ pub(super) struct Layer {
 struct Lump {
     center: DVec2,
     radius: f64,
-    /// Longer axis.
+    /// Vector along the longer axis.
     axis: DVec2,
     elongation: f64,
-    /// Deviation of the outline from an ellipse: two lobes and three.
+    /// Amplitudes by which the outline deviates from an ellipse, for two and three lobes.
     lobes: [DVec2; 2],
     color: LinearRgb,
     surface: DVec2,
     rank: f64,
 }
 
-/// Lays the lumps of all layers over the spots, in the order of the layers; `color` gives each lump its color.
+/// Draws the lumps of all layers onto the spots, in layer order; `color` returns the color of each lump.
 pub(super) fn lay(
     layers: &[Layer],
     patch: &Patch,
@@ -63,7 +63,7 @@ pub(super) fn lay(
 }
 
 impl Layer {
-    /// Lays the lumps of the layer over the spots; `color` gives each lump its color.
+    /// Draws the lumps of the layer onto the spots; `color` returns the color of each lump.
     fn lay(
         &self,
         patch: &Patch,
@@ -133,7 +133,7 @@ impl Layer {
         });
     }
 
-    /// Returns the spot at a fraction of the way from the center of a lump to its outline.
+    /// Returns the spot at `part`, the fraction of the way from the center of a lump to its outline.
     fn body(&self, lump: &Lump, part: f64, lumpy: f64, grain: f64) -> Spot {
         let part = part.clamp(0.0, 1.0);
         let dome = (1.0 - part * part * part).sqrt();
@@ -154,8 +154,8 @@ impl Lump {
         (long * long + short * short).map(f64::sqrt) * self.radius
     }
 
-    /// Returns the approximate distance of a position, relative to the center, from the outline (negative inside), and
-    /// its distance from the center as a fraction of the outline's.
+    /// Returns the approximate distance of a position, relative to the center, from the outline (negative inside),
+    /// and its distance from the center divided by the outline's distance.
     fn outline(&self, at: DVec2) -> (f64, f64) {
         let along = DVec2::new(
             at.dot(self.axis) / self.elongation,
@@ -163,7 +163,7 @@ impl Lump {
         );
         let length = along.length();
         let way = along / length.max(1e-9);
-        // The direction at two and three times the angle.
+        // Direction vectors at two and three times the angle.
         let twice = way.rotate(way);
         let thrice = twice.rotate(way);
         let radius = self.radius * (1.0 + self.lobes[0].dot(twice) + self.lobes[1].dot(thrice));

@@ -1,8 +1,8 @@
-//! The square area of a material: its pixels, the area past its borders, and its lighting.
+//! The square area that a material is drawn on: its pixels, the area past its borders, and its lighting.
 //!
-//! Lengths and positions are in parts: the side of the image is 256 parts for any number of pixels, so that a small
-//! image shows the same content as a large one. A material is made on a torus. If the image is to repeat, the torus
-//! has its size; otherwise the image is cropped from a torus half as large again.
+//! Lengths and positions are in parts. The side of the image is 256 parts for any number of pixels, so that a small
+//! image shows the same content as a large one. A material is drawn on a torus. If the image must tile, the torus is
+//! the same size as the image; otherwise the image is cropped from a torus half as large again.
 
 use super::super::fractal::FractalNoise;
 use dapple_color::{HeightPlane, LinearRgb, NormalOptions, NormalY, normal_map};
@@ -14,12 +14,12 @@ use glam::{DVec2, DVec3};
 /// Side of an image, in parts.
 const SIDE: f64 = 256.0;
 
-/// Behavior of an image at its edges, when two copies lie next to each other.
+/// Behavior at the edges of an image when two copies are placed next to each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Edges {
-    /// Opposite edges do not fit, as in a photograph.
+    /// Opposite edges do not match, as in a photograph.
     Cropped,
-    /// Opposite edges fit: the image repeats exactly.
+    /// Opposite edges match, so that the image tiles exactly.
     Repeating,
 }
 
@@ -45,17 +45,17 @@ pub(super) struct Spot {
     pub(super) gap: f32,
 }
 
-/// The square area on which a material is made.
+/// The square area on which a material is drawn.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Patch {
     size: u32,
-    /// Pixels of the image and a border of one pixel, so that lighting has the neighbors of every pixel.
+    /// Pixels of the image plus a border of one pixel, so that lighting has the neighbors of every pixel.
     window: Window,
-    /// Torus of the material.
+    /// Torus on which the material is drawn.
     pub(super) domain: Domain,
 }
 
-/// A sequence of random numbers for one object.
+/// A random number generator for one object.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Dice {
     hash: CellHash,
@@ -89,12 +89,12 @@ impl Patch {
 
     /// Returns noise on the torus, from 0 to 1, whose coarsest features are about `spacing` parts apart.
     ///
-    /// Its positions are divided by the [`period`](Self::period).
+    /// Positions in this noise are divided by the [`period`](Self::period).
     pub(super) fn noise(&self, spacing: f64, seed: Seed) -> anyhow::Result<FractalNoise> {
         FractalNoise::new(spacing / self.period(), seed)
     }
 
-    /// Returns the spots of all pixels.
+    /// Computes the spots of all pixels; `spot` receives a position in parts.
     pub(super) fn spots(
         &self,
         spot: impl Fn(DVec2) -> Spot + Sync,
@@ -102,8 +102,8 @@ impl Patch {
         Raster::from_window(&self.window, spot)
     }
 
-    /// Changes the spots in a box on the torus, which extends by `reach` from `center` to each side. `paint` gets
-    /// their offset from the center.
+    /// Changes the spots in a box on the torus, which extends by `reach` from `center` to each side. `paint` receives
+    /// each spot with its offset from the center.
     pub(super) fn paint(
         &self,
         spots: &mut Raster<Spot>,
@@ -128,8 +128,8 @@ impl Patch {
         }
     }
 
-    /// Returns the columns or rows within `reach` of a coordinate or of one of its repeats, each with its offset from
-    /// that repeat.
+    /// Returns the columns or rows within `reach` of a coordinate or of one of its copies on the torus, each with its
+    /// offset from that copy.
     fn within(&self, coordinate: f64, reach: f64) -> Vec<(u32, f64)> {
         let (pixel, length) = (self.pixel(), f64::from(self.window.size[0]));
         let mut found = Vec::new();
@@ -143,7 +143,7 @@ impl Patch {
         found
     }
 
-    /// Returns the material, lit as a relief that is `depth` parts deep.
+    /// Lights the spots as a relief that is `depth` parts deep, and returns the finished material.
     pub(super) fn finish(&self, spots: &Raster<Spot>, depth: f64) -> anyhow::Result<Material> {
         let options = NormalOptions {
             y: NormalY::OpenGl,
@@ -179,7 +179,7 @@ impl Spot {
 }
 
 impl Dice {
-    /// Returns the random numbers of the object with an index.
+    /// Returns the random number generator for the object with the given index.
     pub(super) fn new(seed: Seed, index: u32) -> Self {
         Self {
             hash: CellHash::new(seed, [i64::from(index)]),

@@ -1,14 +1,14 @@
-//! River pebbles of several sizes, which lie over each other with dark gaps between them.
+//! Draws river pebbles of several sizes, which lie on top of each other with dark gaps between them.
 
 use super::lump::{Layer, lay};
 use super::patch::{Dice, Edges, Material, Patch, Spot};
 use dapple_color::{ColorRamp, LinearRgb};
 use dapple_points::hash::Seed;
 
-/// Depth of the relief.
+/// Depth of the relief, in parts.
 const DEPTH: f64 = 30.0;
 
-/// The layers from the lowest to the highest: small pebbles everywhere, larger ones on top of them.
+/// Layers from the lowest to the highest: small pebbles everywhere, larger ones on top of them.
 const LAYERS: [Layer; 3] = [
     Layer {
         spacing: 9.0,

@@ -1,18 +1,17 @@
-//! The numbers of a README compared with those of a figure.
+//! Compares the numbers in a README with a figure's measurements.
 
 use super::fig_extra_methods::{margin_of, measured, methods};
 use super::{crops, tile_side};
 use dapple_tile::Seamless;
 
-/// The README of the crate of the tiling methods.
+/// README of the crate with the tiling methods.
 const README: &str = include_str!("../../../../dapple-tile/README.md");
-/// Size of the figure whose crops have the 160 × 160 pixels of the README.
+/// Figure size, in pixels, at which crops have 160 × 160 pixels as in the README.
 const SIZE: u32 = 512;
-/// Method of the figure that the README omits.
+/// The figure's method that the README omits.
 const LEFT_OUT: &str = "Feather over the margin, variance kept";
 
-/// Returns the numbers of a row of the table as text: the seam at 1 and at 4 pixels, the finest octave, and the
-/// contrast.
+/// Returns the numbers in a table row as text: the seam at 1 and at 4 pixels, the finest octave, and the contrast.
 fn row(line: &str) -> Vec<String> {
     let cells = line.trim_matches('|').split('|').skip(1);
     let numbers = cells.flat_map(|cell| cell.split('/'));

@@ -1,14 +1,14 @@
-//! Brown soil: rough crumbs of several sizes, coarse ones on fine ones, and a few pale stones.
+//! Draws brown soil: rough crumbs of several sizes, coarse ones on fine ones, and a few pale stones.
 
 use super::lump::{Layer, lay};
 use super::patch::{Dice, Edges, Material, Patch, Spot};
 use dapple_color::{ColorRamp, LinearRgb};
 use dapple_points::hash::Seed;
 
-/// Depth of the relief.
+/// Depth of the relief, in parts.
 const DEPTH: f64 = 14.0;
 
-/// The layers from the lowest to the highest: fine crumbs everywhere, coarser ones on top of them.
+/// Layers from the lowest to the highest: fine crumbs everywhere, coarser ones on top of them.
 const LAYERS: [Layer; 3] = [
     CRUMBS,
     Layer {
@@ -29,7 +29,7 @@ const LAYERS: [Layer; 3] = [
     },
 ];
 
-/// The layer of fine crumbs.
+/// Layer of fine crumbs.
 const CRUMBS: Layer = Layer {
     spacing: 4.4,
     radius: [1.6, 3.0],

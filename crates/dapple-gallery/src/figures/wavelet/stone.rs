@@ -1,4 +1,4 @@
-//! Rubble paving: irregular stones with individual tones and rounded edges, and dark cracks between them.
+//! Draws rubble paving: irregular stones with individual tones and rounded edges, and dark cracks between them.
 //!
 //! The stones are the Voronoi cells of a Poisson-disk set whose radius varies, seen through a warp.
 
@@ -14,15 +14,15 @@ use dapple_worley::FeatureSet;
 use glam::DVec2;
 use std::sync::Arc;
 
-/// Minimum and maximum distance between the centers of adjacent stones.
+/// Minimum and maximum distance between the centers of adjacent stones, in parts.
 const SPACING: [f64; 2] = [22.0, 42.0];
-/// Distance by which the warp moves the outlines.
+/// Distance by which the warp moves the outlines, in parts.
 const WARP: f64 = 22.0;
-/// Minimum and maximum width of the cracks.
+/// Minimum and maximum width of the cracks, in parts.
 const CRACK: [f64; 2] = [3.0, 5.5];
-/// Width of the rounding of an edge, from the edge into the stone.
+/// Width of the rounded edge of a stone, in parts.
 const ROUNDING: f64 = 9.0;
-/// Depth of the relief.
+/// Depth of the relief, in parts.
 const DEPTH: f64 = 13.0;
 
 /// Draws stones, `size` pixels wide.
@@ -43,14 +43,14 @@ struct Stones {
     dirt: LinearRgb,
 }
 
-/// Appearance of one stone.
+/// Appearance of a stone.
 struct Look {
     color: LinearRgb,
-    /// Height of its center.
+    /// Height of the stone's center.
     height: f64,
-    /// Slope of its top: the change of height per part.
+    /// Slope of the stone's top, as change of height per part.
     tilt: DVec2,
-    /// Offset of its surface in the noise.
+    /// Offset into the noise for the stone's surface.
     surface: DVec2,
 }
 

@@ -1,4 +1,4 @@
-//! A creature between a lizard and an alligator, made of blended cones, in place of Richard Payne's Gator.
+//! A creature between a lizard and an alligator, built from blended cones, which replaces Richard Payne's Gator.
 //!
 //! It faces +x, stands on the plane y = 0 and is about 8 units long.
 
@@ -18,13 +18,13 @@ pub(super) enum Part {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Creature;
 
-/// The center of the left eye.
+/// Position of the left eye's center.
 pub(super) const EYE: DVec3 = DVec3::new(1.86, 1.50, 0.27);
 
 /// A cone with round ends, given by the centers and radii of the ends as `[x, y, z, radius]`.
 type Cone = [[f64; 4]; 2];
 
-/// The cones along the middle of the body.
+/// Cones along the middle of the body.
 const TRUNK: [Cone; 8] = [
     [[-1.30, 0.74, 0.0, 0.50], [0.20, 0.84, 0.0, 0.58]],
     [[0.20, 0.84, 0.0, 0.56], [1.05, 0.98, 0.0, 0.44]],
@@ -37,7 +37,7 @@ const TRUNK: [Cone; 8] = [
     [[-3.80, 0.12, 2.00, 0.08], [-3.40, 0.08, 2.45, 0.03]],
 ];
 
-/// The cones that the creature has on both sides.
+/// Cones that exist on both sides of the creature.
 const SIDES: [Cone; 18] = [
     // Snout, nostril, cheek, lower jaw, brow.
     [[1.75, 1.16, 0.15, 0.27], [2.95, 1.30, 0.11, 0.15]],
@@ -63,14 +63,14 @@ const SIDES: [Cone; 18] = [
     [[0.10, 1.38, 0.17, 0.07], [0.95, 1.38, 0.14, 0.04]],
 ];
 
-/// The cones of the tongue, on both sides of its furrow.
+/// Cones of the tongue, on both sides of its furrow.
 const TONGUE: [Cone; 3] = [
     [[1.90, 0.84, 0.07, 0.11], [2.60, 0.78, 0.07, 0.09]],
     [[2.60, 0.78, 0.07, 0.09], [3.08, 0.66, 0.06, 0.08]],
     [[3.08, 0.66, 0.06, 0.08], [3.36, 0.72, 0.05, 0.06]],
 ];
 
-/// First and last tooth of the upper and of the lower jaw, each with its root and tip.
+/// First and last tooth of the upper and the lower jaw, each as a cone from root to tip.
 const TEETH: [[Cone; 2]; 2] = [
     [
         [[2.00, 0.96, 0.30, 0.05], [2.01, 0.82, 0.30, 0.012]],
@@ -82,11 +82,11 @@ const TEETH: [[Cone; 2]; 2] = [
     ],
 ];
 
-/// The number of teeth in a row.
+/// Number of teeth in a row.
 const N_TEETH: u32 = 6;
 
 impl Creature {
-    /// Returns the part that a point on the surface belongs to.
+    /// Returns the part of the creature that a point on the surface belongs to.
     pub(super) fn part(self, position: DVec3) -> Part {
         let at = DVec3::new(position.x, position.y, position.z.abs());
         let parts = [
@@ -147,8 +147,7 @@ fn teeth(at: DVec3) -> f64 {
     nearest
 }
 
-/// Returns approximately the distance to a cone: the distance to the nearest point of its axis, minus the radius
-/// there.
+/// Returns the approximate distance to a cone: the distance to the nearest point on its axis, minus the radius there.
 fn cone_distance(cone: &Cone, at: DVec3) -> f64 {
     let [[ax, ay, az, a], [bx, by, bz, b]] = *cone;
     let (from, to) = (DVec3::new(ax, ay, az), DVec3::new(bx, by, bz));

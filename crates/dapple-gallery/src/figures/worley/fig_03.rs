@@ -29,11 +29,11 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Steps of the hull: F1 below the first number adds a step, and the second number is its depth.
+/// Steps of the hull. Where F1 is below the first number, the hull has a step whose depth is the second number.
 const STEPS: [(f32, f64); 4] = [(0.68, 0.035), (0.5, 0.03), (0.33, 0.025), (0.17, 0.02)];
-/// Cells per unit of the ship.
+/// Number of cells per unit of the ship.
 const FREQUENCY: f64 = 2.4;
-/// Step of the mesh at the distance 1, in pixels of an image about 1 unit wide there.
+/// Step of the mesh's grid at distance 1, in pixels of an image that is about 1 unit wide there.
 const GRID: f64 = 3.0;
 
 fn render(size: u32) -> anyhow::Result<Vec<Picture>> {

@@ -16,7 +16,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Label of each image, from the upper left to the lower right, and its coefficients of F1 to F4.
+/// Label of each sheet, from the upper left to the lower right, and its coefficients for F1 to F4.
 const SHEETS: [(&str, [[f32; 4]; 4]); 5] = [
     (
         "F1, F2, F3, F4",

@@ -28,7 +28,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Cells of the hide per unit of the creature, which is about 8 units long.
+/// Number of cells of the hide per unit of the creature, which is about 8 units long.
 const FREQUENCY: f64 = 3.2;
 /// Height of the bumps, in cells.
 const BUMP: f64 = 0.3;
@@ -59,7 +59,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let grains = FractalNoise::new(0.1, Seed(57))?;
     let sand = |surface: &Surface| {
         let at = DVec2::new(surface.position.x, surface.position.z);
-        // Grains finer than a sample of the image are omitted.
+        // Omit grains finer than an image sample.
         let samples = surface.footprint / surface.incidence / 0.2;
         let grain = (grains.at(at * 0.25) - 0.5) / (1.0 + samples * samples) as f32;
         Material::matte(LinearRgb::new(0.4, 0.32, 0.2) * (1.0 + 0.6 * grain))

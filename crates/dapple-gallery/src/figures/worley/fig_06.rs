@@ -22,7 +22,8 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Each torus: the primitive, its number of cells per unit, its colors from low to high, and the depth of its bumps.
+/// The tori, each with its primitive, the number of cells per unit, its colors from low to high, and the depth of its
+/// bumps.
 const TORI: [(Combination, f64, [&str; 4], f64); 4] = [
     (
         Combination::F2_MINUS_F1,

@@ -25,9 +25,9 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Number of octaves of the waves.
+/// Number of octaves in the waves.
 const OCTAVES: u32 = 5;
-/// Height of the waves of the first octave, as a fraction of their length.
+/// Height of the first octave's waves, as a fraction of their length.
 const STEEPNESS: f64 = 0.11;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
@@ -36,7 +36,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         let mut bump = DVec3::ZERO;
         for octave in 0..OCTAVES {
             let frequency = f64::from(1 << octave);
-            // Number of waves of this octave in a sample along the view.
+            // Number of waves of this octave per sample along the view direction.
             let waves = frequency * surface.footprint / surface.incidence;
             if waves >= 1.0 {
                 break;

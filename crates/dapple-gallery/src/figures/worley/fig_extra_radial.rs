@@ -26,7 +26,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Values of F1 at which there is a step, and the height of a step.
+/// F1 values at which there is a step, and the height of a step.
 const LEVELS: [f32; 3] = [0.2, 0.32, 0.44];
 const STEP: f64 = 0.005;
 /// Center of the dish, and its radius.
@@ -56,7 +56,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         let mut gray = (0.25 + 0.08 * height) * (0.3 + 0.7 * depth);
         let from_dish = at - DISH;
         if from_dish.length() < DISH_RADIUS {
-            // A spherical bowl, half as deep as its radius.
+            // A spherical bowl that is half as deep as its radius.
             bump = from_dish * (1.2 / DISH_RADIUS);
             gray = 0.36;
         }

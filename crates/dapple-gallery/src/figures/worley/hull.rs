@@ -1,10 +1,10 @@
-//! The hull of a space ship as a mesh: rectangular panels, each with a relief at every point of a fine grid.
+//! Builds the hull of a space ship as a mesh: rectangular panels, each with a relief on a fine grid.
 
 use dapple_preview::{Mesh, PreviewError};
 use glam::DVec3;
 
 /// Cross-section of the hull as x and y, from one side over the deck to the other. The underside is omitted, since it
-/// is never seen.
+/// is never visible.
 const SECTION: [[f64; 2]; 8] = [
     [2.3, -0.2],
     [2.3, 0.25],
@@ -19,7 +19,7 @@ const SECTION: [[f64; 2]; 8] = [
 /// Extent of the hull along z. The eye is near the origin and looks along the hull.
 const LENGTH: [f64; 2] = [-1.2, -26.0];
 
-/// Blocks of the bridge: the center of the base of each, and half of its size.
+/// Blocks of the bridge, each with the center of its base and its half-side lengths.
 const BLOCKS: [[[f64; 3]; 2]; 4] = [
     [[0.0, 0.95, -12.0], [0.75, 0.25, 4.0]],
     [[0.0, 1.45, -12.6], [0.5, 0.3, 2.2]],
@@ -27,10 +27,10 @@ const BLOCKS: [[[f64; 3]; 2]; 4] = [
     [[0.0, 2.55, -13.0], [0.8, 0.17, 0.42]],
 ];
 
-/// Rise of a panel per unit of the relief: sunken channels on the hull, raised blocks on the bridge.
+/// Displacement of a panel per unit of the relief: sunken channels on the hull, raised blocks on the bridge.
 const RELIEF: [f64; 2] = [-1.0, 0.5];
 
-/// Width of the flat border of a panel, so that adjacent panels meet.
+/// Width of the flat border of a panel, which lets adjacent panels meet.
 const BORDER: f64 = 0.04;
 
 /// A rectangular panel: a corner and two edges. Seen from outside, the second edge is to the left of the first.
@@ -38,7 +38,7 @@ const BORDER: f64 = 0.04;
 pub(super) struct Panel {
     corner: DVec3,
     edges: [DVec3; 2],
-    /// Rise per unit of the relief.
+    /// Displacement per unit of the relief.
     rise: f64,
 }
 
@@ -57,7 +57,7 @@ impl Panel {
     }
 }
 
-/// Returns all panels: the panels along the hull, and five for each block.
+/// Returns all panels: the panels along the hull, and five for each block of the bridge.
 fn panels() -> Vec<Panel> {
     let [front, back] = LENGTH;
     let mut panels = Vec::new();
@@ -90,8 +90,8 @@ fn panels() -> Vec<Panel> {
     panels
 }
 
-/// Builds the hull. `relief` gives the height of a panel at a position on it. The step of the grids is `step` times
-/// the distance from the origin, and at least `step`.
+/// Builds the hull. `relief` returns the height of a panel at a position on it. The grid step is `step` times the
+/// distance from the origin, and at least `step`.
 pub(super) fn hull(step: f64, relief: impl Fn(&Panel, DVec3) -> f64) -> Result<Mesh, PreviewError> {
     let mut positions = Vec::new();
     let mut triangles = Vec::new();
@@ -119,7 +119,7 @@ pub(super) fn hull(step: f64, relief: impl Fn(&Panel, DVec3) -> f64) -> Result<M
     Mesh::flat(&positions, &triangles)
 }
 
-/// Returns the grid lines along an edge, as fractions of it, with wider gaps farther from the eye.
+/// Returns the grid lines along an edge, as fractions of its length, with wider gaps farther from the eye.
 fn lines(corner: DVec3, edge: DVec3, step: f64) -> Vec<f64> {
     let mut lines = vec![0.0];
     let mut part = 0.0;

@@ -38,7 +38,7 @@ struct Net<'a> {
     side: f64,
     low: DVec3,
     blocks: Cell,
-    /// Vertex of each cell that the surface passes through.
+    /// Vertex index of each cell that the surface passes through.
     vertices: BTreeMap<Cell, u32>,
     positions: Vec<DVec3>,
     /// Edges that the surface crosses: the lower end, the axis, and whether the lower end is inside.
@@ -62,7 +62,7 @@ impl<'a> Net<'a> {
         }
     }
 
-    /// Returns the position of a corner of a cell, or of a point `offset` cell sides from it.
+    /// Returns a position in a cell: the corner `corner` plus `offset`, which is in multiples of the cell side.
     fn position(&self, corner: Cell, offset: DVec3) -> DVec3 {
         self.low + (DVec3::from_array(corner.map(f64::from)) + offset) * self.side
     }
@@ -159,7 +159,7 @@ fn middle_of_crossings(corners: &[f64; 8]) -> DVec3 {
     sum / f64::max(count, 1.0)
 }
 
-/// Iterates over all cells of a box, x fastest.
+/// Iterates over all cells of a box, with x varying fastest.
 fn cells(low: Cell, size: Cell) -> impl Iterator<Item = Cell> {
     let range = move |axis: usize| low[axis]..low[axis] + size[axis];
     range(2).flat_map(move |z| range(1).flat_map(move |y| range(0).map(move |x| [x, y, z])))

@@ -1,8 +1,8 @@
 //! Checks whether the measure behind [`Coherence::Auto`](dapple_synth::Coherence) agrees with human judgment.
 //!
-//! Textures of 256² pixels were made from each exemplar with a coherence of 0 and of 2. The choices below were written
-//! down before the measure existed. A choice says so where neither looks better. Every texture that was better with 0
-//! was also better if only the passes that read a coarser level used 0.
+//! Textures of 256 × 256 pixels were synthesized from each exemplar with a coherence of 0 and of 2. The judgments
+//! below were written down before the measure existed. Where neither texture looks better, the judgment says so.
+//! Every texture that was better with 0 was also better if only the passes that read a coarser level used 0.
 
 #![expect(clippy::disallowed_methods, reason = "photographs are read here")]
 
@@ -13,18 +13,18 @@ use dapple_raster::Raster;
 use dapple_synth::{Edges, Exemplar};
 use std::path::Path;
 
-/// Coherence whose texture looks better.
+/// Coherence whose texture looks better to a person.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Better {
     /// A coherence of 0, on finer levels. With 2 the texture has tears.
     Least,
-    /// A coherence of 2. With 0 detail blurs away or shapes melt.
+    /// A coherence of 2. With 0, details blur or shapes melt.
     Coherent,
     Neither,
 }
 use Better::{Coherent, Least, Neither};
 
-/// Exemplars of our figures.
+/// Judgments for the exemplars of our figures.
 const OURS: [(&str, Better); 9] = [
     ("wiggly checker", Least),
     ("suckers", Least),
@@ -37,7 +37,7 @@ const OURS: [(&str, Better); 9] = [
     ("letter", Neither),
 ];
 
-/// Photographs and scans, given by the beginnings of their file names.
+/// Judgments for photographs and scans, identified by the beginnings of their file names.
 const PHOTOGRAPHS: [(&str, Better); 15] = [
     ("grass_cc0", Coherent),
     ("ground037", Coherent),
@@ -57,7 +57,7 @@ const PHOTOGRAPHS: [(&str, Better); 15] = [
 ];
 
 /// Measures an exemplar and compares the result with the limit of [`Coherence::Auto`](dapple_synth::Coherence), 0.9.
-/// Exemplars with a clear choice are well above or below it.
+/// Exemplars with a clear judgment are well above or below it.
 fn check(name: &str, better: Better, image: &Raster<LinearRgb>, edges: Edges) {
     let regularity = Exemplar::new(image, edges).unwrap().regularity();
     println!("{regularity:.3} {better:?} {name}");

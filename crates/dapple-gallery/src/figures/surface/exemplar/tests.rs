@@ -1,4 +1,4 @@
-//! Tests of the exemplars: some tile, others do not.
+//! Tests which exemplars tile and which do not.
 
 use super::{EXEMPLARS, Edges, Exemplar};
 use dapple_color::LinearRgb;
@@ -47,7 +47,7 @@ fn exemplars_have_colors_that_a_screen_shows_at_any_size() {
             assert!(shades.deviation > 0.005, "{} is flat", exemplar.name);
             let parts = image.pixels().iter().flat_map(|color| color.to_array());
             let shown = parts.filter(|part| (0.0..=1.0).contains(part)).count();
-            // A few highlights may be brighter than a screen can show.
+            // A few highlights may be brighter than a display can show.
             let all = 3 * size as usize * size as usize;
             assert!(shown * 20 > all * 19, "{} is too bright", exemplar.name);
         }

@@ -6,11 +6,11 @@ use dapple_synth::mesh::Surface;
 use dapple_synth::{Coherence, Exemplar, Matching, Options, Sources, Synthesizer};
 use dapple_worley::hash::Seed;
 
-/// Radius around a site, in spacings, within which two colors must occur. It is nearly the width of a square, 10.7.
-/// The center of a square of the exemplar is at most 8 from its edges.
+/// Radius around a site, in multiples of the site spacing, within which two colors must occur. It is nearly the width
+/// of a square, 10.7. The center of a square of the exemplar is at most 8 from its edges.
 const RADIUS: f64 = 10.0;
 
-/// Returns the fraction of sites whose surroundings have a single color.
+/// Returns the fraction of sites within whose [`RADIUS`] there is only one color.
 fn part_of_one_color(synthesizer: &Synthesizer, values: &[f32]) -> f64 {
     let hierarchy = synthesizer.hierarchy();
     let level = &hierarchy.levels()[0];
