@@ -3,8 +3,7 @@
 //! **One thread.** Both sides run inside a thread pool of one thread, in turns (ours, theirs, ours, theirs …). The
 //! clock is the processor time of that thread, because other programs on the machine reduce wall time but not
 //! processor time. Other programs also share cache, memory bandwidth and clock speed, but the turns are short, so both
-//! processor time. Other programs also share cache, memory bandwidth and clock speed, but the turns are short, so
-//! both sides are affected equally. A side's time is the median of its runs. The setup of a run (copying the input,
+//! sides are affected equally. A side's time is the median of its runs. The setup of a run (copying the input,
 //! freeing the last output) is not timed. Our side first does one untimed warm-up run, so that memory is mapped.
 //!
 //! **Two threads** are measured differently, see `two_threads`.

@@ -214,7 +214,7 @@ pub(crate) fn wavelet_analyze<'py>(
 /// Raises
 /// ------
 /// DappleError
-///     If the bands do not have the sizes that `wavelet_analyze` returns, or `borders` is unknown.
+///     If the sizes of the bands are not those that `wavelet_analyze` returns, or `borders` is unknown.
 #[pyfunction]
 #[pyo3(signature = (bands, *, borders = None, **options),
     text_signature = "(bands, *, borders=\"periodic\", **options)")]

@@ -35,8 +35,8 @@ use pyo3::prelude::*;
 ///
 /// Raises
 /// ------
-/// If the image's shape is wrong, or an option is out of range.
-///     If the image has a shape or an option a value out of range.
+/// DappleError
+///     If the image's shape is wrong, or an option is out of range.
 ///
 /// Examples
 /// --------

@@ -120,13 +120,14 @@ impl SitePoints {
 ///     How faces are laid out: `"charts"` (large pieces), `"area"` (triangles sized by their areas), `"uniform"`, or
 ///     `"uv"` (`mesh.uv`, (m, 3, 2), v down).
 /// padding : int or None, default None
-///     The number of pixels by which each piece of the texture is extended past its border.
+///     The width, in pixels, by which each piece of the texture extends past its border.
 /// crease : float, default 30.0
 ///     The crease angle in degrees: an edge with a larger angle is shaded as a crease.
 /// axes : {"followed", "carried"} or None, default None
 ///     How neighborhoods continue over the surface: `"followed"` or `"carried"`.
 /// matching : {"appearance", "colors"} or None, default None
-///     What is compared: `"appearance"` by default, or `"colors"` as in the paper; always colors with `example_mesh`.
+///     The compared quantities: `"appearance"` by default, or `"colors"` as in the paper; always colors with
+///     `example_mesh`.
 /// seed : int, default 0
 ///     As for `synthesize`.
 /// edges : {"cut", "wrap"}, default "cut"

@@ -2,8 +2,7 @@
 //!
 //! The queries are the neighborhoods of the last pass, F(7,0) and F(3,1), on a tile of 320×320 pixels synthesized by
 //! all earlier passes: 102,400 queries of 171 numbers each. Exemplars of 64×64 and 256×256 pixels have 3364 and
-//! 62,500
-//! candidates.
+//! 62,500 candidates.
 //!
 //! Confirmed: every query finds the same row as brute force with the same distance function; ties go to the lower
 //! index. Slow methods are timed on a subset of the queries, spread evenly.

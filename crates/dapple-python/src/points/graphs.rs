@@ -187,7 +187,7 @@ impl Graph {
 
     /// Returns the Delaunay triangles as point indices: int64 of shape (t, 3), ordered in the direction from x to y.
     ///
-    /// Where more than three points lie on an empty circle, one of several triangulations is chosen.
+    /// Where more than three points are on an empty circle, one of several valid triangulations is chosen.
     ///
     /// Returns
     /// -------

@@ -102,6 +102,7 @@ impl Build for PupsMade {
 ///     Fades axes whose edge crosses only a short border of their point's cell. An axis fades if the border is
 ///     shorter than this fraction of the edge, from 0 (never) to 1. With 0.25, the field changes smoothly when points
 ///     move.
+/// seed : int, default 0
 ///     The random seed, from 0 to 2**64 - 1.
 ///
 /// Raises

@@ -1,4 +1,4 @@
-//! Cells made of one point per cell, with random orientations.
+//! Cells with one point per cell, with random orientations.
 
 use super::picture_of_labels;
 use crate::draw::graph_grays;

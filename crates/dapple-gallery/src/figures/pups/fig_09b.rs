@@ -1,4 +1,4 @@
-//! Cells made of a few points per cell: three or four that the graph connects.
+//! Cells with three or four points per cell, connected by the graph.
 
 use super::picture_of_labels;
 use crate::draw::graph_grays;

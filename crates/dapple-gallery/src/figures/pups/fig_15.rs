@@ -1,6 +1,6 @@
 //! Progressive textures: cows whose control points are closer together toward the right.
 //!
-//! The points lie on a cylinder: the texture repeats from top to bottom, but not from left to right.
+//! The points are on a cylinder, so the texture repeats from top to bottom, but not from left to right.
 
 use super::picture_of_labels;
 use crate::figure::source;

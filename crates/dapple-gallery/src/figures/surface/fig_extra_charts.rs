@@ -1,7 +1,7 @@
 //! Charts: where the pieces of a model are in its texture map, and how little they are stretched.
 //!
-//! The color shows the normal, and the squares have one size in the map. In the right half, areas that are larger on
-//! the model than their texels indicate are red, and smaller ones are blue, from -10 % to 10 %.
+//! The color shows the normal, and all squares are the same size in the map. In the right half, areas that are larger
+//! on the model than their texels indicate are red, and smaller ones are blue, from -10 % to 10 %.
 
 use super::stage::{View, lit};
 use crate::figure::source;

@@ -2,7 +2,7 @@
 //! seam of bricks whose courses do not meet, next to plain copies of the image, which are shifted so that the seam is
 //! in the middle.
 //!
-//! The tile has the size of the part of the image that repeats best, and only a strip along its seam is synthesized.
+//! The tile is as large as the part of the image that repeats best, and only a strip along its seam is synthesized.
 
 use super::exemplar::cut_out;
 use crate::draw::enlarged;

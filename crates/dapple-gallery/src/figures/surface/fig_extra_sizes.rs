@@ -1,6 +1,6 @@
 //! Features whose sizes follow the directions: they grow where directions spread and shrink where they meet. Rows of
 //! scales, lines of text and pieces of a puzzle therefore continue at positions where they begin and end in figure 5,
-//! whose features have one size.
+//! whose features are all the same size.
 
 use super::subject::{BUNNY, ELEPHANT, Subject, ZEBRA};
 use crate::figure::source;

@@ -1,7 +1,7 @@
-//! Fields of one, two and four directions: bricks, which look the same upside down, and a checker, which looks the
+//! Fields with one, two and four directions: bricks, which look the same upside down, and a checker, which looks the
 //! same on its side, with fewer tears where the field may rotate by half or a quarter turn around a point.
 //!
-//! No directions are given: a field of one direction runs down the model, and the others are the smoothest fields.
+//! No directions are given: a field with one direction runs down the model, and the others are the smoothest fields.
 
 use super::exemplar::EXEMPLARS;
 use super::own::views;

@@ -1,5 +1,5 @@
-//! Large blend maps made by tiling Rn: on the left each blend tile, of a texture and of Perlin noise, on the right the
-//! map tiled by it. One level softens the seams but does not remove them.
+//! Large blend maps, each tiled from Rn: on the left each blend tile, of a texture and of Perlin noise, on the right
+//! the map tiled by it. One level softens the seams but does not remove them.
 
 use super::{BLEND_TILE, beside, originals, report, tile_side};
 use crate::figure::source;

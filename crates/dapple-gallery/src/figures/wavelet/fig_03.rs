@@ -2,7 +2,7 @@
 //! cut along the line of minimum difference. Below each map are the measurements at its seams, and its defects.
 //!
 //! The paper says that b1 to b4 have "nearly no discontinuities". One level leaves a third of a step (0.34 in this
-//! phase), and removes the finest detail. A cut removes the step and keeps the detail, but needs a margin, here a
+//! phase), and removes the finest detail. A cut removes the step and preserves the detail, but needs a margin, here a
 //! quarter of the tile, in which the original continues.
 
 use super::{BLEND_TILE, beside, cut, originals, report, tile_side};

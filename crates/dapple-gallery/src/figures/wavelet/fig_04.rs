@@ -1,6 +1,6 @@
 //! Two textures blended by the repeatable blend tile of one of them: (c1) stone with grass, (c2) pebble with grass.
 //!
-//! The blend tile is made of the features of the stones, and grass appears first where it is low. So grass grows from
+//! The blend tile is computed from the stones' features, and grass appears first where it is low. So grass grows from
 //! the cracks and around the pebbles, and only the tile controls this. It covers exactly 35 % of the ground.
 //!
 //! The textures are crops that do not repeat, like photographs. They are cut to tiles first. The features of a tile

@@ -1,7 +1,7 @@
 //! All methods on the same four crops, which do not repeat: fractal noise, stone, pebble and grass.
 //!
-//! No method is the best for every texture. The periodic part keeps all detail and is the choice for smooth noise. The
-//! soft cut keeps grains whole and needs a margin. The blend tile alone hides no seam, at one level or at two. The
+//! No method is the best for every texture. The periodic part preserves all detail and is the choice for smooth noise.
+//! The soft cut keeps grains whole and needs a margin. The blend tile alone hides no seam, at one level or at two. The
 //! crossfades reduce contrast. The mirror has no seam, but its symmetry is obvious. A seam ratio is 1 where the wrap
 //! is similar to the inside.
 

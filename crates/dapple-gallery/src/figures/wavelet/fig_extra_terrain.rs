@@ -1,8 +1,8 @@
 //! A terrain of stone, grass and soil: linear splatting, and blending by the blend tiles of the ground.
 //!
-//! Stone lies where the land is steep or high, grass where it is low and flat, and soil between. Splatting fades the
-//! textures into each other, and grass shines through the stones. With the paper's method grass and soil "growth
-//! around the pebbles and stone, or growth from the cracks". The blend tile of the stone, made of its features, halved
+//! Stone is placed where the land is steep or high, grass where it is low and flat, and soil between. Splatting fades
+//! the textures into each other, and grass shines through the stones. With the paper's method grass and soil "growth
+//! around the pebbles and stone, or growth from the cracks". The stone's blend tile, computed from its features, halved
 //! and doubled, determines where other textures appear first on it; the blend tile of the soil does the same for
 //! grass. At every position both images have the same fractions of stone, soil and grass.
 
