@@ -40,7 +40,7 @@ fn each<'py>(
 
 /// Halves an image to (rows / 2, columns / 2[, channels]): returns the nearest spline at half the resolution.
 ///
-/// Pixels are coefficients of B-splines. The filters are those of Cook and DeRose (2005), without truncation.
+/// Pixels are coefficients of B-splines. The filters are the exact ones of Cook and DeRose (2005).
 ///
 /// Parameters
 /// ----------

@@ -229,7 +229,7 @@ pub(crate) fn read_image<'py>(
 /// max_pixels : int, default 268435456
 ///     The maximum number of pixels.
 /// max_bytes : int, default 4294967296
-///     The maximum number of bytes of the file and of its pixels.
+///     The maximum number of bytes in the file and in its decoded pixels.
 ///
 /// Returns
 /// -------

@@ -299,7 +299,7 @@ pub(crate) fn ramp<'py>(
     kind.array(py, vec![Map::Color(colors)])
 }
 
-/// Reads a ramp from a list of colors, or of pairs of position and color.
+/// Reads a ramp from a list of colors, or from a list of (position, color) pairs.
 fn stops(colors: &Value) -> Result<ColorRamp> {
     let refused = || {
         Error::new(

@@ -110,7 +110,7 @@ impl SitePoints {
 ///     The downward direction for connected pieces of the surface that contain none of the `directions`.
 /// symmetry : {1, 2, 4}, default 1
 ///     The rotational symmetry of the example: 2 if it looks the same upside down, such as bricks, and 4 if it looks
-///     the same after a quarter turn, such as a checkerboard. Higher symmetry gives the texture fewer seams.
+///     the same after a quarter turn, such as a checkerboard. Higher symmetry gives the texture fewer tears.
 /// scales : array_like or None, default None
 ///     The size of an example pixel, in multiples of the point spacing, from 1/8 to 8; by default 1. Pass a number
 ///     for each vertex, (n,), or an image that is sampled at `mesh.uv` and repeats, (rows, columns). Or pass two

@@ -34,7 +34,7 @@ fn first(data: Option<&Bound<'_, PyAny>>) -> Result<[i64; 2]> {
     Ok(data.map_or(Ok([0; 2]), |first| first.extract())?)
 }
 
-/// Renders maps of a window of the plane in bands of rows, so that the work stops soon after an interruption.
+/// Renders a window of the plane band by band, so that the work stops soon after an interruption.
 fn rows(
     py: Python<'_>,
     first: [i64; 2],
@@ -310,7 +310,7 @@ fn report<'py>(py: Python<'py>, reports: &[SeamReports], kind: Kind) -> Result<B
 /// Parameters
 /// ----------
 /// tile : dict of array_like or array_like
-///     An image of any number of channels, or a dictionary of maps.
+///     An image with any number of channels, or a dictionary of maps.
 /// size : int or tuple of int
 ///     (rows, columns), or one number for both.
 ///

@@ -1,7 +1,7 @@
 //! Renders F2 − F1 repeatedly: `worley_raster SEED SIDE PX_PER_CELL RUNS`.
 //!
 //! The benchmark `dapple-bench` builds this program once for any processor and once for the current one, and runs both.
-//! It prints the processor time of every run in seconds, then a hash of the bits of the raster.
+//! It prints the processor time of every run in seconds, then a hash of the raster's bits.
 
 #![forbid(unsafe_code)]
 #![expect(clippy::print_stdout, reason = "what it prints is what it is for")]

@@ -151,7 +151,7 @@ fn two_loops() {
     black_box(rayon::join(work, work));
 }
 
-/// The wall clock.
+/// Reads the wall clock.
 #[expect(
     clippy::disallowed_methods,
     reason = "a benchmark reads the clock; no value depends on it"

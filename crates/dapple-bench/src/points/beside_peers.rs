@@ -97,7 +97,7 @@ fn row<P: Send>(bench: &mut Bench, case: &Case, turns: u32, peer: &Peer<P>) -> R
     })
 }
 
-/// The crate `bluenoise`, which works on a torus of any side in single precision; its radius here is 1.
+/// Returns the crate `bluenoise` as a peer. It works on a torus of any side in single precision; its radius here is 1.
 fn bluenoise(n_points: u32) -> Peer<[f32; 2]> {
     let radius = sets::radius_of(n_points);
     let side = (1.0 / radius) as f32;
@@ -127,7 +127,7 @@ fn diskus(n_points: u32) -> Peer<[f64; 2]> {
     }
 }
 
-/// The crate `fast_poisson`, which does not wrap. The border admits a few more points.
+/// Returns the crate `fast_poisson` as a peer. It does not wrap, and the border admits a few more points.
 fn fast_poisson(n_points: u32) -> Peer<[f64; 2]> {
     let radius = sets::radius_of(n_points);
     Peer {

@@ -1,7 +1,7 @@
 //! Orientation and continuity of a texture on a surface: stripes follow the field, and colors do not jump at mesh
 //! edges.
 //!
-//! The direction of a texture is the direction of least change, from the structure tensor of the sites around each
+//! A texture's direction is the direction of least change, from the structure tensor of the sites around each
 //! site: Josef Bigün and Gösta Granlund, "Optimal Orientation Detection of Linear Symmetry", ICCV 1987.
 //!
 //! Colors are compared slightly to the left and to the right of every edge. Equation 1 bounds their difference: a

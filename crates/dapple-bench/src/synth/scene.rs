@@ -19,7 +19,7 @@ use std::path::PathBuf;
 /// Width and height of flat images in pixels.
 pub(super) const SIDE: u32 = 512;
 
-/// Number of sites in most rows, equal to the number of pixels of the flat image.
+/// Number of sites in most rows, equal to the flat image's number of pixels.
 pub(super) const N_SITES: usize = 512 * 512;
 
 /// A model's file in memory.

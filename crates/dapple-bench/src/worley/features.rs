@@ -26,7 +26,7 @@ const BAND: [u32; 2] = [256, 32];
 /// Pixels per unit cell along each axis.
 const PX_PER_CELL: f64 = 64.0;
 
-/// Number of turns of the row, and number of runs per side in each turn.
+/// Number of turns for the row, and number of runs per side in each turn.
 const TURNS: u32 = 101;
 const RUNS: u32 = 5;
 

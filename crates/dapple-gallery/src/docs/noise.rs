@@ -25,7 +25,7 @@ const GRADIENT_NOISE: Strip = Strip {
     },
 };
 
-/// Renders one period of the noise, of three fractal sums, and of noise displaced by noise.
+/// Renders one period each of the noise, three fractal sums, and noise displaced by noise.
 fn panels(side: u32, labels: [&str; 5]) -> anyhow::Result<[Panel; 5]> {
     let noise = |seed| GradientNoise2::new(Seed(seed)).with_period([Some(CELLS); 2]);
     let [noise, right, down] = [noise(1)?, noise(2)?, noise(3)?];

@@ -79,7 +79,7 @@ fn picture_of_labels(
 /// Number of samples along each side of a pixel, used to smooth hard edges.
 const SIDE: u32 = 4;
 
-/// Returns the window of all samples of the paper's square, for an image of `size` × `size` pixels.
+/// Returns the supersampled window of the paper's square, for an image of `size` × `size` pixels.
 fn fine_square(size: u32) -> Result<Window, RasterError> {
     square(size.saturating_mul(SIDE))
 }

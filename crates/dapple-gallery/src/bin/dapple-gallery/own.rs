@@ -10,7 +10,7 @@ use dapple_synth::{Coherence, Direction, Edges, HierarchyOptions};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The arguments of `--mesh`: a mesh, the exemplar of its texture, and the options of the synthesis.
+/// The arguments for `--mesh`: a mesh, the exemplar for its texture, and the synthesis options.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct OwnArguments {
     /// Path of the mesh file, in any supported format.

@@ -1,4 +1,4 @@
-//! A test card of the drawing helpers: a ring of points with labels, the graph between them, and the contours of the
+//! A test card for the drawing helpers: a ring of points with labels, the graph between them, and the contours of the
 //! distance from their center.
 
 use crate::draw::{Canvas, label_color};

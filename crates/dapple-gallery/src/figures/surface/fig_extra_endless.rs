@@ -1,4 +1,4 @@
-//! Endless textures, by corrections of all pixels of a level at once, below textures by the sweep of the paper:
+//! Endless textures, synthesized by correcting all pixels of a level at once, below textures by the paper's sweep:
 //! courses of bricks continue, strands have no loose ends, and lines of text are lines. Each image is a window of an
 //! infinite texture, and any other window can be computed independently.
 //!

@@ -28,7 +28,7 @@ pub(crate) struct Subject {
     pub(crate) model: fn(n_triangles: usize) -> Result<Mesh, ModelError>,
     /// Name of the exemplar.
     exemplar: &'static str,
-    /// Number of sites of the finest level at full size, and number of levels, from table 1.
+    /// Number of sites on the finest level at full size, and number of levels, from table 1.
     pub(crate) n_sites: usize,
     n_levels: usize,
     /// Pairs of a position and the direction in which the exemplar's downward axis points there.

@@ -34,7 +34,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Size of a crumb of soil, as a fraction of the size of a stone.
+/// Size of a soil crumb, as a fraction of a stone's size.
 const CRUMB: f64 = 0.4;
 
 /// Textures over the whole terrain, and blend tiles for the stone and the soil, which other textures cover.
@@ -187,7 +187,7 @@ mod tests {
             );
         }
         let [cracks, stones] = [true, false].map(|low| mean_where(&by_tiles, low));
-        // Grass and soil cover 40 % of the area, all of it in the lower half of the mask.
+        // Grass and soil cover 40 % of the area, entirely in the lower half of the mask.
         assert!(
             cracks > 0.75 && stones < 0.05,
             "{cracks} in cracks, {stones} on stones"

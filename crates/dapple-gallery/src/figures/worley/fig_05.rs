@@ -28,7 +28,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Number of cells of the hide per unit of the creature, which is about 8 units long.
+/// Number of cells per unit length on the hide. The creature is about 8 units long.
 const FREQUENCY: f64 = 3.2;
 /// Height of the bumps, in cells.
 const BUMP: f64 = 0.3;

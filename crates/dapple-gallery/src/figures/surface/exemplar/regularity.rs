@@ -1,6 +1,6 @@
 //! Checks whether the measure behind [`Coherence::Auto`](dapple_synth::Coherence) agrees with human judgment.
 //!
-//! Textures of 256 × 256 pixels were synthesized from each exemplar with a coherence of 0 and of 2. The judgments
+//! Textures of 256 × 256 pixels were synthesized from each exemplar with coherences of 0 and 2. The judgments
 //! below were written down before the measure existed. Where neither texture looks better, the judgment says so.
 //! Every texture that was better with 0 was also better if only the passes that read a coarser level used 0.
 
