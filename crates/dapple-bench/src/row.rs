@@ -5,11 +5,11 @@ use serde::Serialize;
 /// The direction of a ratio, and the threshold that it must reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Goal {
-    /// The time of the other side divided by ours must be at least this: ours is that many times faster.
+    /// The other side's time divided by ours must be at least this, that is, ours is this many times faster.
     Faster(f64),
-    /// Our time divided by the time of the other side must be at most this.
+    /// Our time divided by the other side's must be at most this.
     CostAtMost(f64),
-    /// A quality measure of our side divided by that of the other side must be at least this.
+    /// Our quality measure divided by the other side's must be at least this.
     AtLeast(f64),
 }
 

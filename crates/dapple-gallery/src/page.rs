@@ -22,7 +22,7 @@ pub struct Image {
     pub file: String,
     /// Label of the panel.
     pub label: String,
-    /// Measurements of the image as text; empty if there are none.
+    /// Measurements of the image as text; empty without measurements.
     pub note: String,
     /// Whether copies of the image tile seamlessly along x and y.
     pub repeats: [bool; 2],

@@ -81,7 +81,7 @@ pub(crate) enum Made {
     Worley(CellsMade),
     /// Perlin's gradient noise.
     GradientNoise(GradientMade),
-    /// Wavelet noise, as for the function `wavelet_noise`.
+    /// Wavelet noise, as built by the Python function `wavelet_noise`.
     WaveletNoise(Shared<WaveletMade>),
     /// The field of values at control points.
     Pups(Shared<PupsMade>),

@@ -80,8 +80,8 @@ fn variable(bench: &mut Bench) -> Result<()> {
     .prepared(|points| *points = None);
     bench.beside(&VARIABLE, 15, ours, maximal(radius), |ours, theirs| {
         let ours = ours.as_ref().context("no points")?;
-        // The density equals that of a fixed radius within the 3 % that the method promises. The minimum distance is
-        // the minimum radius of the ramp.
+        // The density equals the density for a fixed radius within the 3 % that the method promises. The minimum
+        // distance is the minimum radius of the ramp.
         let n_ours = confirm(ours, radius, 1.0, 0.676..=0.718)?;
         confirm(ours, least, 1e-9, 0.0..=1.0)?;
         Ok(Done {

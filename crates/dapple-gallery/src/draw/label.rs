@@ -67,7 +67,7 @@ pub fn graph_grays(graph: &Graph, labels: &[u32]) -> Vec<f32> {
 /// Number of shades for a planar graph. Four are enough for every such graph, but this method needs up to six.
 const SHADES: u32 = 6;
 
-/// Returns for each label the set of labels connected to it by an edge.
+/// Returns, for each label, the set of labels connected to it by an edge.
 fn neighbors(graph: &Graph, labels: &[u32]) -> Vec<BTreeSet<usize>> {
     let n_labels = labels.iter().max().map_or(0, |&label| label as usize + 1);
     let mut neighbors = vec![BTreeSet::new(); n_labels];

@@ -14,7 +14,7 @@ use glam::DVec3;
 /// A mesh, an exemplar image, and the synthesis options.
 #[derive(Clone, Debug)]
 pub struct Own {
-    /// The mesh, which is repaired as far as possible.
+    /// The mesh, which is repaired where possible.
     pub mesh: Mesh,
     /// The exemplar image.
     pub image: Raster<LinearRgb>,

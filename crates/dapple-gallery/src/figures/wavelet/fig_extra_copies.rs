@@ -1,9 +1,10 @@
 //! Maps of more than one tile: copies of one tile, copies whose interiors are changed, different tiles with the same
 //! borders, and corner tiles.
 //!
-//! Copies show their repetition. A changed copy keeps the border of the tile and has another piece of it inside.
-//! Different tiles fit in any order once they have the border of one of them. Corner tiles fit because an edge depends
-//! only on the colors of its two ends. All are joined along cuts where the pieces are most similar, without blending.
+//! Copies show their repetition. A changed copy has the tile's border, and another piece of the tile inside.
+//! Different tiles fit in any order once they all have the border of one of them. Corner tiles fit because an edge
+//! depends only on the colors of its two ends. All are joined along cuts where the pieces are most similar, without
+//! blending.
 
 use super::patch::Edges;
 use super::pebble::pebble;
