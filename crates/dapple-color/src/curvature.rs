@@ -122,7 +122,7 @@ pub fn curvature(
 ///
 /// # Errors
 ///
-/// The errors of [`curvature`].
+/// Same as [`curvature`].
 pub fn curvature_of_part(
     height: &Raster<f32>,
     whole: [u32; 2],

@@ -129,7 +129,7 @@ pub fn normal_map(
 ///
 /// # Errors
 ///
-/// The errors of [`normal_map`].
+/// Same as [`normal_map`].
 pub fn normal_map_of_part(
     height: &Raster<f32>,
     whole: [u32; 2],

@@ -140,7 +140,7 @@ pub fn ambient_occlusion(
 ///
 /// # Errors
 ///
-/// The errors of [`ambient_occlusion`], and [`ColorErrorKind::Cancelled`].
+/// Same as [`ambient_occlusion`], plus [`ColorErrorKind::Cancelled`].
 pub fn ambient_occlusion_cancellable(
     height: &Raster<f32>,
     options: &OcclusionOptions,
@@ -169,7 +169,7 @@ pub fn ambient_occlusion_cancellable(
 ///
 /// # Errors
 ///
-/// The errors of [`ambient_occlusion`], and [`ColorErrorKind::Raster`] if there are no pixels between the margins.
+/// Same as [`ambient_occlusion`], plus [`ColorErrorKind::Raster`] if there are no pixels between the margins.
 pub fn ambient_occlusion_of_part(
     height: &Raster<f32>,
     margin: [u32; 2],
@@ -184,7 +184,7 @@ pub fn ambient_occlusion_of_part(
 ///
 /// # Errors
 ///
-/// The errors of [`ambient_occlusion_of_part`], and [`ColorErrorKind::Cancelled`].
+/// Same as [`ambient_occlusion_of_part`], plus [`ColorErrorKind::Cancelled`].
 pub fn ambient_occlusion_of_part_cancellable(
     height: &Raster<f32>,
     margin: [u32; 2],

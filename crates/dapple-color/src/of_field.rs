@@ -16,7 +16,7 @@ use dapple_raster::{Field, Raster, Window, Wrap};
 ///
 /// # Errors
 ///
-/// The errors of [`normal_map`](crate::normal_map), and the errors of rendering the field.
+/// Same as [`normal_map`](crate::normal_map), and the errors of rendering the field.
 ///
 /// # Examples
 ///
@@ -54,7 +54,7 @@ pub fn normal_map_of_field(
 ///
 /// # Errors
 ///
-/// The errors of [`ambient_occlusion`](crate::ambient_occlusion), and the errors of rendering the field.
+/// Same as [`ambient_occlusion`](crate::ambient_occlusion), and the errors of rendering the field.
 pub fn ambient_occlusion_of_field(
     field: &(impl Field + ?Sized),
     window: &Window,
@@ -76,7 +76,7 @@ pub fn ambient_occlusion_of_field(
 ///
 /// # Errors
 ///
-/// The errors of [`curvature`](crate::curvature()), and the errors of rendering the field.
+/// Same as [`curvature`](crate::curvature()), and the errors of rendering the field.
 pub fn curvature_of_field(
     field: &(impl Field + ?Sized),
     window: &Window,

@@ -73,7 +73,7 @@ impl Palette {
         LinearRgb::from_srgb(codes[label as usize % codes.len()])
     }
 
-    /// Colors as sRGB codes.
+    /// Returns the colors as sRGB codes.
     const fn codes(self) -> &'static [[u8; 3]] {
         match self {
             Self::Gray => &[[0, 0, 0], [255, 255, 255]],

@@ -64,7 +64,7 @@ pub trait TextureRaster<T> {
     ///
     /// # Errors
     ///
-    /// The errors of [`Raster::from_rows`]. Levels smaller than this raster never cause them.
+    /// Same as [`Raster::from_rows`]. Levels smaller than this raster never cause them.
     fn mip_levels(&self) -> Result<Vec<Raster<T>>, RasterError>
     where
         T: TexturePixel;

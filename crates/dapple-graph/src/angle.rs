@@ -12,8 +12,8 @@ pub(crate) fn by_angle(a: DVec2, b: DVec2) -> Ordering {
         .then_with(|| a.length_squared().total_cmp(&b.length_squared()))
 }
 
-/// Orientation of `b` relative to `a`: positive if counterclockwise, negative if clockwise, zero if parallel; the sign
-/// is exact.
+/// Returns the orientation of `b` relative to `a`: positive if counterclockwise, negative if clockwise, zero if
+/// parallel; the sign is exact.
 pub(crate) fn turn(a: DVec2, b: DVec2) -> f64 {
     let coord = |v: DVec2| Coord { x: v.x, y: v.y };
     let cross = orient2d(Coord { x: 0.0, y: 0.0 }, coord(a), coord(b));

@@ -48,8 +48,8 @@ use tiles::Tiles;
 /// # Errors
 ///
 /// [`GraphErrorKind::Coincident`](crate::GraphErrorKind::Coincident) if two points coincide;
-/// [`GraphErrorKind::Thin`](crate::GraphErrorKind::Thin) on a domain that wraps and is too thin for the distance of
-/// its points.
+/// [`GraphErrorKind::Thin`](crate::GraphErrorKind::Thin) on a wrapping domain that is too thin for the distance
+/// between its points.
 ///
 /// # Examples
 ///
@@ -76,7 +76,7 @@ pub fn delaunay(points: &PointSet) -> Result<Graph, GraphError> {
 ///
 /// # Errors
 ///
-/// The errors of [`delaunay`], and [`GraphErrorKind::Cancelled`](crate::GraphErrorKind::Cancelled).
+/// Same as [`delaunay`], plus [`GraphErrorKind::Cancelled`](crate::GraphErrorKind::Cancelled).
 ///
 /// # Examples
 ///
@@ -186,7 +186,7 @@ mod tests {
     use dapple_points::hash::{Seed, rand_core::Rng, unit_f64};
     use glam::DVec2;
 
-    /// Random points; `power` above one concentrates them near the origin.
+    /// Returns random points; `power` above one concentrates them near the origin.
     fn random(n: usize, power: i32, size: DVec2) -> PointSet {
         let mut stream = Seed(n as u64).stream();
         let mut unit = || {

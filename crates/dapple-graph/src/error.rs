@@ -73,7 +73,7 @@ dapple_raster::error! {
         } =>
             "the domain has size {size} and wraps, so thin that the search for neighbors goes through more than \
              {limit} copies of points, which is the limit";
-        /// The operation was canceled by the callback of the caller.
+        /// The operation was canceled by the caller's callback.
         Cancelled => "the callback asked to stop";
         /// The graph was not created as a Delaunay graph, so it has no triangles and no Voronoi diagram.
         NotDelaunay => "the graph was not made as a Delaunay graph, so that it has no triangles and no Voronoi diagram";
@@ -111,7 +111,7 @@ dapple_raster::error! {
 }
 
 impl GraphError {
-    /// Error for a domain that is too thin for its points.
+    /// Creates the error for a domain that is too thin for its points.
     pub(crate) fn thin(points: &PointSet) -> Self {
         Self::new(GraphErrorKind::Thin {
             size: points.domain().size,
@@ -119,7 +119,7 @@ impl GraphError {
         })
     }
 
-    /// Error for two coinciding points.
+    /// Creates the error for two coinciding points.
     pub(crate) fn coincident(a: PointIdx, b: PointIdx) -> Self {
         Self::new(GraphErrorKind::Coincident {
             first: a.min(b),

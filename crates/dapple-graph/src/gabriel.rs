@@ -21,8 +21,8 @@ use glam::DVec2;
 /// # Errors
 ///
 /// [`GraphErrorKind::Coincident`](crate::GraphErrorKind::Coincident) if two points coincide;
-/// [`GraphErrorKind::Thin`](crate::GraphErrorKind::Thin) on a domain that wraps and is too thin for the distance of
-/// its points.
+/// [`GraphErrorKind::Thin`](crate::GraphErrorKind::Thin) on a wrapping domain that is too thin for the distance
+/// between its points.
 ///
 /// # Examples
 ///
@@ -44,7 +44,7 @@ pub fn gabriel(points: &PointSet) -> Result<Graph, GraphError> {
 ///
 /// # Errors
 ///
-/// The errors of [`delaunay_cancellable`].
+/// Same as [`delaunay_cancellable`].
 pub fn gabriel_cancellable(
     points: &PointSet,
     is_cancelled: &IsCancelled,

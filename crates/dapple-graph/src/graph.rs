@@ -97,8 +97,8 @@ impl Graph {
         graph_of(lattice, sites, rows, EdgeDirection::Directed)
     }
 
-    /// Axes of a point, counterclockwise (from x toward y), starting at the smallest angle from the x axis in `[0,
-    /// 2π)`. Axes with the same angle are ordered by length, then by index.
+    /// Returns the axes of a point, counterclockwise (from the x axis toward the y axis), starting at the smallest
+    /// angle from the x axis in `[0, 2π)`. Axes with the same angle are ordered by length, then by index.
     ///
     /// # Panics
     ///
@@ -110,32 +110,33 @@ impl Graph {
         &self.axes[self.offsets[at] as usize..self.offsets[at + 1] as usize]
     }
 
-    /// Number of points.
+    /// Returns the number of points.
     #[must_use]
     pub fn n_points(&self) -> usize {
         self.offsets.len() - 1
     }
 
-    /// Number of axes: twice the number of edges if the graph is symmetric.
+    /// Returns the number of axes: twice the number of edges if the graph is symmetric.
     #[must_use]
     pub fn n_axes(&self) -> usize {
         self.axes.len()
     }
 
-    /// Index of the first axis of each point in [`all_axes`](Self::all_axes), followed by the number of axes.
+    /// Returns the index of the first axis of each point in [`all_axes`](Self::all_axes), followed by the number of
+    /// axes.
     #[must_use]
     pub fn offsets(&self) -> &[u32] {
         &self.offsets
     }
 
-    /// Axes of all points, point by point.
+    /// Returns the axes of all points, point by point.
     #[must_use]
     pub fn all_axes(&self) -> &[Axis] {
         &self.axes
     }
 
-    /// Edges of a symmetric graph, each once: a point, and its axis along the edge. The axis leads toward larger y or,
-    /// for equal y, toward larger x.
+    /// Returns the edges of a symmetric graph, each once: a point, and its axis along the edge. The axis leads toward
+    /// larger y or, for equal y, toward larger x.
     pub fn edges(&self) -> impl Iterator<Item = (PointIdx, Axis)> + '_ {
         let points = (0..self.n_points() as u32).map(PointIdx);
         let axes = points.flat_map(|from| self.axes(from).iter().map(move |&axis| (from, axis)));
@@ -166,15 +167,15 @@ impl Graph {
 }
 
 impl Axis {
-    /// Order of the axes of a point.
+    /// Returns the order of the axes of a point.
     pub(crate) fn order(&self, other: &Self) -> core::cmp::Ordering {
         let scale = scale(self.vector.abs().max(other.vector.abs()).max_element());
         by_angle(self.vector * scale, other.vector * scale).then(self.to.cmp(&other.to))
     }
 }
 
-/// Power of two that scales a length to between 1 and 2, so that products do not underflow or overflow. On a lattice,
-/// vectors of such lengths are multiplied without rounding.
+/// Returns the power of two that scales a length to between 1 and 2, so that products do not underflow or overflow.
+/// On a lattice, vectors of such lengths are multiplied without rounding.
 fn scale(length: f64) -> f64 {
     let exponent_only = f64::from_bits(length.to_bits() & f64::INFINITY.to_bits());
     1.0 / exponent_only.max(f64::MIN_POSITIVE)

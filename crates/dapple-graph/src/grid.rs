@@ -26,7 +26,7 @@ impl Budget {
         }
     }
 
-    /// Maximum number of images for `n` points. For few points, this corresponds to a tenth of a second.
+    /// Returns the maximum number of images for `n` points. For few points, this corresponds to a tenth of a second.
     pub(crate) fn limit(n: usize) -> u64 {
         let n = n as u64;
         (1 << 21) + 32_u64.saturating_mul(n.saturating_mul(n))
@@ -38,7 +38,7 @@ impl Budget {
     }
 }
 
-/// Maximum number of images of `n` points for the initial triangulation, or for insertion into it.
+/// Returns the maximum number of images of `n` points for the initial triangulation, or for insertion into it.
 ///
 /// If the images are collinear, such as the images of a single point, the time is quadratic in their number.
 pub(crate) fn triangulated_limit(n: usize) -> u64 {
@@ -127,13 +127,13 @@ impl<'a> Grid<'a> {
         Ok(())
     }
 
-    /// Mean distance: square root of the area per point.
+    /// Returns the mean distance: square root of the area per point.
     pub(crate) fn mean_distance(&self) -> f64 {
         let size = self.lattice.size;
         (size.x * (size.y / self.sites.len().max(1) as f64)).sqrt()
     }
 
-    /// Radius that contains all neighbors that a graph may need; images within it are exact.
+    /// Returns the radius that contains all neighbors that a graph may need; images within it are exact.
     ///
     /// Without wrapping, all points are within the diagonal of the domain. With wrapping, each point has at least ten
     /// images within five periods, and one in each nonempty cone of 1/32 of a turn: 1 / sin(2π / 32) is below 5.2.
@@ -150,7 +150,7 @@ impl<'a> Grid<'a> {
         self.bucket(1, site.y) * self.cells[0] + self.bucket(0, site.x)
     }
 
-    /// Column or row of a coordinate, clamped to the domain.
+    /// Returns the column or row of a coordinate, clamped to the domain.
     #[inline]
     fn bucket(&self, axis: usize, coordinate: f64) -> usize {
         // The cast saturates, so negative numbers become zero.

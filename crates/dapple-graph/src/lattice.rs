@@ -1,6 +1,6 @@
 //! Positions as integers, so that differences and images are exact.
 //!
-//! Unit: one step, a power of two of the unit of the caller.
+//! Unit: one step, a power of two of the caller's units.
 
 use crate::GraphError;
 use dapple_points::{Domain, PointIdx, PointSet};
@@ -13,7 +13,7 @@ use glam::DVec2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Lattice {
     origin: DVec2,
-    /// Length of a step in the unit of the caller.
+    /// Length of a step in the caller's units.
     step: f64,
     per_step: f64,
     /// Width and height in steps.
@@ -62,24 +62,24 @@ impl Lattice {
         is_domain.then_some(lattice)
     }
 
-    /// Origin of the domain and length of a step, in the unit of the caller.
+    /// Returns the origin of the domain and length of a step, in the caller's units.
     #[cfg(feature = "serde")]
     pub(crate) fn origin_and_step(&self) -> (DVec2, f64) {
         (self.origin, self.step)
     }
 
-    /// Sites of all points, in order.
+    /// Returns the sites of all points, in order.
     pub(crate) fn sites(&self, points: &PointSet) -> Vec<DVec2> {
         points.positions().iter().map(|&p| self.site(p)).collect()
     }
 
-    /// Site of a position, in steps, wrapped into the domain along the wrapped axes.
+    /// Returns the site of a position, in steps, wrapped into the domain along the wrapped axes.
     pub(crate) fn site(&self, position: DVec2) -> DVec2 {
         self.snapped((position - self.origin) * self.per_step)
     }
 
-    /// Lattice position nearest to any position, in steps, wrapped into the domain along the wrapped axes. `None` if
-    /// the position is not finite or outside along an axis that does not wrap.
+    /// Returns the lattice position nearest to any position, in steps, wrapped into the domain along the wrapped
+    /// axes. `None` if the position is not finite or outside along an axis that does not wrap.
     pub(crate) fn place(&self, position: DVec2) -> Option<DVec2> {
         let mut offset = position - self.origin;
         let size = self.vector(self.size);
@@ -111,24 +111,24 @@ impl Lattice {
         site
     }
 
-    /// Position of a site, in the unit of the caller.
+    /// Returns the position of a site, in the caller's units.
     pub(crate) fn position(&self, site: DVec2) -> DVec2 {
         self.origin + self.vector(site)
     }
 
-    /// Converts a difference of sites to the unit of the caller; exact.
+    /// Converts a difference of sites to the caller's units; exact.
     #[inline]
     pub(crate) fn vector(&self, steps: DVec2) -> DVec2 {
         steps * self.step
     }
 
-    /// Converts a vector in the unit of the caller to steps.
+    /// Converts a vector in the caller's units to steps.
     #[inline]
     pub(crate) fn steps(&self, vector: DVec2) -> DVec2 {
         vector * self.per_step
     }
 
-    /// Shortest vector from one site to an image of the other; on a tie, the vector without wrapping.
+    /// Returns the shortest vector from one site to an image of the other; on a tie, the vector without wrapping.
     pub(crate) fn delta(&self, from: DVec2, to: DVec2) -> DVec2 {
         let mut delta = to - from;
         for axis in 0..2 {
@@ -139,7 +139,7 @@ impl Lattice {
         delta
     }
 
-    /// First and last image of the domain that an interval along an axis touches.
+    /// Returns the first and last image of the domain that an interval along an axis touches.
     pub(crate) fn images(&self, axis: usize, low: f64, high: f64) -> (f64, f64) {
         if self.wrap[axis] {
             let size = self.size[axis];
@@ -171,7 +171,7 @@ pub(crate) fn check_distinct(sites: &[DVec2]) -> Result<(), GraphError> {
     coincident.map_or(Ok(()), |(a, b)| Err(GraphError::coincident(a, b)))
 }
 
-/// Power of two of which `side` has between 2^49 and 2^50, or the smallest positive normal number.
+/// Returns the power of two of which `side` has between 2^49 and 2^50, or the smallest positive normal number.
 fn step_of(side: f64) -> f64 {
     let exponent_only = f64::from_bits(side.to_bits() & f64::INFINITY.to_bits());
     (exponent_only / (1_u64 << 49) as f64).max(f64::MIN_POSITIVE)

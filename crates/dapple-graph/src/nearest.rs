@@ -19,8 +19,8 @@ use glam::DVec2;
 ///
 /// [`GraphErrorKind::Neighbors`] for `k = 0`, above 4096, on a rectangle above the number of other points, and on a
 /// domain that wraps above ten times the number of points; [`GraphErrorKind::Coincident`] if two points coincide;
-/// [`GraphErrorKind::TooManyAxes`] past 2^32 axes; [`GraphErrorKind::Thin`] on a domain that wraps and is too thin for
-/// the distance of its points.
+/// [`GraphErrorKind::TooManyAxes`] past 2^32 axes; [`GraphErrorKind::Thin`] on a wrapping domain that is too thin for
+/// the distance between its points.
 ///
 /// # Examples
 ///
@@ -42,7 +42,7 @@ pub fn k_nearest(points: &PointSet, k: u32, direction: EdgeDirection) -> Result<
 ///
 /// # Errors
 ///
-/// The errors of [`k_nearest`], and [`GraphErrorKind::Cancelled`].
+/// Same as [`k_nearest`], plus [`GraphErrorKind::Cancelled`].
 ///
 /// # Examples
 ///
@@ -122,7 +122,7 @@ pub(crate) fn made<T>(rows: Result<T, Refusal>, points: &PointSet) -> Result<T, 
 /// Maximum number of neighbors.
 const MAX_NEIGHBORS: u32 = 4096;
 
-/// All images within a distance of a site, except the site itself, nearest first.
+/// Returns all images within a distance of a site, except the site itself, nearest first.
 pub(crate) fn near(
     grid: &Grid<'_>,
     site: DVec2,
@@ -146,7 +146,7 @@ pub(crate) fn near(
     Ok(found.into_iter().map(|(_, choice)| choice).collect())
 }
 
-/// Exact squared length in steps: products of integers below 2^53.
+/// Returns the exact squared length in steps: products of integers below 2^53.
 fn length_sq(steps: DVec2) -> i128 {
     let [x, y] = [steps.x, steps.y].map(|coordinate| coordinate as i128);
     x * x + y * y

@@ -74,8 +74,8 @@ pub struct VoronoiCell<'a> {
 pub struct VoronoiSide {
     /// Axis of the Delaunay graph that leads to the site of the neighbor.
     pub neighbor: Axis,
-    /// Vertices at both ends, counterclockwise (from x toward y) around the cell; `None` where the side is an
-    /// unbounded ray.
+    /// Vertices at both ends, counterclockwise (from the x axis toward the y axis) around the cell; `None` where the
+    /// side is an unbounded ray.
     pub vertices: [Option<u32>; 2],
     /// Ends relative to the site of the cell.
     pub ends: [Option<DVec2>; 2],
@@ -95,7 +95,7 @@ impl Voronoi {
     ///
     /// # Errors
     ///
-    /// The errors of [`delaunay`].
+    /// Same as [`delaunay`].
     pub fn new(points: &PointSet) -> Result<Self, GraphError> {
         Self::of_graph(delaunay(points)?)
     }
@@ -137,26 +137,26 @@ impl Voronoi {
         })
     }
 
-    /// The dual Delaunay graph.
+    /// Returns the dual Delaunay graph.
     #[must_use]
     pub fn graph(&self) -> &Graph {
         &self.graph
     }
 
-    /// Number of cells, one per site.
+    /// Returns the number of cells, one per site.
     #[must_use]
     pub fn n_cells(&self) -> usize {
         self.graph.n_points()
     }
 
-    /// All vertices.
+    /// Returns all vertices.
     #[must_use]
     pub fn vertices(&self) -> &[VoronoiVertex] {
         &self.vertices
     }
 
-    /// Sites whose cells meet at a vertex, counterclockwise around it. On a domain that wraps, a site occurs once per
-    /// image of its cell at the vertex.
+    /// Returns the sites whose cells meet at a vertex, counterclockwise around it. On a domain that wraps, a site
+    /// occurs once per image of its cell at the vertex.
     ///
     /// # Panics
     ///
@@ -167,7 +167,7 @@ impl Voronoi {
         &self.vertex_sites[self.first_sites[at] as usize..self.first_sites[at + 1] as usize]
     }
 
-    /// Cell of a site.
+    /// Returns the cell of a site.
     ///
     /// # Panics
     ///
@@ -227,7 +227,7 @@ impl Voronoi {
         })
     }
 
-    /// Neighbor nearest to the position, if it is nearer than the site.
+    /// Returns the neighbor nearest to the position, if it is nearer than the site.
     fn nearest_neighbor(&self, from: &Step) -> Option<Step> {
         let mut best = None;
         let mut best_sq = from.distance_sq();
@@ -240,8 +240,8 @@ impl Voronoi {
         best
     }
 
-    /// Among all sites at the same minimum distance as `start`, the first in order. They are on an empty circle, along
-    /// which neighbors are connected.
+    /// Returns the among all sites at the same minimum distance as `start`, the first in order. They are on an empty
+    /// circle, along which neighbors are connected.
     fn first_of_equals(&self, start: Step) -> Step {
         let mut equals = vec![start];
         let mut at = 0;
@@ -257,7 +257,7 @@ impl Voronoi {
         equals.into_iter().min_by(Step::order).unwrap_or(start)
     }
 
-    /// Neighbors of a site, relative to the same position.
+    /// Returns the neighbors of a site, relative to the same position.
     fn neighbors<'a>(&'a self, from: &'a Step) -> impl Iterator<Item = Step> + 'a {
         let axes = self.graph.axes(from.site).iter();
         axes.map(move |axis| Step {
@@ -275,7 +275,7 @@ struct Step {
 }
 
 impl Step {
-    /// Exact squared distance: steps are integers below 2^53.
+    /// Returns the exact squared distance: steps are integers below 2^53.
     fn distance_sq(&self) -> i128 {
         let [x, y] = self.steps.to_array().map(|part| part as i128);
         x * x + y * y
@@ -288,21 +288,21 @@ impl Step {
 }
 
 impl<'a> VoronoiCell<'a> {
-    /// Site of the cell.
+    /// Returns the site of the cell.
     #[must_use]
     pub fn site(&self) -> PointIdx {
         self.site
     }
 
-    /// Position of the site, snapped as described in [`Graph`].
+    /// Returns the position of the site, snapped as described in [`Graph`].
     #[must_use]
     pub fn position(&self) -> DVec2 {
         let graph = &self.voronoi.graph;
         graph.lattice.position(graph.sites[self.site.index()])
     }
 
-    /// Sides of the cell, counterclockwise (from x toward y), one per neighbor. On a torus, two cells may share
-    /// several sides, and a cell may be its own neighbor.
+    /// Returns the sides of the cell, counterclockwise (from the x axis toward the y axis), one per neighbor. On a
+    /// torus, two cells may share several sides, and a cell may be its own neighbor.
     pub fn sides(&self) -> impl ExactSizeIterator<Item = VoronoiSide> + 'a {
         let voronoi = self.voronoi;
         let axes = voronoi.graph.axes(self.site);
@@ -326,7 +326,7 @@ impl<'a> VoronoiCell<'a> {
         sides.len() > 0 && sides.all(|side| side.ends[0].is_some() && side.ends[1].is_some())
     }
 
-    /// Corners of the cell, counterclockwise and relative to its site; `None` for an unbounded cell.
+    /// Returns the corners of the cell, counterclockwise and relative to its site; `None` for an unbounded cell.
     #[must_use]
     pub fn polygon(&self) -> Option<Vec<DVec2>> {
         if !self.is_bounded() {
@@ -335,7 +335,7 @@ impl<'a> VoronoiCell<'a> {
         self.sides().map(|side| side.ends[1]).collect()
     }
 
-    /// Area of the cell; `None` for an unbounded cell.
+    /// Returns the area of the cell; `None` for an unbounded cell.
     #[must_use]
     pub fn area(&self) -> Option<f64> {
         self.polygon().map(|corners| area(&corners))
@@ -375,9 +375,9 @@ impl<'a> VoronoiCell<'a> {
 }
 
 impl VoronoiSide {
-    /// Direction of the side, counterclockwise around its cell, with the length of the axis to the neighbor. A ray
-    /// without a start comes from infinity in this direction; a ray without an end extends in this direction. A side
-    /// without both is the line through the midpoint of the axis.
+    /// Returns the direction of the side, counterclockwise around its cell, with the length of the axis to the
+    /// neighbor. A ray without a start comes from infinity in this direction; a ray without an end extends in this
+    /// direction. A side without both is the line through the midpoint of the axis.
     #[must_use]
     pub fn direction(&self) -> DVec2 {
         self.neighbor.vector.perp()
@@ -403,7 +403,7 @@ fn cut(corners: &[DVec2], neighbor: DVec2) -> Vec<DVec2> {
     kept
 }
 
-/// Area of a polygon.
+/// Returns the area of a polygon.
 fn area(corners: &[DVec2]) -> f64 {
     let [first, rest @ ..] = corners else {
         return 0.0;
@@ -415,7 +415,7 @@ fn area(corners: &[DVec2]) -> f64 {
         .sum::<f64>()
 }
 
-/// Circumcenter of a face in steps, relative to its first corner.
+/// Returns the circumcenter of a face in steps, relative to its first corner.
 ///
 /// The determinant is exact. The corner opposite to the longest edge of a triangle is used as the origin, since this
 /// avoids cancellation of nearly equal products: the error is below 10^-15 circumradii, however thin the triangle is.

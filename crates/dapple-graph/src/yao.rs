@@ -30,9 +30,9 @@ use glam::DVec2;
 ///
 /// # Errors
 ///
-/// [`GraphErrorKind::Cones`] for no cones and for more than 32; [`GraphErrorKind::Coincident`] if two points coincide;
-/// [`GraphErrorKind::TooManyAxes`] past 2^32 axes; [`GraphErrorKind::Thin`] on a domain that wraps and is too thin for
-/// the distance of its points.
+/// [`GraphErrorKind::Cones`] for no cones and for more than 32; [`GraphErrorKind::Coincident`] if two points
+/// coincide; [`GraphErrorKind::TooManyAxes`] past 2^32 axes; [`GraphErrorKind::Thin`] on a wrapping domain that is
+/// too thin for the distance between its points.
 ///
 /// # Examples
 ///
@@ -52,7 +52,7 @@ pub fn yao(points: &PointSet, cones: u32, direction: EdgeDirection) -> Result<Gr
 ///
 /// # Errors
 ///
-/// The errors of [`yao`], and [`GraphErrorKind::Cancelled`].
+/// Same as [`yao`], plus [`GraphErrorKind::Cancelled`].
 pub fn yao_cancellable(
     points: &PointSet,
     cones: u32,
@@ -87,7 +87,7 @@ pub fn yao_cancellable(
 /// Maximum number of cones.
 const MAX_CONES: u32 = 32;
 
-/// First of the neighbors in each cone, if any.
+/// Returns the first of the neighbors in each cone, if any.
 fn nearest_per_cone(neighbors: &[Choice], borders: &[DVec2]) -> Vec<Option<Choice>> {
     let mut chosen = vec![None; borders.len()];
     let mut left = borders.len();
@@ -111,7 +111,7 @@ fn is_at_or_after(v: DVec2, border: DVec2) -> bool {
     turn(border, v) == 0.0 && v.dot(border) > 0.0 || by_angle(v, border) == Ordering::Greater
 }
 
-/// Start direction of a cone; exact for multiples of a quarter turn.
+/// Returns the start direction of a cone; exact for multiples of a quarter turn.
 fn border(index: u32, cones: u32) -> DVec2 {
     let quarter = 4 * index / cones;
     let rest = f64::from(4 * index % cones) / f64::from(4 * cones);

@@ -14,7 +14,7 @@ pub struct CellHashes<S: Simd> {
 }
 
 impl<S: Simd> CellHashes<S> {
-    /// One hash in all lanes, such as the state at the start of a row of cells.
+    /// Returns one hash in all lanes, such as the state at the start of a row of cells.
     #[inline(always)]
     pub fn splat(simd: S, hash: CellHash) -> Self {
         let [a, b] = hash.state;
@@ -23,7 +23,7 @@ impl<S: Simd> CellHashes<S> {
         }
     }
 
-    /// Hashes with these states: see [`CellHash::of_words`].
+    /// Returns the hashes with these states: see [`CellHash::of_words`].
     #[inline(always)]
     #[must_use]
     pub const fn of_words(words: [u32x16<S>; 2]) -> Self {

@@ -37,14 +37,14 @@ impl<const N: usize> LatticeHash<N> {
         Self { keys }
     }
 
-    /// Key of an axis.
+    /// Returns the key of an axis.
     #[must_use]
     #[inline(always)]
     pub const fn key(&self, axis: usize) -> u32 {
         self.keys[axis]
     }
 
-    /// Part of a coordinate along an axis: a bijection of the coordinates from -2³¹ to 2³¹ - 1.
+    /// Returns the part of a coordinate along an axis: a bijection of the coordinates from -2³¹ to 2³¹ - 1.
     ///
     /// The upper halves of other coordinates permute the parts, so that the lattice does not repeat after 2³² corners.
     #[must_use]
@@ -59,8 +59,8 @@ impl<const N: usize> LatticeHash<N> {
         })
     }
 
-    /// Random bits of a corner, from the exclusive or of the parts of its coordinates. Use the upper 24 bits, which
-    /// have the best quality.
+    /// Returns random bits of a corner, from the exclusive or of the parts of its coordinates. Use the upper 24 bits,
+    /// which have the best quality.
     #[must_use]
     #[inline(always)]
     pub const fn bits(parts: u32) -> u32 {

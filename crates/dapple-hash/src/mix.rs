@@ -17,15 +17,15 @@ pub(crate) const M3: u32 = 0x27D4_EB2F;
 pub(crate) const N0: u32 = 0x7FEB_352D;
 pub(crate) const N1: u32 = 0x846C_A68B;
 
-/// Bijection of 64 bits in which every input bit flips every output bit about half of the time.
+/// Applies a bijection of 64 bits in which every input bit flips every output bit about half of the time.
 pub(crate) const fn mix64(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     z ^ (z >> 31)
 }
 
-/// Bijection of 32 bits in which every input bit flips every output bit about half of the time. With only two
-/// multiplications, it is meant for numbers derived from bits that are already random, such as the bits of a
+/// Applies a bijection of 32 bits in which every input bit flips every output bit about half of the time. With only
+/// two multiplications, it is meant for numbers derived from bits that are already random, such as the bits of a
 /// [`CellHash`](crate::CellHash).
 ///
 /// The constants were found by Chris Wellons by search ("Prospecting for Hash Functions", 2018).

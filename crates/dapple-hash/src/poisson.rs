@@ -86,29 +86,29 @@ impl PoissonCounts {
             })
     }
 
-    /// Minimum count, for the lowest bits.
+    /// Returns the minimum count, for the lowest bits.
     #[must_use]
     #[inline]
     pub fn least(&self) -> u32 {
         self.least
     }
 
-    /// Thresholds of the bits, ascending. The count is the minimum count plus the number of thresholds at or below the
-    /// bits.
+    /// Returns the thresholds of the bits, ascending. The count is the minimum count plus the number of thresholds at
+    /// or below the bits.
     #[must_use]
     #[inline]
     pub fn thresholds(&self) -> &[u32] {
         &self.thresholds
     }
 
-    /// Range of the counts that [`count`](Self::count) returns.
+    /// Returns the range of the counts that [`count`](Self::count) returns.
     #[must_use]
     #[inline]
     pub fn range(&self) -> core::ops::RangeInclusive<u32> {
         self.count(0)..=self.count(u32::MAX)
     }
 
-    /// Mean of the counts. Clamping moves it away from the mean of the distribution.
+    /// Returns the mean of the counts. Clamping moves it away from the mean of the distribution.
     #[must_use]
     pub fn mean(&self) -> f64 {
         let above = self
@@ -119,7 +119,8 @@ impl PoissonCounts {
     }
 }
 
-/// Count of an unclamped table with this mean, computed without a table: for means that are used only once.
+/// Returns the count of an unclamped table with this mean, computed without a table: for means that are used only
+/// once.
 ///
 /// The mean is clamped to the range that a table accepts; NaN becomes the lower end.
 ///
@@ -182,7 +183,7 @@ pub enum PoissonErrorKind {
 }
 
 impl PoissonError {
-    /// Cause of the error, with the value.
+    /// Returns the cause of the error, with the value.
     #[must_use]
     pub fn kind(&self) -> &PoissonErrorKind {
         &self.kind
@@ -215,7 +216,7 @@ mod tests {
     use super::{PoissonCounts, PoissonErrorKind, poisson_count};
     use crate::{Seed, hash2};
 
-    /// Exact probabilities of the counts 0.. with the tails added to the ends of the range.
+    /// Returns the exact probabilities of the counts 0.. with the tails added to the ends of the range.
     fn clamped_probabilities(mean: f64, least: usize, most: usize) -> Vec<f64> {
         let mut probabilities = vec![0.0; most + 1];
         let mut probability = libm::exp(-mean);

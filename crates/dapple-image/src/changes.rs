@@ -20,7 +20,7 @@ pub struct FileStamp {
 }
 
 impl FileStamp {
-    /// Stamp of the file at `path`; `None` if it cannot be found.
+    /// Returns the stamp of the file at `path`; `None` if it cannot be found.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
         let found = fs::metadata(path).ok()?;

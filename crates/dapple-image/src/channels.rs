@@ -23,7 +23,7 @@ pub enum Channels {
 }
 
 impl Channels {
-    /// Whether there is an alpha channel.
+    /// Returns whether there is an alpha channel.
     #[must_use]
     pub const fn has_alpha(self) -> bool {
         matches!(self, Self::GrayAlpha | Self::Rgba)
@@ -44,7 +44,7 @@ impl fmt::Display for Channels {
 }
 
 impl Image {
-    /// Name of the format: `PNG`, `JPEG` or `OpenEXR`.
+    /// Returns the name of the format: `PNG`, `JPEG` or `OpenEXR`.
     #[must_use]
     pub const fn format(&self) -> &'static str {
         match self {
@@ -54,7 +54,7 @@ impl Image {
         }
     }
 
-    /// Channels of the file.
+    /// Returns the channels of the file.
     #[must_use]
     pub fn channels(&self) -> Channels {
         match self {
@@ -63,7 +63,7 @@ impl Image {
         }
     }
 
-    /// Bits per channel: 8 or 16, and 32 for OpenEXR, whose samples are all read as `f32`.
+    /// Returns the bits per channel: 8 or 16, and 32 for OpenEXR, whose samples are all read as `f32`.
     #[must_use]
     pub const fn bits(&self) -> u32 {
         match self {

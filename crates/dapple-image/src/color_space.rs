@@ -142,7 +142,7 @@ impl Curve {
 }
 
 impl ColorSpace {
-    /// Color space that is declared to be sRGB.
+    /// Returns the color space that is declared to be sRGB.
     #[cfg(any(feature = "png", feature = "jpeg"))]
     pub(crate) fn srgb(source: Source) -> Self {
         Self {
@@ -151,7 +151,7 @@ impl ColorSpace {
         }
     }
 
-    /// Color space that cannot be converted; `name` describes it in errors.
+    /// Returns the color space that cannot be converted; `name` describes it in errors.
     pub(crate) fn unknown(source: Source, name: &'static str) -> Self {
         Self {
             source,
@@ -159,7 +159,7 @@ impl ColorSpace {
         }
     }
 
-    /// Color space with these primaries and one curve for all channels.
+    /// Returns the color space with these primaries and one curve for all channels.
     #[cfg(any(feature = "png", feature = "jpeg"))]
     pub(crate) fn from_primaries(source: Source, primaries: Primaries, curve: Curve) -> Self {
         match bt709_from(&primaries) {
@@ -170,7 +170,7 @@ impl ColorSpace {
         }
     }
 
-    /// Color space of an ICC matrix profile: its curves, and its columns in XYZ adapted to D50.
+    /// Returns the color space of an ICC matrix profile: its curves, and its columns in XYZ adapted to D50.
     pub(crate) fn from_columns(columns: [[f64; 3]; 3], curves: [Curve; 3]) -> Self {
         let column = |row: usize| columns.map(|column| column[row]);
         let profile = [0, 1, 2].map(column);
@@ -268,7 +268,7 @@ pub(crate) fn times(matrix: &Matrix, light: [f64; 3]) -> LinearRgb {
     apply(matrix, light).map(|part| part as f32).into()
 }
 
-/// Matrix from linear light of `primaries` to BT.709; `None` if the primaries are collinear.
+/// Returns the matrix from linear light of `primaries` to BT.709; `None` if the primaries are collinear.
 ///
 /// White is adapted, except for the primaries of XYZ itself, whose values are measured stimuli.
 pub(crate) fn bt709_from(primaries: &Primaries) -> Option<Matrix> {
@@ -283,7 +283,7 @@ pub(crate) fn bt709_from(primaries: &Primaries) -> Option<Matrix> {
     Some(product(&from_xyz, &product(&adapted, &to_xyz)))
 }
 
-/// Matrix from linear light of `primaries` to XYZ. White has a luminance of 1.
+/// Returns the matrix from linear light of `primaries` to XYZ. White has a luminance of 1.
 fn rgb_to_xyz(primaries: &Primaries) -> Option<Matrix> {
     let [red, green, blue, white] = primaries;
     if white[1].is_nan() || white[1] <= 0.0 {
@@ -299,7 +299,7 @@ fn xyz_of_white([x, y]: [f64; 2]) -> [f64; 3] {
     [x / y, 1.0, (1.0 - x - y) / y]
 }
 
-/// Bradford matrix that adapts the white point `from` to `to`.
+/// Returns the Bradford matrix that adapts the white point `from` to `to`.
 fn adapted(from: [f64; 3], to: [f64; 3]) -> Option<Matrix> {
     let [from, to] = [from, to].map(|white| apply(&BRADFORD, white));
     let scaled = [0, 1, 2].map(|row| BRADFORD[row].map(|entry| entry * (to[row] / from[row])));
@@ -316,7 +316,7 @@ fn product(a: &Matrix, b: &Matrix) -> Matrix {
     [0, 1, 2].map(|row| columns.map(|column| column[row]))
 }
 
-/// Inverse by cofactors; `None` for a singular matrix.
+/// Returns the inverse by cofactors; `None` for a singular matrix.
 fn inverse(m: &Matrix) -> Option<Matrix> {
     let minor = |r: usize, c: usize| {
         let [r1, r2, c1, c2] = [(r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3];

@@ -61,7 +61,7 @@ pub enum Encoding {
 }
 
 impl Content {
-    /// Name in error messages.
+    /// Returns the name in error messages.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Gray => "gray",
@@ -81,7 +81,7 @@ impl Content {
         }
     }
 
-    /// Names of the planes of an OpenEXR file, sorted as the format requires.
+    /// Returns the names of the planes of an OpenEXR file, sorted as the format requires.
     pub(crate) const fn planes(self) -> &'static [&'static str] {
         match self {
             Self::Gray => &["Y"],
@@ -110,10 +110,10 @@ pub(crate) trait Pixel: Sync {
 
     fn sixteen(&self) -> Self::Sixteen;
 
-    /// Value of the pixel in a plane, by its index in [`Content::planes`].
+    /// Returns the value of the pixel in a plane, by its index in [`Content::planes`].
     fn part(&self, plane: usize) -> f32;
 
-    /// Values of the pixel, not encoded.
+    /// Returns the values of the pixel, not encoded.
     fn numbers(&self) -> Self::Numbers;
 }
 

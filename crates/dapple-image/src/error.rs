@@ -18,7 +18,7 @@ pub struct ImageError {
 dapple_raster::error_kind! {
     /// The kind of failure.
     ImageErrorKind {
-        /// A file could not be read or written; the source is the error of the operating system.
+        /// A file could not be read or written; the source is the operating system's error.
         Io => "the file cannot be read or written";
         /// The first bytes are not the signature of a supported format, or not of the expected format.
         UnknownFormat => "the bytes are of no format that is known here";
@@ -155,7 +155,7 @@ impl ImageError {
         }
     }
 
-    /// Error for bytes that violate the rules of `format`, with `source` as the reason.
+    /// Creates the error for bytes that violate the rules of `format`, with `source` as the reason.
     pub(crate) fn damaged(
         format: &'static str,
         source: impl Into<Box<dyn Error + Send + Sync>>,
@@ -175,13 +175,13 @@ impl ImageError {
         self
     }
 
-    /// The kind of failure.
+    /// Returns the kind of failure.
     #[must_use]
     pub fn kind(&self) -> &ImageErrorKind {
         &self.kind
     }
 
-    /// The path of the file that was read or written, if there was one.
+    /// Returns the path of the file that was read or written, if there was one.
     #[must_use]
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()

@@ -53,13 +53,13 @@ impl ExrPlane {
         }
     }
 
-    /// The three planes `R`, `G` and `B` of a color image.
+    /// Returns the three planes `R`, `G` and `B` of a color image.
     #[must_use]
     pub fn from_colors(colors: &Raster<LinearRgb>) -> Vec<Self> {
         Self::from_pixels(colors)
     }
 
-    /// The four planes `R`, `G`, `B` and `A` of a color image, with alpha multiplied into the color.
+    /// Returns the four planes `R`, `G`, `B` and `A` of a color image, with alpha multiplied into the color.
     #[must_use]
     pub fn from_colors_with_alpha(colors: &Raster<LinearRgba>) -> Vec<Self> {
         Self::from_pixels(colors)
@@ -98,14 +98,14 @@ impl ExrImage {
         })
     }
 
-    /// Values of a gray image; alpha is allowed if it is 1 everywhere.
+    /// Returns the values of a gray image; alpha is allowed if it is 1 everywhere.
     ///
     /// The image is the only plane of the file, or a plane `Y`. [`to_picture`](Self::to_picture) describes how the
     /// main image is chosen among several layers.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::Channels`] if the image is not gray, or partly transparent, else the errors of
+    /// [`ImageErrorKind::Channels`] if the image is not gray, or partly transparent, or any error from
     /// [`to_picture`](Self::to_picture).
     pub fn gray(&self) -> Result<&Raster<f32>, ImageError> {
         let needed = "gray";
@@ -123,15 +123,15 @@ impl ExrImage {
         Err(ImageError::new(ImageErrorKind::Channels { found, needed }))
     }
 
-    /// Colors of the main image with alpha divided out. Alpha is 1 if the file has none. A gray image becomes gray
-    /// colors.
+    /// Returns the colors of the main image with alpha divided out. Alpha is 1 if the file has none. A gray image
+    /// becomes gray colors.
     ///
     /// [`to_picture`](Self::to_picture) describes how the main image is chosen among several layers. Where alpha is 0,
     /// the color is returned as stored.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::Channels`] if the image contains vectors, else the errors of
+    /// [`ImageErrorKind::Channels`] if the image contains vectors, or any error from
     /// [`to_picture`](Self::to_picture).
     pub fn color_alpha(&self) -> Result<Raster<LinearRgba>, ImageError> {
         let (colors, alpha) = self.associated()?;
@@ -142,14 +142,14 @@ impl ExrImage {
         pixels.map_err(|error| ImageError::damaged("OpenEXR", error))
     }
 
-    /// Colors of the main image as stored, with alpha multiplied in, and the alpha.
+    /// Returns the colors of the main image as stored, with alpha multiplied in, and the alpha.
     ///
     /// A stored color with an alpha of 0 represents light without coverage: it is added to the background, and there
     /// is no alpha to divide by.
     ///
     /// # Errors
     ///
-    /// The errors of [`color_alpha`](Self::color_alpha).
+    /// Same as [`color_alpha`](Self::color_alpha).
     pub fn associated(&self) -> Result<(Raster<LinearRgb>, Option<Raster<f32>>), ImageError> {
         let ([red, green, blue], alpha, is_color) = match self.picture()? {
             Picture::Gray { values, alpha } => ([values; 3], alpha, false),
@@ -173,14 +173,14 @@ impl ExrImage {
         Ok((colors, alpha.cloned()))
     }
 
-    /// Unit vectors of the main image.
+    /// Returns the unit vectors of the main image.
     ///
     /// Planes `X`, `Y` and `Z` hold vectors. Planes `R`, `G` and `B` hold vectors if any of their values is negative;
     /// otherwise they hold codes from 0 to 1, `(part + 1) / 2`.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::Channels`] if the image is gray or partly transparent, else the errors of
+    /// [`ImageErrorKind::Channels`] if the image is gray or partly transparent, or any error from
     /// [`to_picture`](Self::to_picture).
     pub fn normals(&self) -> Result<Raster<Normal>, ImageError> {
         let needed = "a normal map";
@@ -214,7 +214,7 @@ impl ExrImage {
             .map_err(|error| ImageError::damaged("OpenEXR", error))
     }
 
-    /// Matrix from the colors of the file to BT.709; `None` if the primaries are equal.
+    /// Returns the matrix from the colors of the file to BT.709; `None` if the primaries are equal.
     fn matrix(&self) -> Result<Option<[[f64; 3]; 3]>, ImageError> {
         let Some(primaries) = self.chromaticities else {
             return Ok(None);
@@ -235,7 +235,7 @@ impl ExrImage {
         })
     }
 
-    /// Copy of the image without its planes.
+    /// Returns a copy of the image without its planes.
     fn without_planes(&self) -> Self {
         Self {
             planes: Vec::new(),

@@ -124,13 +124,13 @@ impl AtomicFile {
         Ok(Self(file.make_in(folder(path), create_locked)?))
     }
 
-    /// The temporary path.
+    /// Returns the temporary path.
     #[must_use]
     pub fn temporary_path(&self) -> &Path {
         self.0.path()
     }
 
-    /// The file, open for reading and writing.
+    /// Returns the file, open for reading and writing.
     #[must_use]
     pub fn file(&self) -> &File {
         self.0.as_file()
@@ -257,7 +257,7 @@ fn write_and_rename(path: &Path, bytes: &[u8]) -> io::Result<()> {
     sync_folder(folder(&path))
 }
 
-/// Folder of a file; `.` for a bare name.
+/// Returns the folder of a file; `.` for a bare name.
 fn folder(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,

@@ -28,7 +28,7 @@ pub struct ImageHeader {
 ///
 /// # Errors
 ///
-/// The errors of [`read_image`](crate::read_image) except [`ImageErrorKind::TooManyPixels`].
+/// Same as [`read_image`](crate::read_image) except [`ImageErrorKind::TooManyPixels`].
 pub fn read_header(path: impl AsRef<Path>) -> Result<ImageHeader, ImageError> {
     let path = path.as_ref();
     let io = |error| ImageError::new(ImageErrorKind::Io).because(error).at(path);

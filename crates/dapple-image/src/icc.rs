@@ -9,7 +9,7 @@ use crate::color_space::{ColorSpace, Curve, Source};
 /// Length of the profile header, in bytes.
 const HEADER: usize = 128;
 
-/// Color space of a profile.
+/// Returns the color space of a profile.
 pub(crate) fn color_space(profile: &[u8]) -> ColorSpace {
     let unknown = |name| ColorSpace::unknown(Source::Icc, name);
     if profile.get(36..40) != Some(b"acsp") {
@@ -39,7 +39,7 @@ pub(crate) fn color_space(profile: &[u8]) -> ColorSpace {
     }
 }
 
-/// Data of a tag.
+/// Returns the data of a tag.
 fn tag<'a>(profile: &'a [u8], name: &[u8; 4]) -> Option<&'a [u8]> {
     let n_tags = whole(profile, HEADER)?;
     let table = profile.get(HEADER + 4..)?;
@@ -49,13 +49,13 @@ fn tag<'a>(profile: &'a [u8], name: &[u8; 4]) -> Option<&'a [u8]> {
     profile.get(start..start.checked_add(length)?)
 }
 
-/// The three numbers of a tag of type `XYZ`.
+/// Returns the three numbers of a tag of type `XYZ`.
 fn xyz(data: &[u8]) -> Option<[f64; 3]> {
     let numbers = data.strip_prefix(b"XYZ ")?;
     Some([fixed(numbers, 4)?, fixed(numbers, 8)?, fixed(numbers, 12)?])
 }
 
-/// Curve of a tag of type `curv` or `para`.
+/// Returns the curve of a tag of type `curv` or `para`.
 fn curve(data: &[u8]) -> Option<Curve> {
     if data.starts_with(b"curv") {
         let count = whole(data, 8)?;
@@ -96,13 +96,13 @@ fn curve(data: &[u8]) -> Option<Curve> {
     is_finite.then_some(Curve::Parametric(parametric))
 }
 
-/// Unsigned 32-bit integer, big endian.
+/// Returns the unsigned 32-bit integer, big endian.
 fn whole(bytes: &[u8], at: usize) -> Option<usize> {
     let bytes = bytes.get(at..)?.first_chunk::<4>()?;
     usize::try_from(u32::from_be_bytes(*bytes)).ok()
 }
 
-/// Signed fixed-point number with 16 fractional bits.
+/// Returns the signed fixed-point number with 16 fractional bits.
 fn fixed(bytes: &[u8], at: usize) -> Option<f64> {
     let bytes = bytes.get(at..)?.first_chunk::<4>()?;
     Some(f64::from(i32::from_be_bytes(*bytes)) / 65536.0)

@@ -66,7 +66,7 @@ const LEFT_OUT: [(&[u8], &str); 3] = [
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::Io`] if the file cannot be read, else the errors of [`decode_image`].
+/// [`ImageErrorKind::Io`] if the file cannot be read, or any error from [`decode_image`].
 pub fn read_image(path: impl AsRef<Path>, limits: &Limits) -> Result<Image, ImageError> {
     let path = path.as_ref();
     let bytes = file::read(path, limits.bytes)?;
@@ -74,7 +74,7 @@ pub fn read_image(path: impl AsRef<Path>, limits: &Limits) -> Result<Image, Imag
 }
 
 impl Image {
-    /// Width and height in pixels (of the first plane, if there are several).
+    /// Returns the width and height in pixels (of the first plane, if there are several).
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         match self {
@@ -86,7 +86,7 @@ impl Image {
         }
     }
 
-    /// Values of a gray image: from 0 to 1 in PNG and JPEG, of any magnitude in OpenEXR.
+    /// Returns the values of a gray image: from 0 to 1 in PNG and JPEG, of any magnitude in OpenEXR.
     ///
     /// Use this for data (heights, masks). No transfer curve is applied, regardless of the declared color space. Alpha
     /// is allowed if it is 1 everywhere.
@@ -101,7 +101,7 @@ impl Image {
         }
     }
 
-    /// Colors in linear light. Gray images become gray colors; alpha is allowed if it is 1 everywhere.
+    /// Returns the colors in linear light. Gray images become gray colors; alpha is allowed if it is 1 everywhere.
     ///
     /// PNG and JPEG are converted from the color space that they declare; without a declaration they are sRGB, as on
     /// the web.
@@ -124,7 +124,7 @@ impl Image {
         }
     }
 
-    /// Colors in linear light with alpha, which is 1 if the file has none.
+    /// Returns the colors in linear light with alpha, which is 1 if the file has none.
     ///
     /// PNG and JPEG are converted from the color space that they declare; without a declaration they are sRGB, as on
     /// the web.
@@ -142,13 +142,13 @@ impl Image {
 }
 
 impl Image {
-    /// Unit vectors of a normal map, regardless of the declared color space. Alpha of PNG is ignored.
+    /// Returns the unit vectors of a normal map, regardless of the declared color space. Alpha of PNG is ignored.
     ///
     /// The codes of PNG and JPEG are `(part + 1) / 2`; [`ExrImage::normals`] describes the values of OpenEXR.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::Channels`] if the image is gray, else the errors of [`ExrImage::normals`].
+    /// [`ImageErrorKind::Channels`] if the image is gray, or any error from [`ExrImage::normals`].
     pub fn normals(&self) -> Result<Raster<Normal>, ImageError> {
         let png = match self {
             Self::Png(png) | Self::Jpeg(png) => png,
@@ -196,7 +196,7 @@ impl Image {
     }
 }
 
-/// Error for an image with alpha where alpha is not allowed.
+/// Creates the error for an image with alpha where alpha is not allowed.
 pub(crate) fn transparent(needed: &'static str) -> ImageError {
     ImageError::new(ImageErrorKind::Channels {
         found: "partly transparent",

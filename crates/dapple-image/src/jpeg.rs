@@ -110,7 +110,8 @@ fn check_end(bytes: &[u8]) -> Result<(), ImageError> {
     }
 }
 
-/// Frame header of a file: marker, bits per sample, and number of channels (T.81, B.2.2). It precedes the first scan.
+/// Returns the frame header of a file: marker, bits per sample, and number of channels (T.81, B.2.2). It precedes the
+/// first scan.
 fn frame(bytes: &[u8]) -> Option<[u8; 3]> {
     let mut rest = bytes.get(2..)?;
     loop {
@@ -141,7 +142,7 @@ fn frame(bytes: &[u8]) -> Option<[u8; 3]> {
     }
 }
 
-/// Name of the unsupported feature of a frame (T.81, table B.1; T.87 for JPEG-LS).
+/// Returns the name of the unsupported feature of a frame (T.81, table B.1; T.87 for JPEG-LS).
 fn unread_feature([marker, bits, channels]: [u8; 3]) -> Option<&'static str> {
     Some(match marker {
         0xc3 | 0xc7 | 0xcb | 0xcf => "lossless JPEG",

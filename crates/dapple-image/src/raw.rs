@@ -89,7 +89,7 @@ impl RawStream {
     }
 }
 
-/// Header of an array in C order, padded with spaces to the alignment of the data.
+/// Returns the header of an array in C order, padded with spaces to the alignment of the data.
 fn npy_header([width, height]: [u32; 2], n_channels: usize) -> Vec<u8> {
     let shape = match n_channels {
         1 => format!("({height}, {width})"),

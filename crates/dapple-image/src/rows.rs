@@ -124,7 +124,7 @@ impl<W: Write + Seek> RowWriter<W> {
     ///
     /// # Errors
     ///
-    /// The errors of [`write_gray`](Self::write_gray).
+    /// Same as [`write_gray`](Self::write_gray).
     pub fn write_color(&mut self, rows: RasterView<'_, LinearRgb>) -> Result<(), ImageError> {
         self.rows.write(&mut self.sink, Band::Color(rows))
     }
@@ -133,7 +133,7 @@ impl<W: Write + Seek> RowWriter<W> {
     ///
     /// # Errors
     ///
-    /// The errors of [`write_gray`](Self::write_gray).
+    /// Same as [`write_gray`](Self::write_gray).
     pub fn write_color_alpha(
         &mut self,
         rows: RasterView<'_, LinearRgba>,
@@ -145,7 +145,7 @@ impl<W: Write + Seek> RowWriter<W> {
     ///
     /// # Errors
     ///
-    /// The errors of [`write_gray`](Self::write_gray).
+    /// Same as [`write_gray`](Self::write_gray).
     pub fn write_normals(&mut self, rows: RasterView<'_, Normal>) -> Result<(), ImageError> {
         self.rows.write(&mut self.sink, Band::Normal(rows))
     }
@@ -154,7 +154,7 @@ impl<W: Write + Seek> RowWriter<W> {
     ///
     /// # Errors
     ///
-    /// The errors of [`write_gray`](Self::write_gray).
+    /// Same as [`write_gray`](Self::write_gray).
     pub fn write_packed(&mut self, rows: RasterView<'_, [f32; 3]>) -> Result<(), ImageError> {
         self.rows.write(&mut self.sink, Band::Packed(rows))
     }
@@ -163,7 +163,7 @@ impl<W: Write + Seek> RowWriter<W> {
     ///
     /// # Errors
     ///
-    /// The errors of [`write_gray`](Self::write_gray).
+    /// Same as [`write_gray`](Self::write_gray).
     pub fn write_packed_four(&mut self, rows: RasterView<'_, [f32; 4]>) -> Result<(), ImageError> {
         self.rows.write(&mut self.sink, Band::PackedFour(rows))
     }

@@ -55,7 +55,7 @@ dapple_raster::error! {
 }
 
 impl MeshIoError {
-    /// Error for a file that violates its format.
+    /// Creates the error for a file that violates its format.
     pub(crate) fn file(format: &'static str, why: impl Into<String>) -> Self {
         let why = why.into();
         Self::new(MeshIoErrorKind::File { format, why })

@@ -39,7 +39,7 @@ pub fn read_model(path: impl AsRef<Path>) -> Result<Model, MeshIoError> {
 ///
 /// # Errors
 ///
-/// The errors of [`read_model`] about files, and the errors of [`MeshFormat::replace_images`].
+/// Same as [`read_model`] about files, or any error from [`MeshFormat::replace_images`].
 pub fn replace_images(
     path: impl AsRef<Path>,
     replaced: &[(EncodedImage, EncodedImage)],
@@ -86,7 +86,7 @@ fn format_of(path: &Path) -> Result<&'static MeshFormat, MeshIoError> {
     })
 }
 
-/// Error for an extension without a writable format.
+/// Creates the error for an extension without a writable format.
 pub(crate) fn unwritable(name: String) -> MeshIoError {
     let known = writable_endings().collect::<Vec<_>>().join(", ");
     let known = format!("{known} to write");

@@ -90,25 +90,25 @@ impl MeshFormat {
         formats.find(|format| format.endings.contains(&ending.as_str()))
     }
 
-    /// Name of the format, such as `glTF`.
+    /// Returns the name of the format, such as `glTF`.
     #[must_use]
     pub fn name(&self) -> &'static str {
         self.name
     }
 
-    /// Extensions of readable files, without the dot and in lower case.
+    /// Returns the extensions of readable files, without the dot and in lower case.
     #[must_use]
     pub fn endings(&self) -> &'static [&'static str] {
         self.endings
     }
 
-    /// Extension of written files; `None` if the format is read-only.
+    /// Returns the extension of written files; `None` if the format is read-only.
     #[must_use]
     pub fn written_ending(&self) -> Option<&'static str> {
         self.writer.map(|writer| writer.ending)
     }
 
-    /// Location of the material, with its textures, in written files.
+    /// Returns the location of the material, with its textures, in written files.
     #[must_use]
     pub fn material_place(&self) -> MaterialPlace {
         self.writer
@@ -164,23 +164,23 @@ impl MeshFormat {
     }
 }
 
-/// Extensions of all readable files, in the order of [`FORMATS`].
+/// Returns the extensions of all readable files, in the order of [`FORMATS`].
 pub fn readable_endings() -> impl Iterator<Item = &'static str> {
     FORMATS.iter().flat_map(|format| format.endings).copied()
 }
 
-/// Extensions of all writable files, in the order of [`FORMATS`].
+/// Returns the extensions of all writable files, in the order of [`FORMATS`].
 pub fn writable_endings() -> impl Iterator<Item = &'static str> {
     FORMATS.iter().filter_map(MeshFormat::written_ending)
 }
 
-/// Extension of a path in lower case, without the dot; empty if there is none.
+/// Returns the extension of a path in lower case, without the dot; empty if there is none.
 pub(crate) fn ending(path: &Path) -> String {
     let ending = path.extension().unwrap_or_default().to_string_lossy();
     ending.to_ascii_lowercase()
 }
 
-/// The single file of a format that does not refer to other files.
+/// Returns the single file of a format that does not refer to other files.
 fn alone(stem: &str, ending: &str, bytes: Vec<u8>) -> Vec<NamedFile> {
     let name = format!("{stem}.{ending}");
     vec![NamedFile { name, bytes }]

@@ -15,7 +15,7 @@ pub(crate) struct Line<'a> {
     pub(crate) words: Vec<&'a [u8]>,
 }
 
-/// Lines of a text without comments, which start with `#`, and without empty lines.
+/// Returns the lines of a text without comments, which start with `#`, and without empty lines.
 ///
 /// Fails if the text is neither ASCII nor UTF-8.
 pub(crate) fn lines<'a>(
@@ -37,8 +37,8 @@ pub(crate) fn lines<'a>(
 }
 
 impl Line<'_> {
-    /// The first word, which must be ASCII. A keyword with another byte, such as one joined to its numbers by a
-    /// no-break space, would be skipped as unknown, and all later indices would be off by one.
+    /// Returns the first word, which must be ASCII. A keyword with another byte, such as one joined to its numbers by
+    /// a no-break space, would be skipped as unknown, and all later indices would be off by one.
     pub(crate) fn keyword(&self) -> Result<&[u8], MeshIoError> {
         let word = self.words[0];
         if word.is_ascii() {
@@ -78,7 +78,7 @@ impl Line<'_> {
         ))
     }
 
-    /// All words after the first, including those after `#`, which a name may contain.
+    /// Returns all words after the first, including those after `#`, which a name may contain.
     pub(crate) fn name_words(&self) -> Vec<&[u8]> {
         words(self.text).skip(1).collect()
     }
@@ -89,7 +89,7 @@ impl Line<'_> {
         self.words.extend(next.words);
     }
 
-    /// Error about the line, with its number.
+    /// Creates the error about the line, with its number.
     pub(crate) fn error(&self, why: impl core::fmt::Display) -> MeshIoError {
         MeshIoError::file(self.format, format!("line {}: {why}", self.number))
     }

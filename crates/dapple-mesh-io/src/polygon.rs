@@ -63,13 +63,14 @@ enum Ear {
     Weak,
 }
 
-/// Triangle fan around the first corner of a polygon.
+/// Returns the triangle fan around the first corner of a polygon.
 pub(crate) fn fan<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
     let pairs = corners.iter().skip(1).zip(corners.iter().skip(2));
     pairs.map(|(&b, &c)| [corners[0], b, c])
 }
 
-/// Triangles of a strip. Each corner forms a triangle with the two before it; every second triangle is reversed.
+/// Returns the triangles of a strip. Each corner forms a triangle with the two before it; every second triangle is
+/// reversed.
 pub(crate) fn strip<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
     let triangles = corners.windows(3).enumerate();
     triangles.map(|(i, w)| {
@@ -81,7 +82,7 @@ pub(crate) fn strip<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
     })
 }
 
-/// Corners of a polygon that was converted to a fan.
+/// Returns the corners of a polygon that was converted to a fan.
 fn corners_of<T: Copy>(fan: &[[T; 3]]) -> Vec<T> {
     let first = fan.iter().take(1).flat_map(|face| face[..2].to_vec());
     first.chain(fan.iter().map(|face| face[2])).collect()
@@ -145,7 +146,7 @@ impl Ears {
         }
     }
 
-    /// Entries of [`Model::left_out`](dapple_mesh::Model::left_out) about polygons that stay fans.
+    /// Returns the entries of [`Model::left_out`](dapple_mesh::Model::left_out) about polygons that stay fans.
     pub(crate) fn left_out(&self) -> impl Iterator<Item = String> {
         let crossing = match self.n_crossing {
             0 => None,
@@ -186,7 +187,7 @@ fn in_plane(corners: &[DVec3]) -> Vec<DVec2> {
     corners.iter().map(project).collect()
 }
 
-/// Twice the signed area of a triangle, positive if counterclockwise.
+/// Returns twice the signed area of a triangle, positive if counterclockwise.
 fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
@@ -236,13 +237,13 @@ impl Ring {
         self.at[corner as usize]
     }
 
-    /// A corner with its two neighbors.
+    /// Returns a corner with its two neighbors.
     fn triangle(&self, corner: u32) -> [u32; 3] {
         let at = corner as usize;
         [self.before[at], corner, self.next[at]]
     }
 
-    /// Twice the signed area of a corner and its neighbors.
+    /// Returns twice the signed area of a corner and its neighbors.
     fn area(&self, corner: u32) -> f64 {
         let [a, b, c] = self.triangle(corner).map(|corner| self.at(corner));
         area(a, b, c)
@@ -353,7 +354,7 @@ impl Ring {
         Some(true)
     }
 
-    /// First live index of `reflex`, starting at `from`.
+    /// Returns the first live index of `reflex`, starting at `from`.
     fn live(&mut self, from: usize) -> usize {
         let mut at = from;
         while self.live[at] as usize != at {
@@ -416,7 +417,7 @@ impl Ring {
     }
 }
 
-/// Order of two points by x. All coordinates are finite.
+/// Returns the order of two points by x. All coordinates are finite.
 fn by_x(a: DVec2, b: DVec2) -> Ordering {
     a.x.total_cmp(&b.x)
 }

@@ -13,9 +13,9 @@ const COORDINATE_MAX: f64 = 1e29;
 /// [`Model::check`](dapple_mesh::Model::check).
 const PART_MAX: f32 = 1e30f32.next_down();
 
-/// Origin of a mesh whose positions are too far from zero for single precision; `None` if none is needed. It is the
-/// center of the mesh, rounded to a multiple of a power of two below the extent, so that differences lose few bits or
-/// none.
+/// Returns the origin of a mesh whose positions are too far from zero for single precision; `None` if none is needed.
+/// It is the center of the mesh, rounded to a multiple of a power of two below the extent, so that differences lose
+/// few bits or none.
 pub(crate) fn origin(positions: &[DVec3]) -> Option<DVec3> {
     let first = *positions.first()?;
     let grow = |[least, most]: [DVec3; 2], at: &DVec3| [least.min(*at), most.max(*at)];

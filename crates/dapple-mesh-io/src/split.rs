@@ -11,7 +11,7 @@ use std::borrow::Cow;
 ///
 /// # Errors
 ///
-/// The errors of [`Mesh::new`]: too many vertices.
+/// Same as [`Mesh::new`]: too many vertices.
 pub(crate) fn with_vertex_normals(model: &Model) -> Result<Cow<'_, Model>, MeshError> {
     let Some(corner_normals) = &model.corner_normals else {
         return Ok(Cow::Borrowed(model));

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-/// A small model with all attributes.
+/// Returns a small model with all attributes.
 fn model() -> Model {
     let mut model = Model::from(cube());
     let count = model.mesh.positions().len();
@@ -22,7 +22,7 @@ fn model() -> Model {
     model
 }
 
-/// A cube with corner normals that differ at every edge.
+/// Returns a cube with corner normals that differ at every edge.
 fn creased() -> Model {
     let mut model = model();
     model.normals = None;
@@ -30,7 +30,7 @@ fn creased() -> Model {
     model
 }
 
-/// Positions of all corners with their normals.
+/// Returns the positions of all corners with their normals.
 fn corners(model: &Model) -> Vec<(DVec3, DVec3)> {
     let normals = model.normals_of_corners().expect("it has normals");
     let corners = model.mesh.faces().iter().zip(&normals);
@@ -62,7 +62,7 @@ fn normals_of_corners_go_through_every_format() {
     }
 }
 
-/// One valid file of each format.
+/// Returns one valid file of each format.
 fn files() -> Vec<Vec<u8>> {
     let mut files = Vec::new();
     files.push(obj::write(&model()).expect("it is valid"));

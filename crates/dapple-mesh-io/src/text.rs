@@ -7,14 +7,14 @@ use core::str::FromStr;
 use dapple_mesh::POSITION_MAX;
 use dapple_raster::text::without_mark;
 
-/// Text of a file without the byte order mark of UTF-8. All readers of text use this function.
+/// Returns the text of a file without the byte order mark of UTF-8. All readers of text use this function.
 ///
 /// Fails for UTF-16 and UTF-32, with or without a mark: the first character of every format is ASCII.
 pub(crate) fn content<'a>(format: &'static str, bytes: &'a [u8]) -> Result<&'a [u8], MeshIoError> {
     without_mark(bytes).map_err(|error| MeshIoError::file(format, error.to_string()))
 }
 
-/// Words of a text, separated by white space.
+/// Returns the words of a text, separated by white space.
 pub(crate) fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     text.split(u8::is_ascii_whitespace)
         .filter(|word| !word.is_empty())
@@ -35,7 +35,7 @@ pub(crate) fn in_range(part: f64) -> Result<f64, String> {
     ))
 }
 
-/// Message for a corner with a vertex that does not exist.
+/// Returns the message for a corner with a vertex that does not exist.
 pub(crate) fn no_vertex(vertex: impl Display, count: impl Display) -> String {
     format!("a corner of a face is vertex {vertex}, but there are {count}")
 }

@@ -62,12 +62,12 @@ pub(crate) fn name_of_all(name: &str, squares: &[u32]) -> Option<String> {
     (squares.len() > 1).then(|| squares.iter().find_map(with_mark))?
 }
 
-/// Message for a file that is missing or outside of the folder.
+/// Returns the message for a file that is missing or outside of the folder.
 pub(crate) fn unreadable(what: &str, name: &str) -> String {
     format!("the {what} {}, which cannot be read", shown(name))
 }
 
-/// File name for display, without control characters.
+/// Returns the file name for display, without control characters.
 pub(crate) fn shown(name: &str) -> String {
     let plain = |letter: char| {
         if letter.is_control() {
@@ -100,7 +100,7 @@ mod tests {
     const TRIANGLE: &str =
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\n";
 
-    /// A triangle with texture coordinates at the corners of the texture, and a material.
+    /// Returns a triangle with texture coordinates at the corners of the texture, and a material.
     fn obj_with(material: &str) -> Model {
         let library = format!("newmtl a\n{material}\n");
         let mut resolve = |name: &str| match name {

@@ -38,8 +38,8 @@ impl Adjacency {
         across
     }
 
-    /// Adjacency that ignores winding: two faces at an edge are neighbors even if they traverse it in the same
-    /// direction.
+    /// Returns the adjacency that ignores winding: two faces at an edge are neighbors even if they traverse it in the
+    /// same direction.
     pub(crate) fn of_any_winding(n_faces: usize, edges: &[SortedEdge]) -> Self {
         let mut across = Self::alone(n_faces);
         for group in edges.chunk_by(|a, b| a.ends == b.ends) {
@@ -50,8 +50,8 @@ impl Adjacency {
         across
     }
 
-    /// Adjacency that pairs up as many faces as possible at every edge. Faces that traverse the edge in opposite
-    /// directions are paired first.
+    /// Returns the adjacency that pairs up as many faces as possible at every edge. Faces that traverse the edge in
+    /// opposite directions are paired first.
     pub(crate) fn paired(n_faces: usize, edges: &[SortedEdge]) -> Self {
         let mut across = Self::alone(n_faces);
         for group in edges.chunk_by(|a, b| a.ends == b.ends) {
@@ -71,7 +71,7 @@ impl Adjacency {
         across
     }
 
-    /// Adjacency without any neighbors.
+    /// Returns the adjacency without any neighbors.
     fn alone(n_faces: usize) -> Self {
         let across = vec![[None; 3]; n_faces];
         Self { across }
@@ -98,12 +98,12 @@ impl Adjacency {
         self.across[from.face.index()][usize::from(from.edge)] = to;
     }
 
-    /// The three edges of a face as seen from the neighboring faces.
+    /// Returns the three edges of a face as seen from the neighboring faces.
     pub(crate) fn around(&self, face: FaceIdx) -> [Option<FaceEdge>; 3] {
         self.across[face.index()]
     }
 
-    /// Connected component of each face. A component is a set of faces connected through neighbors.
+    /// Returns the connected component of each face. A component is a set of faces connected through neighbors.
     ///
     /// Components are numbered from 0 in the order of their lowest face index.
     #[must_use]
@@ -131,7 +131,7 @@ impl Adjacency {
         labels
     }
 
-    /// Lowest corner of the fan of each corner, where corners are numbered `3 * face + corner`.
+    /// Returns the lowest corner of the fan of each corner, where corners are numbered `3 * face + corner`.
     ///
     /// A fan is a set of corners at one vertex whose faces are connected around the vertex through neighbors.
     pub(crate) fn fans(&self, mesh: &Mesh) -> Vec<usize> {
@@ -171,7 +171,7 @@ pub(crate) struct SortedEdge {
     pub(crate) forward: bool,
 }
 
-/// Edges of all faces with three different vertices, sorted so that edges with equal ends are adjacent.
+/// Returns the edges of all faces with three different vertices, sorted so that edges with equal ends are adjacent.
 pub(crate) fn sorted_edges(mesh: &Mesh) -> Vec<SortedEdge> {
     let mut edges = Vec::with_capacity(mesh.faces().len() * 3);
     for (face, corners) in (0..).map(FaceIdx).zip(mesh.faces()) {
@@ -203,7 +203,7 @@ pub(crate) fn unite(parents: &mut [usize], a: usize, b: usize) {
     parents[a.max(b)] = a.min(b);
 }
 
-/// Root of a set, which is its lowest element.
+/// Returns the root of a set, which is its lowest element.
 pub(crate) fn root(parents: &mut [usize], mut element: usize) -> usize {
     while parents[element] != element {
         // Halve the path for later searches.

@@ -68,7 +68,7 @@ pub struct Bvh {
 }
 
 impl Ray {
-    /// Point at a distance from the origin.
+    /// Returns the point at a distance from the origin.
     #[inline]
     #[must_use]
     pub fn at(&self, distance: f64) -> DVec3 {
@@ -146,7 +146,7 @@ impl Bvh {
         best
     }
 
-    /// Nearest point of one face.
+    /// Returns the nearest point of one face.
     fn nearest_of(&self, slot: u32, position: DVec3) -> NearestPoint {
         let corners = self.corners[slot as usize].positions();
         let weights = nearest_weights(corners, position);

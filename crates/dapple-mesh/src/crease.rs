@@ -10,8 +10,8 @@ use glam::DVec3;
 pub const CREASE: f64 = core::f64::consts::FRAC_PI_6;
 
 impl Mesh {
-    /// Unit normals of the corners of all faces, split at creases. A crease is an edge whose faces have normals that
-    /// differ by more than `crease`, in radians.
+    /// Returns the unit normals of the corners of all faces, split at creases. A crease is an edge whose faces have
+    /// normals that differ by more than `crease`, in radians.
     ///
     /// Corners at a vertex whose faces are connected without a crease share one normal: the area-weighted sum of the
     /// normals of these faces, normalized, or zero if the sum is zero. Edges of one face, or of three or more faces,

@@ -68,19 +68,19 @@ impl Mesh {
         Ok(Self { positions, faces })
     }
 
-    /// Positions of the vertices, in the order of [`VertexIdx`].
+    /// Returns the positions of the vertices, in the order of [`VertexIdx`].
     #[must_use]
     pub fn positions(&self) -> &[DVec3] {
         &self.positions
     }
 
-    /// Vertices of the faces, in the order of [`FaceIdx`](crate::FaceIdx).
+    /// Returns the vertices of the faces, in the order of [`FaceIdx`](crate::FaceIdx).
     #[must_use]
     pub fn faces(&self) -> &[[VertexIdx; 3]] {
         &self.faces
     }
 
-    /// Positions of the corners of a face.
+    /// Returns the positions of the corners of a face.
     ///
     /// # Panics
     ///
@@ -90,8 +90,8 @@ impl Mesh {
         self.faces[face.index()].map(|vertex| self.positions[vertex.index()])
     }
 
-    /// Unit normals of the vertices: area-weighted sums of the normals of their faces, normalized; zero if the sum is
-    /// zero.
+    /// Returns the unit normals of the vertices: area-weighted sums of the normals of their faces, normalized; zero
+    /// if the sum is zero.
     #[must_use]
     pub fn vertex_normals(&self) -> Vec<DVec3> {
         let mut normals = vec![DVec3::ZERO; self.positions.len()];

@@ -120,7 +120,8 @@ impl Model {
     /// Entry of [`left_out`](Self::left_out) for faces with several materials, of which a model keeps the first.
     pub const FURTHER_MATERIALS: &str = "the materials of faces but the first";
 
-    /// Normals of the corners of all faces, derived from vertex normals if necessary; `None` without any normals.
+    /// Returns the normals of the corners of all faces, derived from vertex normals if necessary; `None` without any
+    /// normals.
     #[must_use]
     pub fn normals_of_corners(&self) -> Option<Vec<[DVec3; 3]>> {
         if self.corner_normals.is_some() {
@@ -135,9 +136,9 @@ impl Model {
         )
     }
 
-    /// UDIM numbers of the unit squares of texture coordinates that contain faces, in ascending order: 1001 + u + 10
-    /// v, with the integer parts of u and v, v up. Empty if a face spans several squares, as with repeating textures,
-    /// or lies beyond the ten columns of UDIM.
+    /// Returns the UDIM numbers of the unit squares of texture coordinates that contain faces, in ascending order:
+    /// 1001 + u + 10 v, with the integer parts of u and v, v up. Empty if a face spans several squares, as with
+    /// repeating textures, or lies beyond the ten columns of UDIM.
     #[must_use]
     pub fn unit_squares(&self) -> Vec<u32> {
         let mut squares = BTreeSet::new();
@@ -160,7 +161,8 @@ impl Model {
         squares.into_iter().collect()
     }
 
-    /// Checks that the attributes have the lengths of the mesh and contain only numbers that a file can represent.
+    /// Checks that the attributes have the lengths of the mesh and contain only numbers that a file can
+    /// represent.
     ///
     /// # Errors
     ///
@@ -239,13 +241,13 @@ impl EncodedImage {
         Ok(Self { format, bytes })
     }
 
-    /// Format of the image.
+    /// Returns the format of the image.
     #[must_use]
     pub fn format(&self) -> ImageFormat {
         self.format
     }
 
-    /// Encoded bytes, as in a file.
+    /// Returns the encoded bytes, as in a file.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
@@ -253,7 +255,7 @@ impl EncodedImage {
 }
 
 impl ImageFormat {
-    /// File extension of this format.
+    /// Returns the file extension of this format.
     #[must_use]
     pub fn extension(self) -> &'static str {
         match self {
@@ -262,7 +264,7 @@ impl ImageFormat {
         }
     }
 
-    /// Media type: `image/png` or `image/jpeg`.
+    /// Returns the media type: `image/png` or `image/jpeg`.
     #[must_use]
     pub fn media_type(self) -> &'static str {
         match self {

@@ -61,7 +61,7 @@ impl Mesh {
         self.report_and_adjacency().0
     }
 
-    /// Report, and adjacency regardless of winding.
+    /// Returns the report, and adjacency regardless of winding.
     pub(crate) fn report_and_adjacency(&self) -> (MeshReport, Adjacency) {
         let first_at_position = self.first_at_position();
         let mut report = MeshReport {
@@ -91,7 +91,8 @@ impl Mesh {
         names_twice(self.faces()[face.index()]) || area_vector(self.corners(face)).is_none()
     }
 
-    /// All faces with their vertices in ascending order, sorted so that faces with equal vertices are adjacent.
+    /// Returns all faces with their vertices in ascending order, sorted so that faces with equal vertices are
+    /// adjacent.
     pub(crate) fn faces_by_vertices(&self) -> Vec<([VertexIdx; 3], FaceIdx)> {
         let set = |mut corners: [VertexIdx; 3]| {
             corners.sort_unstable();

@@ -2,7 +2,8 @@
 
 use glam::{DQuat, DVec3};
 
-/// Rotation by `angle` radians about a unit `axis`, counterclockwise when looking from the tip of the axis.
+/// Returns the rotation by `angle` radians about a unit `axis`, counterclockwise when looking from the tip of the
+/// axis.
 ///
 /// The result has the same bits on every platform, unlike the constructors of `glam`.
 ///

@@ -96,25 +96,25 @@ impl Surface {
         })
     }
 
-    /// The underlying mesh.
+    /// Returns the underlying mesh.
     #[must_use]
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
-    /// Adjacency of the faces.
+    /// Returns the adjacency of the faces.
     #[must_use]
     pub fn adjacency(&self) -> &Adjacency {
         &self.adjacency
     }
 
-    /// Total area of all faces, in squared units of the mesh.
+    /// Returns the total area of all faces, in squared units of the mesh.
     #[must_use]
     pub fn area(&self) -> f64 {
         self.area
     }
 
-    /// Area of a face, in squared units of the mesh.
+    /// Returns the area of a face, in squared units of the mesh.
     ///
     /// # Panics
     ///
@@ -124,7 +124,7 @@ impl Surface {
         self.flats[face.index()].area()
     }
 
-    /// Connected component of each face; walks never leave a component.
+    /// Returns the connected component of each face; walks never leave a component.
     ///
     /// Components are numbered from 0 in the order of their lowest face index.
     #[must_use]
@@ -132,7 +132,7 @@ impl Surface {
         self.adjacency.components()
     }
 
-    /// Areas of the components, in squared units of the mesh.
+    /// Returns the areas of the components, in squared units of the mesh.
     ///
     /// # Examples
     ///
@@ -156,7 +156,7 @@ impl Surface {
         areas
     }
 
-    /// Unit normal of a face.
+    /// Returns the unit normal of a face.
     ///
     /// # Panics
     ///
@@ -168,7 +168,7 @@ impl Surface {
         flat.x.cross(flat.y)
     }
 
-    /// Position of a point in space.
+    /// Returns the position of a point in space.
     ///
     /// # Panics
     ///
@@ -180,7 +180,7 @@ impl Surface {
         flat.origin + flat.x * point.flat.x + flat.y * point.flat.y
     }
 
-    /// Unit normal of the smooth surface at a point, interpolated between the vertex normals.
+    /// Returns the unit normal of the smooth surface at a point, interpolated between the vertex normals.
     ///
     /// # Panics
     ///
@@ -193,8 +193,8 @@ impl Surface {
         (na * a + nb * b + nc * c).normalize_or(self.face_normal(point.face))
     }
 
-    /// Barycentric weights of a point, which sum to 1. Inside of the face they are at least 0, up to rounding of the
-    /// longest edge relative to the height of the face.
+    /// Returns the barycentric weights of a point, which sum to 1. Inside of the face they are at least 0, up to
+    /// rounding of the longest edge relative to the height of the face.
     ///
     /// # Panics
     ///
@@ -207,7 +207,7 @@ impl Surface {
         [1.0 - b - c, b, c]
     }
 
-    /// Point of a face with these barycentric weights.
+    /// Returns the point of a face with these barycentric weights.
     ///
     /// # Panics
     ///
@@ -221,7 +221,7 @@ impl Surface {
         }
     }
 
-    /// Orthogonal projection of a position to the plane of a face.
+    /// Returns the orthogonal projection of a position to the plane of a face.
     ///
     /// # Panics
     ///
@@ -237,7 +237,7 @@ impl Surface {
         }
     }
 
-    /// Orthogonal projection of a vector to the plane of a face, in coordinates of the plane.
+    /// Returns the orthogonal projection of a vector to the plane of a face, in coordinates of the plane.
     ///
     /// # Panics
     ///

@@ -4,18 +4,18 @@ use crate::{Mesh, Surface};
 use glam::DVec3;
 use proptest::prelude::*;
 
-/// Mesh with corners given as arrays.
+/// Returns the mesh with corners given as arrays.
 pub(crate) fn mesh(corners: &[[f64; 3]], faces: &[[u32; 3]]) -> Mesh {
     let positions = corners.iter().map(|&corner| DVec3::from_array(corner));
     Mesh::new(positions.collect(), faces).expect("the mesh is valid")
 }
 
-/// Surface of a mesh without defects.
+/// Returns the surface of a mesh without defects.
 pub(crate) fn surface(mesh: Mesh) -> Surface {
     Surface::new(mesh).expect("the mesh has no defects")
 }
 
-/// A regular tetrahedron with edges of length sqrt(8) around the origin.
+/// Returns a regular tetrahedron with edges of length sqrt(8) around the origin.
 pub(crate) fn tetrahedron() -> Mesh {
     let corners = [
         [1.0, 1.0, 1.0],
@@ -26,7 +26,7 @@ pub(crate) fn tetrahedron() -> Mesh {
     mesh(&corners, &[[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])
 }
 
-/// Unit cube from 0 to 1, with two triangles per side.
+/// Returns the unit cube from 0 to 1, with two triangles per side.
 pub(crate) fn cube() -> Mesh {
     let corners: Vec<[f64; 3]> = (0..8_u8)
         .map(|bits| [0, 1, 2].map(|axis| f64::from(bits >> axis & 1)))
@@ -46,7 +46,7 @@ pub(crate) fn cube() -> Mesh {
     mesh(&corners, &faces)
 }
 
-/// Sheet of `columns` × `rows` squares of two triangles each, at the positions of the grid points.
+/// Returns the sheet of `columns` × `rows` squares of two triangles each, at the positions of the grid points.
 pub(crate) fn sheet(columns: u32, rows: u32, position: impl Fn(u32, u32) -> DVec3) -> Mesh {
     let points = (0..=rows).flat_map(|row| (0..=columns).map(move |column| (column, row)));
     let positions = points.map(|(column, row)| position(column, row)).collect();
@@ -61,14 +61,15 @@ pub(crate) fn sheet(columns: u32, rows: u32, position: impl Fn(u32, u32) -> DVec
     Mesh::new(positions, &faces).expect("the mesh is valid")
 }
 
-/// Plane from the origin to `columns` and `rows`, with normals along z.
+/// Returns the plane from the origin to `columns` and `rows`, with normals along z.
 pub(crate) fn plane(columns: u32, rows: u32) -> Mesh {
     sheet(columns, rows, |column, row| {
         DVec3::new(column.into(), row.into(), 0.0)
     })
 }
 
-/// Strip of `n` unit squares around the z axis. The last square is joined to the first, with half a twist if
+/// Returns the strip of `n` unit squares around the z axis. The last square is joined to the first, with half a twist
+/// if
 /// `twisted`.
 ///
 /// Without a twist it is a prism whose normals point outward.
@@ -95,7 +96,8 @@ pub(crate) fn ring(n: u32, twisted: bool) -> Mesh {
     mesh(&corners, &faces)
 }
 
-/// Random soups of up to 24 triangles on up to 9 vertices, many of which coincide or are collinear, exactly or nearly.
+/// Returns a random soups of up to 24 triangles on up to 9 vertices, many of which coincide or are collinear, exactly
+/// or nearly.
 pub(crate) fn soup() -> impl Strategy<Value = Mesh> {
     let part = prop_oneof![
         4 => (0_i8..3).prop_map(f64::from),

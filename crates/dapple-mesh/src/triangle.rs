@@ -27,7 +27,7 @@ pub(crate) enum Shape {
     Cap { longest: usize },
 }
 
-/// Normal of a triangle with a length of twice its area; `None` if it is degenerate.
+/// Returns the normal of a triangle with a length of twice its area; `None` if it is degenerate.
 ///
 /// Exchanging two corners changes only the sign.
 pub(crate) fn area_vector(corners: [DVec3; 3]) -> Option<DVec3> {
@@ -45,7 +45,7 @@ pub(crate) fn area_vector(corners: [DVec3; 3]) -> Option<DVec3> {
     Some(if odd { -vector } else { vector })
 }
 
-/// Shape of a triangle. The shortest edge of a needle is at most `thin` times the longest.
+/// Returns the shape of a triangle. The shortest edge of a needle is at most `thin` times the longest.
 pub(crate) fn shape(corners: [DVec3; 3], thin: f64) -> Shape {
     if area_vector(corners).is_some() {
         return Shape::Fair;
@@ -68,12 +68,12 @@ pub(crate) fn is_thin(corners: [DVec3; 3]) -> bool {
     area_vector(corners).is_none_or(|vector| vector.length() <= THIN_MAX * longest_sq)
 }
 
-/// Squared lengths of the edges, each from a corner to the next.
+/// Returns the squared lengths of the edges, each from a corner to the next.
 pub(crate) fn edge_lengths_sq([a, b, c]: [DVec3; 3]) -> [f64; 3] {
     [b - a, c - b, a - c].map(DVec3::length_squared)
 }
 
-/// Corners in lexicographic order, and whether the permutation is odd.
+/// Returns the corners in lexicographic order, and whether the permutation is odd.
 fn sorted(mut corners: [DVec3; 3]) -> ([DVec3; 3], bool) {
     let mut odd = false;
     for [i, j] in [[0, 1], [1, 2], [0, 1]] {
@@ -86,7 +86,7 @@ fn sorted(mut corners: [DVec3; 3]) -> ([DVec3; 3], bool) {
     (corners, odd)
 }
 
-/// Index of the first maximum.
+/// Returns the index of the first maximum.
 fn first_longest(lengths_sq: [f64; 3]) -> usize {
     let mut longest = 0;
     for edge in 1..3 {

@@ -203,7 +203,7 @@ impl<const N: usize> GradientNoise<N> {
         Ok(Self { period, ..self })
     }
 
-    /// Period along each axis, in cells.
+    /// Returns the period along each axis, in cells.
     #[must_use]
     pub fn periods(&self) -> [Option<u32>; N] {
         self.period.map(|cells| (cells > 0).then_some(cells))
@@ -218,8 +218,8 @@ impl<const N: usize> GradientNoise<N> {
         }
     }
 
-    /// Offset of a position in its cell along each axis, and hash parts of the corners on both sides; `None` if a
-    /// coordinate is not finite.
+    /// Returns the offset of a position in its cell along each axis, and hash parts of the corners on both sides;
+    /// `None` if a coordinate is not finite.
     #[inline(always)]
     fn around(&self, position: [f64; N]) -> Option<([f32; N], [[u32; 2]; N])> {
         // Use loops: `array::map` is not inlined for three or more axes.
@@ -285,7 +285,8 @@ impl<const N: usize> GradientNoise<N> {
         self.value_and_gradient(position.into())
     }
 
-    /// Gradients at corners that differ only in the first coordinate. The first coordinate of `at` is ignored.
+    /// Returns the gradients at corners that differ only in the first coordinate. The first coordinate of `at` is
+    /// ignored.
     pub(crate) fn line(&self, level: Level, at: [i64; N], columns: &[i64]) -> Vec<[f32; N]> {
         let row = self.row(at);
         let mut gradients = Vec::with_capacity(columns.len());
@@ -300,7 +301,7 @@ impl<const N: usize> GradientNoise<N> {
         gradients
     }
 
-    /// Combined hash part of all coordinates of a corner except the first, which varies fastest.
+    /// Returns the combined hash part of all coordinates of a corner except the first, which varies fastest.
     pub(crate) fn row(&self, at: [i64; N]) -> u32 {
         (1..N).fold(0, |row, axis| row ^ self.part(axis, at[axis]))
     }
@@ -314,13 +315,13 @@ impl<const N: usize> GradientNoise<N> {
         self.hash.part(axis, coordinate)
     }
 
-    /// Coordinate plus the offset of this noise.
+    /// Returns the coordinate plus the offset of this noise.
     #[inline(always)]
     pub(crate) const fn moved(&self, coordinate: f64, axis: usize) -> f64 {
         coordinate + f64::from_bits(self.offset[axis])
     }
 
-    /// Coordinates of the corners on both sides of a cell along an axis, reduced by the period.
+    /// Returns the coordinates of the corners on both sides of a cell along an axis, reduced by the period.
     #[inline(always)]
     pub(crate) fn pair(&self, cell: i64, axis: usize) -> [i64; 2] {
         match self.period[axis] {
@@ -339,8 +340,8 @@ impl<const N: usize> GradientNoise<N> {
         }
     }
 
-    /// Noises of the octaves of a fractal sum, coarsest first. Each octave has a separate seed and offset, and the
-    /// common period in its own cells.
+    /// Returns the noises of the octaves of a fractal sum, coarsest first. Each octave has a separate seed and
+    /// offset, and the common period in its own cells.
     ///
     /// Without offsets, all octaves with an integer lacunarity would be 0 at integer positions. Offsets are odd
     /// multiples of 2^-9, so that positions on a coarser grid are moved exactly and periods are preserved.
@@ -381,8 +382,8 @@ impl<const N: usize> GradientNoise<N> {
         Ok(octaves)
     }
 
-    /// Fractal sum of several octaves, `Σ gain^i · shape(noise_i(lacunarity^i · position + offset_i))`, where each
-    /// octave has a separate seed and offset.
+    /// Returns the fractal sum of several octaves, `Σ gain^i · shape(noise_i(lacunarity^i · position + offset_i))`,
+    /// where each octave has a separate seed and offset.
     ///
     /// The sum is not divided by the sum of the weights, `w = Σ |gain|^i` ([`Fractal::weight`]). For gains from 0 to
     /// 1, values are from `-w` to `w` for [`Sum`](FractalShape::Sum), and from 0 to `w` for
@@ -507,7 +508,8 @@ pub(crate) struct Column {
 }
 
 impl Column {
-    /// Contribution of one corner of a column, from its gradient and its index in the order of [`corner`].
+    /// Returns the contribution of one corner of a column, from its gradient and its index in the order of
+    /// [`corner`].
     #[inline(always)]
     pub(crate) fn of<const N: usize>(gradient: [f32; N], index: usize, offsets: &[f32; N]) -> Self {
         let mut value = 0.0;
@@ -538,7 +540,7 @@ impl Column {
         columns[0]
     }
 
-    /// Value between two columns, at the distance `t` from the left one; `by` is `fade(t)`.
+    /// Returns the value between two columns, at the distance `t` from the left one; `by` is `fade(t)`.
     #[inline(always)]
     pub(crate) fn between([left, right]: [Self; 2], t: f32, by: f32) -> f32 {
         let near = left.slope * t + left.value;
@@ -547,7 +549,7 @@ impl Column {
     }
 }
 
-/// Random bits of corners, from the hash parts of their coordinates. Compilers vectorize the loop.
+/// Returns random bits of corners, from the hash parts of their coordinates. Compilers vectorize the loop.
 #[inline(always)]
 fn bits_of<const N: usize>(parts: &[u32; LANES]) -> [u32; LANES] {
     let mut all = [0; LANES];
@@ -557,8 +559,8 @@ fn bits_of<const N: usize>(parts: &[u32; LANES]) -> [u32; LANES] {
     all
 }
 
-/// A corner of a cell with the same first coordinate. Bit `k` of the index selects one of the two coordinates along
-/// axis `k + 1`.
+/// Returns a corner of a cell with the same first coordinate. Bit `k` of the index selects one of the two coordinates
+/// along axis `k + 1`.
 pub(crate) fn corner<const N: usize>(mut cell: [i64; N], index: usize) -> [i64; N] {
     for (axis, coordinate) in cell.iter_mut().enumerate().skip(1) {
         *coordinate = coordinate.wrapping_add((index >> (axis - 1) & 1) as i64);
@@ -566,12 +568,13 @@ pub(crate) fn corner<const N: usize>(mut cell: [i64; N], index: usize) -> [i64; 
     cell
 }
 
-/// Number of corners of a cell with the same first coordinate.
+/// Returns the number of corners of a cell with the same first coordinate.
 pub(crate) const fn corners(axes: usize) -> usize {
     1 << (axes - 1)
 }
 
-/// Perlin's quintic fade function, `6 t⁵ - 15 t⁴ + 10 t³`. Its first and second derivatives are 0 at both ends.
+/// Computes Perlin's quintic fade function, `6 t⁵ - 15 t⁴ + 10 t³`. Its first and second derivatives are 0 at both
+/// ends.
 #[inline(always)]
 pub(crate) fn fade(t: f32) -> f32 {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)

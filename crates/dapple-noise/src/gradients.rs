@@ -30,7 +30,7 @@ static SPACE: [[f32; 3]; N_SPACE as usize] = edges();
 
 static TIME: [[f32; 4]; N_TIME as usize] = edges();
 
-/// Midpoints of the edges of a cube from -1 to 1; there are `COUNT`.
+/// Returns the midpoints of the edges of a cube from -1 to 1; there are `COUNT`.
 const fn edges<const N: usize, const COUNT: usize>() -> [[f32; N]; COUNT] {
     let mut edges = [[0.0; N]; COUNT];
     let mut index = 0;
@@ -57,7 +57,7 @@ const fn picked(bits: u32, count: u32) -> u32 {
     ((bits >> 8) * count) >> 24
 }
 
-/// Gradients that random bits select, one register per component: the SIMD form of [`gradient`].
+/// Returns the gradients that random bits select, one register per component: the SIMD form of [`gradient`].
 #[cfg(feature = "simd")]
 #[inline(always)]
 pub(crate) fn gradient_lanes<S: Simd, const N: usize>(simd: S, bits: u32x16<S>) -> [f32x16<S>; N] {
@@ -90,7 +90,7 @@ pub(crate) fn gradient_lanes<S: Simd, const N: usize>(simd: S, bits: u32x16<S>) 
     gradient
 }
 
-/// Gradient that 32 random bits select.
+/// Returns the gradient that 32 random bits select.
 #[inline(always)]
 pub(crate) fn gradient<const N: usize>(bits: u32) -> [f32; N] {
     let pick = |count: u32| picked(bits, count) as usize;
@@ -103,7 +103,7 @@ pub(crate) fn gradient<const N: usize>(bits: u32) -> [f32; N] {
     gradient
 }
 
-/// All gradients of a dimension.
+/// Returns all gradients of a dimension.
 #[cfg(test)]
 pub(crate) fn all<const N: usize>() -> Vec<[f32; N]> {
     let count = [0, 0, PLANE.len(), SPACE.len(), TIME.len()][N] as u64;

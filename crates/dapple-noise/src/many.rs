@@ -67,7 +67,7 @@ fn fill_with<S: Simd, const N: usize, P: Copy + Into<[f64; N]>>(
     }
 }
 
-/// Values at sixteen positions nearer than [`NEAR`].
+/// Returns the values at sixteen positions nearer than [`NEAR`].
 #[inline(always)]
 fn value<S: Simd, const N: usize>(
     simd: S,
@@ -134,8 +134,8 @@ const fn axis_of<const N: usize>(noise: &GradientNoise<N>, axis: usize) -> (u32,
     (noise.hash.key(axis), noise.period[axis])
 }
 
-/// Cell and offset of a coordinate below 2^51 in absolute value, and its floor, in operations that vectorize; `floor`
-/// is a function call at the lowest SIMD level of x86-64.
+/// Returns the cell and offset of a coordinate below 2^51 in absolute value, and its floor, in operations that
+/// vectorize; `floor` is a function call at the lowest SIMD level of x86-64.
 #[inline(always)]
 fn near(coordinate: f64) -> (Place, f64) {
     let shifted = coordinate + SHIFT;
@@ -152,7 +152,7 @@ fn near(coordinate: f64) -> (Place, f64) {
 }
 
 impl Line {
-    /// Cells of coordinates nearer than [`NEAR`], reduced by `period` if it is not 0.
+    /// Returns the cells of coordinates nearer than [`NEAR`], reduced by `period` if it is not 0.
     #[inline(always)]
     fn new(coordinates: &[f64; LANES], period: u32) -> Self {
         let mut line = Self {
@@ -185,7 +185,7 @@ impl Line {
     }
 }
 
-/// Perlin's quintic fade function in every lane.
+/// Computes Perlin's quintic fade function in every lane.
 #[inline(always)]
 fn fade<S: Simd>(t: f32x16<S>) -> f32x16<S> {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)

@@ -66,7 +66,7 @@ pub fn poisson_disk(domain: Domain, radius: f64, seed: Seed) -> Result<PointSet,
 ///
 /// # Errors
 ///
-/// The errors of [`poisson_disk`], and [`PointsErrorKind::Cancelled`].
+/// Same as [`poisson_disk`], plus [`PointsErrorKind::Cancelled`].
 ///
 /// # Examples
 ///
@@ -92,7 +92,7 @@ pub fn poisson_disk_cancellable(
 ///
 /// # Errors
 ///
-/// The errors of [`poisson_disk`]; [`PointsErrorKind::NoPoints`] for `n_points` of zero.
+/// Same as [`poisson_disk`], plus [`PointsErrorKind::NoPoints`] for `n_points` of zero.
 ///
 /// # Examples
 ///
@@ -111,7 +111,7 @@ pub fn poisson_disk_about(
     poisson_disk(domain, poisson_disk_radius(domain, n_points)?, seed)
 }
 
-/// Radius at which a maximal Poisson-disk set has about `n_points` points, in units of the domain.
+/// Returns the radius at which a maximal Poisson-disk set has about `n_points` points, in units of the domain.
 ///
 /// The result accounts for borders that do not wrap, where points are denser because no points beyond the border
 /// exclude them. It is at most half of the shortest wrapped side, the maximum that [`poisson_disk`] accepts. On a
@@ -153,7 +153,7 @@ const BORDER_DENSITY: f64 = 0.232;
 ///
 /// # Errors
 ///
-/// The errors of [`poisson_disk`]; [`PointsErrorKind::TooClose`] if two of the given points are closer than `radius`.
+/// Same as [`poisson_disk`], plus [`PointsErrorKind::TooClose`] if two of the given points are closer than `radius`.
 ///
 /// # Examples
 ///
@@ -177,7 +177,7 @@ pub fn extend_poisson_disk(
 ///
 /// # Errors
 ///
-/// The errors of [`extend_poisson_disk`], and [`PointsErrorKind::Cancelled`].
+/// Same as [`extend_poisson_disk`], plus [`PointsErrorKind::Cancelled`].
 pub fn extend_poisson_disk_cancellable(
     given: &PointSet,
     radius: f64,
@@ -200,7 +200,7 @@ impl PoissonDisk {
     ///
     /// # Errors
     ///
-    /// The errors of [`poisson_disk`].
+    /// Same as [`poisson_disk`].
     pub fn new(domain: Domain, radius: f64) -> Result<Self, PointsError> {
         let grid = Grid::new(domain, radius, MAX_POISSON_DISK_POINTS)?;
         let coverage = Coverage::new(&grid, level());
@@ -261,7 +261,7 @@ impl PoissonDisk {
         PointSet::new(self.grid.domain, positions)
     }
 
-    /// Cells and offsets of the given points, sorted by cell.
+    /// Returns the cells and offsets of the given points, sorted by cell.
     fn places(&self, given: &PointSet) -> Result<Vec<(Cell, [f32; 2])>, PointsError> {
         let grid = &self.grid;
         let mut holders = vec![u32::MAX; grid.stride() * grid.rows()];
@@ -309,7 +309,8 @@ impl PoissonDisk {
     }
 }
 
-/// SIMD level of this machine, without 16-lane levels, whose registers a row of five neighbors cannot fill.
+/// Returns the SIMD level of this machine, without 16-lane levels, whose registers a row of five neighbors cannot
+/// fill.
 pub(crate) fn level() -> Level {
     let level = Level::new();
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

@@ -42,7 +42,7 @@ impl Domain {
         }
     }
 
-    /// The square `[-1, 1]²`, wrapped along both axes: the domain of Caron and Mould's figures.
+    /// Returns the square `[-1, 1]²`, wrapped along both axes: the domain of Caron and Mould's figures.
     #[must_use]
     pub const fn paper_torus() -> Self {
         Self::torus(DVec2::NEG_ONE, DVec2::splat(2.0))
@@ -68,7 +68,7 @@ impl Domain {
         }
     }
 
-    /// Domain extended by a margin along the axes that do not wrap.
+    /// Returns the domain extended by a margin along the axes that do not wrap.
     #[must_use]
     pub fn grown(self, margin: DVec2) -> Self {
         let margin = DVec2::select(self.wrap.into(), DVec2::ZERO, margin);
@@ -79,19 +79,19 @@ impl Domain {
         }
     }
 
-    /// Width times height.
+    /// Returns the width times height.
     #[must_use]
     pub fn area(&self) -> f64 {
         self.size.x * self.size.y
     }
 
-    /// Period of the domain along each axis: its side, if the axis wraps.
+    /// Returns the period of the domain along each axis: its side, if the axis wraps.
     #[must_use]
     pub fn period(&self) -> [Option<f64>; 2] {
         [0, 1].map(|axis| self.wrap[axis].then_some(self.size[axis]))
     }
 
-    /// Corner with the largest coordinates.
+    /// Returns the corner with the largest coordinates.
     #[must_use]
     pub fn end(&self) -> DVec2 {
         self.origin + self.size
@@ -136,7 +136,7 @@ impl Domain {
         }
     }
 
-    /// Shortest vector from `from` to `to`, across the wrapped axes where that is shorter.
+    /// Returns the shortest vector from `from` to `to`, across the wrapped axes where that is shorter.
     ///
     /// Both positions must be inside of the domain.
     #[must_use]

@@ -221,7 +221,7 @@ struct Plane {
     rule: DiskRule,
     /// Minimum and maximum radius.
     radii: [f64; 2],
-    /// Length of a step in the unit of the caller: a power of two.
+    /// Length of a step in the caller's units: a power of two.
     step: f64,
     axes: [Axis; 2],
 }
@@ -237,7 +237,7 @@ struct Axis {
 /// Period of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Period {
-    /// Length in the unit of the caller.
+    /// Length in the caller's units.
     length: f64,
     /// Length in whole steps. A remainder of less than a step stays empty.
     n_steps: i64,
@@ -304,7 +304,7 @@ impl Plane {
         Ok(())
     }
 
-    /// Points of a window, given by its first and second corner.
+    /// Returns the points of a window, given by its first and second corner.
     fn points(
         &self,
         window: [[f64; 2]; 2],
@@ -345,7 +345,7 @@ impl Plane {
         Ok(points)
     }
 
-    /// Points of a block of cells: a half-open range along each axis.
+    /// Returns the points of a block of cells: a half-open range along each axis.
     fn block(
         &self,
         cells: [[i64; 2]; 2],
@@ -365,7 +365,7 @@ impl Plane {
         }
     }
 
-    /// Search radius in cells: conflicting points are at most this many cells apart.
+    /// Returns the search radius in cells: conflicting points are at most this many cells apart.
     fn reach(&self) -> i64 {
         let most = (self.radii[1] / self.step) as i64 + 1;
         let narrowest = self.axes[0].narrowest().min(self.axes[1].narrowest());
@@ -374,7 +374,7 @@ impl Plane {
 }
 
 impl Axis {
-    /// Approximate index of the cell at a coordinate in the unit of the caller.
+    /// Returns the approximate index of the cell at a coordinate in the caller's units.
     fn cell(&self, coordinate: f64, step: f64) -> i64 {
         let cells = match self.period {
             Some(period) => coordinate / period.length * period.n_cells as f64,
@@ -383,7 +383,7 @@ impl Axis {
         cells.floor() as i64
     }
 
-    /// Column or row of a cell index, which may be in any period.
+    /// Returns the column or row of a cell index, which may be in any period.
     fn strip(&self, cell: i64) -> Strip {
         let Some(period) = self.period else {
             return Strip {
@@ -409,7 +409,7 @@ impl Axis {
         }
     }
 
-    /// Minimum width of a cell, in steps.
+    /// Returns the minimum width of a cell, in steps.
     fn narrowest(&self) -> i64 {
         self.period
             .map_or(self.width, |period| period.n_steps / period.n_cells)

@@ -104,7 +104,7 @@ dapple_raster::error! {
             /// Maximum number.
             limit: u64,
         } => "the spectrum would have about {needed:.0} frequencies or rings, but the limit is {limit}";
-        /// The operation was canceled by the callback of the caller.
+        /// The operation was canceled by the caller's callback.
         Cancelled => "the callback asked to stop";
     }
 }

@@ -18,19 +18,20 @@ pub struct NestedPointSet {
 }
 
 impl NestedPointSet {
-    /// All points: the finest level.
+    /// Returns all points: the finest level.
     #[must_use]
     pub fn points(&self) -> &PointSet {
         &self.points
     }
 
-    /// Number of points of each level, from the coarsest to the finest.
+    /// Returns the number of points of each level, from the coarsest to the finest.
     #[must_use]
     pub fn lengths(&self) -> &[usize] {
         &self.lengths
     }
 
-    /// Points of a level as a separate set, where 0 is the coarsest level; `None` if there is no such level.
+    /// Returns the points of a level as a separate set, where 0 is the coarsest level; `None` if there is no such
+    /// level.
     #[must_use]
     pub fn level(&self, level: usize) -> Option<PointSet> {
         let length = *self.lengths.get(level)?;
@@ -55,8 +56,8 @@ impl NestedPointSet {
 ///
 /// # Errors
 ///
-/// The errors of [`poisson_disk`](crate::poisson_disk) for each radius; [`PointsErrorKind::NotDescending`] if a radius
-/// is larger than the one before.
+/// Same as [`poisson_disk`](crate::poisson_disk) for each radius; [`PointsErrorKind::NotDescending`] if a radius is
+/// larger than the one before.
 ///
 /// # Examples
 ///
@@ -80,7 +81,7 @@ pub fn nested_poisson_disk(
 ///
 /// # Errors
 ///
-/// The errors of [`nested_poisson_disk`], and [`PointsErrorKind::Cancelled`].
+/// Same as [`nested_poisson_disk`], plus [`PointsErrorKind::Cancelled`].
 pub fn nested_poisson_disk_cancellable(
     domain: Domain,
     radii: &[f64],

@@ -84,13 +84,13 @@ impl PointSet {
         Ok(Self { domain, positions })
     }
 
-    /// Domain of the points.
+    /// Returns the domain of the points.
     #[must_use]
     pub fn domain(&self) -> &Domain {
         &self.domain
     }
 
-    /// Number of points.
+    /// Returns the number of points.
     #[must_use]
     pub fn len(&self) -> usize {
         self.positions.len()
@@ -102,13 +102,13 @@ impl PointSet {
         self.positions.is_empty()
     }
 
-    /// Positions, indexed by [`PointIdx`].
+    /// Returns the positions, indexed by [`PointIdx`].
     #[must_use]
     pub fn positions(&self) -> &[DVec2] {
         &self.positions
     }
 
-    /// Position of a point.
+    /// Returns the position of a point.
     ///
     /// # Panics
     ///

@@ -107,12 +107,12 @@ fn checked(domain: Domain, n_points: u64) -> Result<Domain, PointsError> {
     domain.checked()
 }
 
-/// Uniform position in the unit square.
+/// Returns a uniform position in the unit square.
 fn unit_square(hash: CellHash) -> DVec2 {
     DVec2::new(unit_f64(hash.at(0)), unit_f64(hash.at(1)))
 }
 
-/// Position at `unit`, from 0 to 1 across the domain along each axis.
+/// Returns the position at `unit`, from 0 to 1 across the domain along each axis.
 fn place(domain: &Domain, unit: DVec2) -> DVec2 {
     // Rounding must not move the position across a border that does not wrap.
     (domain.origin + unit * domain.size).min(domain.end())

@@ -117,7 +117,7 @@ pub fn variable_poisson_disk(
 ///
 /// # Errors
 ///
-/// The errors of [`variable_poisson_disk`], and [`PointsErrorKind::Cancelled`].
+/// Same as [`variable_poisson_disk`], plus [`PointsErrorKind::Cancelled`].
 pub fn variable_poisson_disk_cancellable(
     domain: Domain,
     radius: &Varying,
@@ -280,7 +280,7 @@ fn take_turns(
     cancelled(is_over.into_inner())
 }
 
-/// Points of all blocks, or the first error.
+/// Returns the points of all blocks, or the first error.
 fn collect(domain: Domain, blocks: Vec<Block>) -> Result<PointSet, PointsError> {
     let mut positions = Vec::with_capacity(blocks.iter().map(|block| block.samples.len()).sum());
     for block in blocks {

@@ -63,7 +63,7 @@ macro_rules! error {
                 Err(Self::new($kind::Range { what, value, range }))
             })?
 
-            /// Cause of the error, with the limit and the value.
+            /// Returns the cause of the error, with the limit and the value.
             #[must_use]
             pub fn kind(&self) -> &$kind {
                 &self.kind

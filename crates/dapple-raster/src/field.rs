@@ -100,8 +100,8 @@ pub trait Field<const N: usize = 2>: Send + Sync {
         stack.try_for_each(|(window, out)| self.render(window, out))
     }
 
-    /// Period of the field along each axis: `None` if it does not repeat or the period is unknown, 0 if the field is
-    /// constant along the axis.
+    /// Returns the period of the field along each axis: `None` if it does not repeat or the period is unknown, 0 if
+    /// the field is constant along the axis.
     fn period(&self) -> [Option<f64>; N] {
         [None; N]
     }

@@ -8,13 +8,13 @@ pub trait Named: Copy + PartialEq + 'static {
     /// Names of the values, in the same order as `ALL`.
     const NAMES: &'static [&'static str];
 
-    /// Name in snake case.
+    /// Returns the name in snake case.
     fn name(self) -> &'static str;
 
-    /// Alternative names that are accepted when reading.
+    /// Returns the alternative names that are accepted when reading.
     fn aliases(self) -> &'static [&'static str];
 
-    /// Documentation of the value.
+    /// Returns the documentation of the value.
     fn documentation(self) -> &'static str;
 
     /// Returns the value with this name or alias; `None` if there is no such value.

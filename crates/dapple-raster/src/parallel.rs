@@ -11,7 +11,7 @@ use std::sync::{Mutex, PoisonError};
 /// Maximum number of pieces per thread: enough that no thread waits long for another.
 const PIECES: usize = 64;
 
-/// Number of threads that can run in parallel: 1 if the feature `rayon` is disabled.
+/// Returns the number of threads that can run in parallel: 1 if the feature `rayon` is disabled.
 #[must_use]
 pub fn n_threads() -> usize {
     #[cfg(feature = "rayon")]
@@ -212,7 +212,7 @@ pub fn sort(numbers: &mut [u128]) {
     numbers.sort_unstable();
 }
 
-/// Number of items per task: at least `least`, and all `count` items on a single thread.
+/// Returns the number of items per task: at least `least`, and all `count` items on a single thread.
 fn piece(count: usize, least: usize) -> usize {
     let size = match n_threads() {
         1 => count,

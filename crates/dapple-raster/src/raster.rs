@@ -45,31 +45,31 @@ impl<T> Raster<T> {
         Ok(Self { data, size })
     }
 
-    /// Width and height in pixels.
+    /// Returns the width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// Number of columns.
+    /// Returns the number of columns.
     #[must_use]
     pub fn width(&self) -> u32 {
         self.size[0]
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     #[must_use]
     pub fn height(&self) -> u32 {
         self.size[1]
     }
 
-    /// Pixels, row by row from the top.
+    /// Returns the pixels, row by row from the top.
     #[must_use]
     pub fn pixels(&self) -> &[T] {
         &self.data
     }
 
-    /// Mutable pixels, row by row from the top.
+    /// Returns the mutable pixels, row by row from the top.
     #[must_use]
     pub fn pixels_mut(&mut self) -> &mut [T] {
         &mut self.data
@@ -81,7 +81,7 @@ impl<T> Raster<T> {
         self.data
     }
 
-    /// Pixels of a row, from left to right.
+    /// Returns the pixels of a row, from left to right.
     ///
     /// # Panics
     ///
@@ -91,13 +91,13 @@ impl<T> Raster<T> {
         self.view().row(row)
     }
 
-    /// View of all pixels, for reading.
+    /// Returns a view of all pixels, for reading.
     #[must_use]
     pub fn view(&self) -> RasterView<'_, T> {
         RasterView::whole(&self.data, self.size)
     }
 
-    /// View of all pixels, for writing.
+    /// Returns a view of all pixels, for writing.
     #[must_use]
     pub fn view_mut(&mut self) -> RasterViewMut<'_, T> {
         RasterViewMut::whole(&mut self.data, self.size)

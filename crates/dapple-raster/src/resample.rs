@@ -59,8 +59,8 @@ struct Shares {
     ends: [f64; 2],
 }
 
-/// Overlap of an interval with a line of `size` pixels. An interval of at most one pixel is extended to one pixel: the
-/// weights are then those of linear interpolation.
+/// Returns the overlap of an interval with a line of `size` pixels. An interval of at most one pixel is extended to
+/// one pixel: the weights are then those of linear interpolation.
 fn shares(middle: f64, length: f64, size: f64) -> Shares {
     let length = if length > ONE_PIXEL {
         length.min(size)
@@ -83,7 +83,7 @@ fn shares(middle: f64, length: f64, size: f64) -> Shares {
 const PARTS: f64 = (1 << 20) as f64;
 
 impl Shares {
-    /// Weights of the pixels, starting at the first one, which sum to 1.
+    /// Returns the weights of the pixels, starting at the first one, which sum to 1.
     fn weights(&self) -> impl Iterator<Item = f32> {
         let [from, end] = self.ends;
         let length = end - from;
@@ -97,7 +97,7 @@ impl Shares {
     }
 }
 
-/// Weighted mean with weights that sum to 1; exact if all values are equal.
+/// Returns the weighted mean with weights that sum to 1; exact if all values are equal.
 fn mean<T: Texel>(first: i64, weights: impl Iterator<Item = f32>, at: impl Fn(i64) -> T) -> T {
     let base = at(first);
     let mut sum = base;
@@ -107,7 +107,7 @@ fn mean<T: Texel>(first: i64, weights: impl Iterator<Item = f32>, at: impl Fn(i6
     sum
 }
 
-/// Integer part, and fraction in `[0, 1)`. Outside of the range of `i64` the fraction is 0.
+/// Returns the integer part, and fraction in `[0, 1)`. Outside of the range of `i64` the fraction is 0.
 fn cell_and_fraction(coordinate: f64) -> (i64, f32) {
     let floor = coordinate.floor();
     let fraction = (coordinate - floor) as f32;
@@ -118,7 +118,7 @@ fn cell_and_fraction(coordinate: f64) -> (i64, f32) {
     }
 }
 
-/// Linear interpolation, exactly `a` at 0, so that pixel centers reproduce the raster.
+/// Returns the linear interpolation, exactly `a` at 0, so that pixel centers reproduce the raster.
 fn lerp<T: Texel>(a: T, b: T, t: f32) -> T {
     a + (b - a) * t
 }

@@ -63,7 +63,7 @@ pub struct Ramp {
 }
 
 impl Ramp {
-    /// Fraction of the ramp at a position, from 0 to 1. A ramp of zero length is at its end everywhere.
+    /// Returns the fraction of the ramp at a position, from 0 to 1. A ramp of zero length is at its end everywhere.
     #[must_use]
     pub fn fraction(&self, position: DVec2) -> f64 {
         let along = self.to - self.from;
@@ -75,7 +75,7 @@ impl Ramp {
         }
     }
 
-    /// Value at a position.
+    /// Returns the value at a position.
     #[must_use]
     pub fn at(&self, position: DVec2) -> f64 {
         let fraction = self.fraction(position);
@@ -89,7 +89,7 @@ impl Varying {
         Self::Function(Arc::new(value))
     }
 
-    /// Value at a position.
+    /// Returns the value at a position.
     #[must_use]
     pub fn at(&self, position: DVec2) -> f64 {
         match self {

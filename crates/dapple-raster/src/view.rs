@@ -30,7 +30,7 @@ impl<'a, T> RasterView<'a, T> {
         Ok(Self { data, stride, size })
     }
 
-    /// View of all pixels of a raster, whose length is already checked.
+    /// Returns a view of all pixels of a raster, whose length is already checked.
     pub(crate) fn whole(data: &'a [T], size: [u32; 2]) -> Self {
         Self {
             data,
@@ -39,13 +39,13 @@ impl<'a, T> RasterView<'a, T> {
         }
     }
 
-    /// Width and height in pixels.
+    /// Returns the width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// Pixels of a row, from left to right.
+    /// Returns the pixels of a row, from left to right.
     ///
     /// # Panics
     ///
@@ -58,7 +58,7 @@ impl<'a, T> RasterView<'a, T> {
         &self.data[start..start + self.size[0] as usize]
     }
 
-    /// Rows from top to bottom.
+    /// Returns the rows from top to bottom.
     pub fn rows(&self) -> impl ExactSizeIterator<Item = &'a [T]> {
         let view = RasterView {
             data: self.data,
@@ -67,7 +67,7 @@ impl<'a, T> RasterView<'a, T> {
         (0..view.size[1]).map(move |row| view.row(row))
     }
 
-    /// View of the rectangle of `size` pixels that starts at `first`.
+    /// Returns a view of the rectangle of `size` pixels that starts at `first`.
     ///
     /// # Errors
     ///
@@ -93,7 +93,7 @@ impl<'a, T> RasterViewMut<'a, T> {
         Ok(Self { data, stride, size })
     }
 
-    /// View of all pixels of a raster, whose length is already checked.
+    /// Returns a view of all pixels of a raster, whose length is already checked.
     pub(crate) fn whole(data: &'a mut [T], size: [u32; 2]) -> Self {
         Self {
             data,
@@ -102,13 +102,13 @@ impl<'a, T> RasterViewMut<'a, T> {
         }
     }
 
-    /// Width and height in pixels.
+    /// Returns the width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// Pixels of a row, from left to right.
+    /// Returns the pixels of a row, from left to right.
     ///
     /// # Panics
     ///
@@ -121,7 +121,7 @@ impl<'a, T> RasterViewMut<'a, T> {
         &mut self.data[start..start + self.size[0] as usize]
     }
 
-    /// Rows from top to bottom.
+    /// Returns the rows from top to bottom.
     pub fn rows_mut(&mut self) -> impl Iterator<Item = &mut [T]> {
         let [width, height] = self.size.map(|side| side as usize);
         self.data
@@ -147,7 +147,7 @@ impl<'a, T> RasterViewMut<'a, T> {
         }
     }
 
-    /// View of the rectangle of `size` pixels that starts at `first`.
+    /// Returns a view of the rectangle of `size` pixels that starts at `first`.
     ///
     /// # Errors
     ///
@@ -231,7 +231,7 @@ fn check(length: usize, stride: usize, size: [u32; 2]) -> Result<(), RasterError
     }
 }
 
-/// Range of elements from the first to the last pixel of a rectangle.
+/// Returns the range of elements from the first to the last pixel of a rectangle.
 fn crop_range(
     stride: usize,
     bounds: [u32; 2],

@@ -75,7 +75,7 @@ impl Window {
     ///
     /// # Errors
     ///
-    /// The errors of [`new`](Self::new) for `size`.
+    /// Same as [`new`](Self::new) for `size`.
     pub fn unit(size: [u32; 2]) -> Result<Self, RasterError> {
         Self::new([0.0; 2], [1.0; 2], size)
     }
@@ -108,7 +108,7 @@ impl Window {
 }
 
 impl<const N: usize> Window<N> {
-    /// Window in the plane, without the coordinates along further axes.
+    /// Returns the window in the plane, without the coordinates along further axes.
     #[must_use]
     pub fn in_plane(&self) -> Window {
         Window {
@@ -120,7 +120,7 @@ impl<const N: usize> Window<N> {
         }
     }
 
-    /// Coordinate of all pixels along an axis after the second.
+    /// Returns the coordinate of all pixels along an axis after the second.
     ///
     /// # Panics
     ///
@@ -176,21 +176,21 @@ impl<const N: usize> Window<N> {
         Some(Self { scale, ..*self })
     }
 
-    /// The x coordinate of the pixel centers in column `column` of the window.
+    /// Returns the x coordinate of the pixel centers in column `column` of the window.
     #[must_use]
     #[inline]
     pub fn column_x(&self, column: u32) -> f64 {
         center(self.origin[0], self.pixel[0], self.first[0], column) * self.scale[0]
     }
 
-    /// The y coordinate of the pixel centers in row `row` of the window.
+    /// Returns the y coordinate of the pixel centers in row `row` of the window.
     #[must_use]
     #[inline]
     pub fn row_y(&self, row: u32) -> f64 {
         center(self.origin[1], self.pixel[1], self.first[1], row) * self.scale[1]
     }
 
-    /// Center of a pixel.
+    /// Returns the center of a pixel.
     #[must_use]
     #[inline]
     pub fn position(&self, column: u32, row: u32) -> [f64; N] {
@@ -212,14 +212,15 @@ impl<const N: usize> Window<N> {
         check_same_size(size, self.size)
     }
 
-    /// Number of pixels.
+    /// Returns the number of pixels.
     #[must_use]
     pub fn n_pixels(&self) -> usize {
         self.size[0] as usize * self.size[1] as usize
     }
 }
 
-/// Coordinate of a pixel center. The integer part is exact below 2^52; one product and one sum are rounded.
+/// Returns the coordinate of a pixel center. The integer part is exact below 2^52; one product and one sum are
+/// rounded.
 #[inline]
 fn center(origin: f64, pixel: f64, first: i64, index: u32) -> f64 {
     origin + (first.saturating_add(i64::from(index)) as f64 + 0.5) * pixel
@@ -230,7 +231,7 @@ fn is_power_of_two(number: f64) -> bool {
     number.is_normal() && number.to_bits() << 12 == 0
 }
 
-/// Default scale of windows that were serialized without one.
+/// Returns the default scale of windows that were serialized without one.
 #[cfg(feature = "serde")]
 fn one<const N: usize>() -> [f64; N] {
     [1.0; N]

@@ -21,7 +21,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// The errors of [`project`](Self::project).
+    /// Same as [`project`](Self::project).
     pub fn analyze(
         &self,
         raster: &Raster<f32>,
@@ -45,7 +45,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// The errors of [`up`](Self::up): `Length` if the size of a detail does not match its level.
+    /// Same as [`up`](Self::up): `Length` if the size of a detail does not match its level.
     pub fn synthesize(
         &self,
         bands: &Bands,

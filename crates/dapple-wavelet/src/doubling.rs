@@ -30,11 +30,11 @@ struct Part {
 const PAD: usize = 4;
 
 impl Doubling {
-    /// Filter to lines of `fine_len`, from the coarse lines that [`Halving`] gives for them.
+    /// Returns the filter to lines of `fine_len`, from the coarse lines that [`Halving`] gives for them.
     ///
     /// # Errors
     ///
-    /// The errors of [`Halving::new`], and `Length` if `coarse_len` does not match.
+    /// Same as [`Halving::new`], and `Length` if `coarse_len` does not match.
     pub(crate) fn new(
         filter: SplineFilter,
         coarse_len: usize,
@@ -188,7 +188,7 @@ fn spread<const T: usize, O>(
     }
 }
 
-/// Weighted sum of the terms, in order.
+/// Returns the weighted sum of the terms, in order.
 #[inline(always)]
 fn weigh<const T: usize>(weights: [f64; T], term: impl Fn(usize) -> f64) -> f64 {
     let mut sum = weights[0] * term(0);

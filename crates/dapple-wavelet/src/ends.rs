@@ -63,7 +63,7 @@ impl Line {
         Ok(Self { len, ends })
     }
 
-    /// Index of the stored value for `index`, which may be outside.
+    /// Returns the index of the stored value for `index`, which may be outside.
     pub(crate) fn index(&self, index: i64) -> usize {
         let len = self.len as i64;
         let inside = match self.ends {
@@ -140,7 +140,7 @@ impl Halving {
     }
 }
 
-/// Minimum length of a line that gets shorter by halving.
+/// Returns the minimum length of a line that gets shorter by halving.
 ///
 /// A mirrored line of 2 keeps its length if its coarse coefficients are on both mirrors. With repeated halving, its
 /// variation would grow without bound.
@@ -153,11 +153,11 @@ pub(crate) fn shortest(filter: SplineFilter, border: Border) -> usize {
     }
 }
 
-/// Lengths of a line that is halved `levels` times, from the first to the last.
+/// Returns the lengths of a line that is halved `levels` times, from the first to the last.
 ///
 /// # Errors
 ///
-/// The errors of [`Halving::new`], `NotDivisible` with the whole length and all levels; `Range` for too many levels.
+/// Same as [`Halving::new`], `NotDivisible` with the whole length and all levels; `Range` for too many levels.
 pub(crate) fn lengths(
     filter: SplineFilter,
     len: usize,

@@ -9,7 +9,7 @@ use dapple_raster::Raster;
 
 const PERIODIC: Border = Border::Periodic;
 
-/// Scattered positions, away from the discontinuities of the constant spline.
+/// Returns the scattered positions, away from the discontinuities of the constant spline.
 fn positions() -> impl Iterator<Item = f64> {
     noise(60).into_iter().map(|value| 9.0 * value)
 }
@@ -25,7 +25,7 @@ fn value(filter: SplineFilter, line: &[f64], x: f64) -> f64 {
     filter.value_line(line, x, PERIODIC).expect("a good line")
 }
 
-/// Value of the spline of a periodic raster.
+/// Returns the value of the spline of a periodic raster.
 fn value_2d(filter: SplineFilter, raster: &Raster<f32>, x: f64, y: f64) -> f64 {
     let along = |row: u32| {
         let line: Vec<f64> = raster.row(row).iter().map(|&value| value.into()).collect();
@@ -46,7 +46,8 @@ fn noise_raster(side: u32) -> Raster<f32> {
     Raster::from_vec([side, side], pixels).expect("a good size")
 }
 
-/// Halving filter `a`, from its responses to impulses in a periodic line of 64: tap `k`, for `k` from -32 to 31.
+/// Returns the halving filter `a`, from its responses to impulses in a periodic line of 64: tap `k`, for `k` from -32
+/// to 31.
 fn halving_taps(filter: SplineFilter) -> impl Fn(i64) -> f64 {
     let taps: Vec<f64> = (0..64)
         .map(|k| {

@@ -24,7 +24,7 @@ pub(crate) struct Kernel {
 }
 
 impl Kernel {
-    /// Halving filter, relative to the first of the two fine coefficients of a coarse one.
+    /// Returns the halving filter, relative to the first of the two fine coefficients of a coarse one.
     pub(crate) fn halving(filter: SplineFilter) -> Self {
         let h = two_scale(filter.degree);
         let first = filter.first_tap();
@@ -38,12 +38,12 @@ impl Kernel {
         }
     }
 
-    /// Filter that evaluates a spline at the positions of its coefficients.
+    /// Returns the filter that evaluates a spline at the positions of its coefficients.
     pub(crate) fn samples(degree: Degree) -> Self {
         Self::new(-(degree.order() / 2), samples(degree).to_vec(), &[])
     }
 
-    /// Filter that computes the coefficients of the spline with given values.
+    /// Returns the filter that computes the coefficients of the spline with given values.
     pub(crate) fn coefficients(degree: Degree) -> Self {
         Self::new(0, vec![1.0], sample_poles(degree))
     }
@@ -61,8 +61,8 @@ impl Kernel {
         }
     }
 
-    /// Number of steps after which the initial value of a recursion has an influence below 2^-58, less than a
-    /// rounding.
+    /// Returns the number of steps after which the initial value of a recursion has an influence below 2^-58, less
+    /// than a rounding.
     pub(crate) fn reach(&self) -> usize {
         let slowest = self
             .poles
@@ -80,7 +80,7 @@ impl Kernel {
 /// Maximum remaining influence of the initial value of a recursion: 2^-58.
 const FORGOTTEN: f64 = 1.0 / (1_u64 << 58) as f64;
 
-/// Two-scale coefficients `2^-d C(d + 1, k)` of equation 4.
+/// Returns the two-scale coefficients `2^-d C(d + 1, k)` of equation 4.
 pub(crate) fn two_scale(degree: Degree) -> Vec<f64> {
     match degree {
         Degree::Constant => vec![1.0, 1.0],
@@ -90,7 +90,7 @@ pub(crate) fn two_scale(degree: Degree) -> Vec<f64> {
     }
 }
 
-/// Inner products of the spline with its shifts by `-d ..= d`, scaled to the smallest integers.
+/// Returns the inner products of the spline with its shifts by `-d ..= d`, scaled to the smallest integers.
 pub(crate) fn gram(degree: Degree) -> &'static [f64] {
     match degree {
         Degree::Constant => &[1.0],
@@ -100,7 +100,7 @@ pub(crate) fn gram(degree: Degree) -> &'static [f64] {
     }
 }
 
-/// Values of the spline at integers, scaled to the smallest integers.
+/// Returns the values of the spline at integers, scaled to the smallest integers.
 fn samples(degree: Degree) -> &'static [f64] {
     match degree {
         Degree::Constant | Degree::Linear => &[1.0],
@@ -109,8 +109,8 @@ fn samples(degree: Degree) -> &'static [f64] {
     }
 }
 
-/// Poles of the inverse of [`gram`]: `z` with `z + 1/z = y`, where `y` is a root of `y + 4`, `y² + 26y + 64` or `y³ +
-/// 120y² + 1188y + 2176`.
+/// Returns the poles of the inverse of [`gram`]: `z` with `z + 1/z = y`, where `y` is a root of `y + 4`, `y² + 26y +
+/// 64` or `y³ + 120y² + 1188y + 2176`.
 fn function_poles(degree: Degree) -> &'static [f64] {
     match degree {
         Degree::Constant => &[],
@@ -124,7 +124,7 @@ fn function_poles(degree: Degree) -> &'static [f64] {
     }
 }
 
-/// Poles of the inverse of `HᵀH` of the coarse line, whose rows are 1; 1 6 1; 6 20 6; and 1 28 70 28 1.
+/// Returns the poles of the inverse of `HᵀH` of the coarse line, whose rows are 1; 1 6 1; 6 20 6; and 1 28 70 28 1.
 fn coefficient_poles(degree: Degree) -> &'static [f64] {
     match degree {
         Degree::Constant => &[],
@@ -134,7 +134,7 @@ fn coefficient_poles(degree: Degree) -> &'static [f64] {
     }
 }
 
-/// Poles of the inverse of [`samples`].
+/// Returns the poles of the inverse of [`samples`].
 fn sample_poles(degree: Degree) -> &'static [f64] {
     match degree {
         Degree::Constant | Degree::Linear => &[],
@@ -149,7 +149,7 @@ const SQRT_3_MINUS_2: f64 = -0.267_949_192_431_122_7;
 /// √8 − 3, the root of `z² + 6z + 1`.
 const SQRT_8_MINUS_3: f64 = -0.171_572_875_253_809_9;
 
-/// Product of two polynomials.
+/// Returns the product of two polynomials.
 fn convolve(a: &[f64], b: &[f64]) -> Vec<f64> {
     let mut product = vec![0.0; a.len() + b.len() - 1];
     for (i, a) in a.iter().enumerate() {

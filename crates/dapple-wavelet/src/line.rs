@@ -12,7 +12,7 @@ use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
 use core::ops::Mul;
 
 impl SplineFilter {
-    /// Number of coefficients of a line of `length` after halving: half as many for a periodic line; see
+    /// Returns the number of coefficients of a line of `length` after halving: half as many for a periodic line; see
     /// [`Border::Mirror`] for a mirrored line.
     ///
     /// # Errors
@@ -30,7 +30,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// The errors of [`coarse_len`](Self::coarse_len), and `NotFinite`.
+    /// Same as [`coarse_len`](Self::coarse_len), and `NotFinite`.
     ///
     /// # Examples
     ///
@@ -53,7 +53,7 @@ impl SplineFilter {
     /// # Errors
     ///
     /// `Length` if the length of `coarse` does not match `fine_len`, as defined by [`coarse_len`](Self::coarse_len),
-    /// and the errors of [`down_line`](Self::down_line).
+    /// or any error from [`down_line`](Self::down_line).
     pub fn up_line(
         &self,
         coarse: &[f64],
@@ -72,7 +72,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// The errors of [`down_line`](Self::down_line), for each level; `Range` for more than 32 levels.
+    /// Same as [`down_line`](Self::down_line) at each level; `Range` for more than 32 levels.
     pub fn project_line(
         &self,
         fine: &[f64],

@@ -99,13 +99,14 @@ impl<const N: usize> WaveletNoise<N> {
         Ok(self)
     }
 
-    /// Number of cells along each axis of the tile, which is the period.
+    /// Returns the number of cells along each axis of the tile, which is the period.
     #[must_use]
     pub fn size(&self) -> [u32; N] {
         self.size
     }
 
-    /// Bound of the absolute value: the largest absolute coefficient times the sum of the absolute weights.
+    /// Returns the bound of the absolute value: the largest absolute coefficient times the sum of the absolute
+    /// weights.
     ///
     /// With several bands, values rarely come near the bound.
     #[must_use]

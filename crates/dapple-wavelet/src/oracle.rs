@@ -2,7 +2,7 @@
 
 use crate::{Border, Degree, Fit, Phase, SplineFilter};
 
-/// All filters.
+/// Returns all filters.
 pub(crate) fn all_filters() -> Vec<SplineFilter> {
     let mut filters = Vec::new();
     for degree in DEGREES {
@@ -23,7 +23,7 @@ pub(crate) const DEGREES: [Degree; 4] = [
     Degree::Cubic,
 ];
 
-/// Pseudorandom numbers from -1 to 1 (upper bits of Knuth's linear congruential generator).
+/// Returns pseudorandom numbers from -1 to 1 (upper bits of Knuth's linear congruential generator).
 pub(crate) fn noise(count: usize) -> Vec<f64> {
     let mut state = 0x1234_5678_u64;
     let mut next = || {
@@ -35,7 +35,7 @@ pub(crate) fn noise(count: usize) -> Vec<f64> {
     (0..count).map(|_| next()).collect()
 }
 
-/// Maximum difference of two lines of equal length.
+/// Returns the maximum difference of two lines of equal length.
 pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len(), "lines of different lengths");
     a.iter()
@@ -43,7 +43,7 @@ pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
         .fold(0.0, |most, (a, b)| most.max((a - b).abs()))
 }
 
-/// First and last fine coefficient of coarse coefficient 0: the table of [`Phase`].
+/// Returns the first and last fine coefficient of coarse coefficient 0: the table of [`Phase`].
 pub(crate) fn spread(filter: SplineFilter) -> (i64, i64) {
     let (first, last) = match filter.degree {
         Degree::Constant => (0, 1),
@@ -55,7 +55,7 @@ pub(crate) fn spread(filter: SplineFilter) -> (i64, i64) {
     (first - earlier, last - earlier)
 }
 
-/// One period of the repeating line that this line and its border are part of.
+/// Returns one period of the repeating line that this line and its border are part of.
 fn extended(filter: SplineFilter, line: &[f64], border: Border) -> Vec<f64> {
     let even = matches!(filter.degree, Degree::Constant | Degree::Quadratic);
     let mut line = line.to_vec();
@@ -68,7 +68,7 @@ fn extended(filter: SplineFilter, line: &[f64], border: Border) -> Vec<f64> {
     line
 }
 
-/// Stored coarse coefficients: those with centers between the mirrors.
+/// Returns the stored coarse coefficients: those with centers between the mirrors.
 fn kept(filter: SplineFilter, len: usize, border: Border) -> Vec<i64> {
     let (first, last) = spread(filter);
     if border == Border::Periodic {
@@ -171,7 +171,7 @@ pub(crate) fn binomials(degree: Degree) -> Vec<f64> {
     row.iter().map(|c| c / f64::from(1 << d)).collect()
 }
 
-/// Weight of coarse coefficient `j` in fine coefficient `i` of a periodic line.
+/// Returns the weight of coarse coefficient `j` in fine coefficient `i` of a periodic line.
 fn tap(filter: SplineFilter, period: usize, i: usize, j: usize) -> f64 {
     let (first, last) = spread(filter);
     let h = binomials(filter.degree);
@@ -183,7 +183,7 @@ fn tap(filter: SplineFilter, period: usize, i: usize, j: usize) -> f64 {
         .sum()
 }
 
-/// Integral of the product of two coarse splines, in fine units, over one period.
+/// Returns the integral of the product of two coarse splines, in fine units, over one period.
 fn function_product(filter: SplineFilter, period: usize, j: usize, k: usize) -> f64 {
     let [j, k] = [j, k].map(|j| coarse_center(filter, j));
     let copy = |copy: i32| {
@@ -196,7 +196,7 @@ fn function_product(filter: SplineFilter, period: usize, j: usize, k: usize) -> 
     (-8..=8).map(copy).sum()
 }
 
-/// Integral of the product of a coarse and a fine spline, in fine units, over one period.
+/// Returns the integral of the product of a coarse and a fine spline, in fine units, over one period.
 fn mixed_product(filter: SplineFilter, period: usize, j: usize, i: usize) -> f64 {
     let j = coarse_center(filter, j);
     let copy = |copy: i32| {
@@ -209,13 +209,13 @@ fn mixed_product(filter: SplineFilter, period: usize, j: usize, i: usize) -> f64
     (-8..=8).map(copy).sum()
 }
 
-/// Center of coarse spline `j`, in fine units.
+/// Returns the center of coarse spline `j`, in fine units.
 pub(crate) fn coarse_center(filter: SplineFilter, j: usize) -> f64 {
     let (first, last) = spread(filter);
     2.0 * j as f64 + (first + last) as f64 / 2.0
 }
 
-/// Integral of the product of two splines, each given by its center and knot distance.
+/// Returns the integral of the product of two splines, each given by its center and knot distance.
 ///
 /// Knots are at multiples of one half; four-point Gaussian quadrature is exact for degree 7 in between.
 fn integral(degree: Degree, a: (f64, f64), b: (f64, f64)) -> f64 {
@@ -238,7 +238,7 @@ fn integral(degree: Degree, a: (f64, f64), b: (f64, f64)) -> f64 {
     sum
 }
 
-/// Gaussian elimination with pivoting; the last column is the right-hand side.
+/// Solves linear equations by Gaussian elimination with pivoting; the last column is the right-hand side.
 fn solve(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
     let n = rows.len();
     for column in 0..n {

@@ -30,7 +30,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// The errors of [`down_line`](Self::down_line).
+    /// Same as [`down_line`](Self::down_line).
     pub fn down(
         &self,
         fine: &Raster<f32>,
@@ -47,7 +47,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// The errors of [`down`](Self::down), and `Raster` if the size of `coarse` does not match, as defined by
+    /// Same as [`down`](Self::down), and `Raster` if the size of `coarse` does not match, as defined by
     /// [`coarse_len`](Self::coarse_len).
     pub fn down_into(
         &self,
@@ -75,7 +75,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// The errors of [`up_line`](Self::up_line).
+    /// Same as [`up_line`](Self::up_line).
     pub fn up(
         &self,
         coarse: &Raster<f32>,
@@ -97,7 +97,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// The errors of [`up`](Self::up).
+    /// Same as [`up`](Self::up).
     pub fn up_into(
         &self,
         coarse: &Raster<f32>,
@@ -128,8 +128,8 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// The errors of [`down`](Self::down), for each level. `NotFinite` also occurs if a level has made infinite pixels
-    /// from finite ones, which cannot happen up to `f32::MAX / 15^levels`. `Range` for more than 32 levels.
+    /// Same as [`down`](Self::down) at each level. `NotFinite` also occurs if a level has made infinite pixels from
+    /// finite ones, which cannot happen up to `f32::MAX / 15^levels`. `Range` for more than 32 levels.
     pub fn project(
         &self,
         fine: &Raster<f32>,
@@ -151,7 +151,7 @@ impl SplineFilter {
         Ok(raster)
     }
 
-    /// Sizes of a raster that is halved `levels` times, from its own size to the last.
+    /// Returns the sizes of a raster that is halved `levels` times, from its own size to the last.
     ///
     /// # Errors
     ///

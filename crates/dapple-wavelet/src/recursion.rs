@@ -33,7 +33,7 @@ pub(crate) struct Lanes<const L: usize> {
 }
 
 impl LineFilter {
-    /// Filter of equation 7, for lines of length `len`.
+    /// Returns the filter of equation 7, for lines of length `len`.
     pub(crate) fn halving(
         filter: SplineFilter,
         len: usize,
@@ -51,7 +51,7 @@ impl LineFilter {
         })
     }
 
-    /// Filter whose target has the length of its source.
+    /// Returns the filter whose target has the length of its source.
     pub(crate) fn in_place(kernel: Kernel, line: Line) -> Self {
         Self {
             start: kernel.first,

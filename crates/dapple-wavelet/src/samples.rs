@@ -76,7 +76,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// The errors of [`coefficients_line`](Self::coefficients_line).
+    /// Same as [`coefficients_line`](Self::coefficients_line).
     pub fn samples_line(
         &self,
         coefficients: &[f64],
@@ -89,7 +89,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// The errors of [`coefficients_line`](Self::coefficients_line).
+    /// Same as [`coefficients_line`](Self::coefficients_line).
     pub fn coefficients(
         &self,
         samples: &Raster<f32>,
@@ -102,7 +102,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// The errors of [`coefficients_line`](Self::coefficients_line).
+    /// Same as [`coefficients_line`](Self::coefficients_line).
     pub fn samples(
         &self,
         coefficients: &Raster<f32>,

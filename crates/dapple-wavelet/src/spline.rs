@@ -25,7 +25,7 @@ dapple_raster::named! {
 }
 
 impl Degree {
-    /// Value at `x` of the B-spline centered on 0: the basis function φ of equations 1 to 4.
+    /// Returns the value at `x` of the B-spline centered on 0: the basis function φ of equations 1 to 4.
     ///
     /// Values are at least 0, and the sum over all integer shifts is 1. The value is 0 at and beyond half of the width
     /// `degree + 1`. At a discontinuity of the constant spline, it is the limit from the right.
@@ -55,8 +55,8 @@ impl Degree {
         }
     }
 
-    /// Derivative of [`value`](Self::value) at `x`. At a kink of the linear spline it is the derivative to the right;
-    /// for the constant spline it is 0.
+    /// Returns the derivative of [`value`](Self::value) at `x`. At a kink of the linear spline it is the derivative
+    /// to the right; for the constant spline it is 0.
     #[must_use]
     pub fn derivative(self, x: f64) -> f64 {
         let distance = x.abs();
@@ -71,7 +71,7 @@ impl Degree {
         }
     }
 
-    /// Degree as a number.
+    /// Returns the degree as a number.
     pub(crate) fn order(self) -> i64 {
         match self {
             Self::Constant => 0,
@@ -166,7 +166,7 @@ pub struct SplineFilter {
 }
 
 impl SplineFilter {
-    /// Index of the first fine coefficient of coarse coefficient 0.
+    /// Returns the index of the first fine coefficient of coarse coefficient 0.
     pub(crate) fn first_tap(self) -> i64 {
         let centered = -((self.degree.order() + 1) / 2);
         match self.phase {

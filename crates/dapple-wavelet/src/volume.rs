@@ -19,7 +19,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// `Length` if the number of values does not match `size`, and the errors of [`down_line`](Self::down_line).
+    /// `Length` if the number of values does not match `size`, or any error from [`down_line`](Self::down_line).
     pub fn down_volume(
         &self,
         volume: &[f32],
@@ -39,7 +39,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// `Length` if the number of values does not match the halved `fine_size`, and the errors of
+    /// `Length` if the number of values does not match the halved `fine_size`, or any error from
     /// [`up_line`](Self::up_line).
     pub fn up_volume(
         &self,
@@ -77,9 +77,8 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// The errors of [`down_volume`](Self::down_volume), for each level. `NotFinite` also occurs if a level has made
-    /// infinite values from finite ones, which cannot happen up to `f32::MAX / 56^levels`. `Range` for more than 32
-    /// levels.
+    /// Same as [`down_volume`](Self::down_volume) at each level. `NotFinite` also occurs if a level has made infinite
+    /// values from finite ones, which cannot happen up to `f32::MAX / 56^levels`. `Range` for more than 32 levels.
     pub fn project_volume(
         &self,
         volume: &[f32],

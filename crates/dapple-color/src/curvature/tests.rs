@@ -24,7 +24,7 @@ fn curvature_of(side: u32, radius: f64, height: impl Fn(DVec2) -> f64 + Sync) ->
     curvature(&height.unwrap(), &options).unwrap()
 }
 
-/// Height of a ball of radius 0.4 over the center of the unit square.
+/// Returns the height of a ball of radius 0.4 over the center of the unit square.
 fn ball(at: DVec2) -> f64 {
     (0.16 - (at - 0.5).length_squared()).max(0.0).sqrt()
 }

@@ -41,7 +41,7 @@ impl Buckets {
         self.cells[cell].retain(|&other| other != number);
     }
 
-    /// Sites in the same cell as a site.
+    /// Returns the sites in the same cell as a site.
     pub(super) fn beside(&self, site: DVec2) -> &[u32] {
         &self.cells[self.cell(site)]
     }

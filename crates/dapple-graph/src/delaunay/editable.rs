@@ -77,7 +77,7 @@ impl EditableDelaunay {
     ///
     /// # Errors
     ///
-    /// The errors of [`delaunay`].
+    /// Same as [`delaunay`].
     pub fn new(points: &PointSet) -> Result<Self, GraphError> {
         let graph = delaunay(points)?;
         let of_row = |point| graph.axes(PointIdx(point)).to_vec();
@@ -97,13 +97,13 @@ impl EditableDelaunay {
         })
     }
 
-    /// Number of points.
+    /// Returns the number of points.
     #[must_use]
     pub fn n_points(&self) -> usize {
         self.numbers.len()
     }
 
-    /// Domain of the points.
+    /// Returns the domain of the points.
     #[must_use]
     pub fn domain(&self) -> &Domain {
         &self.domain
@@ -217,7 +217,7 @@ impl EditableDelaunay {
     ///
     /// # Errors
     ///
-    /// The errors of [`insert`](Self::insert), and [`NotThere`](GraphErrorKind::NotThere) if the point does not exist.
+    /// Same as [`insert`](Self::insert), plus [`NotThere`](GraphErrorKind::NotThere) if the point does not exist.
     pub fn move_to(&mut self, point: PointIdx, position: DVec2) -> Result<Vec<Star>, GraphError> {
         let number = self.number(point)?;
         let (position, site) = self.accepted(position, Some(number))?;
@@ -289,7 +289,7 @@ impl EditableDelaunay {
         }
     }
 
-    /// Numbers of the other points that a point is connected to.
+    /// Returns the numbers of the other points that a point is connected to.
     fn neighbors(&self, number: u32) -> Vec<u32> {
         let axes = self.rows[number as usize].iter();
         let mut neighbors: Vec<u32> = axes.map(|axis| axis.to.0).collect();

@@ -43,12 +43,12 @@ impl Cover {
         Self { low, high }
     }
 
-    /// Corners of the rectangle.
+    /// Returns the corners of the rectangle.
     pub(super) fn corners(&self) -> [DVec2; 2] {
         [self.low, self.high]
     }
 
-    /// Distance of a position in the rectangle from its border.
+    /// Returns the distance of a position in the rectangle from its border.
     #[inline]
     pub(super) fn depth(&self, at: DVec2) -> f64 {
         (at - self.low).min(self.high - at).min_element()
@@ -286,7 +286,7 @@ impl<'g, 'a> Missing<'g, 'a> {
     }
 }
 
-/// A site as integers, which have a total order.
+/// Returns a site as integers, which have a total order.
 fn key(at: DVec2) -> (i64, i64) {
     (at.x as i64, at.y as i64)
 }

@@ -157,7 +157,7 @@ impl<'a> Patch<'a> {
         }
     }
 
-    /// Rows in which the rows `again` are read again from the triangulation.
+    /// Returns the rows in which the rows `again` are read again from the triangulation.
     fn replaced(&self, rows: &Rows, again: &[u32]) -> Rows {
         let mut star = Star::default();
         let mut result = Rows {
@@ -181,7 +181,7 @@ impl<'a> Patch<'a> {
     }
 }
 
-/// Position of a vertex.
+/// Returns the position of a vertex.
 fn at(vertex: Vertex<'_>) -> DVec2 {
     let position = vertex.position();
     DVec2::new(position.x, position.y)

@@ -69,7 +69,7 @@ impl Star {
         self.far || self.has_gaps || self.spokes.len() < 3
     }
 
-    /// Pairs of each neighbor and the next one.
+    /// Returns the pairs of each neighbor and the next one.
     pub(super) fn wedges(&self) -> impl Iterator<Item = (Spoke, Spoke)> + '_ {
         let next = self.spokes.iter().cycle().skip(1);
         self.spokes.iter().copied().zip(next.copied())
@@ -93,7 +93,7 @@ impl Star {
         }
     }
 
-    /// Index of the neighbor with the smallest angle.
+    /// Returns the index of the neighbor with the smallest angle.
     #[inline]
     fn first(&self) -> usize {
         let n = self.spokes.len();

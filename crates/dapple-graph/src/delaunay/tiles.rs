@@ -99,7 +99,7 @@ impl<'a> Tiles<'a> {
         tiles
     }
 
-    /// Column (or row) of a coordinate, followed by those within the margin, each with the shift to add.
+    /// Returns the column (or row) of a coordinate, followed by those within the margin, each with the shift to add.
     fn near(&self, axis: usize, at: f64) -> [Option<(usize, f64)>; 3] {
         let starts = &self.starts[axis];
         let (count, size) = (self.count(axis), self.lattice.size[axis]);
@@ -122,7 +122,7 @@ impl<'a> Tiles<'a> {
     }
 }
 
-/// Rows of all tiles, in the order of the points.
+/// Returns the rows of all tiles, in the order of the points.
 fn merged(tiles: &[Tile], parts: &[Rows], n: usize) -> Rows {
     let mut places = vec![(0_u32, 0_u32); n];
     for (index, tile) in (0..).zip(tiles) {

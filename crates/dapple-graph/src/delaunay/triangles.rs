@@ -26,7 +26,7 @@ pub struct Triangle {
 ///
 /// # Errors
 ///
-/// The errors of [`delaunay`](crate::delaunay).
+/// Same as [`delaunay`](crate::delaunay).
 ///
 /// # Examples
 ///
@@ -49,7 +49,7 @@ pub fn delaunay_triangles(points: &PointSet) -> Result<Vec<Triangle>, GraphError
 ///
 /// # Errors
 ///
-/// The errors of [`delaunay_cancellable`].
+/// Same as [`delaunay_cancellable`].
 pub fn delaunay_triangles_cancellable(
     points: &PointSet,
     is_cancelled: &IsCancelled,

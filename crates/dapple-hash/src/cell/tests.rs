@@ -8,7 +8,7 @@ use crate::{Seed, unit_f64};
 /// 0.01 is five standard deviations: a good hash stays below it among 22 528 pairs of bits.
 const SAMPLES: u32 = 1 << 16;
 
-/// Largest difference of a flip rate from 0.5, over all pairs of an input bit and an output bit.
+/// Returns the largest difference of a flip rate from 0.5, over all pairs of an input bit and an output bit.
 fn worst_flip_rate<const N: usize>(hash: impl Fn(Seed, [i64; N], u32) -> u64) -> f64 {
     let input_bits = 64 * (N + 1) + 32;
     let mut flips = vec![[0_u32; 64]; input_bits];

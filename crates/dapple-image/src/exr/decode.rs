@@ -48,7 +48,7 @@ pub fn decode_exr(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError>
 ///
 /// # Errors
 ///
-/// The errors of [`decode_exr`]; [`ImageErrorKind::Outside`] if the part extends beyond the image.
+/// Same as [`decode_exr`], plus [`ImageErrorKind::Outside`] if the part extends beyond the image.
 pub fn decode_exr_region(
     bytes: &[u8],
     first: [u32; 2],
@@ -187,7 +187,7 @@ struct Part {
 }
 
 impl Part {
-    /// Range of columns or rows of a block inside the region, relative to the data window.
+    /// Returns the range of columns or rows of a block inside the region, relative to the data window.
     fn span(&self, [position, size]: [[usize; 2]; 2], axis: usize) -> Range<i64> {
         let (first, end) = (position[axis] as i64, (position[axis] + size[axis]) as i64);
         let last = self.first[axis] + i64::from(self.size[axis]);
@@ -358,7 +358,7 @@ fn push_planes(
     Ok(())
 }
 
-/// Name of a plane: the channel, prefixed with the part if there are several parts.
+/// Returns the name of a plane: the channel, prefixed with the part if there are several parts.
 fn plane_name(part: Option<&Text>, channel: &Text) -> String {
     match part {
         Some(part) => format!("{part}.{channel}"),

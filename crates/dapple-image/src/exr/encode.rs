@@ -67,7 +67,7 @@ pub fn encode_exr(planes: &[ExrPlane]) -> Result<Vec<u8>, ImageError> {
 ///
 /// # Errors
 ///
-/// The errors of [`encode_exr`], and [`ImageErrorKind::Io`] if the file cannot be written; an existing file is then
+/// Same as [`encode_exr`], plus [`ImageErrorKind::Io`] if the file cannot be written; an existing file is then
 /// unchanged.
 pub fn write_exr(path: impl AsRef<Path>, planes: &[ExrPlane]) -> Result<(), ImageError> {
     let path = path.as_ref();

@@ -64,7 +64,7 @@ impl<'a> Layer<'a> {
         }
     }
 
-    /// Rank of the layer among the layers of a file; the main image has the smallest rank.
+    /// Returns the rank of the layer among the layers of a file; the main image has the smallest rank.
     ///
     /// Vectors come last. Then the order of names is: no name, `Combined`, `rgba`, `beauty`, any other name. Then the
     /// order of views applies. Of two layers with other names, color comes before gray.
@@ -91,7 +91,7 @@ impl<'a> Layer<'a> {
 }
 
 impl ExrImage {
-    /// Names of the layers, in file order. A plane without a dot in its name is listed as a layer.
+    /// Returns the names of the layers, in file order. A plane without a dot in its name is listed as a layer.
     ///
     /// [`layer`](Self::layer) accepts these names.
     #[must_use]
@@ -146,7 +146,7 @@ impl ExrImage {
         })
     }
 
-    /// Planes of the main image of the file.
+    /// Returns the planes of the main image of the file.
     ///
     /// The only plane of a file is a gray image. Of several layers, the one without a name is chosen, then one named
     /// `Combined`, `rgba` or `beauty`, then the only one with an image. If several views have the layer, the first
@@ -182,7 +182,8 @@ impl ExrImage {
         }
     }
 
-    /// Image with the planes of the main image only: `R`, `G`, `B`, or `X`, `Y`, `Z`, or one plane of any name; and
+    /// Returns the image with the planes of the main image only: `R`, `G`, `B`, or `X`, `Y`, `Z`, or one plane of any
+    /// name; and
     /// `A` last, if there is alpha.
     ///
     /// # Errors
@@ -210,7 +211,7 @@ impl ExrImage {
         })
     }
 
-    /// Error for an image whose main image is not determined by the names of its planes.
+    /// Creates the error for an image whose main image is not determined by the names of its planes.
     fn no_picture(&self, layers: &[Layer<'_>]) -> ImageError {
         if let [layer] = layers {
             let colors = [["R", "red"], ["G", "green"], ["B", "blue"]];
@@ -257,7 +258,7 @@ impl Picture<'_> {
     }
 }
 
-/// Names of the views of a file in lower case, the default view first.
+/// Returns the names of the views of a file in lower case, the default view first.
 #[cfg(feature = "exr")]
 pub(super) fn views(
     listed: impl IntoIterator<Item = String>,

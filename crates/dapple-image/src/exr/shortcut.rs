@@ -10,7 +10,7 @@ use std::path::Path;
 ///
 /// # Errors
 ///
-/// The errors of [`write_exr`].
+/// Same as [`write_exr`].
 pub fn write_gray_exr(path: impl AsRef<Path>, values: &Raster<f32>) -> Result<(), ImageError> {
     write_exr(path, &[ExrPlane::new("Y", values.clone())])
 }
@@ -19,7 +19,7 @@ pub fn write_gray_exr(path: impl AsRef<Path>, values: &Raster<f32>) -> Result<()
 ///
 /// # Errors
 ///
-/// The errors of [`write_exr`].
+/// Same as [`write_exr`].
 pub fn write_color_exr(
     path: impl AsRef<Path>,
     colors: &Raster<LinearRgb>,
@@ -31,7 +31,7 @@ pub fn write_color_exr(
 ///
 /// # Errors
 ///
-/// The errors of [`write_exr`].
+/// Same as [`write_exr`].
 pub fn write_color_alpha_exr(
     path: impl AsRef<Path>,
     colors: &Raster<LinearRgba>,

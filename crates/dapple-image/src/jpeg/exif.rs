@@ -18,7 +18,7 @@ const COLOR_SPACE: u16 = 0xa001;
 /// for Camera File system", DCF 2.0).
 const INTEROPERABILITY: u16 = 0xa005;
 
-/// Color space of a photograph.
+/// Returns the color space of a photograph.
 pub(super) fn color_space(exif: &[u8]) -> ColorSpace {
     let is_adobe = || {
         let tiff = Tiff::new(exif)?;
@@ -59,7 +59,7 @@ impl<'a> Tiff<'a> {
         Some(Self { bytes, is_little })
     }
 
-    /// 16-bit integer at an offset.
+    /// Returns the 16-bit integer at an offset.
     pub(super) fn short(&self, at: usize) -> Option<u16> {
         let bytes = self.bytes.get(at..)?.first_chunk::<2>()?;
         Some(if self.is_little {
@@ -78,17 +78,17 @@ impl<'a> Tiff<'a> {
         })
     }
 
-    /// Offset of the first directory.
+    /// Returns the offset of the first directory.
     pub(super) fn first(&self) -> Option<usize> {
         self.long(4)
     }
 
-    /// Offset of the directory that an entry points to.
+    /// Returns the offset of the directory that an entry points to.
     fn place(&self, directory: usize, tag: u16) -> Option<usize> {
         self.long(self.entry(directory, tag)?)
     }
 
-    /// Offset of the value of an entry; values of at most four bytes are stored in the entry.
+    /// Returns the offset of the value of an entry; values of at most four bytes are stored in the entry.
     pub(super) fn entry(&self, directory: usize, tag: u16) -> Option<usize> {
         let n_entries = self.short(directory)?;
         let entries = (0..usize::from(n_entries)).map(|entry| directory + 2 + ENTRY * entry);

@@ -57,7 +57,7 @@ impl Orientation {
     }
 }
 
-/// Value of the orientation entry, if there is one.
+/// Returns the value of the orientation entry, if there is one.
 fn find(exif: &[u8]) -> Option<u16> {
     let tiff = Tiff::new(exif)?;
     tiff.short(tiff.entry(tiff.first()?, TAG)?)

@@ -43,7 +43,7 @@ pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError>
 ///
 /// # Errors
 ///
-/// The errors of [`decode_png`]; [`ImageErrorKind::Outside`] if the part extends beyond the image;
+/// Same as [`decode_png`], plus [`ImageErrorKind::Outside`] if the part extends beyond the image;
 /// [`ImageErrorKind::Unsupported`] for an interlaced file, whose rows are not stored in order.
 pub fn decode_png_region(
     bytes: &[u8],
@@ -137,8 +137,8 @@ fn check_not_empty(bytes: &[u8]) -> Result<(), ImageError> {
     Ok(())
 }
 
-/// Checks that a palette does not end within a color. Version 0.18.1 of the codec reads the missing bytes from beyond
-/// its end (image-rs/image-png, issue 694).
+/// Checks that a palette does not end within a color. Version 0.18.1 of the codec reads the missing bytes
+/// from beyond its end (image-rs/image-png, issue 694).
 fn check_palette(info: &png::Info<'_>) -> Result<(), ImageError> {
     match &info.palette {
         Some(palette) if palette.len() % 3 != 0 => {
@@ -152,7 +152,7 @@ fn check_palette(info: &png::Info<'_>) -> Result<(), ImageError> {
     }
 }
 
-/// Options of the codec: all checks enabled, unused chunks skipped.
+/// Returns the options of the codec: all checks enabled, unused chunks skipped.
 fn options() -> png::DecodeOptions {
     let mut options = png::DecodeOptions::default();
     options.set_ignore_checksums(false);

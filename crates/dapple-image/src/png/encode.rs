@@ -46,8 +46,8 @@ pub fn encode_png<P: PngPixel>(
 ///
 /// # Errors
 ///
-/// The errors of [`encode_png`], and [`Io`](crate::ImageErrorKind::Io) if the file cannot be written; an existing file
-/// is then unchanged.
+/// Same as [`encode_png`], plus [`Io`](crate::ImageErrorKind::Io) if the file cannot be written; an existing file is
+/// then unchanged.
 pub fn write_png<P: PngPixel>(
     path: impl AsRef<Path>,
     pixels: RasterView<'_, P>,

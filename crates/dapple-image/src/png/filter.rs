@@ -54,7 +54,7 @@ fn choose(row: Row<'_>, out: &mut [u8]) {
     }
 }
 
-/// Sum of the absolute differences of a row, as signed bytes.
+/// Returns the sum of the absolute differences of a row, as signed bytes.
 #[inline(always)]
 fn cost<const KIND: u8>(row: Row<'_>) -> u64 {
     let mut sum = 0;
@@ -126,7 +126,7 @@ fn predicted<const KIND: u8>(left: u8, above: u8, corner: u8) -> u8 {
     }
 }
 
-/// Paeth predictor: the neighbor nearest to `left + above - corner`; the first one on a tie.
+/// Returns the Paeth predictor: the neighbor nearest to `left + above - corner`; the first one on a tie.
 #[inline(always)]
 fn paeth(left: u8, above: u8, corner: u8) -> u8 {
     let of = i16::from;

@@ -38,7 +38,7 @@ pub enum PngPixels {
 }
 
 impl PngPixels {
-    /// Width and height in pixels.
+    /// Returns the width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         match self {

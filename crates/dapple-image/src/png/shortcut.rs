@@ -10,7 +10,7 @@ use std::path::Path;
 ///
 /// # Errors
 ///
-/// The errors of [`write_png`](crate::write_png).
+/// Same as [`write_png`](crate::write_png).
 pub fn write_gray_png(
     path: impl AsRef<Path>,
     values: &Raster<f32>,
@@ -26,7 +26,7 @@ pub fn write_gray_png(
 ///
 /// # Errors
 ///
-/// The errors of [`write_png`](crate::write_png).
+/// Same as [`write_png`](crate::write_png).
 pub fn write_color_png(
     path: impl AsRef<Path>,
     colors: &Raster<LinearRgb>,
@@ -43,7 +43,7 @@ pub fn write_color_png(
 ///
 /// # Errors
 ///
-/// The errors of [`write_png`](crate::write_png).
+/// Same as [`write_png`](crate::write_png).
 pub fn write_color_alpha_png(
     path: impl AsRef<Path>,
     colors: &Raster<LinearRgba>,
@@ -59,7 +59,7 @@ pub fn write_color_alpha_png(
 ///
 /// # Errors
 ///
-/// The errors of [`write_png`](crate::write_png).
+/// Same as [`write_png`](crate::write_png).
 pub fn write_normal_png(
     path: impl AsRef<Path>,
     normals: &Raster<Normal>,

@@ -14,7 +14,7 @@ const C: [f64; 2] = [0.310, 0.316];
 /// White point of the illuminant E.
 const E: [f64; 2] = [1.0 / 3.0, 1.0 / 3.0];
 
-/// Color space of a file, by its chunks.
+/// Returns the color space of a file, by its chunks.
 pub(super) fn of(info: &Info<'_>) -> ColorSpace {
     if let Some(points) = &info.coding_independent_code_points {
         return of_code_points(points);
@@ -46,7 +46,7 @@ fn primaries(points: &SourceChromaticities) -> Primaries {
     [points.red, points.green, points.blue, points.white].map(point)
 }
 
-/// Color space of code points of ITU-T H.273, tables 2 and 3.
+/// Returns the color space of code points of ITU-T H.273, tables 2 and 3.
 fn of_code_points(points: &CodingIndependentCodePoints) -> ColorSpace {
     let unknown = |name| ColorSpace::unknown(Source::Cicp, name);
     if points.matrix_coefficients != 0 || !points.is_video_full_range_image {

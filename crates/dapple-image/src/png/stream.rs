@@ -60,7 +60,7 @@ struct Strip {
 }
 
 impl Samples {
-    /// Sample layout of the pixel type `P`.
+    /// Returns the sample layout of the pixel type `P`.
     pub(crate) fn of<P: PngPixel>() -> Self {
         Self {
             channels: P::CHANNELS,
@@ -68,7 +68,7 @@ impl Samples {
         }
     }
 
-    /// Bytes per pixel.
+    /// Returns the bytes per pixel.
     fn pixel(self) -> usize {
         self.channels * self.bits as usize / 8
     }
@@ -133,12 +133,12 @@ impl PngStream {
         sink.flush().map_err(failure)
     }
 
-    /// Rows per strip, except for the last strip.
+    /// Returns the rows per strip, except for the last strip.
     fn rows_of_strip(&self) -> usize {
         (STRIP / self.length).max(1)
     }
 
-    /// Number of rows not yet in the file.
+    /// Returns the number of rows not yet in the file.
     fn n_rows(&self) -> usize {
         self.rows.len() / (LEFT + self.length) - 1
     }
@@ -202,7 +202,8 @@ fn compressed(bytes: &[u8], level: u32) -> Result<Vec<u8>, CompressError> {
     }
 }
 
-/// Adler-32 checksum (RFC 1950) of bytes followed by a strip: the sum of the bytes, and the sum of all partial sums.
+/// Returns the Adler-32 checksum (RFC 1950) of bytes followed by a strip: the sum of the bytes, and the sum of all
+/// partial sums.
 fn joined(before: u32, strip: &Strip) -> u32 {
     const BASE: u64 = 65521;
     let sums = |adler: u32| [u64::from(adler & 0xffff), u64::from(adler >> 16)];

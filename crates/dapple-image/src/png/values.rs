@@ -7,8 +7,8 @@ use dapple_color::{Code, LinearRgb, LinearRgba};
 use dapple_raster::Raster;
 
 impl PngImage {
-    /// Values of a gray image, `code / max`, from 0 to 1. No transfer curve is applied, regardless of the declared
-    /// color space.
+    /// Returns the values of a gray image, `code / max`, from 0 to 1. No transfer curve is applied, regardless of the
+    /// declared color space.
     ///
     /// # Errors
     ///
@@ -30,8 +30,8 @@ impl PngImage {
         }
     }
 
-    /// Colors in linear light of ITU-R BT.709, converted from the declared color space or, without a declaration, from
-    /// sRGB. Gray images become gray colors under the sRGB curve, regardless of the declaration.
+    /// Returns the colors in linear light of ITU-R BT.709, converted from the declared color space or, without a
+    /// declaration, from sRGB. Gray images become gray colors under the sRGB curve, regardless of the declaration.
     ///
     /// # Errors
     ///
@@ -54,7 +54,7 @@ impl PngImage {
         })
     }
 
-    /// Colors as in [`color`](Self::color), with alpha, which is 1 if the file has none.
+    /// Returns the colors as in [`color`](Self::color), with alpha, which is 1 if the file has none.
     ///
     /// # Errors
     ///
@@ -94,7 +94,7 @@ impl PngImage {
         })
     }
 
-    /// Maximum code.
+    /// Returns the maximum code.
     fn max(&self) -> u16 {
         match self.bits() {
             8 => u8::MAX.into(),

@@ -117,7 +117,7 @@ pub fn decode_r16(
         .map_err(|error| ImageError::damaged("raw", error))
 }
 
-/// Text of a value in the header, a Python dictionary with three keys.
+/// Returns the text of a value in the header, a Python dictionary with three keys.
 fn value_of<'a>(header: &'a str, key: &str) -> Option<&'a str> {
     let at = ['\'', '"']
         .iter()
@@ -132,7 +132,7 @@ fn value_of<'a>(header: &'a str, key: &str) -> Option<&'a str> {
     Some(value[..end].trim())
 }
 
-/// Number of bytes of a value, and its conversion.
+/// Returns the number of bytes of a value, and its conversion.
 fn number_of(descr: &str) -> Result<(usize, Number), ImageError> {
     let feature = match descr.trim_matches(['\'', '"']) {
         "<f4" => return Ok((4, |b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))),
@@ -149,7 +149,7 @@ fn number_of(descr: &str) -> Result<(usize, Number), ImageError> {
     Err(ImageError::new(ImageErrorKind::Unsupported { feature }))
 }
 
-/// Height and width, and number of channels.
+/// Returns the height and width, and number of channels.
 fn shape_of(shape: &str) -> Result<([u64; 2], usize), ImageError> {
     let sides = shape.trim_matches(['(', ')']).split(',').map(str::trim);
     let sides = sides.filter(|side| !side.is_empty()).map(str::parse);

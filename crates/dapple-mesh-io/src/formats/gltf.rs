@@ -87,7 +87,7 @@ struct Source<'a> {
 /// # Errors
 ///
 /// [`MeshIoErrorKind::File`] if the bytes are not a glTF file, or it requires another file;
-/// [`MeshIoErrorKind::Unsupported`] if its version is not 2, or it requires an extension; and the errors of
+/// [`MeshIoErrorKind::Unsupported`] if its version is not 2, or it requires an extension, or any error from
 /// [`Mesh::new`](dapple_mesh::Mesh::new) and [`Model::check`].
 ///
 /// # Examples
@@ -109,7 +109,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
 ///
 /// # Errors
 ///
-/// The errors of [`read`]. A missing texture is not an error.
+/// Same as [`read`]. A missing texture is not an error.
 pub fn read_with(bytes: &[u8], resolve: &mut FileResolver<'_>) -> Result<Model, MeshIoError> {
     let container = Container::read(bytes)?;
     // Check the version first: other versions have other types for the same properties.
@@ -181,7 +181,7 @@ fn wrong(why: impl Into<String>) -> MeshIoError {
 }
 
 impl Source<'_> {
-    /// Bytes of a buffer view.
+    /// Returns the bytes of a buffer view.
     fn view(&self, index: usize) -> Result<&[u8], MeshIoError> {
         let view = self.document.buffer_views.get(index);
         let buffer = view.and_then(|view| self.buffers.get(view.buffer));
@@ -195,7 +195,7 @@ impl Source<'_> {
         bytes.ok_or_else(|| wrong(format!("there are no bytes for buffer view {index}")))
     }
 
-    /// Error for a buffer without bytes, with the name of its file.
+    /// Creates the error for a buffer without bytes, with the name of its file.
     fn missing(&self, buffer: usize) -> MeshIoError {
         let uri = self.document.buffers.get(buffer);
         let uri = uri.and_then(|buffer| buffer.uri.as_deref());
@@ -209,7 +209,7 @@ impl Source<'_> {
         wrong(format!("the bytes of buffer {buffer} are missing{file}"))
     }
 
-    /// Bytes of an image, in any format.
+    /// Returns the bytes of an image, in any format.
     fn image_bytes(&self, image: &Image, resolve: &mut FileResolver<'_>) -> Option<Vec<u8>> {
         match (&image.uri, image.buffer_view) {
             (Some(uri), _) if uri.starts_with("data:") => container::data(uri),

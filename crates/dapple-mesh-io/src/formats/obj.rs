@@ -86,8 +86,8 @@ struct Draft {
 ///
 /// # Errors
 ///
-/// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) with the line number if the bytes are not an OBJ file; and
-/// the errors of [`Mesh::new`] and [`Model::check`].
+/// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) with the line number if the bytes are not an OBJ file, or
+/// any error from [`Mesh::new`] and [`Model::check`].
 ///
 /// # Examples
 ///
@@ -105,8 +105,8 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
 ///
 /// # Errors
 ///
-/// The errors of [`read`]. In other files, only text that is neither ASCII nor UTF-8, a keyword that is not ASCII, and
-/// a `Kd` outside of the range of `f32` are errors.
+/// Same as [`read`]. In other files, only text that is neither ASCII nor UTF-8, a keyword that is not ASCII, and a
+/// `Kd` outside of the range of `f32` are errors.
 pub fn read_with(bytes: &[u8], resolve: &mut FileResolver<'_>) -> Result<Model, MeshIoError> {
     let mut draft = Draft::default();
     let text = joined(content(FORMAT, bytes)?);
@@ -217,8 +217,8 @@ impl Draft {
         Ok(())
     }
 
-    /// Zero-based indices of a corner. Numbers in the file start at 1; negative numbers count backward from the last
-    /// item.
+    /// Returns the zero-based indices of a corner. Numbers in the file start at 1; negative numbers count backward
+    /// from the last item.
     fn corner(&self, word: &[u8]) -> Option<Corner> {
         let counts = [self.positions.len(), self.uvs.len(), self.normals.len()];
         let mut corner = [NONE; 3];
@@ -321,7 +321,7 @@ impl Draft {
         Ok(model)
     }
 
-    /// Texture coordinates of the corners, zero where missing; `None` if no corner has any.
+    /// Returns the texture coordinates of the corners, zero where missing; `None` if no corner has any.
     fn face_uvs(&self) -> Option<Vec<[DVec2; 3]>> {
         if self.faces.iter().flatten().all(|corner| corner[1] == NONE) {
             return None;
@@ -330,7 +330,7 @@ impl Draft {
         Some(self.faces.iter().map(|face| face.map(uv)).collect())
     }
 
-    /// Corner normals of all faces, if every corner has one.
+    /// Returns the corner normals of all faces, if every corner has one.
     fn corner_normals(&self) -> Option<Vec<[DVec3; 3]>> {
         if self.faces.is_empty() {
             return None;
@@ -340,7 +340,8 @@ impl Draft {
         self.faces.iter().map(of_face).collect()
     }
 
-    /// Vertex normals, if no vertex has two different ones at its corners; for a point cloud, in file order.
+    /// Returns the vertex normals, if no vertex has two different ones at its corners; for a point cloud, in file
+    /// order.
     fn vertex_normals(
         &self,
         count: usize,
@@ -365,7 +366,7 @@ impl Draft {
 /// Color of vertices without a color, if others have one.
 const WHITE: LinearRgba = LinearRgba::opaque(LinearRgb::WHITE);
 
-/// Rest of a line as a name, which may contain spaces.
+/// Returns the rest of a line as a name, which may contain spaces.
 fn name(line: &Line<'_>) -> String {
     joined_words(&line.name_words())
 }

@@ -49,8 +49,8 @@ struct Vertices {
 ///
 /// # Errors
 ///
-/// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) with the line number if the bytes are not an OFF file; and
-/// the errors of [`Mesh::new`] and [`Model::check`].
+/// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) with the line number if the bytes are not an OFF file, or
+/// any error from [`Mesh::new`] and [`Model::check`].
 ///
 /// # Examples
 ///
@@ -136,7 +136,7 @@ fn strip<'a>(word: &'a [u8], prefix: &[u8]) -> (&'a [u8], bool) {
         .map_or((word, false), |rest| (rest, true))
 }
 
-/// Numbers of vertices and faces; the number of edges, which follows, is ignored.
+/// Returns the numbers of vertices and faces; the number of edges, which follows, is ignored.
 fn counts_of(line: Option<&Line<'_>>) -> Result<[u64; 2], MeshIoError> {
     let line = line.ok_or_else(|| MeshIoError::file(FORMAT, "there are no counts"))?;
     let count = |at: usize| line.words.get(at).copied().and_then(parse::<u64>);
@@ -153,12 +153,12 @@ fn ended(what: &str, count: u64) -> MeshIoError {
     )
 }
 
-/// Number of corners of the polygon that starts on a line.
+/// Returns the number of corners of the polygon that starts on a line.
 fn polygon_count(line: &Line<'_>) -> Result<usize, MeshIoError> {
     parse(line.words[0]).ok_or_else(|| line.error("the number of corners of a face is needed"))
 }
 
-/// Zero-based vertex index of a corner.
+/// Returns the zero-based vertex index of a corner.
 fn corner(line: &Line<'_>, word: &[u8], n_vertices: u64) -> Result<u32, MeshIoError> {
     let corner: u32 =
         parse(word).ok_or_else(|| line.error("a corner is not the number of a vertex"))?;
@@ -210,7 +210,7 @@ impl Vertices {
     }
 }
 
-/// Color of three or four components, starting at a word.
+/// Returns the color of three or four components, starting at a word.
 fn color(line: &Line<'_>, at: usize, count: usize) -> Result<LinearRgba, MeshIoError> {
     let whole = line
         .words

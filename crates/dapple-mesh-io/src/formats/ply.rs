@@ -99,7 +99,7 @@ struct Target {
 /// # Errors
 ///
 /// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) if the bytes are not a PLY file, or have fewer elements
-/// than the header states, with the line number in the header and in a text body; and the errors of [`Mesh::new`] and
+/// than the header states, with the line number in the header and in a text body, or any error from [`Mesh::new`] and
 /// [`Model::check`].
 ///
 /// # Examples
@@ -118,7 +118,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
 ///
 /// # Errors
 ///
-/// The errors of [`read`]. A missing texture is not an error, and is listed in [`Model::left_out`].
+/// Same as [`read`]. A missing texture is not an error, and is listed in [`Model::left_out`].
 pub fn read_with(bytes: &[u8], resolve: &mut FileResolver<'_>) -> Result<Model, MeshIoError> {
     let bytes = content(FORMAT, bytes)?;
     let (header, rest) = Header::read(bytes)?;
@@ -300,7 +300,7 @@ impl Draft {
         Ok(())
     }
 
-    /// Vertex index from a number in the file.
+    /// Returns the vertex index from a number in the file.
     fn vertex(&self, number: f64, body: &Body<'_>) -> Result<u32, MeshIoError> {
         let vertex = number as u32;
         if f64::from(vertex) == number && u64::from(vertex) < self.n_vertices {
@@ -335,7 +335,7 @@ impl Draft {
     }
 }
 
-/// Attribute of a property.
+/// Returns the attribute of a property.
 fn target(name: &str, kind: Kind) -> Option<Target> {
     let column = COLUMNS.iter().position(|names| names.contains(&name))?;
     let Kind::Scalar(scalar) = kind else {

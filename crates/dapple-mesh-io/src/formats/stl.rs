@@ -51,7 +51,7 @@ struct Draft {
 ///
 /// # Errors
 ///
-/// [`MeshIoErrorKind::File`] if the bytes are not an STL file, with the line number in a text; and the errors of
+/// [`MeshIoErrorKind::File`] if the bytes are not an STL file, with the line number in a text, or any error from
 /// [`Mesh::new`].
 ///
 /// # Examples
@@ -75,7 +75,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
 ///
 /// # Errors
 ///
-/// The errors of [`Model::check`]; [`MeshIoErrorKind::Size`] if the file would have 2^32 bytes or more.
+/// Same as [`Model::check`], plus [`MeshIoErrorKind::Size`] if the file would have 2^32 bytes or more.
 pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
     model.check()?;
     let n_faces = model.mesh.faces().len();
@@ -102,8 +102,8 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
     Ok(file)
 }
 
-/// Faces of a binary file; `None` if it is text. Binary files may start with the keyword of text, so the length is
-/// checked first.
+/// Returns the faces of a binary file; `None` if it is text. Binary files may start with the keyword of text, so the
+/// length is checked first.
 fn binary(bytes: &[u8]) -> Option<&[u8]> {
     let count = bytes.get(HEAD - 4..HEAD)?.try_into().ok()?;
     let count = u32::from_le_bytes(count) as usize;
@@ -166,14 +166,14 @@ fn three(line: &Line<'_>, corners: &[DVec3]) -> Result<[DVec3; 3], MeshIoError> 
     corners.try_into().map_err(|_| why())
 }
 
-/// Corners of each face.
+/// Returns the corners of each face.
 fn corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> {
     let positions = mesh.positions();
     let faces = mesh.faces().iter();
     faces.map(|face| face.map(|vertex| positions[vertex.index()]))
 }
 
-/// Normal of a face; zero if it has no area.
+/// Returns the normal of a face; zero if it has no area.
 fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a).normalize_or_zero()
 }

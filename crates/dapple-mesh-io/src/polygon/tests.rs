@@ -19,7 +19,7 @@ fn flat(corners: &[[f64; 2]]) -> Vec<DVec3> {
     corners.map(|&[x, y]| DVec3::new(x, y, 0.0)).collect()
 }
 
-/// Triangles of one polygon, and whether it is listed as self-intersecting.
+/// Returns the triangles of one polygon, and whether it is listed as self-intersecting.
 fn triangles(corners: &[DVec3]) -> (Vec<[u32; 3]>, bool) {
     let (mut polygons, mut faces) = (Polygons::default(), Vec::new());
     let numbers: Vec<_> = (0..corners.len() as u32).collect();
@@ -29,7 +29,7 @@ fn triangles(corners: &[DVec3]) -> (Vec<[u32; 3]>, bool) {
     (faces, ears.left_out().next().is_some())
 }
 
-/// Vector area of a polygon, times two.
+/// Returns the vector area of a polygon, times two.
 fn shoelace(corners: &[DVec3]) -> DVec3 {
     let pairs = (0..corners.len()).map(|i| corners[i].cross(corners[(i + 1) % corners.len()]));
     pairs.sum()

@@ -52,7 +52,7 @@ impl Bounds {
         self.low * 0.5 + self.high * 0.5
     }
 
-    /// Half the surface area, in squared units of the mesh; zero for an empty box.
+    /// Returns half the surface area, in squared units of the mesh; zero for an empty box.
     fn area(&self) -> f64 {
         let side = (self.high - self.low).max(DVec3::ZERO);
         side.x * side.y + side.y * side.z + side.z * side.x
@@ -128,7 +128,7 @@ impl Builder {
         (self.nodes, self.order)
     }
 
-    /// Leaf node for a range of triangles.
+    /// Returns a leaf node for a range of triangles.
     fn leaf(&self, range: Range<usize>) -> Node {
         let bounds = self.bounds_of(range.clone());
         // Rounding to `f32` moves a bound by at most one representable number; the step outward compensates for it.

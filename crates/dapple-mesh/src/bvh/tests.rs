@@ -24,7 +24,7 @@ fn bvh(positions: Vec<DVec3>, faces: &[[u32; 3]]) -> Bvh {
     Bvh::new(&Mesh::new(positions, faces).unwrap())
 }
 
-/// Small random triangles. Every seventh is duplicated, and every ninth has no area.
+/// Returns the small random triangles. Every seventh is duplicated, and every ninth has no area.
 fn soup(count: u32) -> Bvh {
     let mut numbers = Numbers(12_345);
     let mut positions = Vec::new();
@@ -43,7 +43,7 @@ fn soup(count: u32) -> Bvh {
     bvh(positions, &triangles)
 }
 
-/// A square of `side × side` squares in the plane `y = 0`, from the origin.
+/// Returns a square of `side × side` squares in the plane `y = 0`, from the origin.
 fn flat_grid(side: u32) -> Bvh {
     let at = |i: u32, j: u32| j * (side + 1) + i;
     let positions: Vec<DVec3> = (0..=side)

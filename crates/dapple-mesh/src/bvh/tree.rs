@@ -40,12 +40,12 @@ impl Tree {
         }
     }
 
-    /// Indices of the triangles, in the order of the leaves.
+    /// Returns the indices of the triangles, in the order of the leaves.
     pub(crate) fn order(&self) -> &[u32] {
         &self.order
     }
 
-    /// Center of the bounds of the whole mesh.
+    /// Returns the center of the bounds of the whole mesh.
     pub(crate) fn middle(&self) -> DVec3 {
         self.middle
     }
@@ -148,8 +148,8 @@ impl Tree {
 }
 
 impl Node {
-    /// Squared distance from a position to the box; zero inside. The margin of the box is far larger than the
-    /// rounding.
+    /// Returns the squared distance from a position to the box; zero inside. The margin of the box is far larger than
+    /// the rounding.
     #[inline]
     fn distance_sq(&self, position: DVec3) -> f64 {
         let mut sum = 0.0;
@@ -182,7 +182,7 @@ impl Slabs {
         }
     }
 
-    /// Distance at which the ray enters a box, or infinity if it does not intersect the box before `end`.
+    /// Returns the distance at which the ray enters a box, or infinity if it does not intersect the box before `end`.
     #[inline]
     fn enter(&self, node: &Node, end: f64) -> f64 {
         let (mut near, mut far) = (self.start, end);

@@ -55,7 +55,7 @@ impl Probe {
         }
     }
 
-    /// Signed distance along the ray, and the barycentric weights of the hit.
+    /// Returns the signed distance along the ray, and the barycentric weights of the hit.
     #[inline]
     pub(crate) fn meet(&self, corners: &Corners) -> Option<(f64, [f64; 3])> {
         let [a, b, c] = corners.0.map(|corner| self.sheared(corner));
@@ -85,7 +85,7 @@ impl Probe {
     }
 }
 
-/// Barycentric weights of the point of a triangle nearest to a position.
+/// Returns the barycentric weights of the point of a triangle nearest to a position.
 ///
 /// Reference: Christer Ericson, "Real-Time Collision Detection", 2005, section 5.1.5: the nearest feature is the
 /// corner, edge or interior whose Voronoi region contains the position. A triangle without an area counts as its

@@ -131,8 +131,8 @@ impl Draft {
                 .all(|corners| area_vector(corners).is_some())
     }
 
-    /// Neighbors across the other two edges of a cap and of its neighbor: first at the start of the shared edge, as
-    /// the neighbor traverses it, then at its end.
+    /// Returns the neighbors across the other two edges of a cap and of its neighbor: first at the start of the
+    /// shared edge, as the neighbor traverses it, then at its end.
     fn sides(&self, cap: FaceEdge, to: FaceEdge, across: &Adjacency) -> [[Option<FaceEdge>; 2]; 2] {
         let after = |at: FaceEdge, steps| across.across(step(at, steps));
         let [past_end, past_start] = [1, 2].map(|steps| after(to, steps));
@@ -162,12 +162,12 @@ impl Draft {
         join(across, Some(of(one, 1)), Some(of(two, 2)));
     }
 
-    /// Vertex at the start of an edge of a face.
+    /// Returns the vertex at the start of an edge of a face.
     fn vertex(&self, at: FaceEdge) -> VertexIdx {
         self.mesh.faces[at.face.index()][usize::from(at.edge)]
     }
 
-    /// Vertex of the face opposite to the edge.
+    /// Returns the vertex of the face opposite to the edge.
     fn third(&self, at: FaceEdge) -> VertexIdx {
         self.vertex(step(at, 2))
     }
@@ -212,7 +212,7 @@ impl PartialOrd for Cap {
     }
 }
 
-/// Edge of the same face, `steps` later.
+/// Returns the edge of the same face, `steps` later.
 fn step(at: FaceEdge, steps: u8) -> FaceEdge {
     FaceEdge {
         edge: (at.edge + steps) % 3,

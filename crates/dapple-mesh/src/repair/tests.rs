@@ -7,7 +7,7 @@ use crate::Surface;
 use crate::test_meshes::{cube, mesh, plane, ring, tetrahedron};
 use glam::DVec3;
 
-/// Union of several meshes.
+/// Returns the union of several meshes.
 fn union(meshes: &[Mesh]) -> Mesh {
     let (mut positions, mut faces) = (Vec::new(), Vec::new());
     for mesh in meshes {
@@ -22,7 +22,7 @@ fn union(meshes: &[Mesh]) -> Mesh {
     Mesh::new(positions, &faces).expect("the meshes are valid")
 }
 
-/// Mesh with some faces flipped.
+/// Returns the mesh with some faces flipped.
 fn turned(mesh: &Mesh, which: impl Fn(usize) -> bool) -> Mesh {
     let over = |(face, [a, b, c]): (usize, &[VertexIdx; 3])| {
         if which(face) {
@@ -35,7 +35,7 @@ fn turned(mesh: &Mesh, which: impl Fn(usize) -> bool) -> Mesh {
     Mesh::new(mesh.positions().to_vec(), &faces).expect("the mesh is valid")
 }
 
-/// Six times the volume of a closed mesh.
+/// Returns six times the volume of a closed mesh.
 fn volume(mesh: &Mesh) -> f64 {
     let part = |[a, b, c]: [DVec3; 3]| a.dot(b.cross(c));
     mesh.faces()

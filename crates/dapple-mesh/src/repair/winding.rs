@@ -49,7 +49,7 @@ impl Draft {
         Piece { faces, closed }
     }
 
-    /// Vertex at the start of an edge of a face.
+    /// Returns the vertex at the start of an edge of a face.
     fn start(&self, at: FaceEdge) -> VertexIdx {
         self.mesh.faces[at.face.index()][usize::from(at.edge)]
     }

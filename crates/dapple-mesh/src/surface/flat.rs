@@ -49,7 +49,7 @@ impl FaceFrame {
         })
     }
 
-    /// Corners in the plane.
+    /// Returns the corners in the plane.
     #[inline]
     pub(crate) fn corners(&self) -> [DVec2; 3] {
         [DVec2::ZERO, DVec2::new(self.width, 0.0), self.apex]
@@ -69,7 +69,7 @@ impl FaceFrame {
     }
 }
 
-/// Transition that maps an edge in the plane of one face to the same edge in the plane of the other.
+/// Returns the transition that maps an edge in the plane of one face to the same edge in the plane of the other.
 ///
 /// `along` is the edge as a vector in space; its directions in both planes determine the rotation. Differences of
 /// planar corners would be less precise for the short edges of needles.

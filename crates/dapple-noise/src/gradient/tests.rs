@@ -11,8 +11,8 @@ use proptest::prelude::*;
 
 const SEED: Seed = Seed(7);
 
-/// The noise in `f64`: the sum over the 2^N corners of each gradient's linear function times the blends along all
-/// axes.
+/// Returns the noise in `f64`: the sum over the 2^N corners of each gradient's linear function times the blends along
+/// all axes.
 fn oracle<const N: usize>(noise: &GradientNoise<N>, position: [f64; N]) -> f64 {
     let blend = |t: f64| t * t * t * (10.0 + t * (6.0 * t - 15.0));
     let mut sum = 0.0;
@@ -32,7 +32,7 @@ fn oracle<const N: usize>(noise: &GradientNoise<N>, position: [f64; N]) -> f64 {
     sum
 }
 
-/// Pseudorandom positions within 50 cells of the origin.
+/// Returns pseudorandom positions within 50 cells of the origin.
 fn positions<const N: usize>(count: u32) -> impl Iterator<Item = [f64; N]> {
     (0..count).map(|index| {
         core::array::from_fn(|axis| {
@@ -61,7 +61,7 @@ fn values_are_the_sum_over_all_corners() {
     );
 }
 
-/// Maximum value over all choices of gradients at an offset in a cell.
+/// Returns the maximum value over all choices of gradients at an offset in a cell.
 fn supremum<const N: usize>(offset: [f64; N]) -> f64 {
     (0..1 << N)
         .map(|corner: usize| {
@@ -81,8 +81,8 @@ fn supremum<const N: usize>(offset: [f64; N]) -> f64 {
         .sum()
 }
 
-/// Maximum value of any noise: the best value on a grid over half a cell (the rest is symmetric), refined on ever
-/// finer grids around it.
+/// Returns the maximum value of any noise: the best value on a grid over half a cell (the rest is symmetric), refined
+/// on ever finer grids around it.
 fn largest<const N: usize>() -> f64 {
     let steps: i32 = [0, 0, 40, 20, 10][N];
     let (mut center, mut reach) = ([0.25; N], 0.25);

@@ -135,7 +135,8 @@ impl GapSearch {
         self.quarters = core::mem::replace(&mut self.squares, quarters);
     }
 
-    /// Covered quarters of a square, row by row; nonzero if a single disc covers the quarter of side `size`.
+    /// Returns the covered quarters of a square, row by row; nonzero if a single disc covers the quarter of side
+    /// `size`.
     #[inline(always)]
     fn covered_quarters<S: Simd>(
         &self,
@@ -177,7 +178,7 @@ impl GapSearch {
         covered != 0
     }
 
-    /// Random position in the squares, uniformly distributed.
+    /// Returns a random position in the squares, uniformly distributed.
     #[inline(always)]
     fn random_place(&self, size: u32, bits: u64) -> [f32; 2] {
         let rank = ((bits >> 40) * self.squares.len() as u64) >> 24;
@@ -188,13 +189,13 @@ impl GapSearch {
     }
 }
 
-/// First and last position of a square along an axis.
+/// Returns the first and last position of a square along an axis.
 #[inline(always)]
 fn span(first: u32, size: u32) -> [f32; 2] {
     [first as f32 * STEP, (first + size - 1) as f32 * STEP]
 }
 
-/// Squared distances along an axis from disc centers to the farther end of a span.
+/// Returns the squared distances along an axis from disc centers to the farther end of a span.
 #[inline(always)]
 fn far_sq<S: Simd>(centers: f32x8<S>, [first, last]: [f32; 2], scale: f32) -> f32x8<S> {
     let far = (centers - first).max(last - centers) * scale;

@@ -79,17 +79,17 @@ impl Grid {
         })
     }
 
-    /// Length of a row of the arrays, in cells.
+    /// Returns the length of a row of the arrays, in cells.
     pub(crate) fn stride(&self) -> usize {
         (self.cells[0] + 2 * HALO) as usize
     }
 
-    /// Number of rows of the arrays.
+    /// Returns the number of rows of the arrays.
     pub(crate) fn rows(&self) -> usize {
         (self.cells[1] + 2 * HALO) as usize
     }
 
-    /// Index of a cell in the arrays.
+    /// Returns the index of a cell in the arrays.
     #[inline(always)]
     pub(crate) fn index(&self, cell: Cell) -> usize {
         cell.row as usize * self.stride() + cell.column as usize
@@ -103,7 +103,7 @@ impl Grid {
         CellHash::new(seed, [i64::from(number)])
     }
 
-    /// Cell of the domain that a margin cell is a copy of.
+    /// Returns the cell of the domain that a margin cell is a copy of.
     ///
     /// Other cells are returned unchanged, including margin cells along an axis that does not wrap.
     #[inline(always)]
@@ -114,7 +114,7 @@ impl Grid {
         }
     }
 
-    /// Coordinate of [`original`](Self::original) along axis 0 or 1.
+    /// Returns the coordinate of [`original`](Self::original) along axis 0 or 1.
     #[inline(always)]
     pub(crate) fn original_index(&self, axis: usize, index: u32) -> u32 {
         let count = self.cells[axis];
@@ -129,7 +129,7 @@ impl Grid {
         }
     }
 
-    /// Position of an offset in a cell.
+    /// Returns the position of an offset in a cell.
     pub(crate) fn position(&self, cell: Cell, offset: [f32; 2]) -> DVec2 {
         let along = |index: u32, offset: f32| f64::from(index - HALO) + f64::from(offset);
         let cells = DVec2::new(along(cell.column, offset[0]), along(cell.row, offset[1]));
@@ -137,7 +137,7 @@ impl Grid {
         (self.domain.origin + cells * self.cell).min(self.domain.end())
     }
 
-    /// Cell of a position, and its offset rounded to the lattice.
+    /// Returns the cell of a position, and its offset rounded to the lattice.
     pub(crate) fn place(&self, position: DVec2) -> (Cell, [f32; 2]) {
         let cells = (position - self.domain.origin) / self.cell;
         let along = |at: f64, count: u32| {

@@ -37,7 +37,7 @@ impl Coverage {
         Self { kept }
     }
 
-    /// Masks that a point at `offset` of the center cell leaves in the cells around it.
+    /// Returns the masks that a point at `offset` of the center cell leaves in the cells around it.
     #[inline(always)]
     pub(crate) fn kept(&self, offset: [f32; 2]) -> &[[u64; REACH]; REACH] {
         let [x, y] = offset.map(|at| ((at * BOXES as f32) as usize).min(BOXES - 1));
@@ -79,7 +79,7 @@ fn kept_in_row<S: Simd>(
     }
 }
 
-/// Position of the set bit of `mask` that has `rank` set bits below it; the bit must exist.
+/// Returns the position of the set bit of `mask` that has `rank` set bits below it; the bit must exist.
 ///
 /// Branch-free and without tables, after S. Vigna, "Broadword Implementation of Rank/Select Queries", Experimental
 /// Algorithms 2008, DOI 10.1007/978-3-540-68552-4_12.
@@ -101,7 +101,7 @@ pub(crate) fn select(mask: u64, rank: u32) -> u32 {
 /// One in every byte.
 const ONES: u64 = 0x0101_0101_0101_0101;
 
-/// Number of bytes of `ends` that are at most `rank`; all bytes are below 128.
+/// Returns the number of bytes of `ends` that are at most `rank`; all bytes are below 128.
 #[inline(always)]
 fn bytes_up_to(ends: u64, rank: u32) -> u32 {
     let high = ONES << 7;

@@ -88,8 +88,8 @@ impl Sheet {
         }
     }
 
-    /// Conflicts of a position with the five cells starting at `start`, as two bit masks: cells with a conflicting
-    /// point, and cells with a conflicting point or proposal of at least `rank`.
+    /// Returns the conflicts of a position with the five cells starting at `start`, as two bit masks: cells with a
+    /// conflicting point, and cells with a conflicting point or proposal of at least `rank`.
     #[inline(always)]
     fn conflicts_in_row<S: Simd>(
         &self,
@@ -111,7 +111,7 @@ impl Sheet {
         [points.to_bitmask(), above.to_bitmask()]
     }
 
-    /// Conflicts of the position stored in `cell`.
+    /// Returns the conflicts of the position stored in `cell`.
     #[inline(always)]
     pub(crate) fn rivals<S: Simd>(&self, simd: S, grid: &Grid, cell: Cell) -> Rivals {
         let middle = grid.index(cell);
@@ -203,7 +203,7 @@ impl SheetRows<'_> {
     }
 }
 
-/// Range of the domain rows in the arrays.
+/// Returns the range of the domain rows in the arrays.
 pub(crate) fn domain_rows(grid: &Grid) -> Range<usize> {
     let margin = HALO as usize * grid.stride();
     margin..margin + grid.cells[1] as usize * grid.stride()

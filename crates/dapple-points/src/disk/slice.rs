@@ -253,13 +253,13 @@ impl Band {
     }
 }
 
-/// Rank of a proposal from the upper half of its random bits; the lower half is used elsewhere.
+/// Returns the rank of a proposal from the upper half of its random bits; the lower half is used elsewhere.
 #[inline(always)]
 fn rank(lot: u64) -> i32 {
     ((lot >> 33) as i32).min(HIGHEST_PROPOSAL)
 }
 
-/// Random position in the open subcells of `mask`.
+/// Returns a random position in the open subcells of `mask`.
 #[inline(always)]
 fn dart(mask: u64, bits: u64) -> [f32; 2] {
     let rank = ((bits >> 38) * u64::from(mask.count_ones())) >> 26;

@@ -94,7 +94,7 @@ impl<'a> Solution<'a> {
         Ok(())
     }
 
-    /// Positions of the points that were not given, cell by cell.
+    /// Returns the positions of the points that were not given, cell by cell.
     pub(crate) fn positions(&self) -> Result<Vec<DVec2>, PointsError> {
         let mut parts = vec![Vec::new(); self.bands.len()];
         let items = self.bands.iter().zip(&mut parts);
@@ -181,7 +181,7 @@ impl<'a> Solution<'a> {
     }
 }
 
-/// Indices of a band and its neighbors, wrapped around the domain, without duplicates.
+/// Returns the indices of a band and its neighbors, wrapped around the domain, without duplicates.
 fn neighbors(band: usize, count: usize) -> impl Iterator<Item = usize> {
     let around = [band, (band + 1) % count, (band + count - 1) % count];
     (0..around.len().min(count)).map(move |at| around[at])

@@ -141,8 +141,8 @@ fn spectrum_is_isotropic_and_that_of_darts() {
     );
 }
 
-/// Sequential dart throwing, except that no darts are thrown at squares of a fine grid that a single disc covers. It
-/// ends after `misses` rejected darts in a row.
+/// Returns the sequential dart throwing, except that no darts are thrown at squares of a fine grid that a single disc
+/// covers. It ends after `misses` rejected darts in a row.
 fn throw_darts(domain: Domain, radius: f64, misses: u32, seed: Seed) -> PointSet {
     const SIDE: u32 = 100;
     let square = domain.size / f64::from(SIDE);

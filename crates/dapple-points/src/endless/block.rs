@@ -226,7 +226,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         Ok(is_free)
     }
 
-    /// Conflict of a dart with another cell; `hash` is the hash of the cell of the dart.
+    /// Returns the conflict of a dart with another cell; `hash` is the hash of the cell of the dart.
     fn next_rival(
         &self,
         dart: &Dart,
@@ -302,7 +302,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         Ok(())
     }
 
-    /// Dart of a cell in a round, if there is one.
+    /// Returns the dart of a cell in a round, if there is one.
     fn dart(&self, index: usize, round: u8) -> Result<Option<Dart>, Stop> {
         let cell = &self.cells[index];
         let bits = cell.place ^ DARTS[usize::from(round)];
@@ -332,7 +332,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         Ok(Some(Dart { at, radius }))
     }
 
-    /// Position of the current dart of a cell, in the unit of the caller.
+    /// Returns the position of the current dart of a cell, in the caller's units.
     fn position(&self, index: usize) -> DVec2 {
         let strips = self.strips(index);
         let first = [self.columns[0].absolute, self.rows[0].absolute];
@@ -344,7 +344,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         DVec2::new(along(0), along(1))
     }
 
-    /// Column and row of a cell.
+    /// Returns the column and row of a cell.
     fn strips(&self, index: usize) -> [Strip; 2] {
         let width = self.columns.len();
         [self.columns[index % width], self.rows[index / width]]
@@ -444,7 +444,7 @@ const NEW: Cell = Cell {
     covered: 0,
 };
 
-/// Neighbors of a cell that are nearer than the largest radius, nearest first.
+/// Returns the neighbors of a cell that are nearer than the largest radius, nearest first.
 fn around(plane: &Plane, width: usize) -> Vec<Neighbor> {
     let reach = plane.reach();
     let most = plane.radii[1] / plane.step;

@@ -10,7 +10,7 @@ use core::f64::consts::TAU;
 use dapple_hash::{CellHash, Seed, rand_core::Rng, unit_f64};
 use glam::DVec2;
 
-/// Points in a canonical order.
+/// Returns the points in a canonical order.
 fn sorted(mut points: Vec<EndlessPoint>) -> Vec<EndlessPoint> {
     points.sort_by(|a, b| {
         let (a, b) = (a.position, b.position);
@@ -19,7 +19,7 @@ fn sorted(mut points: Vec<EndlessPoint>) -> Vec<EndlessPoint> {
     points
 }
 
-/// Points of a window, in a canonical order.
+/// Returns the points of a window, in a canonical order.
 fn window(set: &EndlessPoissonDisk, min: DVec2, max: DVec2) -> Vec<EndlessPoint> {
     sorted(set.points(min, max).unwrap())
 }
@@ -28,8 +28,8 @@ fn is_inside(position: DVec2, min: DVec2, max: DVec2) -> bool {
     position.cmpge(min).all() && position.cmplt(max).all()
 }
 
-/// Brute-force construction: throws the darts of the cells from `-first` to `first` in order, and compares each with
-/// all earlier points. The minimum radius is 1.
+/// Returns the brute-force construction: throws the darts of the cells from `-first` to `first` in order, and
+/// compares each with all earlier points. The minimum radius is 1.
 fn naive(
     seed: Seed,
     first: i64,
@@ -76,7 +76,8 @@ fn naive(
     points
 }
 
-/// Element `i` of the first two dimensions of Sobol's sequence: bit reversal, and the matrix of binomials modulo 2.
+/// Returns the element `i` of the first two dimensions of Sobol's sequence: bit reversal, and the matrix of binomials
+/// modulo 2.
 fn sobol(i: u32) -> [u32; 2] {
     let odd_binomial = |n: u32, k: u32| n & k == k;
     let mut y = 0;
@@ -241,7 +242,7 @@ fn the_density_is_nine_tenths_of_a_maximal_set_everywhere() {
     }
 }
 
-/// A repeating set on a torus of about 10,000 points, and a maximal set on the same torus.
+/// Returns a repeating set on a torus of about 10,000 points, and a maximal set on the same torus.
 fn tori(seed: u64) -> [PointSet; 2] {
     let domain = Domain::torus(DVec2::ZERO, DVec2::splat(127.0));
     let set = EndlessPoissonDisk::new(1.0, Seed(seed))

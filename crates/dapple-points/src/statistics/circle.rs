@@ -20,7 +20,7 @@ pub struct EmptyCircle {
 }
 
 impl PointSet {
-    /// Largest empty circle with its center in the domain; `None` for an empty set.
+    /// Returns the largest empty circle with its center in the domain; `None` for an empty set.
     ///
     /// Its radius is the maximum distance of any position in the domain to the nearest point. Along wrapped axes,
     /// every copy of every point counts, including copies of a single point. Along other axes, the circle may extend

@@ -5,7 +5,7 @@ use crate::PointSet;
 use core::f64::consts::PI;
 
 impl PointSet {
-    /// Minimum distance between two points; `None` for fewer than two points.
+    /// Returns the minimum distance between two points; `None` for fewer than two points.
     ///
     /// The distance of a point to its own copies around a wrapped axis does not count. Coinciding points have a
     /// distance of 0.
@@ -45,7 +45,7 @@ impl PointSet {
         Some(best_sq.sqrt())
     }
 
-    /// Mean number of other points within `distance` of a point; 0 for an empty set.
+    /// Returns the mean number of other points within `distance` of a point; 0 for an empty set.
     ///
     /// The distance is inclusive. Each other point counts once, by its shortest distance, even if `distance` exceeds
     /// the period. Near sides that do not wrap, points have fewer neighbors.
@@ -66,7 +66,7 @@ impl PointSet {
         n_pairs as f64 / self.len().max(1) as f64
     }
 
-    /// Normalized density: number of points per square of side `radius`, N r² / area.
+    /// Returns the normalized density: number of points per square of side `radius`, N r² / area.
     ///
     /// Random sequential addition with the minimum distance `radius` reaches 0.697; the densest lattice has 1.155.
     #[must_use]
@@ -74,14 +74,14 @@ impl PointSet {
         self.len() as f64 * (radius * radius) / self.domain().area()
     }
 
-    /// Fraction of the domain covered by discs of diameter `radius` around the points, which do not overlap if points
-    /// are at least `radius` apart: 0.547 for random sequential addition, at most 0.907.
+    /// Returns the fraction of the domain covered by discs of diameter `radius` around the points, which do not
+    /// overlap if points are at least `radius` apart: 0.547 for random sequential addition, at most 0.907.
     #[must_use]
     pub fn packing_fraction(&self, radius: f64) -> f64 {
         self.normalized_density(radius) * (PI / 4.0)
     }
 
-    /// Mean number of discs with this radius that cover a position: N π r² / area.
+    /// Returns the mean number of discs with this radius that cover a position: N π r² / area.
     ///
     /// Discs that extend beyond a side that does not wrap count in full.
     #[must_use]

@@ -72,7 +72,7 @@ impl Grid {
         }
     }
 
-    /// Column and row of a position.
+    /// Returns the column and row of a position.
     pub(super) fn cell(&self, position: DVec2) -> [i64; 2] {
         [0, 1].map(|axis| {
             let fraction = (position[axis] - self.domain.origin[axis]) / self.domain.size[axis];
@@ -81,18 +81,18 @@ impl Grid {
         })
     }
 
-    /// Lower bound of the distance to all points in ring `ring` and beyond.
+    /// Returns the lower bound of the distance to all points in ring `ring` and beyond.
     pub(super) fn distance_to_ring(&self, ring: i64) -> f64 {
         (ring as f64 - 1.0 - ROUNDING) * self.side
     }
 
-    /// Last ring that can contain a point within `distance`, or any point at all.
+    /// Returns the last ring that can contain a point within `distance`, or any point at all.
     pub(super) fn last_ring(&self, distance: f64) -> i64 {
         let reach = (distance / self.side + 1.0 + ROUNDING) as i64;
         reach.clamp(0, self.counts[0].max(self.counts[1]))
     }
 
-    /// Last ring that can contain a point.
+    /// Returns the last ring that can contain a point.
     pub(super) fn outermost_ring(&self) -> i64 {
         self.counts[0].max(self.counts[1]) + 1
     }
@@ -131,7 +131,7 @@ impl Grid {
         }
     }
 
-    /// Column or row at `offset` from `center`, and its shift from the original in the domain.
+    /// Returns the column or row at `offset` from `center`, and its shift from the original in the domain.
     fn along(&self, axis: usize, center: i64, offset: i64, images: Images) -> Option<(i64, f64)> {
         let count = self.counts[axis];
         if !self.domain.wrap[axis] {

@@ -71,7 +71,8 @@ pub struct SpectrumRing {
 }
 
 impl Spectrum {
-    /// Mean power of all frequencies in the rings with a center in `from..to`; NaN if there is no such ring.
+    /// Returns the mean power of all frequencies in the rings with a center in `from..to`; NaN if there is no such
+    /// ring.
     #[must_use]
     pub fn mean_power(&self, from: f64, to: f64) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
@@ -84,13 +85,13 @@ impl Spectrum {
         sum / count
     }
 
-    /// Maximum power of a ring.
+    /// Returns the maximum power of a ring.
     #[must_use]
     pub fn peak_power(&self) -> f64 {
         self.rings.iter().map(|ring| ring.power).fold(0.0, f64::max)
     }
 
-    /// Mean anisotropy of all rings, weighted by their degrees of freedom: 1 is isotropic.
+    /// Returns the mean anisotropy of all rings, weighted by their degrees of freedom: 1 is isotropic.
     #[must_use]
     pub fn anisotropy(&self) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
@@ -137,7 +138,7 @@ pub fn spectrum(sets: &[PointSet], options: &SpectrumOptions) -> Result<Spectrum
 ///
 /// # Errors
 ///
-/// The errors of [`spectrum`], and [`PointsErrorKind::Cancelled`].
+/// Same as [`spectrum`], plus [`PointsErrorKind::Cancelled`].
 ///
 /// # Examples
 ///
@@ -215,7 +216,8 @@ impl SpectrumOptions {
     }
 }
 
-/// Unit frequency sqrt(N / area) of the sets, after checking that they share one domain and are not empty.
+/// Returns the unit frequency sqrt(N / area) of the sets, after checking that they share one domain and are not
+/// empty.
 fn unit_frequency(sets: &[PointSet]) -> Result<f64, PointsError> {
     let Some(first) = sets.first() else {
         return Err(PointsError::new(PointsErrorKind::NoPoints));

@@ -19,7 +19,7 @@ pub(super) fn domains() -> Vec<Domain> {
     domains
 }
 
-/// Random positions; `crowding` above 1 concentrates them near the corner of the domain.
+/// Returns random positions; `crowding` above 1 concentrates them near the corner of the domain.
 pub(super) fn random_set(domain: Domain, n_points: u32, crowding: i32) -> PointSet {
     let unit = |index| unit_f64(hash1(Seed(3), [i64::from(n_points)], index));
     let place = |index| (0..crowding).fold(1.0, |product, _| product * unit(index));

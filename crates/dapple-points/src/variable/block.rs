@@ -214,7 +214,7 @@ impl Block {
         }
     }
 
-    /// Minimum corner of a cell.
+    /// Returns the minimum corner of a cell.
     pub(super) fn min_of(&self, [column, row]: [u16; 2]) -> DVec2 {
         DVec2::new(f64::from(column), f64::from(row)) * self.cell
     }
@@ -336,14 +336,14 @@ impl Block {
         is_covered
     }
 
-    /// First slot of the neighborhood of a cell for the quick test.
+    /// Returns the first slot of the neighborhood of a cell for the quick test.
     #[inline(always)]
     fn quick_corner(&self, [column, row]: [u16; 2]) -> usize {
         let first = self.margin - QUICK_REACH;
         (usize::from(row) + first) * self.stride + usize::from(column) + first
     }
 
-    /// Quick-test data of consecutive cells in a row.
+    /// Returns the quick-test data of consecutive cells in a row.
     #[inline(always)]
     fn quick_lanes(&self, from: usize) -> Option<[&[f32; LANES]; 3]> {
         let [xs, ys, reaches] = &self.quick;
@@ -407,7 +407,8 @@ impl Block {
     }
 }
 
-/// Squared distances from `at` to the farther ends of the first `N` intervals of length `side`, starting at 0.
+/// Returns the squared distances from `at` to the farther ends of the first `N` intervals of length `side`, starting
+/// at 0.
 #[inline(always)]
 pub(super) fn farthest_sq<const N: usize>(at: f32, side: f32) -> [f32; N] {
     let mut squares = [0.0; N];
@@ -419,7 +420,7 @@ pub(super) fn farthest_sq<const N: usize>(at: f32, side: f32) -> [f32; N] {
     squares
 }
 
-/// Two numbers in [0, 1) from 64 bits.
+/// Returns two numbers in [0, 1) from 64 bits.
 pub(super) fn fractions(bits: u64) -> DVec2 {
     let unit = 1.0 / (1_u64 << 32) as f64;
     DVec2::new(f64::from(bits as u32), f64::from((bits >> 32) as u32)) * unit

@@ -11,7 +11,7 @@ pub const RSA_DENSITY: f64 = 0.697;
 /// Number of samples per axis for the mean of a density.
 const PLACES: u32 = 256;
 
-/// Radius at which a Poisson-disk set has the given density, in points per area: sqrt(0.697 / density).
+/// Returns the radius at which a Poisson-disk set has the given density, in points per area: sqrt(0.697 / density).
 ///
 /// # Examples
 ///
@@ -26,7 +26,7 @@ pub fn radius_from_density(density: &Varying) -> Varying {
     scaled_radius(density, RSA_DENSITY)
 }
 
-/// Radius at which about `n_points` points follow a density that is given up to a factor.
+/// Returns the radius at which about `n_points` points follow a density that is given up to a factor.
 ///
 /// The density is sampled at 256 × 256 positions. Sides that do not wrap have room for some additional points, about
 /// 0.24 per radius of their length (measured).

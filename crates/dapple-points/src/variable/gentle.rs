@@ -25,7 +25,7 @@ const SLOPE: f64 = 0.5;
 /// error.
 const ROUNDS: usize = 6;
 
-/// Radius at which about `n_points` points follow an arbitrary density, given up to a factor.
+/// Returns the radius at which about `n_points` points follow an arbitrary density, given up to a factor.
 ///
 /// The density is sampled at `places` positions, in columns and rows. It must be at least 0; where it is 0, points are
 /// as far apart as the maximum slope of ½ allows. A lattice finer than half of the distance of the points has no
@@ -180,7 +180,7 @@ impl<'a> Lattice<'a> {
     }
 }
 
-/// Neighboring index on an axis, if it exists.
+/// Returns the neighboring index on an axis, if it exists.
 fn neighbor(place: usize, step: i64, length: usize, wraps: bool) -> Option<usize> {
     let beside = place as i64 + step;
     if wraps {
@@ -199,7 +199,7 @@ mod tests {
     use dapple_raster::Varying;
     use glam::DVec2;
 
-    /// Black, white and gray squares with hard edges.
+     /// Returns black, white and gray squares with hard edges.
     fn squares() -> Varying {
         Varying::function(|at| {
             let [x, y] = (at * 3.0).floor().to_array();
@@ -215,7 +215,8 @@ mod tests {
         }
     }
 
-    /// Length of the shortest path in steps to the eight neighbors, with as many diagonal steps as possible.
+    /// Returns the length of the shortest path in steps to the eight neighbors, with as many diagonal steps as
+    /// possible.
     fn steps(from: [f64; 2], to: [f64; 2], domain: &Domain, places: [f64; 2]) -> f64 {
         let along = |axis: usize| {
             let straight = (from[axis] - to[axis]).abs();

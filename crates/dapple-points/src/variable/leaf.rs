@@ -46,7 +46,8 @@ pub(super) struct Leaf {
 type Lattice = [[f64; LATTICE]; LATTICE];
 
 impl Leaf {
-    /// Bounds of the radius in a rectangle of the leaf, provided that its slope is at most the slope of the lattice.
+    /// Returns the bounds of the radius in a rectangle of the leaf, provided that its slope is at most the slope of
+    /// the lattice.
     pub(super) fn bounds(&self, min: DVec2, size: DVec2) -> [f64; 2] {
         let place = (min + size * 0.5) / self.size * LATTICE as f64;
         let [x, y] = place
@@ -109,7 +110,7 @@ pub(super) struct RadiusField<'a> {
 }
 
 impl RadiusField<'_> {
-    /// Radius at a position of the domain.
+    /// Returns the radius at a position of the domain.
     pub(super) fn at(&self, position: DVec2) -> Result<f64, PointsError> {
         let radius = self.radius.at(position);
         if radius > 0.0 && radius.is_finite() {
@@ -122,7 +123,7 @@ impl RadiusField<'_> {
         }
     }
 
-    /// Leaf of a rectangle, if the rectangle is suitable, and the approximate number of points in it.
+    /// Returns the leaf of a rectangle, if the rectangle is suitable, and the approximate number of points in it.
     fn leaf(&self, min: DVec2, size: DVec2) -> Result<(Option<Leaf>, f64), PointsError> {
         // The smallest radius is at most the radius at the center, which suffices to divide most rectangles.
         let middle = self.at(self.domain.origin + (min + size * 0.5))?;
@@ -140,7 +141,7 @@ impl RadiusField<'_> {
         Ok((leaf, n_points))
     }
 
-    /// Range of the radius in a rectangle, its samples, and the approximate number of points in it.
+    /// Returns the range of the radius in a rectangle, its samples, and the approximate number of points in it.
     fn survey(&self, min: DVec2, size: DVec2) -> Result<(Radii, Lattice, f64), PointsError> {
         if let Varying::Constant(_) = self.radius {
             let radius = self.at(self.domain.origin + min)?;
@@ -177,7 +178,7 @@ impl RadiusField<'_> {
         Ok((radii, values, RSA_DENSITY * n_points))
     }
 
-    /// Maximum slope along the lattice.
+    /// Returns the maximum slope along the lattice.
     fn slope(&self, values: &Lattice, min: DVec2, step: DVec2) -> Result<f64, PointsError> {
         let mut steepest = 0.0_f64;
         for y in 0..LATTICE - 1 {
@@ -197,7 +198,7 @@ impl RadiusField<'_> {
         Ok(steepest)
     }
 
-    /// Position of a lattice sample.
+    /// Returns the position of a lattice sample.
     fn place(&self, min: DVec2, step: DVec2, x: usize, y: usize) -> DVec2 {
         self.domain.origin + (min + step * DVec2::new(x as f64 + 0.5, y as f64 + 0.5))
     }
@@ -296,7 +297,7 @@ impl Tree {
     }
 }
 
-/// Columns and rows of cells of a leaf of this size, if the leaf is suitable.
+/// Returns the columns and rows of cells of a leaf of this size, if the leaf is suitable.
 fn cells_of(size: DVec2, radii: &Radii) -> Option<[u32; 2]> {
     let cells = (size * (SQRT_2 * (1.0 + ROUNDING)) / radii.least).ceil();
     let is_leaf = radii.least > 0.0
@@ -305,7 +306,7 @@ fn cells_of(size: DVec2, radii: &Radii) -> Option<[u32; 2]> {
     is_leaf.then(|| cells.to_array().map(|count| (count as u32).max(1)))
 }
 
-/// Halves of a rectangle, divided across its longer side.
+/// Returns the halves of a rectangle, divided across its longer side.
 fn halves(min: DVec2, size: DVec2) -> [(DVec2, DVec2); 2] {
     let along = if size.x >= size.y { DVec2::X } else { DVec2::Y };
     let half = size * (DVec2::ONE - 0.5 * along);

@@ -18,7 +18,7 @@ fn domain(wrap: [bool; 2]) -> Domain {
     }
 }
 
-/// Geometric ramp from `start` on the left to `end` on the right of [`domain`].
+/// Returns the geometric ramp from `start` on the left to `end` on the right of [`domain`].
 fn ramp(start: f64, end: f64) -> Varying {
     let from = DVec2::new(-3.0, 10.0);
     let to = DVec2::new(-1.0, 10.0);
@@ -30,7 +30,7 @@ fn ramp(start: f64, end: f64) -> Varying {
     })
 }
 
-/// Periodic along both axes of [`domain`], with slopes up to 0.5.
+/// Returns a radius that is periodic along both axes of [`domain`], with slopes up to 0.5.
 fn waves() -> Varying {
     Varying::function(|at| {
         let (x, y) = (libm::sin(TAU * at.x), libm::sin(TAU * at.y));
@@ -50,7 +50,7 @@ fn error(domain: Domain, radius: &Varying) -> PointsError {
     variable_poisson_disk(domain, radius, &Default::default(), Seed(1)).unwrap_err()
 }
 
-/// Minimum over all pairs of the distance relative to the distance that the rule requires.
+/// Returns the minimum over all pairs of the distance relative to the distance that the rule requires.
 fn closest_pair(set: &PointSet, radius: &Varying, rule: DiskRule) -> f64 {
     let radii: Vec<f64> = set.positions().iter().map(|&at| radius.at(at)).collect();
     let mut closest = f64::INFINITY;
@@ -63,8 +63,8 @@ fn closest_pair(set: &PointSet, radius: &Varying, rule: DiskRule) -> f64 {
     closest
 }
 
-/// Maximum over all positions, found on a dense lattice and refined, of the distance to the points relative to the
-/// distance that the rule requires.
+/// Returns the maximum over all positions, found on a dense lattice and refined, of the distance to the points
+/// relative to the distance that the rule requires.
 fn emptiest_place(set: &PointSet, radius: &Varying, rule: DiskRule) -> f64 {
     let radii: Vec<f64> = set.positions().iter().map(|&at| radius.at(at)).collect();
     let domain = set.domain();
@@ -215,7 +215,8 @@ fn variable_sets_are_the_same_for_any_number_of_threads() {
     }
 }
 
-/// Number of points relative to the prediction 0.697 / r², in the part of the domain with x in `from..to`.
+/// Returns the number of points relative to the prediction 0.697 / r², in the part of the domain with x in
+/// `from..to`.
 fn relative_density(radius: &Varying, from: f64, to: f64) -> f64 {
     let (mut n_points, mut expected) = (0.0, 0.0);
     for seed in 0..20 {

@@ -196,27 +196,27 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         })
     }
 
-    /// Sum of two fields.
+    /// Returns the sum of two fields.
     fn add<B: IntoField<N>>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Add)
     }
 
-    /// Difference of two fields.
+    /// Returns the difference of two fields.
     fn sub<B: IntoField<N>>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Subtract)
     }
 
-    /// Product of two fields.
+    /// Returns the product of two fields.
     fn mul<B: IntoField<N>>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Multiply)
     }
 
-    /// Minimum of two fields.
+    /// Returns the minimum of two fields.
     fn min<B: IntoField<N>>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Minimum)
     }
 
-    /// Maximum of two fields.
+    /// Returns the maximum of two fields.
     fn max<B: IntoField<N>>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Maximum)
     }
@@ -230,7 +230,8 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         }
     }
 
-    /// Linear interpolation between two fields: this field where `by` is 0 or less, `to` where it is 1 or more.
+    /// Returns the linear interpolation between two fields: this field where `by` is 0 or less, `to` where it is 1 or
+    /// more.
     fn mix<B: IntoField<N>, T: IntoField<N>>(
         self,
         to: B,

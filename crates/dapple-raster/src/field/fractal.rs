@@ -108,8 +108,8 @@ impl<F> Fractal<F> {
         Ok(sum)
     }
 
-    /// Sum of the absolute weights, w: octaves with values from -1 to 1 have sums from -w to w (see [`FractalShape`]
-    /// for other shapes).
+    /// Returns the sum of the absolute weights, w: octaves with values from -1 to 1 have sums from -w to w (see
+    /// [`FractalShape`] for other shapes).
     #[must_use]
     pub fn weight(&self) -> f32 {
         let octaves = self.octaves.iter();
@@ -121,7 +121,7 @@ impl<F> Fractal<F> {
         self.shape
     }
 
-    /// Octaves scaled to their frequencies, with their weights.
+    /// Returns the octaves scaled to their frequencies, with their weights.
     pub(super) fn octaves<const N: usize>(&self) -> impl Iterator<Item = (Scaled<&F, N>, f32)> {
         self.octaves.iter().map(|octave| {
             let scaled = Scaled {

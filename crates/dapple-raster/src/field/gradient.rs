@@ -105,7 +105,7 @@ impl<F: Gradient<N>, const N: usize> Gradient<N> for Rotated<F> {
 
 /// Displacement fields with gradients: an array of fields of one type, or a tuple of different types.
 pub trait DisplacementGradient<const N: usize = 2>: Displacement<N> {
-    /// Displacement along an axis, which must be below `N`.
+    /// Returns the displacement along an axis, which must be below `N`.
     fn gradient_along(&self, axis: usize) -> &dyn Gradient<N>;
 }
 

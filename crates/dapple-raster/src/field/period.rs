@@ -4,8 +4,8 @@
 /// period.
 const MOST_REPEATS: u32 = 64;
 
-/// Common period of two fields along each axis: the least common multiple of their [periods](crate::Field::period), if
-/// it is at most 64 times the longer one. For implementations of composed fields.
+/// Returns the common period of two fields along each axis: the least common multiple of their
+/// [periods](crate::Field::period), if it is at most 64 times the longer one. For implementations of composed fields.
 #[must_use]
 pub fn common_period<const N: usize>(a: [Option<f64>; N], b: [Option<f64>; N]) -> [Option<f64>; N] {
     core::array::from_fn(|axis| common_multiple(a[axis]?, b[axis]?))

@@ -36,7 +36,7 @@ pub struct Warped<F, D> {
 
 /// Displacement fields, one per axis: an array of fields of one type, or a tuple of different types.
 pub trait Displacement<const N: usize = 2>: Send + Sync {
-    /// Displacement along an axis, which must be below `N`.
+    /// Returns the displacement along an axis, which must be below `N`.
     fn along(&self, axis: usize) -> &dyn Field<N>;
 }
 

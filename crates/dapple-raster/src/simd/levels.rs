@@ -102,8 +102,8 @@ static CHOSEN: AtomicUsize = AtomicUsize::new(BEST);
 /// Value of [`CHOSEN`] if no level is forced.
 const BEST: usize = usize::MAX;
 
-/// SIMD level to use: the best level of this machine that [`dispatch`] is compiled for, detected once, unless
-/// [`for_every_level`] forces another level.
+/// Returns the SIMD level to use: the best level of this machine that [`dispatch`] is compiled for, detected once,
+/// unless [`for_every_level`] forces another level.
 #[inline]
 #[must_use]
 pub fn level() -> Level {
@@ -114,7 +114,7 @@ pub fn level() -> Level {
     }
 }
 
-/// Levels of this machine that [`dispatch`] is compiled for, from lowest to highest, detected once.
+/// Returns the levels of this machine that [`dispatch`] is compiled for, from lowest to highest, detected once.
 #[cold]
 fn levels() -> &'static [Level] {
     static LEVELS: OnceLock<Vec<Level>> = OnceLock::new();

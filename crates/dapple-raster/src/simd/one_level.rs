@@ -8,7 +8,7 @@ pub use crate::simd_dispatch as dispatch;
 pub struct Level;
 
 impl Level {
-    /// The only level.
+    /// Returns the only level.
     #[must_use]
     pub const fn baseline() -> Self {
         Self
@@ -25,7 +25,7 @@ macro_rules! simd_dispatch {
     }};
 }
 
-/// The only level.
+/// Returns the only level.
 #[inline]
 #[must_use]
 pub const fn level() -> Level {

@@ -3,7 +3,7 @@
 use super::*;
 use crate::oracle::{DEGREES, all_filters, binomials};
 
-/// Value at `z` of a symmetric polynomial whose powers are centered on 0.
+/// Returns the value at `z` of a symmetric polynomial whose powers are centered on 0.
 fn at(polynomial: &[f64], z: f64) -> f64 {
     let mut powers = 1.0;
     let mut sum = 0.0;

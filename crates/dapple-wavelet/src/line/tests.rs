@@ -295,7 +295,8 @@ fn mirrored_levels_are_those_of_the_mirrored_line_where_its_mirrors_fit() {
     }
 }
 
-/// Eight periods of the mirrored line, for up to three levels. `once` is 1 if its end values occur once, else 0.
+/// Returns the eight periods of the mirrored line, for up to three levels. `once` is 1 if its end values occur once,
+/// else 0.
 fn mirrored_eight_times(line: &[f64], once: usize) -> Vec<f64> {
     let back = line[once..line.len() - once].iter().rev();
     let period: Vec<f64> = line.iter().chain(back).copied().collect();
@@ -334,7 +335,7 @@ fn down_stays_within_its_bound_and_comes_near_to_it() {
     }
 }
 
-/// A line of 128 with an impulse.
+/// Returns a line of 128 with an impulse.
 fn impulse_at(index: usize) -> Vec<f64> {
     let mut line = vec![0.0; 128];
     line[index] = 1.0;

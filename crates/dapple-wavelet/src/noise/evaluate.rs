@@ -111,7 +111,7 @@ impl Gradient<3> for WaveletNoise<3> {
 }
 
 impl<const N: usize> WaveletNoise<N> {
-    /// Weighted sum of the bands, in order.
+    /// Returns the weighted sum of the bands, in order.
     #[inline(always)]
     fn sum(&self, position: [f64; N], value: impl Fn([Place; N]) -> f32) -> f32 {
         let Some(places) = Period::places(self.periods, position) else {

@@ -146,7 +146,7 @@ fn check_size<const N: usize>(size: [u32; N]) -> Result<(), WaveletError> {
     }
 }
 
-/// Seed of the white noise.
+/// Returns the seed of the white noise.
 fn white_words(seed: Seed) -> Seed {
     seed.child("wavelet noise", 0)
 }

@@ -35,7 +35,7 @@ impl Period {
         }
     }
 
-    /// Tile coordinates of a position, one per period; `None` if the position is not finite.
+    /// Returns the tile coordinates of a position, one per period; `None` if the position is not finite.
     #[inline(always)]
     pub(super) fn places<const N: usize>(
         periods: [Self; N],
@@ -55,7 +55,7 @@ impl Period {
         Some(places)
     }
 
-    /// Tile coordinate of a coordinate; `None` if it is not finite.
+    /// Returns the tile coordinate of a coordinate; `None` if it is not finite.
     pub(super) fn place_of(self, coordinate: f64) -> Option<Place> {
         Self::places([self], [coordinate]).map(|[place]| place)
     }
@@ -89,14 +89,15 @@ impl Place {
         fraction: 0.0,
     };
 
-    /// Cell as an index.
+    /// Returns the cell as an index.
     #[inline(always)]
     pub(super) fn index(self) -> usize {
         // The low bits of the sum contain the integer.
         (self.cell + (1_u64 << 52) as f64).to_bits() as u32 as usize
     }
 
-    /// Weights of the coefficients of the previous cell, this cell and the next cell: a quadratic B-spline.
+    /// Returns the weights of the coefficients of the previous cell, this cell and the next cell: a quadratic
+    /// B-spline.
     #[inline(always)]
     pub(super) fn weights(self) -> [f32; 3] {
         let after = self.fraction as f32;
@@ -108,7 +109,7 @@ impl Place {
         ]
     }
 
-    /// Derivatives of the weights.
+    /// Returns the derivatives of the weights.
     #[inline(always)]
     pub(super) fn slopes(self) -> [f32; 3] {
         let after = self.fraction as f32;
@@ -117,15 +118,15 @@ impl Place {
     }
 }
 
-/// Largest integer not above `x`. (`f64::floor` is a function call unless the target processor has an instruction for
-/// it.)
+/// Returns the largest integer not above `x`. (`f64::floor` is a function call unless the target processor has an
+/// instruction for it.)
 #[inline(always)]
 pub(super) fn floor(x: f64) -> f64 {
     let near = round(x);
     if near > x { near - 1.0 } else { near }
 }
 
-/// Nearest integer.
+/// Returns the nearest integer.
 #[inline(always)]
 fn round(x: f64) -> f64 {
     (x + ROUND) - ROUND

@@ -12,7 +12,7 @@ const PER_CELL: usize = 4;
 
 const SIDE: usize = CELLS * PER_CELL;
 
-/// Complex roots of unity of order `SIDE`, by half-angle formulas without trigonometric functions.
+/// Returns the complex roots of unity of order `SIDE`, by half-angle formulas without trigonometric functions.
 fn roots() -> Vec<[f64; 2]> {
     // Start with a quarter turn and halve it until it is one step.
     let (mut cosine, mut sine, mut steps) = (0.0_f64, 1.0_f64, 4);
@@ -26,7 +26,7 @@ fn roots() -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Fourier transform of a line.
+/// Returns the Fourier transform of a line.
 fn transform(line: &[[f64; 2]], roots: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let at = |frequency: usize| {
         let mut sum = [0.0; 2];
@@ -40,7 +40,7 @@ fn transform(line: &[[f64; 2]], roots: &[[f64; 2]]) -> Vec<[f64; 2]> {
     (0..SIDE).map(at).collect()
 }
 
-/// Power by the larger frequency of both axes, in cycles per tile.
+/// Returns the power by the larger frequency of both axes, in cycles per tile.
 fn power(seed: u64, roots: &[[f64; 2]]) -> Vec<f64> {
     let noise = WaveletNoise2::new(CELLS as u32, Seed(seed)).unwrap();
     let sample = |x: usize, y: usize| {

@@ -20,7 +20,7 @@ pub(crate) struct LineSums {
 }
 
 impl LineSums {
-    /// Sums for the values of a periodic spline with `length` coefficients, over all positions.
+    /// Returns the sums for the values of a periodic spline with `length` coefficients, over all positions.
     pub(crate) fn of_values(length: usize) -> Result<Self, WaveletError> {
         let [impulse, low] = impulses(length)?;
         Ok(Self {
@@ -30,7 +30,7 @@ impl LineSums {
         })
     }
 
-    /// Sums for coefficients after doubling them `levels` times, over all of them.
+    /// Returns the sums for coefficients after doubling them `levels` times, over all of them.
     pub(crate) fn of_coefficients(length: usize, levels: u32) -> Result<Self, WaveletError> {
         let [mut impulse, mut low] = impulses(length)?;
         for _ in 0..levels {
@@ -50,7 +50,7 @@ impl LineSums {
         })
     }
 
-    /// Factor that normalizes noise along these axes to a mean square of 1.
+    /// Returns the factor that normalizes noise along these axes to a mean square of 1.
     pub(crate) fn factor<const N: usize>(axes: [Self; N]) -> f64 {
         let product = |part: fn(&Self) -> f64| axes.iter().map(part).product::<f64>();
         let mean_square = product(|sums| sums.whole) - 2.0 * product(|sums| sums.cross)
@@ -59,14 +59,14 @@ impl LineSums {
     }
 }
 
-/// An impulse and its projection.
+/// Returns an impulse and its projection.
 fn impulses(length: usize) -> Result<[Vec<f64>; 2], WaveletError> {
     let impulse: Vec<f64> = (0..length).map(|at| f64::from(u8::from(at == 0))).collect();
     let low = SplineFilter::default().project_line(&impulse, 1, Border::Periodic)?;
     Ok([impulse, low])
 }
 
-/// Integral of the product of two periodic quadratic splines.
+/// Returns the integral of the product of two periodic quadratic splines.
 fn inner(a: &[f64], b: &[f64]) -> f64 {
     // Integrals of products of a B-spline with copies 2, 1 and 0 cells away, all times their sum
     let overlaps = gram(Degree::Quadratic);

@@ -37,20 +37,20 @@ impl<const N: usize> Tile<N> {
         }
     }
 
-    /// Maximum absolute coefficient.
+    /// Returns the maximum absolute coefficient.
     pub(super) fn largest(&self) -> f32 {
         let magnitudes = self.coefficients.iter().map(|value| value.abs());
         magnitudes.fold(0.0, f32::max)
     }
 
-    /// Coefficient of a cell.
+    /// Returns the coefficient of a cell.
     #[cfg(test)]
     pub(super) fn coefficient(&self, cell: [usize; N]) -> f32 {
         let axes = cell.iter().zip(&self.sides).rev();
         self.coefficients[axes.fold(0, |at, (cell, side)| at * side + cell + 1)]
     }
 
-    /// Three consecutive coefficients of a row, starting at a memory index.
+    /// Returns three consecutive coefficients of a row, starting at a memory index.
     #[inline(always)]
     fn three(&self, at: usize) -> [f32; 3] {
         let row = &self.coefficients[at..at + 3];
@@ -59,13 +59,13 @@ impl<const N: usize> Tile<N> {
 }
 
 impl Tile<2> {
-    /// Value at a position.
+    /// Returns the value at a position.
     #[inline(always)]
     pub(super) fn value(&self, [x, y]: [Place; 2]) -> f32 {
         across(x.weights(), down(y.weights(), self.rows([x, y])))
     }
 
-    /// Value at a position, and its gradient per cell.
+    /// Returns the value at a position, and its gradient per cell.
     #[inline(always)]
     pub(super) fn value_with_gradient(&self, [x, y]: [Place; 2]) -> (f32, [f32; 2]) {
         let rows = self.rows([x, y]);
@@ -81,7 +81,7 @@ impl Tile<2> {
         blend(y.weights(), rows, row);
     }
 
-    /// Length of a row in memory, in cells.
+    /// Returns the length of a row in memory, in cells.
     pub(super) fn row_len(&self) -> usize {
         self.sides[0]
     }
@@ -98,14 +98,14 @@ impl Tile<2> {
 }
 
 impl Tile<3> {
-    /// Value at a position.
+    /// Returns the value at a position.
     #[inline(always)]
     pub(super) fn value(&self, [x, y, z]: [Place; 3]) -> f32 {
         let rows = self.rows(z.weights(), [x, y, z]);
         across(x.weights(), down(y.weights(), rows))
     }
 
-    /// Value at a position, and its gradient per cell.
+    /// Returns the value at a position, and its gradient per cell.
     #[inline(always)]
     pub(super) fn value_with_gradient(&self, [x, y, z]: [Place; 3]) -> (f32, [f32; 3]) {
         let rows = self.rows(z.weights(), [x, y, z]);
@@ -123,7 +123,7 @@ impl Tile<3> {
         (across(x.weights(), row), gradient)
     }
 
-    /// Two-dimensional tile at a depth. Its values equal those of this tile, bit for bit.
+    /// Returns the two-dimensional tile at a depth. Its values equal those of this tile, bit for bit.
     pub(super) fn slice(&self, z: Place) -> Tile<2> {
         let [width, height, _] = self.sides;
         let area = width * height;
@@ -136,7 +136,7 @@ impl Tile<3> {
         }
     }
 
-    /// Rows around a position, each blended from three slices.
+    /// Returns the rows around a position, each blended from three slices.
     #[inline(always)]
     fn rows(&self, weights: [f32; 3], [x, y, z]: [Place; 3]) -> [[f32; 3]; 3] {
         let [width, height, _] = self.sides;
@@ -148,7 +148,7 @@ impl Tile<3> {
         ]
     }
 
-    /// Three coefficients of a row, blended from three slices.
+    /// Returns three coefficients of a row, blended from three slices.
     #[inline(always)]
     fn pillar(&self, weights: [f32; 3], at: usize) -> [f32; 3] {
         let area = self.sides[0] * self.sides[1];
@@ -171,7 +171,7 @@ fn blend(weights: [f32; 3], three: &[f32], sum: &mut [f32]) {
     }
 }
 
-/// Weighted sum of three row segments.
+/// Returns the weighted sum of three row segments.
 #[inline(always)]
 fn down(weights: [f32; 3], [first, second, third]: [[f32; 3]; 3]) -> [f32; 3] {
     [
@@ -181,7 +181,7 @@ fn down(weights: [f32; 3], [first, second, third]: [[f32; 3]; 3]) -> [f32; 3] {
     ]
 }
 
-/// Weighted sum of a row segment.
+/// Returns the weighted sum of a row segment.
 #[inline(always)]
 pub(super) fn across(weights: [f32; 3], row: [f32; 3]) -> f32 {
     (weights[0] * row[0] + weights[1] * row[1]) + weights[2] * row[2]

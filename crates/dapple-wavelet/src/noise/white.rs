@@ -16,7 +16,7 @@ pub(crate) fn white_raster(size: [u32; 2], words: Seed) -> Result<Raster<f32>, W
     })?)
 }
 
-/// Value of a cell, from the hash of its row and its column.
+/// Returns the value of a cell, from the hash of its row and its column.
 #[inline]
 pub(crate) fn white(row: CellHash, column: u32) -> f32 {
     let bits = row.axis(column.into()).at(0);

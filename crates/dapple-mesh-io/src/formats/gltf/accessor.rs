@@ -53,7 +53,7 @@ impl Budget {
 }
 
 impl Source<'_> {
-    /// Number of elements of an accessor.
+    /// Returns the number of elements of an accessor.
     pub(super) fn count(&self, index: usize) -> Result<usize, MeshIoError> {
         Ok(self.accessor(index)?.count)
     }
@@ -64,7 +64,7 @@ impl Source<'_> {
         Ok(accessor.buffer_view.is_none() && accessor.sparse.is_none())
     }
 
-    /// Values of an accessor as indices.
+    /// Returns the values of an accessor as indices.
     pub(super) fn indices(
         &self,
         index: usize,
@@ -81,7 +81,7 @@ impl Source<'_> {
         Ok(column.values.iter().map(|&index| index as u32).collect())
     }
 
-    /// Values of an accessor.
+    /// Returns the values of an accessor.
     ///
     /// Integers become fractions if they are normalized, or if `fractions` is set because the attribute is always
     /// fractional.
@@ -184,7 +184,7 @@ impl Source<'_> {
 }
 
 impl Elements<'_> {
-    /// Values of `count` elements.
+    /// Returns the values of `count` elements.
     fn read(&self, count: usize) -> Result<Vec<f64>, MeshIoError> {
         let size = self.component.size();
         // The last element may be shorter than the stride.
@@ -250,7 +250,7 @@ impl Component {
         }
     }
 
-    /// Fraction of a normalized value (specification, section 3.6.2.2).
+    /// Returns the fraction of a normalized value (specification, section 3.6.2.2).
     fn fraction(self, value: f64) -> f64 {
         match self {
             Self::I8 => (value / 127.0).max(-1.0),

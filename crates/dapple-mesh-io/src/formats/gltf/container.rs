@@ -42,7 +42,7 @@ impl<'a> Container<'a> {
         Ok(Self { json, bin })
     }
 
-    /// Bytes of all buffers; `None` for a buffer that is missing or too short.
+    /// Returns the bytes of all buffers; `None` for a buffer that is missing or too short.
     pub(super) fn buffers(
         &self,
         document: &Document,
@@ -62,7 +62,7 @@ impl<'a> Container<'a> {
     }
 }
 
-/// Type and content of the first chunk, and the rest.
+/// Returns the type and content of the first chunk, and the rest.
 fn chunk(bytes: &[u8]) -> Option<([u8; 4], &[u8], &[u8])> {
     let length = word(bytes, 0)?;
     let kind = bytes.get(4..8)?.try_into().ok()?;

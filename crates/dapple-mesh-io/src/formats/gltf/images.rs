@@ -29,7 +29,7 @@ struct Draft {
 ///
 /// # Errors
 ///
-/// The errors of [`read`](super::read) about the container, the JSON and missing buffers;
+/// Same as [`read`](super::read) about the container, the JSON and missing buffers;
 /// [`MeshIoErrorKind::Size`](crate::MeshIoErrorKind::Size) if the file would have 2^32 bytes or more.
 pub fn replace_images(
     bytes: &[u8],
@@ -76,7 +76,7 @@ pub fn replace_images(
     draft.file()
 }
 
-/// Media type of an image by its signature, for the formats that occur in glTF files.
+/// Returns the media type of an image by its signature, for the formats that occur in glTF files.
 fn media_type(bytes: &[u8]) -> Option<&'static str> {
     match bytes {
         [
@@ -118,7 +118,7 @@ fn count_views(value: &Value, uses: &mut BTreeMap<u64, usize>) {
     }
 }
 
-/// An index or offset in the document; 0 if missing.
+/// Returns an index or offset in the document; 0 if missing.
 fn number(entries: &Map<String, Value>, name: &str) -> usize {
     let number = entries.get(name).and_then(Value::as_u64);
     number
@@ -209,7 +209,7 @@ impl Draft {
         }
     }
 
-    /// Byte ranges that only replaced images used, in order. The length of each is a multiple of four.
+    /// Returns the byte ranges that only replaced images used, in order. The length of each is a multiple of four.
     fn cuts(&mut self) -> Vec<Range<usize>> {
         let contents = core::mem::take(&mut self.contents);
         let (mut freed, mut kept) = (Vec::new(), Vec::new());

@@ -50,8 +50,8 @@ impl Placement {
 }
 
 impl Source<'_> {
-    /// Placement of the textures of a material: of the base color, else of the normals, else of metalness and
-    /// roughness.
+    /// Returns the placement of the textures of a material: of the base color, else of the normals, else of metalness
+    /// and roughness.
     pub(super) fn placement(&self, material: usize) -> Placement {
         let material = self.document.materials.get(material);
         let pbr = material.and_then(|material| material.pbr_metallic_roughness.as_deref());
@@ -128,7 +128,7 @@ impl Source<'_> {
         }
     }
 
-    /// Name of the wrap mode of a texture, if it does not repeat.
+    /// Returns the name of the wrap mode of a texture, if it does not repeat.
     fn wrap(&self, texture: usize) -> Option<&'static str> {
         let sampler = self.document.textures.get(texture)?.sampler?;
         let sampler = self.document.samplers.get(sampler)?;
@@ -141,7 +141,7 @@ impl Source<'_> {
         })
     }
 
-    /// Image of a texture, or the entry of [`Model::left_out`] if it cannot be read.
+    /// Returns the image of a texture, or the entry of [`Model::left_out`] if it cannot be read.
     fn image(&self, index: usize, resolve: &mut FileResolver<'_>) -> Result<EncodedImage, String> {
         let no_image = || format!("texture {index}, which has no image");
         let texture = self.document.textures.get(index).ok_or_else(no_image)?;
@@ -168,7 +168,8 @@ impl Source<'_> {
     }
 }
 
-/// Names of the properties of a material that a model cannot represent, if they differ from their defaults.
+/// Returns the names of the properties of a material that a model cannot represent, if they differ from their
+/// defaults.
 fn left_out_of(material: &Entry) -> Vec<&str> {
     let pbr = material.pbr_metallic_roughness.as_deref();
     let factor = |of: fn(&Pbr) -> Option<f64>, plain: f64, textured: f64| {

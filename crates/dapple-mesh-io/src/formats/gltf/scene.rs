@@ -107,7 +107,7 @@ pub(super) fn read(
     draft.into_model()
 }
 
-/// Roots of the default scene; without scenes, all nodes that are not a child.
+/// Returns the roots of the default scene; without scenes, all nodes that are not a child.
 fn roots(source: &Source<'_>) -> Result<Vec<usize>, MeshIoError> {
     let document = &source.document;
     if document.scene.is_none() && document.scenes.is_empty() {
@@ -128,7 +128,7 @@ fn roots(source: &Source<'_>) -> Result<Vec<usize>, MeshIoError> {
 }
 
 impl Draft<'_> {
-    /// Transforms of the instances of a mesh.
+    /// Returns the transforms of the instances of a mesh.
     fn copies(
         &mut self,
         instancing: &Instancing,
@@ -237,7 +237,7 @@ impl Draft<'_> {
         }
     }
 
-    /// Vectors of an attribute with the morph targets applied.
+    /// Returns the vectors of an attribute with the morph targets applied.
     fn vectors(
         &mut self,
         name: &str,
@@ -408,7 +408,7 @@ impl Draft<'_> {
 }
 
 impl Vertices<'_> {
-    /// Key of the vertices of a primitive: primitives of a mesh with equal keys share their vertices.
+    /// Returns the key of the vertices of a primitive: primitives of a mesh with equal keys share their vertices.
     fn key(&self, primitive: &Primitive) -> (Attributes, Option<usize>, Vec<Option<usize>>) {
         let material = primitive
             .material
@@ -428,7 +428,7 @@ impl Vertices<'_> {
     }
 }
 
-/// Values of an element, if the column exists.
+/// Returns the values of an element, if the column exists.
 fn element<const N: usize>(column: &Option<Column>, index: usize) -> Option<[f64; N]> {
     let (elements, _) = column.as_ref()?.values.as_chunks();
     elements.get(index).copied()

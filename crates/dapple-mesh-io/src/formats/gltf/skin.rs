@@ -25,7 +25,7 @@ pub(super) struct Influences {
 }
 
 impl Source<'_> {
-    /// Transform of each node to the scene; the identity for nodes in a cycle.
+    /// Returns the transform of each node to the scene; the identity for nodes in a cycle.
     pub(super) fn worlds(&self) -> Vec<DMat4> {
         let nodes = &self.document.nodes;
         let mut is_root = vec![true; nodes.len()];
@@ -50,7 +50,7 @@ impl Source<'_> {
         worlds.into_iter().map(Option::unwrap_or_default).collect()
     }
 
-    /// Pose of the mesh of a node with this transform to the scene.
+    /// Returns the pose of the mesh of a node with this transform to the scene.
     pub(super) fn pose(
         &self,
         node: &Node,
@@ -98,7 +98,7 @@ impl Influences {
         columns.all(|column| column.width == 4 && column.values.len() == 4 * n_vertices)
     }
 
-    /// Weighted mean of the matrices of the joints of a vertex; `None` without weights.
+    /// Returns the weighted mean of the matrices of the joints of a vertex; `None` without weights.
     fn matrix(&self, vertex: usize, joints: &[DMat4]) -> Result<Option<DMat4>, MeshIoError> {
         let (mut sum, mut total) = (DMat4::ZERO, 0.0);
         for (numbers, weights) in self.joints.iter().zip(&self.weights) {

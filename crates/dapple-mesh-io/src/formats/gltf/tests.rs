@@ -32,7 +32,7 @@ fn base64(bytes: &[u8]) -> String {
     text + &"=="[..(3 - bytes.len() % 3) % 3]
 }
 
-/// Four corners of a square, the indices 0 to 3, and integer colors.
+/// Returns four corners of a square, the indices 0 to 3, and integer colors.
 fn square() -> Value {
     let positions = [
         0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0f32,
@@ -85,7 +85,7 @@ fn faces(model: &Model) -> Vec<[u32; 3]> {
         .collect()
 }
 
-/// A cube with all attributes, whose corners differ at each vertex.
+/// Returns a cube with all attributes, whose corners differ at each vertex.
 fn full() -> Model {
     let mut model = Model::from(cube());
     let uv = |i: usize, k: usize| DVec2::new(0.125 * (i % 4) as f64, 0.25 * k as f64);
@@ -531,7 +531,7 @@ fn written_file_is_valid_for_another_reader() {
     );
 }
 
-/// Minimum and maximum of each component.
+/// Returns the minimum and maximum of each component.
 fn bound(positions: &[[f32; 3]]) -> ([f32; 3], [f32; 3]) {
     let fold = |choose: fn(f32, f32) -> f32| {
         [0, 1, 2].map(|axis| {

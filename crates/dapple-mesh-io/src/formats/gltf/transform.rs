@@ -3,7 +3,7 @@
 use super::document::Node;
 use glam::{DMat3, DMat4, DQuat, DVec3};
 
-/// Transform from a node to its parent.
+/// Returns the transform from a node to its parent.
 pub(super) fn local(node: &Node) -> DMat4 {
     if let Some(matrix) = &node.matrix {
         return DMat4::from_cols_array(matrix);
@@ -33,7 +33,7 @@ pub(super) fn trs(
     )
 }
 
-/// Matrix that transforms normals, up to their lengths. It exists even if the transform has no inverse.
+/// Returns the matrix that transforms normals, up to their lengths. It exists even if the transform has no inverse.
 pub(super) fn cofactors(transform: DMat4) -> DMat3 {
     let matrix = DMat3::from_mat4(transform);
     let (x, y, z) = (matrix.x_axis, matrix.y_axis, matrix.z_axis);

@@ -57,7 +57,7 @@ struct Split {
 ///
 /// # Errors
 ///
-/// The errors of [`Model::check`]; [`MeshIoErrorKind::Unsupported`] for [textures of unit squares](Model::tiles);
+/// Same as [`Model::check`], plus [`MeshIoErrorKind::Unsupported`] for [textures of unit squares](Model::tiles);
 /// [`MeshIoErrorKind::Size`] if the file would have 2^32 bytes or more.
 pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
     model.check()?;

@@ -192,7 +192,7 @@ struct Reading<'a, 'b> {
 }
 
 impl Reading<'_, '_> {
-    /// Images of a texture: one per unit square if the squares have separate textures, else at most one.
+    /// Returns the images of a texture: one per unit square if the squares have separate textures, else at most one.
     fn images(&mut self, found: Option<&Texture>) -> Vec<Option<EncodedImage>> {
         let Some(found) = found else {
             return Vec::new();
@@ -219,8 +219,8 @@ impl Reading<'_, '_> {
         images
     }
 
-    /// Images of the unit squares, if the texture name is a pattern, or contains the number of a square and all files
-    /// exist.
+    /// Returns the images of the unit squares, if the texture name is a pattern, or contains the number of a square
+    /// and all files exist.
     fn tiles(&mut self, found: &Texture) -> Option<Vec<Option<EncodedImage>>> {
         let name = &found.name;
         if tile_name(name, 1001).is_some() {
@@ -243,7 +243,7 @@ impl Reading<'_, '_> {
         has_all.then_some(images)
     }
 
-    /// Images of the unit squares for a name pattern.
+    /// Returns the images of the unit squares for a name pattern.
     fn tiles_of(&mut self, name: &str) -> Vec<Option<EncodedImage>> {
         let mut missing = None;
         let mut n_missing = 0;
@@ -268,7 +268,7 @@ impl Reading<'_, '_> {
     }
 }
 
-/// Color of a `Kd`; an error outside of the range of `f32`.
+/// Returns the color of a `Kd`; an error outside of the range of `f32`.
 fn diffuse(color: DVec3, line: &Line<'_>) -> Result<LinearRgb, MeshIoError> {
     let parts = color.as_vec3().to_array();
     match parts.iter().position(|part| !part.is_finite()) {
@@ -330,7 +330,7 @@ impl Texture {
         (!words.is_empty()).then_some(texture)
     }
 
-    /// Transform of texture coordinates, v down; `None` if it is the identity.
+    /// Returns the transform of texture coordinates, v down; `None` if it is the identity.
     fn map(&self) -> Option<UvMap> {
         let (scale, offset) = (self.scale, self.offset);
         (scale != DVec2::ONE || offset != DVec2::ZERO).then_some(UvMap { scale, offset })

@@ -5,12 +5,12 @@ use dapple_mesh::{EncodedImage, Model};
 
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// A PNG file that contains its name.
+/// Returns a PNG file that contains its name.
 fn png(name: &str) -> Vec<u8> {
     [PNG, name.as_bytes()].concat()
 }
 
-/// OBJ text with a triangle in each of the unit squares, v up.
+/// Returns the OBJ text with a triangle in each of the unit squares, v up.
 fn text(squares: &[[f64; 2]]) -> String {
     let mut text = "mtllib a.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\n".to_owned();
     for (at, [u, v]) in squares.iter().enumerate() {
@@ -31,7 +31,7 @@ fn read(squares: &[[f64; 2]], material: &str, files: &[&str]) -> Model {
     read_with(text(squares).as_bytes(), &mut resolve).expect("it is valid")
 }
 
-/// Numbers of the unit squares, with the names of their texture files.
+/// Returns the numbers of the unit squares, with the names of their texture files.
 fn tiles(model: &Model) -> Vec<(u32, String)> {
     let name = |image: &Option<EncodedImage>| {
         let bytes = image

@@ -16,7 +16,7 @@ use std::fmt::Write as _;
 ///
 /// # Errors
 ///
-/// The errors of [`Model::check`].
+/// Same as [`Model::check`].
 pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
     Ok(text(model, None)?.into_bytes())
 }
@@ -29,7 +29,7 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
 ///
 /// # Errors
 ///
-/// The errors of [`Model::check`]; [`MeshIoErrorKind::Name`] if the stem is empty, or contains white space, a slash, a
+/// Same as [`Model::check`], plus [`MeshIoErrorKind::Name`] if the stem is empty, or contains white space, a slash, a
 /// backslash or `#`, which names in an OBJ file cannot contain.
 pub fn write_files(model: &Model, stem: &str) -> Result<Vec<NamedFile>, MeshIoError> {
     let odd = |c: char| c.is_whitespace() || c.is_control() || matches!(c, '/' | '\\' | '#');
@@ -53,7 +53,7 @@ fn file(name: String, bytes: &[u8]) -> NamedFile {
     NamedFile { name, bytes }
 }
 
-/// Text of the MTL file; its textures are added to `files`.
+/// Returns the text of the MTL file; its textures are added to `files`.
 fn material(model: &Model, stem: &str, files: &mut Vec<NamedFile>) -> String {
     let LinearRgba { color, alpha } = model.material.base_color_factor;
     let mut text = format!(
@@ -83,7 +83,7 @@ fn material(model: &Model, stem: &str, files: &mut Vec<NamedFile>) -> String {
     text
 }
 
-/// Text of the OBJ file. Writing to a string cannot fail.
+/// Returns the text of the OBJ file. Writing to a string cannot fail.
 fn text(model: &Model, library: Option<&str>) -> Result<String, MeshIoError> {
     model.check()?;
     let mut text = String::new();
@@ -125,7 +125,7 @@ fn numbers(text: &mut String, vector: DVec3) {
     }
 }
 
-/// sRGB code of a color as fractions; rounding to 1e-6 preserves all 16-bit codes.
+/// Returns the sRGB code of a color as fractions; rounding to 1e-6 preserves all 16-bit codes.
 fn coded(color: LinearRgb) -> DVec3 {
     let unit = |code: u16| (f64::from(code.to_unit()) * 1e6).round() / 1e6;
     DVec3::from_array(color.to_srgb::<u16>().map(unit))

@@ -23,7 +23,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Error about the values read last, with the line number if the body is text.
+    /// Creates the error about the values read last, with the line number if the body is text.
     pub(super) fn error(&self, why: impl Display) -> MeshIoError {
         if self.encoding != Encoding::Text {
             return MeshIoError::file(FORMAT, why.to_string());
@@ -80,7 +80,7 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    /// Length of a list.
+    /// Returns the length of a list.
     fn count(&mut self, scalar: Scalar) -> Result<usize, MeshIoError> {
         let count = self.scalar(scalar)?;
         // Each value has at least one byte, so reading soon fails for a false count; memory is not allocated in

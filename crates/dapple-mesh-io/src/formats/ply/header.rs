@@ -127,7 +127,7 @@ impl Header {
 }
 
 impl Element {
-    /// Index of the first property with one of these names.
+    /// Returns the index of the first property with one of these names.
     pub(super) fn place(&self, names: &[&str]) -> Option<usize> {
         let mut properties = self.properties.iter();
         properties.position(|property| names.contains(&property.name.as_str()))
@@ -135,7 +135,7 @@ impl Element {
 }
 
 impl Scalar {
-    /// Size in bytes in a binary file.
+    /// Returns the size in bytes in a binary file.
     pub(super) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,

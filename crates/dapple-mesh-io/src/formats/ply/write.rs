@@ -26,7 +26,7 @@ struct Out {
 ///
 /// # Errors
 ///
-/// The errors of [`Model::check`].
+/// Same as [`Model::check`].
 pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
     encode(model, None)
 }
@@ -35,7 +35,7 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
 ///
 /// # Errors
 ///
-/// The errors of [`Model::check`].
+/// Same as [`Model::check`].
 pub fn write_text(model: &Model) -> Result<Vec<u8>, MeshIoError> {
     encode(model, Some(String::new()))
 }

@@ -14,7 +14,7 @@ fn why(bytes: &[u8]) -> String {
     }
 }
 
-/// A binary file with the square of the text.
+/// Returns a binary file with the square of the text.
 fn square(head: &[u8], attributes: u8) -> Vec<u8> {
     let mut bytes = head.to_vec();
     bytes.resize(80, 0);

@@ -39,7 +39,7 @@ fn repair_of_files_gives_surfaces() {
     }
 }
 
-/// Triangles of an OBJ file, polygons as fans.
+/// Returns the triangles of an OBJ file, polygons as fans.
 #[expect(clippy::disallowed_methods, reason = "reads test data")]
 fn read(path: &str) -> Option<Mesh> {
     let text = std::fs::read_to_string(path).ok()?;

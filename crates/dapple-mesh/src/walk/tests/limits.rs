@@ -154,7 +154,7 @@ fn walk_around_the_tip_of_a_spike_ends() {
     }
 }
 
-/// A closed, open, or rough surface, and a point in one of its faces.
+/// Returns a closed, open, or rough surface, and a point in one of its faces.
 fn somewhere() -> impl Strategy<Value = (Surface, SurfacePoint)> {
     let rough = sheet(9, 9, |column, row| {
         let height = libm::sin(f64::from(column * 7 + row * 3)) + 0.1 * f64::from(row);

@@ -4,7 +4,7 @@ use crate::statistics::test_sets::{domains, random_set};
 use crate::{Domain, PointSet};
 use glam::DVec2;
 
-/// Distance from a position to the nearest point, by brute force.
+/// Returns the distance from a position to the nearest point, by brute force.
 fn distance_at(set: &PointSet, place: DVec2) -> f64 {
     let squared = set
         .positions()

@@ -117,7 +117,7 @@ impl Multiples {
         multiples
     }
 
-    /// Products of multiple `a` of these angles and multiple `b` of the others, summed over the points.
+    /// Returns the products of multiple `a` of these angles and multiple `b` of the others, summed over the points.
     fn products(&self, a: usize, others: &Self, b: usize) -> Products {
         let [a, b] = [a, b].map(|multiple| multiple * self.per_row..(multiple + 1) * self.per_row);
         let mut sums = [[0.0; LANES]; 4];

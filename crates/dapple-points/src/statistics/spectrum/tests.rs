@@ -7,7 +7,7 @@ use core::{f64::consts::TAU, slice};
 use dapple_hash::{Seed, hash1, unit_f64};
 use glam::DVec2;
 
-/// Ring means and variances of the spectrum by the formula, one frequency at a time.
+/// Returns the ring means and variances of the spectrum by the formula, one frequency at a time.
 fn naive_rings(sets: &[PointSet], options: &SpectrumOptions) -> Vec<(u32, f64, f64)> {
     let size = sets[0].domain().size;
     let n_points: f64 = sets.iter().map(|set| set.len() as f64).sum();
@@ -80,7 +80,7 @@ fn spectrum_equals_the_formula() {
     }
 }
 
-/// Sets of white noise.
+/// Returns the sets of white noise.
 fn white(n_sets: u64, n_points: i64) -> Vec<PointSet> {
     let set = |index| {
         let unit = |point, axis| unit_f64(hash1(Seed(1).child("white", index), [point], axis));

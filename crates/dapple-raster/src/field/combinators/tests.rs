@@ -19,7 +19,7 @@ impl Field for Waves {
     }
 }
 
-/// A fractal sum of one field.
+/// Returns a fractal sum of one field.
 fn octaves<F: Clone>(
     field: F,
     count: usize,

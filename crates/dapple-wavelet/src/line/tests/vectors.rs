@@ -22,7 +22,7 @@ fn impulse(len: usize) -> Vec<f64> {
     line
 }
 
-/// A line of `len` with a unit step in its middle and one at the wrap.
+/// Returns a line of `len` with a unit step in its middle and one at the wrap.
 fn step(len: usize) -> Vec<f64> {
     (0..len)
         .map(|i| f64::from(u8::from(i >= len / 2)))
@@ -131,7 +131,7 @@ fn vectors_of_a_cosine_are_exact() {
     );
 }
 
-/// Cosine by its series, since the bits of the standard library differ between platforms.
+/// Computes the cosine from its series, since the bits of the standard library differ between platforms.
 fn series_of_cosine(x: f64) -> f64 {
     let mut term = 1.0;
     let mut sum = 0.0;

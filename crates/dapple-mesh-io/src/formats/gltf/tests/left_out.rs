@@ -7,8 +7,8 @@ fn png() -> String {
     format!("data:image/png;base64,{}", base64(b"\x89PNG\r\n\x1a\n..."))
 }
 
-/// A square with texture coordinates equal to its positions, four joints and weights per corner, and a morph target
-/// that lifts it by 5.
+/// Returns a square with texture coordinates equal to its positions, four joints and weights per corner, and a morph
+/// target that lifts it by 5.
 fn posed() -> Value {
     let positions: [[f32; 3]; 4] = [
         [0.0, 0.0, 0.0],
