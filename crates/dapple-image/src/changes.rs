@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// Size, modification time and identity of a file. A stamp that differs means that the content may have changed.
+/// A file's size, modification time and identity. If a file's stamp changes, its content may have changed.
 ///
 /// Links are followed: the stamp describes the file that would be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,20 +45,20 @@ fn identity(_: &fs::Metadata) -> Option<[u64; 2]> {
 
 /// Debounced detection of file changes.
 ///
-/// Programs write files in several steps, so a change is reported once two successive looks find the same stamps, and
-/// at the latest after [`LONGEST`](Self::LONGEST) looks.
+/// Programs write files in several steps, so a change is reported once two successive checks find the same stamps,
+/// and after [`LONGEST`](Self::LONGEST) checks at the latest.
 #[derive(Clone, Debug, Default)]
 pub struct FileChanges {
     seen: BTreeMap<PathBuf, Option<FileStamp>>,
-    /// Number of looks since the first change not yet reported; 0 if there is no such change.
+    /// Number of checks since the first unreported change; 0 if there is none.
     n_looks: u32,
 }
 
 impl FileChanges {
-    /// Number of looks after which a change is reported even if the files keep changing.
+    /// Number of checks after which a change is reported even if the files keep changing.
     pub const LONGEST: u32 = 12;
 
-    /// Takes the stamps of `files` as the initial state.
+    /// Creates a detector whose initial state is the current stamps of `files`.
     #[must_use]
     pub fn new(files: &[PathBuf]) -> Self {
         let mut changes = Self::default();
@@ -67,22 +67,22 @@ impl FileChanges {
     }
 
     /// Records the current stamp of a file that is not yet known. If this is called before the file is read, the next
-    /// look detects every write that follows.
+    /// check detects every later write.
     pub fn remember(&mut self, file: PathBuf) {
         let entry = self.seen.entry(file);
         entry.or_insert_with_key(|file| FileStamp::of(file));
     }
 
-    /// Returns whether a file differs from its stamp at the last look.
+    /// Returns whether any file differs from the stamp taken at the last check.
     #[must_use]
     pub fn has_changed(&self) -> bool {
         let mut seen = self.seen.iter();
         seen.any(|(path, stamp)| FileStamp::of(path) != *stamp)
     }
 
-    /// Looks at `files` and returns whether they should be read again now.
+    /// Checks `files` for changes, and returns whether they should be read again now.
     ///
-    /// A file that was neither part of the last look nor [remembered](Self::remember) is only recorded.
+    /// A file that was neither part of the last check nor [remembered](Self::remember) is only recorded.
     pub fn look(&mut self, files: &[PathBuf]) -> bool {
         let stamps = files.iter().map(|file| (file.clone(), FileStamp::of(file)));
         let now: BTreeMap<_, _> = stamps.collect();
@@ -131,7 +131,7 @@ mod tests {
         // A change of another file in the folder is ignored.
         fs::write(folder.path().join("c"), "1").unwrap();
         assert!(!changes.look(&files) && !changes.look(&files));
-        // A file that changes at every look.
+        // A file that changes at every check.
         let n_looks = (1..).find(|&count| {
             fs::write(&files[0], "x".repeat(count)).unwrap();
             changes.look(&files)

@@ -1,10 +1,10 @@
-//! The channels of an image, its format and its depth, for reports and decisions.
+//! Describes an image's channels, format and bit depth.
 
 use crate::exr::Picture;
 use crate::{ExrImage, Image, PngImage, PngPixels};
 use core::fmt;
 
-/// The channels of an image.
+/// Channel layout of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Channels {
@@ -54,7 +54,7 @@ impl Image {
         }
     }
 
-    /// Returns the channels of the file.
+    /// Returns the file's channel layout.
     #[must_use]
     pub fn channels(&self) -> Channels {
         match self {

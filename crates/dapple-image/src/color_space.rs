@@ -6,7 +6,7 @@
 //! point other than D65 is adapted by the Bradford method, as in ICC profiles, so that white stays white.
 //!
 //! All computations use `f64` and the power function of `libm`, which gives the same bits on every machine. Colors
-//! outside of the gamut of BT.709 have components below 0 or above 1.
+//! outside the gamut of BT.709 have components below 0 or above 1.
 
 use crate::{ImageError, ImageErrorKind};
 use core::fmt;
@@ -41,8 +41,8 @@ const BRADFORD: Matrix = [
     [0.0389, -0.0685, 1.0296],
 ];
 
-/// Tolerance for recognizing the matrix of an sRGB profile: largest difference of an entry from the identity. Profiles
-/// round their numbers and adapt D65 in different ways.
+/// Tolerance for recognizing the matrix of an sRGB profile: largest deviation of an entry from the identity matrix.
+/// Profiles round their numbers and adapt D65 in different ways.
 const MATRIX_TOLERANCE: f64 = 0.003;
 
 /// Color space declared by a file.
@@ -73,7 +73,7 @@ pub(crate) enum Source {
 /// Conversion of codes to linear light.
 #[derive(Clone, Debug, Default, PartialEq)]
 enum Conversion {
-    /// The conversion of sRGB.
+    /// The sRGB conversion.
     #[default]
     Srgb,
     /// One curve per channel, then a matrix.
@@ -82,14 +82,14 @@ enum Conversion {
     Unknown(&'static str),
 }
 
-/// Curves of red, green and blue, and the matrix from their linear light to BT.709.
+/// Transfer curves for red, green and blue, and the matrix from their linear light to BT.709.
 #[derive(Clone, Debug, PartialEq)]
 struct MatrixSpace {
     matrix: Matrix,
     curves: [Curve; 3],
 }
 
-/// Transfer curve from codes to light, both from 0 to 1.
+/// Transfer curve from codes to linear light, both from 0 to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Curve {
     /// The sRGB curve.
@@ -129,7 +129,7 @@ impl Curve {
         }
     }
 
-    /// Returns whether the curve equals that of sRGB within half a code of 8 bits.
+    /// Returns whether the curve matches the sRGB curve to within half an 8-bit code.
     fn is_srgb(&self) -> bool {
         (0..=255_u8).all(|code| {
             let code = f64::from(code);
@@ -142,7 +142,7 @@ impl Curve {
 }
 
 impl ColorSpace {
-    /// Returns the color space that is declared to be sRGB.
+    /// Creates a color space that is declared to be sRGB.
     #[cfg(any(feature = "png", feature = "jpeg"))]
     pub(crate) fn srgb(source: Source) -> Self {
         Self {
@@ -151,7 +151,7 @@ impl ColorSpace {
         }
     }
 
-    /// Returns the color space that cannot be converted; `name` describes it in errors.
+    /// Creates a color space that cannot be converted; `name` describes it in errors.
     pub(crate) fn unknown(source: Source, name: &'static str) -> Self {
         Self {
             source,
@@ -159,7 +159,7 @@ impl ColorSpace {
         }
     }
 
-    /// Returns the color space with these primaries and one curve for all channels.
+    /// Creates a color space with these primaries and one curve for all channels.
     #[cfg(any(feature = "png", feature = "jpeg"))]
     pub(crate) fn from_primaries(source: Source, primaries: Primaries, curve: Curve) -> Self {
         match bt709_from(&primaries) {
@@ -170,7 +170,8 @@ impl ColorSpace {
         }
     }
 
-    /// Returns the color space of an ICC matrix profile: its curves, and its columns in XYZ adapted to D50.
+    /// Creates the color space of an ICC matrix profile from its curves and from the columns of its matrix, in XYZ
+    /// adapted to D50.
     pub(crate) fn from_columns(columns: [[f64; 3]; 3], curves: [Curve; 3]) -> Self {
         let column = |row: usize| columns.map(|column| column[row]);
         let profile = [0, 1, 2].map(column);
@@ -203,7 +204,7 @@ impl ColorSpace {
         self.conversion == Conversion::Srgb
     }
 
-    /// Returns the converter from codes of 0 to `max` to linear light of BT.709; `None` for sRGB.
+    /// Returns the converter from codes between 0 and `max` to linear BT.709 light; `None` for sRGB.
     ///
     /// # Errors
     ///
@@ -230,7 +231,8 @@ impl ColorSpace {
     }
 }
 
-/// Text for reports, such as `no color space declared` or `colors by an ICC profile, read as BT.709`.
+/// Formats the color space for reports, such as `no color space declared` or `colors by an ICC profile, read as
+/// BT.709`.
 impl fmt::Display for ColorSpace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let source = match self.source {
@@ -316,7 +318,7 @@ fn product(a: &Matrix, b: &Matrix) -> Matrix {
     [0, 1, 2].map(|row| columns.map(|column| column[row]))
 }
 
-/// Returns the inverse by cofactors; `None` for a singular matrix.
+/// Inverts a matrix by cofactors; `None` if it is singular.
 fn inverse(m: &Matrix) -> Option<Matrix> {
     let minor = |r: usize, c: usize| {
         let [r1, r2, c1, c2] = [(r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3];

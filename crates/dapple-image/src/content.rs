@@ -1,4 +1,4 @@
-//! Content of images, and its encoding as samples of a file.
+//! Image content types, and how their values are encoded as samples in a file.
 //!
 //! Only this module converts values to codes and planes. The writers of whole images and of rows share it.
 
@@ -25,9 +25,9 @@ pub enum Content {
     /// Three values that are not a color, such as occlusion, roughness and metallic. PNG: RGB from 0 to 1, linear,
     /// without a color chunk. OpenEXR: the planes `R`, `G` and `B`, any numbers.
     Packed,
-    /// Four values that are not a color, the fourth of which is not coverage, such as metallic, occlusion, a mask and
-    /// smoothness. PNG: RGBA from 0 to 1, linear, without a color chunk. OpenEXR: the planes `R`, `G`, `B` and `A`,
-    /// any numbers.
+    /// Four values that are not a color and whose fourth value is not coverage, such as metallic, occlusion, a mask
+    /// and smoothness. PNG: RGBA from 0 to 1, linear, without a color chunk. OpenEXR: the planes `R`, `G`, `B` and
+    /// `A`, any numbers.
     PackedFour,
 }
 
@@ -41,7 +41,7 @@ pub enum Depth {
     Sixteen,
 }
 
-/// Format of a file and of its samples.
+/// Format of a file and its samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Encoding {
@@ -61,7 +61,7 @@ pub enum Encoding {
 }
 
 impl Content {
-    /// Returns the name in error messages.
+    /// Returns the name used in error messages.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Gray => "gray",
@@ -97,13 +97,13 @@ impl Content {
     expect(dead_code, reason = "codes are what PNG files hold")
 )]
 pub(crate) trait Pixel: Sync {
-    /// Content of images with this pixel type.
+    /// Content type of images with this pixel type.
     const CONTENT: Content;
-    /// Pixel in 8-bit codes.
+    /// The pixel type encoded with 8 bits per channel.
     type Eight: PngPixel;
-    /// Pixel in 16-bit codes.
+    /// The pixel type encoded with 16 bits per channel.
     type Sixteen: PngPixel;
-    /// Values of a pixel in a NumPy array.
+    /// Array of a pixel's values in a NumPy file.
     type Numbers: AsRef<[f32]>;
 
     fn eight(&self) -> Self::Eight;
@@ -113,7 +113,7 @@ pub(crate) trait Pixel: Sync {
     /// Returns the value of the pixel in a plane, by its index in [`Content::planes`].
     fn part(&self, plane: usize) -> f32;
 
-    /// Returns the values of the pixel, not encoded.
+    /// Returns the pixel's values without encoding.
     fn numbers(&self) -> Self::Numbers;
 }
 

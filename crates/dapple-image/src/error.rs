@@ -1,13 +1,13 @@
-//! Errors of reading and writing images.
+//! Errors from reading and writing images.
 
 use core::fmt;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-/// An error of reading or writing an image.
+/// An error from reading or writing an image.
 ///
-/// Match on [`kind`](Self::kind); the text is for people. [`source`](Error::source) is the error of the file system or
-/// codec, if there is one.
+/// Match on [`kind`](Self::kind); the message is for people. [`source`](Error::source) returns the underlying file
+/// system or codec error, if any.
 #[derive(Debug)]
 pub struct ImageError {
     kind: ImageErrorKind,
@@ -18,16 +18,16 @@ pub struct ImageError {
 dapple_raster::error_kind! {
     /// The kind of failure.
     ImageErrorKind {
-        /// A file could not be read or written; the source is the operating system's error.
+        /// A file could not be read or written. The error's source is the operating system's error.
         Io => "the file cannot be read or written";
         /// The first bytes are not the signature of a supported format, or not of the expected format.
         UnknownFormat => "the bytes are of no format that is known here";
-        /// The bytes break the rules of their format, or end too soon.
+        /// The bytes violate their format, or end too soon.
         Damaged {
-            /// The format whose signature the bytes have.
+            /// Name of the format that the signature belongs to.
             format: &'static str,
         } => "the {format} data is damaged";
-        /// The file uses a feature of its format that is not read.
+        /// The file uses a format feature that this crate cannot read.
         Unsupported {
             /// The name of the feature.
             feature: &'static str,
@@ -69,14 +69,14 @@ dapple_raster::error_kind! {
         } => "an image of {} × {} pixels does not fit into {format}: the limit is {limit} a side", size[0], size[1];
         /// The requested part extends beyond the image.
         Outside {
-            /// First column and row of the part.
+            /// First column and row of the requested part.
             first: [u32; 2],
-            /// Width and height of the part.
+            /// Width and height of the requested part.
             size: [u32; 2],
             /// Width and height of the image.
             image: [u32; 2],
         } => "a part of {} × {} pixels at {},{} reaches out of the image of {} × {}", size[0], size[1], first[0], first[1], image[0], image[1];
-        /// The rows to write have another width than the image.
+        /// The rows to write are not as wide as the image.
         RowWidth {
             /// The width of the rows, in pixels.
             width: u32,
@@ -85,7 +85,7 @@ dapple_raster::error_kind! {
         } => "the rows have {width} pixels, but the image has {needed} columns";
         /// More rows were passed to a writer than the image has.
         TooManyRows {
-            /// Number of rows including the surplus.
+            /// Total number of rows passed, including those beyond the image.
             rows: u64,
             /// The number of rows of the image.
             needed: u32,
@@ -97,31 +97,31 @@ dapple_raster::error_kind! {
             /// The number of rows of the image.
             needed: u32,
         } => "only {rows} rows of {needed} are written";
-        /// The image has other channels than the requested ones.
+        /// The image's channels are not the requested ones.
         Channels {
             /// The channels of the image.
             found: &'static str,
             /// The requested channels.
             needed: &'static str,
         } => "the image is {found}, but {needed} is needed";
-        /// The file has no plane of this name.
+        /// The file has no plane with this name.
         MissingPlane {
             /// The name of the plane.
             name: String,
         } => "there is no plane named {name:?}";
-        /// The colors of the file are declared in a way that cannot be converted.
+        /// The file declares a color space that cannot be converted.
         ColorSpace {
             /// The declaration.
             found: &'static str,
         } => "the colors are declared by {found}, which cannot be converted";
-        /// The file has no layer of this name.
+        /// The file has no layer with this name.
         MissingLayer {
             /// The name of the layer.
             name: String,
             /// The names of all layers of the file.
             layers: Vec<String>,
         } => "there is no layer named {name:?}; the layers are {}", layers.join(", ");
-        /// The image is of a format that has no layers.
+        /// The image's format has no layers.
         NoLayers {
             /// The name of the format.
             format: &'static str,
@@ -163,13 +163,13 @@ impl ImageError {
         Self::new(ImageErrorKind::Damaged { format }).because(source)
     }
 
-    /// Adds the error of a file or a codec as the source.
+    /// Attaches a file or codec error as the source.
     pub(crate) fn because(mut self, source: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
         self.source = Some(source.into());
         self
     }
 
-    /// Adds the path of the file.
+    /// Attaches the file's path.
     pub(crate) fn at(mut self, path: &Path) -> Self {
         self.path = Some(path.to_owned());
         self

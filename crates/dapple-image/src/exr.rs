@@ -1,4 +1,4 @@
-//! OpenEXR files: named planes of `f32`, writing and reading.
+//! Reading and writing OpenEXR files as named planes of `f32`.
 //!
 //! The format is defined in the Academy Software Foundation's "OpenEXR File Layout", <https://openexr.com>; the codec
 //! is the crate `exr`. Colors are linear. Their primaries are the chromaticities of the file, or ITU-R BT.709 if it
@@ -44,7 +44,7 @@ pub struct ExrPlane {
 }
 
 impl ExrPlane {
-    /// Creates a plane with a name.
+    /// Creates a plane called `name`.
     #[must_use]
     pub fn new(name: impl Into<String>, values: Raster<f32>) -> Self {
         Self {
@@ -73,7 +73,7 @@ impl ExrPlane {
     }
 }
 
-/// Content of an OpenEXR file: its planes in file order (by name, within each part).
+/// The content of an OpenEXR file. Planes are in file order: part by part, and by name within each part.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExrImage {
     /// The planes. A plane of a named part is named `part.channel`, unless the file has only one part.
@@ -85,7 +85,7 @@ pub struct ExrImage {
 }
 
 impl ExrImage {
-    /// Returns the plane with a name.
+    /// Returns the plane called `name`.
     ///
     /// # Errors
     ///
@@ -123,8 +123,8 @@ impl ExrImage {
         Err(ImageError::new(ImageErrorKind::Channels { found, needed }))
     }
 
-    /// Returns the colors of the main image with alpha divided out. Alpha is 1 if the file has none. A gray image
-    /// becomes gray colors.
+    /// Returns the colors of the main image unpremultiplied (divided by alpha). Alpha is 1 if the file has none. A
+    /// gray image becomes gray colors.
     ///
     /// [`to_picture`](Self::to_picture) describes how the main image is chosen among several layers. Where alpha is 0,
     /// the color is returned as stored.
@@ -245,13 +245,13 @@ impl ExrImage {
     }
 }
 
-/// Maximum difference of equal chromaticities, which files round to four digits.
+/// Maximum difference between chromaticities that count as equal, which files round to four digits.
 const SAME_CHROMATICITY: f64 = 0.000_2;
 
 /// Description of vector images in errors.
 const VECTORS: &str = "of the vectors X, Y and Z";
 
-/// Normalizes a vector; returns the normal of a flat surface if its length is zero or not finite.
+/// Normalizes a vector. If its length is zero or not finite, returns the normal of a flat surface.
 fn normalized(parts: [f32; 3]) -> Normal {
     // In f64, squares of f32 neither overflow nor vanish.
     let [x, y, z] = parts.map(f64::from);
@@ -264,7 +264,7 @@ fn normalized(parts: [f32; 3]) -> Normal {
     }
 }
 
-/// Checks that a plane has the size of the preceding planes.
+/// Checks that a plane is the same size as the preceding planes.
 fn check_size(size: [u32; 2], needed: [u32; 2]) -> Result<(), ImageError> {
     if size == needed {
         Ok(())
@@ -276,7 +276,7 @@ fn check_size(size: [u32; 2], needed: [u32; 2]) -> Result<(), ImageError> {
     }
 }
 
-/// Divides alpha out of a color. Where alpha is 0, the color is returned as it is.
+/// Divides a color by its alpha. Where alpha is 0, the color is returned unchanged.
 fn straight(multiplied: [f32; 3], alpha: f32) -> LinearRgba {
     let color = if alpha == 0.0 {
         multiplied

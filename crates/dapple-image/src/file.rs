@@ -1,4 +1,4 @@
-//! File access: reading a whole file within a limit, and atomic replacement of a file.
+//! Reads whole files within a size limit, and replaces files atomically.
 //!
 //! A file is written under a temporary name in the same folder, `.dapple-XXXXXX.part`, and then renamed. Other
 //! programs therefore never see a partial file, and the previous content remains if writing fails. The bytes are
@@ -51,8 +51,8 @@ pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, ImageError> {
 ///
 /// # Errors
 ///
-/// [`io::ErrorKind::IsADirectory`] for a folder, [`io::ErrorKind::InvalidInput`] for a device, a pipe or a socket, else
-/// the errors of the system.
+/// [`io::ErrorKind::IsADirectory`] for a folder, [`io::ErrorKind::InvalidInput`] for a device, a pipe or a socket, or
+/// any other error from the operating system.
 pub fn open_regular(path: impl AsRef<Path>) -> io::Result<File> {
     let path = path.as_ref();
     check_regular(&fs::metadata(path)?)?;
@@ -85,8 +85,8 @@ fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
     options
 }
 
-/// A file that is written under a temporary name in its final folder, and then renamed. It is removed if it is dropped
-/// before the rename.
+/// A file that is written under a temporary name in its final folder and then renamed. If the value is dropped before
+/// the rename, the temporary file is removed.
 ///
 /// The steps of a commit are: write all bytes into [`file`](Self::file), [`sync`](Self::sync),
 /// [`rename`](Self::rename), then [`sync_folder`]. For several files, sync all of them first, then rename them in
@@ -117,7 +117,7 @@ impl AtomicFile {
     ///
     /// # Errors
     ///
-    /// If the system fails, for example because there is no such folder.
+    /// If the operating system fails, for example because there is no such folder.
     pub fn beside(path: &Path) -> io::Result<Self> {
         let mut builder = Builder::new();
         let file = builder.prefix(PREFIX).suffix(SUFFIX);
@@ -140,7 +140,7 @@ impl AtomicFile {
     ///
     /// # Errors
     ///
-    /// If the system fails, for example because the disk is full.
+    /// If the operating system fails, for example because the disk is full.
     pub fn sync(&self, path: &Path) -> io::Result<()> {
         if let Ok(found) = fs::metadata(path) {
             self.file().set_permissions(found.permissions())?;
@@ -152,7 +152,8 @@ impl AtomicFile {
     ///
     /// # Errors
     ///
-    /// [`io::ErrorKind::AlreadyExists`] if there is a file that may not be replaced, else the errors of the system.
+    /// [`io::ErrorKind::AlreadyExists`] if there is a file that may not be replaced, or any other error from the
+    /// operating system.
     pub fn rename(self, path: &Path, may_replace: bool) -> io::Result<()> {
         if may_replace {
             self.0.persist(path)?;
@@ -178,7 +179,7 @@ impl AtomicFile {
 ///
 /// # Errors
 ///
-/// If the disk fails.
+/// If writing to the disk fails.
 pub fn sync_folder(path: &Path) -> io::Result<()> {
     if !cfg!(unix) {
         return Ok(());
@@ -195,7 +196,7 @@ pub fn sync_folder(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Ignores the error of a file system that does not support flushing.
+/// Ignores the error that a file system returns if it does not support flushing.
 fn tolerate_unsupported(synced: io::Result<()>) -> io::Result<()> {
     use io::ErrorKind::{InvalidInput, Unsupported};
     match synced {
@@ -204,8 +205,8 @@ fn tolerate_unsupported(synced: io::Result<()>) -> io::Result<()> {
     }
 }
 
-/// Removes temporary files that ended processes have left in the folder of `path`. Errors are ignored: a folder that
-/// cannot be read is reported when the file is written.
+/// Removes temporary files that terminated processes left behind in the folder of `path`. Errors are ignored: a
+/// folder that cannot be read is reported when the file is written.
 pub fn remove_left_behind(path: &Path) {
     let Ok(entries) = fs::read_dir(folder(path)) else {
         return;
@@ -242,7 +243,7 @@ pub fn remove_left_behind(path: &Path) {
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::Io`] with the path, if the folder does not exist or the system fails.
+/// [`ImageErrorKind::Io`] with the path, if the folder does not exist or the operating system fails.
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
     write_and_rename(path, bytes)
         .map_err(|error| ImageError::new(ImageErrorKind::Io).because(error).at(path))

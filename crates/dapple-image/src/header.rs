@@ -1,4 +1,4 @@
-//! Size and format of image files of any size, read from their first bytes.
+//! Reads the size and format of image files, however large, from their first bytes.
 //!
 //! Reference: PNG Specification, third edition (W3C, 2025), section 11.2.1; OpenEXR, "The OpenEXR File Layout".
 
@@ -18,13 +18,14 @@ pub struct ImageHeader {
     pub format: &'static str,
     /// Width and height in pixels.
     pub size: [u64; 2],
-    /// Bits per channel; `None` if the first bytes do not contain it.
+    /// Bits per channel; `None` if the first bytes do not state it.
     pub bits: Option<u32>,
 }
 
-/// Reads the size and format of an image file of any size, without its pixels.
+/// Reads an image file's size and format without its pixels. The file may exceed the limits for reading.
 ///
-/// For PNG, only the header is read. Other formats are decoded with a limit of 0 pixels, which stops after the size.
+/// For PNG, only the header is read. Other formats are decoded with a limit of 0 pixels, so decoding stops once the
+/// size is known.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! ICC profiles: tags of three-component profiles with a matrix and curves.
+//! Parser for three-component ICC profiles with a matrix and curves.
 //!
 //! Reference: International Color Consortium, ICC.1:2022 "Image technology colour management: architecture, profile format
 //! and data structure", sections 7 (header and tags), 8.3 (matrix profiles), 10.6 (`curv`), 10.18 (`para`) and 10.31
@@ -9,7 +9,7 @@ use crate::color_space::{ColorSpace, Curve, Source};
 /// Length of the profile header, in bytes.
 const HEADER: usize = 128;
 
-/// Returns the color space of a profile.
+/// Returns the color space that an ICC profile describes.
 pub(crate) fn color_space(profile: &[u8]) -> ColorSpace {
     let unknown = |name| ColorSpace::unknown(Source::Icc, name);
     if profile.get(36..40) != Some(b"acsp") {
@@ -39,7 +39,7 @@ pub(crate) fn color_space(profile: &[u8]) -> ColorSpace {
     }
 }
 
-/// Returns the data of a tag.
+/// Returns the data of the tag called `name`.
 fn tag<'a>(profile: &'a [u8], name: &[u8; 4]) -> Option<&'a [u8]> {
     let n_tags = whole(profile, HEADER)?;
     let table = profile.get(HEADER + 4..)?;
@@ -96,13 +96,13 @@ fn curve(data: &[u8]) -> Option<Curve> {
     is_finite.then_some(Curve::Parametric(parametric))
 }
 
-/// Returns the unsigned 32-bit integer, big endian.
+/// Reads a big-endian unsigned 32-bit integer at offset `at`.
 fn whole(bytes: &[u8], at: usize) -> Option<usize> {
     let bytes = bytes.get(at..)?.first_chunk::<4>()?;
     usize::try_from(u32::from_be_bytes(*bytes)).ok()
 }
 
-/// Returns the signed fixed-point number with 16 fractional bits.
+/// Reads a signed fixed-point number with 16 fractional bits at offset `at`.
 fn fixed(bytes: &[u8], at: usize) -> Option<f64> {
     let bytes = bytes.get(at..)?.first_chunk::<4>()?;
     Some(f64::from(i32::from_be_bytes(*bytes)) / 65536.0)

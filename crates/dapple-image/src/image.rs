@@ -30,8 +30,8 @@ pub enum Image {
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::UnknownFormat`] if the signature is unknown, [`ImageErrorKind::Unsupported`] if the crate feature
-/// of the format is disabled, else the errors of `decode_png`, `decode_jpeg` and `decode_exr`.
+/// [`ImageErrorKind::UnknownFormat`] if the signature is unknown, [`ImageErrorKind::Unsupported`] if the format's
+/// crate feature is disabled, or any error from `decode_png`, `decode_jpeg` and `decode_exr`.
 pub fn decode_image(bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> {
     #[cfg(feature = "png")]
     if bytes.starts_with(&PNG_SIGNATURE) {
@@ -88,8 +88,8 @@ impl Image {
 
     /// Returns the values of a gray image: from 0 to 1 in PNG and JPEG, of any magnitude in OpenEXR.
     ///
-    /// Use this for data (heights, masks). No transfer curve is applied, regardless of the declared color space. Alpha
-    /// is allowed if it is 1 everywhere.
+    /// Use this method for data such as heights and masks. No transfer curve is applied, regardless of the declared
+    /// color space. Alpha is allowed if it is 1 everywhere.
     ///
     /// # Errors
     ///
@@ -103,14 +103,14 @@ impl Image {
 
     /// Returns the colors in linear light. Gray images become gray colors; alpha is allowed if it is 1 everywhere.
     ///
-    /// PNG and JPEG are converted from the color space that they declare; without a declaration they are sRGB, as on
+    /// PNG and JPEG are converted from the color space that they declare; files without a declaration are sRGB, as on
     /// the web.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::ColorSpace`] if the declared color space cannot be converted,
-    /// [`ImageErrorKind::Channels`] if the image is partly transparent, [`ImageErrorKind::MissingPlane`] or
-    /// [`ImageErrorKind::SizeMismatch`] if an OpenEXR file does not have three planes of color.
+    /// [`ImageErrorKind::ColorSpace`] if the declared color space cannot be converted, [`ImageErrorKind::Channels`]
+    /// if the image is partly transparent, [`ImageErrorKind::MissingPlane`] or [`ImageErrorKind::SizeMismatch`] if an
+    /// OpenEXR file does not have three color planes.
     pub fn color(&self) -> Result<Raster<LinearRgb>, ImageError> {
         match self {
             Self::Png(image) | Self::Jpeg(image) => image.color(),
@@ -126,13 +126,13 @@ impl Image {
 
     /// Returns the colors in linear light with alpha, which is 1 if the file has none.
     ///
-    /// PNG and JPEG are converted from the color space that they declare; without a declaration they are sRGB, as on
+    /// PNG and JPEG are converted from the color space that they declare; files without a declaration are sRGB, as on
     /// the web.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::MissingPlane`] or [`ImageErrorKind::SizeMismatch`] if an OpenEXR file does not have three planes
-    /// of color.
+    /// [`ImageErrorKind::MissingPlane`] or [`ImageErrorKind::SizeMismatch`] if an OpenEXR file does not have three
+    /// color planes.
     pub fn color_alpha(&self) -> Result<Raster<LinearRgba>, ImageError> {
         match self {
             Self::Png(image) | Self::Jpeg(image) => image.color_alpha(),
@@ -142,7 +142,8 @@ impl Image {
 }
 
 impl Image {
-    /// Returns the unit vectors of a normal map, regardless of the declared color space. Alpha of PNG is ignored.
+    /// Returns the unit vectors of a normal map, regardless of the declared color space. The alpha channel of a PNG
+    /// file is ignored.
     ///
     /// The codes of PNG and JPEG are `(part + 1) / 2`; [`ExrImage::normals`] describes the values of OpenEXR.
     ///
@@ -170,7 +171,7 @@ impl Image {
         }
     }
 
-    /// Reinterprets the codes as sRGB and ignores the declared color space: the rule of glTF 2.0, section 3.8.3, for
+    /// Reinterprets the codes as sRGB and ignores the declared color space, as glTF 2.0, section 3.8.3, requires for
     /// textures.
     #[must_use]
     pub fn without_color_space(mut self) -> Self {
@@ -184,8 +185,8 @@ impl Image {
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::MissingLayer`] if there is no layer of this name, [`ImageErrorKind::NoLayers`] for a PNG or
-    /// JPEG file.
+    /// [`ImageErrorKind::MissingLayer`] if there is no layer with this name, [`ImageErrorKind::NoLayers`] for a PNG
+    /// or JPEG file.
     pub fn layer(&self, name: &str) -> Result<Self, ImageError> {
         match self {
             Self::Exr(image) => image.layer(name).map(Self::Exr),

@@ -1,11 +1,11 @@
-//! Decoder of JPEG: gray and color with 8 bits, baseline and progressive.
+//! JPEG decoder for 8-bit gray and color images, baseline and progressive.
 //!
 //! Reference: ITU-T T.81, "Digital compression and coding of continuous-tone still images", 1992, with JFIF (ITU-T
 //! T.871) and Exif. The codec is the crate `zune-jpeg`, without its SIMD, so that a file has the same pixels on every
 //! machine. The color space is taken from the ICC profile, else from Exif; the default is sRGB. The Exif orientation
 //! is applied, as in browsers and editors. Other codings, other depths and CMYK give errors that name the feature.
 //!
-//! Where a program unwinds on panic (the default), a panic of the codec is caught here and becomes
+//! In programs that unwind on panic (the default), a panic in the codec is caught here and becomes
 //! [`ImageErrorKind::Damaged`].
 
 mod exif;
@@ -27,20 +27,22 @@ const START_OF_SCAN: u8 = 0xda;
 /// Second byte of the end-of-image marker.
 const END_OF_IMAGE: u8 = 0xd9;
 
-/// Maximum side of the format, in pixels.
+/// Maximum side length that the format allows, in pixels.
 const SIDE_LIMIT: usize = 65_535;
 
-/// Memory per sample, in bytes: its code, and its 16-bit coefficient, since a progressive file needs all coefficients.
+/// Memory per sample, in bytes: one for the code and two for the 16-bit coefficient, since decoding a progressive
+/// file needs all coefficients.
 const SAMPLE_BYTES: u64 = 3;
 
 /// Decodes a JPEG file to [`PngPixels::Gray8`] or [`PngPixels::Rgb8`] with its color space; the default is sRGB.
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::UnknownFormat`] if the bytes lack the JPEG signature, [`ImageErrorKind::Damaged`] if they violate
-/// its rules or end too soon, [`ImageErrorKind::Unsupported`] for CMYK, for arithmetic, lossless or hierarchical
-/// coding, and for depths other than 8 bits. [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`]
-/// past a limit; each sample counts as three bytes, which decoding may take.
+/// [`ImageErrorKind::UnknownFormat`] if the bytes lack the JPEG signature, [`ImageErrorKind::Damaged`] if they
+/// violate the format's rules or end too soon, [`ImageErrorKind::Unsupported`] for CMYK, for arithmetic, lossless or
+/// hierarchical coding, and for depths other than 8 bits. [`ImageErrorKind::TooManyPixels`] or
+/// [`ImageErrorKind::TooManyBytes`] beyond a limit; each sample counts as three bytes, the most that decoding can
+/// take.
 pub fn decode_jpeg(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
     if !bytes.starts_with(&SIGNATURE) {
         return Err(ImageError::new(ImageErrorKind::UnknownFormat));
@@ -142,7 +144,7 @@ fn frame(bytes: &[u8]) -> Option<[u8; 3]> {
     }
 }
 
-/// Returns the name of the unsupported feature of a frame (T.81, table B.1; T.87 for JPEG-LS).
+/// Returns the name of the unsupported feature that a frame uses (T.81, table B.1; T.87 for JPEG-LS).
 fn unread_feature([marker, bits, channels]: [u8; 3]) -> Option<&'static str> {
     Some(match marker {
         0xc3 | 0xc7 | 0xcb | 0xcf => "lossless JPEG",

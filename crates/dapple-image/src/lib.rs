@@ -27,7 +27,7 @@
 //! | any numbers | [`write_gray_exr`], [`write_color_exr`], [`write_color_alpha_exr`] | [`write_exr`], [`encode_exr`] |
 //! | row by row, for images larger than memory | [`RowWriter`] | PNG, OpenEXR in tiles, NumPy arrays, raw 16-bit heights |
 //!
-//! A [`RowWriter`] takes two MiB of memory for each thread as PNG, and 64 rows as OpenEXR.
+//! A [`RowWriter`] takes two MiB of memory per thread for PNG, and 64 rows for OpenEXR.
 //!
 //! | to read | call |
 //! |---|---|
@@ -47,19 +47,21 @@
 //! | `jpeg` | on | reads JPEG |
 //! | `rayon` | on | compresses and converts on all cores; the bits do not change |
 //!
-//! Each format adds its codec. Without it, files of this format are errors that name the format.
+//! Each format feature adds its codec. Without it, reading a file of that format gives an error that names the
+//! format.
 //!
 //! # Limits
 //!
-//! * By default [`Limits`] allow 2^28 pixels and 4 GiB. They are checked before memory for pixels is taken.
-//! * Any bytes can be read. Damaged, cut off and empty files are an [`ImageError`].
+//! * By default [`Limits`] allow 2^28 pixels and 4 GiB. They are checked before memory for pixels is allocated.
+//! * Any bytes are safe to read. Damaged, truncated and empty files give an [`ImageError`].
 //! * Data (heights, masks, normals) is written as it is, and read without any transfer curve.
 //! * Color is linear in memory and in OpenEXR, and sRGB in PNG. It is converted from the color space that a file
 //!   declares: `cICP`, `iCCP`, `sRGB`, `gAMA` and `cHRM` of PNG, the ICC profile or the Exif color space of JPEG, the
-//!   chromaticities of OpenEXR. Profiles with lookup tables, PQ and HLG are errors.
-//! * JPEG is read baseline and progressive, gray and color, upright as its Exif data says. It is not written.
+//!   chromaticities of OpenEXR. Profiles with lookup tables, PQ and HLG give errors.
+//! * JPEG is read baseline and progressive, gray and color, turned upright according to its Exif data. It is not
+//!   written.
 //! * OpenEXR is read with the pixels of its display window, and written with `f32`.
-//! * A file is written under a temporary name and then renamed, so that half a file is never visible.
+//! * A file is written under a temporary name and then renamed, so a partial file is never visible.
 //!
 //! # Without std
 //!

@@ -19,7 +19,8 @@ use crate::{ImageError, ImageErrorKind};
 pub struct Limits {
     /// Maximum number of pixels [default: 2^28, which is 16384 × 16384].
     pub pixels: u64,
-    /// Maximum number of bytes, of the file and of its pixels in memory separately [default: 2^32, which is 4 GiB].
+    /// Maximum number of bytes, applied separately to the file and to its pixels in memory [default: 2^32, which is 4
+    /// GiB].
     pub bytes: u64,
 }
 
@@ -48,7 +49,7 @@ impl Limits {
         Ok(())
     }
 
-    /// Checks that the memory of an image is within the limit.
+    /// Checks that the memory for an image is within the limit.
     pub(crate) fn check_bytes(&self, bytes: u64) -> Result<(), ImageError> {
         let limit = self.bytes;
         if bytes > limit {

@@ -1,4 +1,4 @@
-//! PNG files: pixels, encoder and decoder.
+//! PNG encoder and decoder.
 //!
 //! The format is defined in the W3C recommendation "Portable Network Graphics (PNG) Specification (Third Edition)",
 //! 2025, <https://www.w3.org/TR/png-3/>; files are decoded by the crate `png`.

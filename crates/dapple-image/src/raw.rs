@@ -1,8 +1,8 @@
-//! Files of plain numbers: NumPy arrays and raw heights, written row by row and read as a whole.
+//! Files of plain numbers (NumPy arrays and raw heights), written row by row and read as a whole.
 //!
-//! Reference: NumPy Developers, "A Simple File Format for NumPy Arrays" (`numpy.lib.format`), version 1.0. Raw heights
-//! have no standard; the terrain importers of Unity and Unreal call them RAW and r16. They are 16-bit codes, little
-//! endian, top row first, without a header.
+//! Reference: NumPy Developers, "A Simple File Format for NumPy Arrays" (`numpy.lib.format`), version 1.0. Raw
+//! heights have no standard; the Unity and Unreal terrain importers call them RAW and r16. They are 16-bit codes,
+//! little endian, top row first, without a header.
 
 use crate::content::Pixel;
 mod read;

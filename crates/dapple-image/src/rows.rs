@@ -50,13 +50,13 @@ pub struct RowWriter<W: Write + Seek> {
     rows: Rows,
 }
 
-/// Target of a file that is written.
+/// Destination that a file is written to.
 pub(crate) trait Sink: Write + Seek {}
 
 impl<W: Write + Seek> Sink for W {}
 
-/// An image being written. It is independent of the type of the sink, so that the formats are compiled in this crate
-/// and not in crates that write images.
+/// An image being written. It does not depend on the sink's type, so that the formats are compiled in this crate and
+/// not in every crate that writes images.
 struct Rows {
     content: Content,
     size: [u32; 2],
@@ -79,7 +79,7 @@ enum File {
     R16(RawStream),
 }
 
-/// Rows of each content.
+/// A band of rows, by content type.
 enum Band<'a> {
     Gray(RasterView<'a, f32>),
     Color(RasterView<'a, LinearRgb>),
@@ -90,7 +90,7 @@ enum Band<'a> {
 }
 
 impl<W: Write + Seek> RowWriter<W> {
-    /// Starts an image of `size` columns and rows in `sink`, and writes the header.
+    /// Starts an image with `size` columns and rows in `sink`, and writes the header.
     ///
     /// # Errors
     ///
@@ -112,10 +112,10 @@ impl<W: Write + Seek> RowWriter<W> {
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::RowWidth`] if the rows do not have the width of the image, [`ImageErrorKind::TooManyRows`] if
-    /// there are more rows than the image lacks, [`ImageErrorKind::Channels`] if the image has another content. After
-    /// these errors no row has been written, and writing may continue. [`ImageErrorKind::Io`] if the sink fails, and
-    /// on each later call.
+    /// [`ImageErrorKind::RowWidth`] if the rows are not as wide as the image, [`ImageErrorKind::TooManyRows`] if
+    /// there are more rows than remain in the image, [`ImageErrorKind::Channels`] if the image has a different
+    /// content. After one of these errors, no row has been written and writing may continue. [`ImageErrorKind::Io`]
+    /// if the sink fails, now or in an earlier call.
     pub fn write_gray(&mut self, rows: RasterView<'_, f32>) -> Result<(), ImageError> {
         self.rows.write(&mut self.sink, Band::Gray(rows))
     }
@@ -172,7 +172,8 @@ impl<W: Write + Seek> RowWriter<W> {
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::MissingRows`] if rows are missing, [`ImageErrorKind::Io`] if the sink fails or failed before.
+    /// [`ImageErrorKind::MissingRows`] if rows are missing, [`ImageErrorKind::Io`] if the sink fails, now or in an
+    /// earlier call.
     pub fn finish(mut self) -> Result<W, ImageError> {
         self.rows.finish(&mut self.sink)?;
         Ok(self.sink)

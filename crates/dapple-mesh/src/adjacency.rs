@@ -38,8 +38,8 @@ impl Adjacency {
         across
     }
 
-    /// Returns the adjacency that ignores winding: two faces at an edge are neighbors even if they traverse it in the
-    /// same direction.
+    /// Returns the adjacency regardless of winding. Two faces at an edge are neighbors even if they traverse it in
+    /// the same direction.
     pub(crate) fn of_any_winding(n_faces: usize, edges: &[SortedEdge]) -> Self {
         let mut across = Self::alone(n_faces);
         for group in edges.chunk_by(|a, b| a.ends == b.ends) {
@@ -71,7 +71,7 @@ impl Adjacency {
         across
     }
 
-    /// Returns the adjacency without any neighbors.
+    /// Returns an adjacency in which no face has neighbors.
     fn alone(n_faces: usize) -> Self {
         let across = vec![[None; 3]; n_faces];
         Self { across }
@@ -93,7 +93,7 @@ impl Adjacency {
         self.across[from.face.index()][usize::from(from.edge)]
     }
 
-    /// Sets the neighbor of an edge, on one side only.
+    /// Sets the neighbor across an edge, on one side only.
     pub(crate) fn set(&mut self, from: FaceEdge, to: Option<FaceEdge>) {
         self.across[from.face.index()][usize::from(from.edge)] = to;
     }
@@ -103,7 +103,8 @@ impl Adjacency {
         self.across[face.index()]
     }
 
-    /// Returns the connected component of each face. A component is a set of faces connected through neighbors.
+    /// Returns the connected component of each face. A component is a set of faces that are connected through
+    /// neighbors.
     ///
     /// Components are numbered from 0 in the order of their lowest face index.
     #[must_use]
@@ -161,7 +162,7 @@ impl Adjacency {
     }
 }
 
-/// An edge of a face, in a form that can be sorted.
+/// A face's edge in a sortable form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct SortedEdge {
     /// The lower and the higher vertex index.
@@ -191,7 +192,7 @@ pub(crate) fn sorted_edges(mesh: &Mesh) -> Vec<SortedEdge> {
     edges
 }
 
-/// Returns whether a face contains a vertex twice.
+/// Returns whether two corners of a face are the same vertex.
 pub(crate) fn names_twice([a, b, c]: [VertexIdx; 3]) -> bool {
     a == b || b == c || c == a
 }

@@ -11,12 +11,12 @@ use glam::DVec3;
 use tree::Tree;
 use triangle::{Corners, Probe, nearest_weights};
 
-/// A half-line.
+/// A half-line that starts at an origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Start of the ray.
+    /// Start point of the ray.
     pub origin: DVec3,
-    /// Direction of length 1, so that ray parameters are distances.
+    /// Unit direction, so that ray parameters are distances.
     pub direction: DVec3,
 }
 
@@ -31,7 +31,7 @@ pub struct RayHit {
     pub weights: [f64; 3],
 }
 
-/// Point of a mesh that is nearest to a position.
+/// The point on a mesh nearest to a queried position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestPoint {
     /// Position of the point.
@@ -47,7 +47,7 @@ pub struct NearestPoint {
 /// A bounding volume hierarchy over the faces of a mesh, for ray casting and nearest-point queries.
 ///
 /// Results equal those of a search through all faces, bit for bit. Among faces at the same distance, the one with the
-/// lowest index is returned. Faces are two-sided; rays never hit a face without an area.
+/// lowest index is returned. Faces are two-sided; rays never hit a face with zero area.
 ///
 /// # Examples
 ///
@@ -63,12 +63,12 @@ pub struct NearestPoint {
 #[derive(Clone)]
 pub struct Bvh {
     tree: Tree,
-    /// Corners of the faces, in the order of the tree.
+    /// Corners of the faces, ordered as in the tree's leaves.
     corners: Vec<Corners>,
 }
 
 impl Ray {
-    /// Returns the point at a distance from the origin.
+    /// Returns the point on the ray at `distance` from its origin.
     #[inline]
     #[must_use]
     pub fn at(&self, distance: f64) -> DVec3 {
@@ -127,7 +127,8 @@ impl Bvh {
         blocked
     }
 
-    /// Returns the point of the mesh nearest to a position; `None` for an empty mesh or a position that is not finite.
+    /// Returns the point on the mesh nearest to `position`; `None` for an empty mesh or a position that is not
+    /// finite.
     #[must_use]
     pub fn nearest_point(&self, position: DVec3) -> Option<NearestPoint> {
         if !position.is_finite() {
@@ -146,7 +147,7 @@ impl Bvh {
         best
     }
 
-    /// Returns the nearest point of one face.
+    /// Returns the point nearest to `position` on one face.
     fn nearest_of(&self, slot: u32, position: DVec3) -> NearestPoint {
         let corners = self.corners[slot as usize].positions();
         let weights = nearest_weights(corners, position);
@@ -159,7 +160,7 @@ impl Bvh {
         }
     }
 
-    /// Moves the origin of a ray to its point nearest to the center of the mesh, and returns the distance of the move.
+    /// Moves the origin of a ray to its point nearest to the center of the mesh, and returns the distance moved.
     /// Distances from the new origin are about the size of the mesh, so that rounding stays well below the margin of
     /// the boxes.
     fn near_ray(&self, ray: &Ray) -> (Ray, f64) {

@@ -1,6 +1,6 @@
 //! Corner normals that are smooth across blunt edges and split at sharp ones.
 //!
-//! Reference: our own; modeling programs call it automatic smoothing by an angle.
+//! Original method; modeling programs call it auto smooth by angle.
 
 use crate::adjacency::{Adjacency, FaceEdge};
 use crate::{FaceIdx, Mesh};

@@ -1,7 +1,7 @@
-//! Errors of meshes, mesh files and queries.
+//! Errors from meshes, mesh files and queries.
 
 dapple_raster::error! {
-    /// Error of creating, reading or using a mesh.
+    /// An error from creating, reading or using a mesh.
     MeshError,
     /// The limit that was violated.
     MeshErrorKind with Range {
@@ -32,7 +32,7 @@ dapple_raster::error! {
         } => "face {face} names vertex {vertex}, but there are only {count}";
         /// The mesh has defects that [`Mesh::repair`](crate::Mesh::repair) fixes.
         Defects {
-            /// Number of faces without an area.
+            /// Number of faces with zero area.
             degenerate: usize,
             /// Number of faces with the same three vertices as an earlier face.
             duplicate: usize,

@@ -1,10 +1,10 @@
-//! Triangle meshes for textures: defects counted and repaired, straight walks over the surface, nearest points and
-//! rays.
+//! Triangle meshes for textures, with defect reports and repair, straight walks over the surface, nearest-point
+//! queries and ray casting.
 //!
-//! A [`Mesh`] is positions and faces, whatever they are. [`Mesh::report`] counts what is wrong with it, and
-//! [`Mesh::repair`] mends what can be mended. A mesh whose faces have an area and a consistent side becomes a
-//! [`Surface`]: every face laid out flat, so that a [`SurfacePoint`] can [walk](Surface::walk) straight on over edges
-//! and carry a direction along.
+//! A [`Mesh`] holds arbitrary positions and faces. [`Mesh::report`] counts its defects, and [`Mesh::repair`] fixes
+//! those that can be fixed. A mesh whose faces have nonzero area and consistent winding becomes a [`Surface`]. There,
+//! every face is unfolded into a plane, so that a [`SurfacePoint`] can [walk](Surface::walk) straight across edges
+//! and transport a direction along the path.
 //!
 //! ```
 //! use dapple_mesh::{Bvh, FaceIdx, Mesh, Surface, glam::{DVec2, DVec3}};
@@ -43,16 +43,16 @@
 //!
 //! # Features
 //!
-//! There are none. The crate starts no threads, and turns on no feature of its dependencies.
+//! None. The crate starts no threads and enables no features of its dependencies.
 //!
 //! # Limits
 //!
-//! * Parts of a position are at most 1e30 in absolute value. Units are yours.
+//! * Coordinates are at most 1e30 in absolute value. Units are up to the caller.
 //! * A mesh has at most 2^31 vertices and as many faces, which are triangles.
-//! * A surface need not be closed, in one piece or manifold. An edge of one face, or of three, is a border, and ends a
-//!   path.
-//! * Repair merges vertices at one position, drops degenerate and duplicate faces, and makes the winding consistent. It
-//!   fills no holes and removes no self-intersections.
+//! * A surface need not be closed, in one piece or manifold. An edge with one face or with three or more is a border,
+//!   and ends a path.
+//! * Repair merges vertices at the same position, drops degenerate and duplicate faces, and makes the winding
+//!   consistent. It fills no holes and removes no self-intersections.
 //! * Positions are `f64`. All results have the same bits on every machine.
 //!
 //! # Without std

@@ -8,7 +8,7 @@ pub const POSITION_MAX: f64 = 1e30;
 /// Maximum number of vertices and of faces: indices and twice their number fit 32 bits.
 const COUNT_MAX: usize = 1 << 31;
 
-/// A triangle mesh: positions of vertices, and three vertices for each face.
+/// A triangle mesh with vertex positions and three vertex indices per face.
 ///
 /// Faces are counterclockwise seen from outside. There are no other guarantees: a mesh may be empty or open, have
 /// several pieces, and have defects. [`report`](Self::report) counts the defects and [`repair`](Self::repair) fixes
@@ -35,7 +35,7 @@ impl Mesh {
     /// # Errors
     ///
     /// [`MeshErrorKind::Position`] if a coordinate is not finite or beyond 1e30, [`MeshErrorKind::Corner`] if a face
-    /// refers to a missing vertex, [`MeshErrorKind::Count`] past 2^31 vertices or faces.
+    /// refers to a missing vertex, [`MeshErrorKind::Count`] for more than 2^31 vertices or faces.
     pub fn new(positions: Vec<DVec3>, faces: &[[u32; 3]]) -> Result<Self, MeshError> {
         for (what, count) in [("vertices", positions.len()), ("faces", faces.len())] {
             if count > COUNT_MAX {

@@ -1,4 +1,4 @@
-//! Content of a mesh file: a mesh, its vertex and corner attributes, and one material with encoded textures.
+//! The content of a mesh file: a mesh, its vertex and corner attributes, and a material with encoded textures.
 //!
 //! Colors are in linear light. The v axis of texture coordinates points down: (0, 0) is the top left corner of the
 //! first row of the texture, as in glTF. Readers and writers of formats whose v axis points up flip it.
@@ -9,14 +9,14 @@ use dapple_color::{LinearRgb, LinearRgba};
 use glam::{DVec2, DVec3};
 use std::collections::BTreeSet;
 
-/// Tolerance of rounding for a corner outside of the unit square of its face, in texture coordinates.
+/// Rounding tolerance for a corner outside the unit square of its face, in texture coordinates.
 const UV_SLACK: f64 = 1e-4;
 /// Signature of PNG files.
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// Signature of JPEG files.
 const JPEG: &[u8] = b"\xff\xd8\xff";
 
-/// A mesh with all attributes of its appearance that a file contains.
+/// A mesh with all the appearance attributes that a file contains.
 ///
 /// The fields may be changed freely; [`check`](Self::check) verifies that they are consistent, and every writer calls
 /// it.
@@ -36,16 +36,17 @@ const JPEG: &[u8] = b"\xff\xd8\xff";
 pub struct Model {
     /// Triangles. A mesh without faces is a point cloud, which may have normals and colors.
     pub mesh: Mesh,
-    /// Color of each vertex, linear.
+    /// Linear color of each vertex; `None` if the model has no vertex colors.
     pub colors: Option<Vec<LinearRgba>>,
-    /// Texture coordinates of each corner of each face, v down; the range 0 to 1 covers the texture once.
+    /// Texture coordinates of each corner of each face, with v pointing down; the range 0 to 1 covers the texture
+    /// once. `None` if the model is not textured.
     pub uvs: Option<Vec<[DVec2; 3]>>,
-    /// Normal of each vertex; zero if undefined.
+    /// Normal of each vertex, zero if undefined; `None` if the model has no vertex normals.
     pub normals: Option<Vec<DVec3>>,
-    /// Normal of each corner of each face, which may differ at a crease. Corner normals take precedence over vertex
-    /// normals.
+    /// Normal of each corner of each face. Corners of a vertex may differ at a crease. Corner normals take precedence
+    /// over vertex normals.
     pub corner_normals: Option<Vec<[DVec3; 3]>>,
-    /// Material of all faces; the material of the first unit square if there are `tiles`.
+    /// Material of all faces. If `tiles` is not empty, the material of the first unit square.
     pub material: Material,
     /// Materials of unit squares of texture coordinates, if each square has separate textures (UDIM), ordered by
     /// number. Empty if all faces share one texture.
@@ -67,17 +68,17 @@ pub struct TileMaterial {
 /// Appearance of a surface: the metallic-roughness material of glTF 2.0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    /// Factor of the base color, linear [default: white].
+    /// Factor multiplied with the base color, linear [default: white].
     pub base_color_factor: LinearRgba,
-    /// Base color texture, encoded as sRGB.
+    /// Base color texture, encoded as sRGB; `None` for a plain color.
     pub base_color: Option<EncodedImage>,
-    /// Normal map in the tangent frame of the texture coordinates, green up.
+    /// Normal map in the tangent frame of the texture coordinates, with green pointing up.
     pub normal: Option<EncodedImage>,
     /// Texture with roughness in green and metalness in blue.
     pub metallic_roughness: Option<EncodedImage>,
     /// Texture with ambient occlusion in red. It may be the metallic-roughness image, which then packs all three.
     pub occlusion: Option<EncodedImage>,
-    /// Interpretation of the alpha of the base color.
+    /// How the base color's alpha is interpreted.
     pub alpha: AlphaMode,
     /// Whether textures may use coarser mipmap levels [default: true]. Where islands of an atlas are close together,
     /// coarse levels mix islands that are far apart on the mesh.
@@ -86,11 +87,11 @@ pub struct Material {
     pub double_sided: bool,
 }
 
-/// Interpretation of alpha, which is the alpha of the base color texture times the alpha of its factor.
+/// How alpha is interpreted. Alpha is the base color texture's alpha times the alpha of the base color factor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum AlphaMode {
-    /// Alpha is ignored and the surface is opaque. A factor that is not opaque blends.
+    /// Alpha is ignored and the surface is opaque. If the base color factor is not opaque, the surface blends.
     #[default]
     Opaque,
     /// Alpha of at least one half is opaque, and lower alpha is fully transparent.
@@ -99,7 +100,7 @@ pub enum AlphaMode {
     Blend,
 }
 
-/// Bytes of an image file, not decoded. Only the signature is inspected.
+/// The bytes of an image file, not decoded; only the signature is inspected.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EncodedImage {
     format: ImageFormat,
@@ -117,11 +118,12 @@ pub enum ImageFormat {
 }
 
 impl Model {
-    /// Entry of [`left_out`](Self::left_out) for faces with several materials, of which a model keeps the first.
+    /// The [`left_out`](Self::left_out) entry for a file whose faces use several materials; a model keeps only the
+    /// first.
     pub const FURTHER_MATERIALS: &str = "the materials of faces but the first";
 
-    /// Returns the normals of the corners of all faces, derived from vertex normals if necessary; `None` without any
-    /// normals.
+    /// Returns the corner normals of all faces, derived from the vertex normals if necessary; `None` if the model has
+    /// no normals.
     #[must_use]
     pub fn normals_of_corners(&self) -> Option<Vec<[DVec3; 3]>> {
         if self.corner_normals.is_some() {
@@ -138,12 +140,12 @@ impl Model {
 
     /// Returns the UDIM numbers of the unit squares of texture coordinates that contain faces, in ascending order:
     /// 1001 + u + 10 v, with the integer parts of u and v, v up. Empty if a face spans several squares, as with
-    /// repeating textures, or lies beyond the ten columns of UDIM.
+    /// repeating textures, or is beyond the ten columns of UDIM.
     #[must_use]
     pub fn unit_squares(&self) -> Vec<u32> {
         let mut squares = BTreeSet::new();
         for corners in self.uvs.iter().flatten() {
-            // The mean of the corners is inside of the square despite rounding.
+            // The mean of the corners is inside the square despite rounding.
             let mean = corners.iter().sum::<DVec2>() / 3.0;
             let square = DVec2::new(mean.x.floor(), (1.0 - mean.y).floor());
             let least = DVec2::new(square.x, -square.y);
@@ -161,7 +163,7 @@ impl Model {
         squares.into_iter().collect()
     }
 
-    /// Checks that the attributes have the lengths of the mesh and contain only numbers that a file can
+    /// Checks that each attribute is as long as the mesh requires, and contains only numbers that a file can
     /// represent.
     ///
     /// # Errors
@@ -200,7 +202,7 @@ impl Model {
 }
 
 impl From<Mesh> for Model {
-    /// Creates a model of a mesh without attributes.
+    /// Creates a model that has a mesh but no attributes.
     fn from(mesh: Mesh) -> Self {
         Self {
             mesh,
@@ -247,7 +249,7 @@ impl EncodedImage {
         self.format
     }
 
-    /// Returns the encoded bytes, as in a file.
+    /// Returns the encoded bytes, as stored in a file.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes

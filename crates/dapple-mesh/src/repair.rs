@@ -1,24 +1,24 @@
-//! Repair of mesh defects.
+//! Repairs mesh defects.
 //!
 //! The steps, in order:
 //!
 //! 1. Vertices at the same position are merged into the first one. This also merges the two sides of a sheet.
 //! 2. Faces that contain a vertex twice are dropped. Of faces with the same vertices, all except the first are
 //!    dropped; if twice their area is at most 2^-40 times the square of the longest edge, they cancel in pairs.
-//! 3. Other faces without an area are removed so that their neighbors stay connected. In a *needle* the shortest edge
-//!    is at most 2^-40 times the longest: its two vertices are merged into the first one. In a *cap* a corner lies on
-//!    the opposite, longest edge. If another face shares this edge, it is split at that corner and the cap is dropped,
-//!    which together is an edge flip. Without another face the cap is only dropped, which leaves the same border. A
-//!    flip that gives a longer edge and still a face without an area is not made. Where only such flips remain, caps
-//!    whose shortest edge is at most 2^-20 times the longest are treated as needles. Steps 2 and 3 alternate until no
-//!    such face is left. When they change nothing more, and after 64 turns, the remaining faces without an area are
-//!    dropped.
+//! 3. Other faces with zero area are removed so that their neighbors stay connected. In a *needle* the shortest edge
+//!    is at most 2^-40 times the longest: its two vertices are merged into the first one. In a *cap*, a corner is on
+//!    the opposite, longest edge. If another face shares this edge, it is split at that corner and the cap is
+//!    dropped, which together is an edge flip. Without another face the cap is only dropped, which leaves the same
+//!    border. A flip is skipped if it gives a longer edge and still leaves a face with zero area. Where only such
+//!    flips remain, caps whose shortest edge is at most 2^-20 times the longest are treated as needles. Steps 2 and 3
+//!    alternate until no such face is left. When they change nothing more, or after 64 rounds, the remaining faces
+//!    with zero area are dropped.
 //! 4. Faces are flipped so that the winding of each piece is consistent, by a breadth-first flood across edges of two
 //!    faces. It starts at the lowest face and visits lower faces first. A closed piece gets the winding with a
-//!    positive volume. An open piece gets the winding that flips the smaller area, or keeps the winding of its lowest
-//!    face on a tie.
-//! 5. Edges whose faces still disagree exist only on one-sided pieces, such as a Möbius strip. The piece is cut along
-//!    them: every vertex there is split into one vertex per fan of its faces.
+//!    positive volume. An open piece gets the winding that flips the smaller area. On a tie, its lowest face keeps
+//!    its winding.
+//! 5. Edges whose faces still disagree exist only on non-orientable pieces, such as a Möbius strip. The piece is cut
+//!    along them: every vertex there is split into one vertex per fan of its faces.
 //! 6. Unused vertices are dropped.
 //!
 //! Step 3 leaves no crack in a closed mesh with a few such faces, as tests show. Where many of them overlap, it may.
@@ -42,11 +42,11 @@ pub struct Repair {
     pub after: MeshReport,
     /// Original vertex of each vertex of the result.
     pub vertex_before: Vec<VertexIdx>,
-    /// Original face of each face of the result; a part of a split face refers to the whole face.
+    /// Original face of each face of the result. Each part of a split face refers to the whole original face.
     pub face_before: Vec<FaceIdx>,
     /// Number of flipped faces.
     pub turned_faces: usize,
-    /// Number of edges along which one-sided pieces were cut.
+    /// Number of edges along which non-orientable pieces were cut.
     pub cut_edges: usize,
 }
 
@@ -55,7 +55,7 @@ impl Mesh {
     /// consistent winding.
     ///
     /// The result has no face, or [`Surface::new`](crate::Surface::new) accepts it. Vertices and faces keep their
-    /// order. A mesh without defects and a repaired mesh stay unchanged. Only cuts in a one-sided piece leave
+    /// order. A mesh without defects and a repaired mesh stay unchanged. Only cuts in a non-orientable piece leave
     /// duplicate vertices.
     ///
     /// Vertices at the same position are merged. This closes seams, and turns two coinciding sheets into one.
@@ -117,7 +117,7 @@ impl Draft {
         }
     }
 
-    /// Keeps the marked faces, in order.
+    /// Keeps only the marked faces, in order.
     fn keep_faces(&mut self, keep: &[bool]) {
         let mut marks = keep.iter().copied();
         self.mesh.faces.retain(|_| marks.next() == Some(true));
@@ -125,7 +125,7 @@ impl Draft {
         self.face_before.retain(|_| marks.next() == Some(true));
     }
 
-    /// Drops the vertices without a face.
+    /// Drops the vertices that no face uses.
     fn drop_unused(&mut self) {
         let mut names = vec![None; self.mesh.positions.len()];
         for corner in self.mesh.faces.as_flattened() {

@@ -1,13 +1,13 @@
-//! Counting of mesh defects.
+//! Counts mesh defects.
 
 use crate::adjacency::{Adjacency, names_twice, sorted_edges};
 use crate::triangle::area_vector;
 use crate::{FaceIdx, Mesh, VertexIdx};
 
-/// Counts of the elements and defects of a mesh.
+/// Counts of a mesh's elements and defects.
 ///
 /// An edge is a pair of consecutive vertices of a face. Faces that contain a vertex twice contribute no edges and no
-/// fans. All other faces count, including duplicates and faces without an area.
+/// fans. All other faces count, including duplicates and faces with zero area.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MeshReport {
@@ -61,7 +61,7 @@ impl Mesh {
         self.report_and_adjacency().0
     }
 
-    /// Returns the report, and adjacency regardless of winding.
+    /// Returns the report, and the adjacency regardless of winding.
     pub(crate) fn report_and_adjacency(&self) -> (MeshReport, Adjacency) {
         let first_at_position = self.first_at_position();
         let mut report = MeshReport {

@@ -1,4 +1,4 @@
-//! Rotations with the same bits on every platform.
+//! Rotations whose results have the same bits on every platform.
 
 use glam::{DQuat, DVec3};
 

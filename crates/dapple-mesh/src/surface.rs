@@ -1,4 +1,4 @@
-//! Surfaces: every face is unfolded into its own plane, with transitions to the planes of its neighbors.
+//! Surfaces, whose faces are unfolded into planes with transitions to the planes of their neighbors.
 //!
 //! The plane of a face has the first corner at the origin and the second on the positive x axis. The transition to a
 //! neighbor is the rigid motion that unfolds it about the shared edge.
@@ -7,7 +7,7 @@
 //! [`MeshReport::degenerate_faces`](crate::MeshReport::degenerate_faces) therefore have orthonormal axes, and
 //! rotations that are accurate to a few roundings. Positions are accurate to a few roundings of their longest edge.
 //!
-//! Reference: our own; Greg Turk, SIGGRAPH 1991, doi 10.1145/127719.122749, moves points by unfolding across edges.
+//! Original method; Greg Turk, SIGGRAPH 1991, doi 10.1145/127719.122749, moves points by unfolding across edges.
 
 mod flat;
 
@@ -44,7 +44,7 @@ impl Surface {
     ///
     /// # Errors
     ///
-    /// [`MeshErrorKind::Defects`] if there are faces without an area, duplicate faces, or edges with inconsistent
+    /// [`MeshErrorKind::Defects`] if there are faces with zero area, duplicate faces, or edges with inconsistent
     /// winding: [`Mesh::repair`] fixes them. [`MeshErrorKind::NoArea`] for a mesh without faces.
     pub fn new(mesh: Mesh) -> Result<Self, MeshError> {
         // With consistent winding, this adjacency equals `Adjacency::new`.
@@ -168,7 +168,7 @@ impl Surface {
         flat.x.cross(flat.y)
     }
 
-    /// Returns the position of a point in space.
+    /// Returns the position in space of a point on the surface.
     ///
     /// # Panics
     ///
@@ -180,7 +180,7 @@ impl Surface {
         flat.origin + flat.x * point.flat.x + flat.y * point.flat.y
     }
 
-    /// Returns the unit normal of the smooth surface at a point, interpolated between the vertex normals.
+    /// Returns the smooth unit normal at a point, interpolated between the vertex normals.
     ///
     /// # Panics
     ///
@@ -193,8 +193,8 @@ impl Surface {
         (na * a + nb * b + nc * c).normalize_or(self.face_normal(point.face))
     }
 
-    /// Returns the barycentric weights of a point, which sum to 1. Inside of the face they are at least 0, up to
-    /// rounding of the longest edge relative to the height of the face.
+    /// Returns the barycentric weights of a point, which sum to 1. Inside the face, they are at least 0, up to the
+    /// rounding error of the longest edge relative to the height of the face.
     ///
     /// # Panics
     ///
@@ -207,7 +207,7 @@ impl Surface {
         [1.0 - b - c, b, c]
     }
 
-    /// Returns the point of a face with these barycentric weights.
+    /// Returns the point on a face with the given barycentric weights.
     ///
     /// # Panics
     ///
@@ -221,7 +221,7 @@ impl Surface {
         }
     }
 
-    /// Returns the orthogonal projection of a position to the plane of a face.
+    /// Projects a position orthogonally onto the plane of a face.
     ///
     /// # Panics
     ///
@@ -237,7 +237,7 @@ impl Surface {
         }
     }
 
-    /// Returns the orthogonal projection of a vector to the plane of a face, in coordinates of the plane.
+    /// Projects a vector orthogonally onto the plane of a face, and returns it in the plane's coordinates.
     ///
     /// # Panics
     ///

@@ -1,4 +1,4 @@
-//! The common rule that decides whether a triangle has an area.
+//! Decides whether a triangle is degenerate, by one rule for the whole crate.
 //!
 //! A triangle is *degenerate* if twice its area is at most 2^-50 times the square of its longest edge, or if that edge
 //! is shorter than 1e-60. Below the first bound, rounding dominates the normal: the error of the cross product of two
@@ -11,7 +11,7 @@ use glam::DVec3;
 
 /// Maximum ratio of twice the area to the square of the longest edge at which a triangle is degenerate: 2^-50.
 const FLATNESS_MIN: f64 = 4.0 * f64::EPSILON;
-/// Minimum length of the longest edge of a triangle with an area, in units of the mesh.
+/// Minimum length of a nondegenerate triangle's longest edge, in units of the mesh.
 const LENGTH_MIN: f64 = 1e-60;
 /// Maximum ratio of the height to the longest edge of a thin face: 2^-40.
 pub(crate) const THIN_MAX: f64 = 4096.0 * f64::EPSILON;
@@ -19,15 +19,15 @@ pub(crate) const THIN_MAX: f64 = 4096.0 * f64::EPSILON;
 /// Classification of triangles by shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shape {
-    /// A triangle with an area.
+    /// A triangle with nonzero area.
     Fair,
     /// Degenerate. The edge that starts at this corner is the shortest, and much shorter than the longest.
     Needle { shortest: usize },
-    /// Degenerate. The corner opposite to this longest edge lies on it, well between its ends.
+    /// Degenerate. The corner opposite the longest edge is on that edge, well between its ends.
     Cap { longest: usize },
 }
 
-/// Returns the normal of a triangle with a length of twice its area; `None` if it is degenerate.
+/// Returns the normal of a triangle, whose length is twice the triangle's area; `None` if it is degenerate.
 ///
 /// Exchanging two corners changes only the sign.
 pub(crate) fn area_vector(corners: [DVec3; 3]) -> Option<DVec3> {
@@ -86,7 +86,7 @@ fn sorted(mut corners: [DVec3; 3]) -> ([DVec3; 3], bool) {
     (corners, odd)
 }
 
-/// Returns the index of the first maximum.
+/// Returns the index of the longest edge; the first one on a tie.
 fn first_longest(lengths_sq: [f64; 3]) -> usize {
     let mut longest = 0;
     for edge in 1..3 {

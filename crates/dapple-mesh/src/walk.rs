@@ -5,8 +5,8 @@
 //! SIGGRAPH 1991, doi 10.1145/127719.122749, section 3.1, which moves mutually repelling points in this way. At a
 //! vertex there is no straight continuation, and the path continues in one of the faces there.
 //!
-//! Every face on the path moves the end by at most a few roundings of the distance and of the size of the face, and
-//! rotates the direction by a few roundings. For up to 16 faces, the sum is below 2^-46 of both.
+//! Every face on the path moves the end by at most a few rounding errors of the distance and the face's size, and
+//! rotates the direction by a few rounding errors. For up to 16 faces, the sum is below 2^-46 of both.
 
 use crate::surface::EdgeTransition;
 use crate::{Surface, SurfacePoint};
@@ -15,14 +15,15 @@ use glam::DVec2;
 /// Maximum number of edges that a path crosses, far more than on any sensible mesh.
 const CROSSINGS_MAX: u32 = 1 << 16;
 
-/// Result of a walk.
+/// The result of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Walk {
     /// End of the path.
     pub point: SurfacePoint,
     /// Unit direction at the end, in the plane of the last face: the initial direction, transported along the path.
     pub direction: DVec2,
-    /// Distance left because the path reached a border, with the sign of the distance; zero otherwise.
+    /// Distance not walked because the path reached a border, with the sign of the requested distance; zero
+    /// otherwise.
     pub left: f64,
 }
 
@@ -31,9 +32,9 @@ impl Surface {
     /// mesh.
     ///
     /// The path ends early at a border of the mesh, and after 65,536 edges. A vector transported along the path keeps
-    /// its angle to `direction`. A negative distance walks backward; the direction at the end still points forward. If
-    /// the point, the direction or the distance is not finite, the path ends at its start and the whole distance is
-    /// left.
+    /// its angle to `direction`. A negative distance walks backward; the direction at the end still points forward.
+    /// If the point, the direction or the distance is not finite, the path ends at its start and `left` is the whole
+    /// distance.
     ///
     /// # Panics
     ///

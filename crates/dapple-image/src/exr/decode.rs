@@ -35,16 +35,15 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// # Errors
 ///
 /// [`ImageErrorKind::UnknownFormat`] if the bytes lack the OpenEXR signature, [`ImageErrorKind::Damaged`] if they
-/// violate its
-/// rules or end too soon, [`ImageErrorKind::Unsupported`] for deep data and subsampled channels,
+/// violate the format's rules or end too soon, [`ImageErrorKind::Unsupported`] for deep data and subsampled channels,
 /// [`ImageErrorKind::Windows`] if the data and display windows have no pixel in common,
 /// [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`] past a limit.
 pub fn decode_exr(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError> {
     guarded(bytes, || decode(bytes, limits))
 }
 
-/// Decodes a part of the image in an OpenEXR file: `size` pixels starting at column and row `first` of the display
-/// window. Only blocks that intersect the part are decompressed, and only the part counts against the limits.
+/// Decodes a region of the image in an OpenEXR file: `size` pixels starting at column and row `first` of the display
+/// window. Only blocks that intersect this region are decompressed, and only the region counts against the limits.
 ///
 /// # Errors
 ///
@@ -177,7 +176,7 @@ fn decode_region(
     Ok(with_planes(&headers, planes))
 }
 
-/// Pixels of a region in one part of a file.
+/// The pixels of a region that come from one part of a file.
 struct Part {
     /// First column and row of the region, relative to the data window.
     first: [i64; 2],
@@ -194,7 +193,7 @@ impl Part {
         first.max(self.first[axis])..end.min(last)
     }
 
-    /// Copies the samples of a line that are inside the region.
+    /// Copies the samples of a line that fall inside the region.
     fn put(&mut self, line: LineRef<'_>, channels: &ChannelList) -> Result<(), ImageError> {
         let at = line.location;
         let corners = [[at.position.0, at.position.1], [at.sample_count, 1]];

@@ -1,4 +1,4 @@
-//! Encoder of OpenEXR: one part, scan lines, 32-bit floating point, lossless ZIP compression.
+//! OpenEXR encoder for one part with scan lines, 32-bit floating point and lossless ZIP compression.
 
 use super::{ExrPlane, check_size};
 use crate::{ImageError, ImageErrorKind, file};
@@ -14,7 +14,7 @@ const NAME_LIMIT: usize = 255;
 
 /// Encodes planes of the same size as an OpenEXR file in memory.
 ///
-/// The bytes depend on the planes alone. The order of the planes does not matter: the format sorts them by name.
+/// The bytes depend only on the planes. The order of the planes does not matter: the format sorts them by name.
 ///
 /// # Errors
 ///
@@ -67,8 +67,8 @@ pub fn encode_exr(planes: &[ExrPlane]) -> Result<Vec<u8>, ImageError> {
 ///
 /// # Errors
 ///
-/// Same as [`encode_exr`], plus [`ImageErrorKind::Io`] if the file cannot be written; an existing file is then
-/// unchanged.
+/// Same as [`encode_exr`], plus [`ImageErrorKind::Io`] if the file cannot be written; in that case, an existing file
+/// is unchanged.
 pub fn write_exr(path: impl AsRef<Path>, planes: &[ExrPlane]) -> Result<(), ImageError> {
     let path = path.as_ref();
     let bytes = encode_exr(planes).map_err(|error| error.at(path))?;

@@ -1,4 +1,4 @@
-//! Layers of an OpenEXR file, and the choice of its main image.
+//! Finds the layers of an OpenEXR file and chooses its main image.
 //!
 //! Reference: "Technical Introduction to OpenEXR", sections on layers, multi-view and multi-part files. A plane
 //! `layer.channel` belongs to a layer, a plane without a dot belongs to the main image, and the planes of the default
@@ -11,10 +11,10 @@ use core::cmp::Reverse;
 use dapple_raster::Raster;
 
 #[cfg(feature = "exr")]
-/// Names of the views in files that do not list them.
+/// View names assumed for files that do not list their views.
 const USUAL_VIEWS: [&str; 2] = ["left", "right"];
 
-/// Planes of an image.
+/// The planes of an image, by kind.
 pub(crate) enum Picture<'a> {
     /// One value per pixel, and alpha.
     Gray {
@@ -107,13 +107,13 @@ impl ExrImage {
         names
     }
 
-    /// Returns the image of one layer, or of one plane. The planes lose the prefix of the layer.
+    /// Returns the image of one layer, or of one plane. The layer's prefix is removed from the plane names.
     ///
     /// An exact match takes precedence; otherwise the case of the name is ignored.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::MissingLayer`], which lists all layers, if there is no layer of this name.
+    /// [`ImageErrorKind::MissingLayer`], which lists all layers, if there is no layer with this name.
     pub fn layer(&self, name: &str) -> Result<Self, ImageError> {
         let layers = self.split();
         let is_same = |other: &str| other == name;

@@ -44,13 +44,13 @@ pub(crate) struct TileStream {
     places: Vec<u64>,
 }
 
-/// Rows that are not yet in the file.
+/// Buffered rows that are not yet in the file.
 struct Band {
     /// The only header of the file.
     headers: [Header; 1],
     /// Values of each row, plane by plane.
     values: Vec<f32>,
-    /// First row of the band.
+    /// Row of the image at which the band starts.
     first_row: usize,
 }
 
@@ -84,7 +84,7 @@ impl TileStream {
         })
     }
 
-    /// Writes complete rows, at most as many as the file still lacks. `part` returns the value of a pixel in a plane.
+    /// Writes complete rows, at most as many as the file still needs. `part` returns a pixel's value in a plane.
     pub(crate) fn write_rows<T>(
         &mut self,
         sink: &mut dyn Sink,
@@ -154,7 +154,7 @@ impl Band {
         self.height() == TILE || self.first_row + self.height() == self.size().y()
     }
 
-    /// Compresses the tile that starts at a column.
+    /// Compresses the tile that starts at `column`.
     fn chunk(&self, column: usize) -> exr::error::Result<Chunk> {
         let columns = self.size().x();
         let width = TILE.min(columns - column);

@@ -1,4 +1,4 @@
-//! Exif data: a TIFF file without pixels, whose directories contain numbered entries.
+//! Parser for Exif data, which is a TIFF file without pixels whose directories contain numbered entries.
 //!
 //! Reference: "Exchangeable image file format for digital still cameras: Exif Version 2.32", CIPA DC-008, 2019.
 //! Damaged data is treated as missing.
@@ -18,7 +18,7 @@ const COLOR_SPACE: u16 = 0xa001;
 /// for Camera File system", DCF 2.0).
 const INTEROPERABILITY: u16 = 0xa005;
 
-/// Returns the color space of a photograph.
+/// Returns the color space that a photograph's Exif data declares.
 pub(super) fn color_space(exif: &[u8]) -> ColorSpace {
     let is_adobe = || {
         let tiff = Tiff::new(exif)?;
@@ -59,7 +59,7 @@ impl<'a> Tiff<'a> {
         Some(Self { bytes, is_little })
     }
 
-    /// Returns the 16-bit integer at an offset.
+    /// Returns the 16-bit integer at offset `at`.
     pub(super) fn short(&self, at: usize) -> Option<u16> {
         let bytes = self.bytes.get(at..)?.first_chunk::<2>()?;
         Some(if self.is_little {

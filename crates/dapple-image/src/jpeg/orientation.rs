@@ -1,4 +1,4 @@
-//! Exif orientation of a photograph, and its conversion to upright.
+//! Reads a photograph's Exif orientation and turns the image upright.
 //!
 //! Reference: "Exchangeable image file format for digital still cameras: Exif Version 2.32", CIPA DC-008, 2019, tag
 //! 274 of the first directory of its TIFF data. Malformed data counts as upright.

@@ -1,4 +1,4 @@
-//! Decoder of PNG.
+//! PNG decoder.
 //!
 //! Palettes, 1, 2 and 4 bits, the transparent color (`tRNS`) and interlacing are resolved into the eight variants of
 //! [`PngPixels`]. Of an animation, the first frame is read. The size is checked against the limits before memory for
@@ -16,7 +16,8 @@ use std::io::Cursor;
 /// # Errors
 ///
 /// [`ImageErrorKind::UnknownFormat`] if the bytes lack the PNG signature, [`ImageErrorKind::Damaged`] if they violate
-/// its rules or end too soon, [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`] past a limit.
+/// the format's rules or end too soon, [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`] past a
+/// limit.
 pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
     if !bytes.starts_with(&SIGNATURE) {
         return Err(ImageError::new(ImageErrorKind::UnknownFormat));
@@ -38,8 +39,8 @@ pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError>
     image_of(&reader, size, &samples)
 }
 
-/// Decodes a part of a PNG file: `size` pixels starting at column and row `first`. Only the part counts against the
-/// limits. Rows below the part are neither read nor checked for damage.
+/// Decodes a region of a PNG file: `size` pixels starting at column and row `first`. Only the region counts against
+/// the limits. Rows below it are neither read nor checked for damage.
 ///
 /// # Errors
 ///
@@ -152,7 +153,7 @@ fn check_palette(info: &png::Info<'_>) -> Result<(), ImageError> {
     }
 }
 
-/// Returns the options of the codec: all checks enabled, unused chunks skipped.
+/// Returns codec options that enable all checks and skip unused chunks.
 fn options() -> png::DecodeOptions {
     let mut options = png::DecodeOptions::default();
     options.set_ignore_checksums(false);

@@ -1,4 +1,4 @@
-//! Encoder of PNG.
+//! PNG encoder.
 //!
 //! Color is marked with the chunk `sRGB` (perceptual intent) and also with `gAMA` for programs that do not support
 //! `sRGB`, as the specification recommends. Data has no color chunk: viewers would brighten a height map with a `gAMA`
@@ -10,9 +10,9 @@ use crate::{ImageError, file};
 use dapple_raster::RasterView;
 use std::path::Path;
 
-/// Encodes pixels of 8 or 16 bits as a PNG file in memory.
+/// Encodes pixels with 8 or 16 bits per channel as a PNG file in memory.
 ///
-/// The bytes depend on the pixels and `transfer` alone.
+/// The bytes depend only on the pixels and `transfer`.
 ///
 /// # Errors
 ///
@@ -42,12 +42,12 @@ pub fn encode_png<P: PngPixel>(
     Ok(bytes)
 }
 
-/// Writes pixels of 8 or 16 bits to a PNG file.
+/// Writes pixels with 8 or 16 bits per channel to a PNG file.
 ///
 /// # Errors
 ///
-/// Same as [`encode_png`], plus [`Io`](crate::ImageErrorKind::Io) if the file cannot be written; an existing file is
-/// then unchanged.
+/// Same as [`encode_png`], plus [`Io`](crate::ImageErrorKind::Io) if the file cannot be written; in that case, an
+/// existing file is unchanged.
 pub fn write_png<P: PngPixel>(
     path: impl AsRef<Path>,
     pixels: RasterView<'_, P>,

@@ -1,8 +1,8 @@
-//! Choice of a filter for each row: the one with the smallest sum of absolute differences, as the specification
+//! Chooses a filter for each row. The filter with the smallest sum of absolute differences wins, as the specification
 //! recommends.
 //!
-//! Each byte is replaced by its difference from a prediction. The prediction uses the bytes of the pixels at the left,
-//! above, and above left, which are 0 outside of the image.
+//! Each byte is replaced by its difference from a prediction. The prediction uses the bytes of the pixels at the
+//! left, above, and above left, which are 0 outside the image.
 
 use dapple_raster::simd;
 

@@ -16,7 +16,7 @@ pub struct PngImage {
     pub space: ColorSpace,
 }
 
-/// Pixels in one of the formats of PNG; alpha comes last.
+/// Pixels in one of PNG's formats; alpha comes last.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PngPixels {
     /// Gray, 8 bits.

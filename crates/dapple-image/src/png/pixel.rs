@@ -13,7 +13,7 @@ pub trait PngPixel: Copy + Sync + sealed::Sealed {
     #[doc(hidden)]
     const BITS: u32;
 
-    /// Writes the samples in the byte order of the file; `bytes` has exactly their length.
+    /// Writes the samples in the byte order of the file; `bytes` is exactly as long as the samples.
     #[doc(hidden)]
     fn write_bytes(self, bytes: &mut [u8]);
 
@@ -92,7 +92,7 @@ impl PngPixel for u16 {
 }
 
 mod sealed {
-    /// Restricts [`super::PngPixel`] to the types of the format.
+    /// Restricts [`super::PngPixel`] to the pixel types that PNG supports.
     pub trait Sealed {}
     impl Sealed for u8 {}
     impl Sealed for u16 {}

@@ -1,4 +1,5 @@
-//! Color space that a PNG file declares: `cICP` before `iCCP` before `sRGB` before `gAMA` and `cHRM`.
+//! Reads the color space that a PNG file declares. `cICP` takes precedence over `iCCP`, then `sRGB`, then `gAMA` and
+//! `cHRM`.
 
 use super::GAMMA_OF_SRGB;
 use crate::color_space::{BT709, ColorSpace, Curve, D65, Primaries, Source};
@@ -14,7 +15,7 @@ const C: [f64; 2] = [0.310, 0.316];
 /// White point of the illuminant E.
 const E: [f64; 2] = [1.0 / 3.0, 1.0 / 3.0];
 
-/// Returns the color space of a file, by its chunks.
+/// Returns the color space that a file's chunks declare.
 pub(super) fn of(info: &Info<'_>) -> ColorSpace {
     if let Some(points) = &info.coding_independent_code_points {
         return of_code_points(points);
@@ -46,7 +47,7 @@ fn primaries(points: &SourceChromaticities) -> Primaries {
     [points.red, points.green, points.blue, points.white].map(point)
 }
 
-/// Returns the color space of code points of ITU-T H.273, tables 2 and 3.
+/// Returns the color space for code points from ITU-T H.273, tables 2 and 3.
 fn of_code_points(points: &CodingIndependentCodePoints) -> ColorSpace {
     let unknown = |name| ColorSpace::unknown(Source::Cicp, name);
     if points.matrix_coefficients != 0 || !points.is_video_full_range_image {

@@ -3,9 +3,10 @@
 //! A strip is half a MiB of rows. Its compressed bytes depend only on its rows and the row above. They end with an
 //! empty block that fills the last byte, so that concatenated strips are a valid stream.
 //!
-//! Measured on six maps of all built-in recipes at 512 × 512 pixels. With 8 bits, compression level 3 takes a fifth of
-//! the time of level 6 for files that are at most 5 % larger; level 1 would make them up to a third larger. With 16
-//! bits, level 1 makes files no larger than level 6 does, since the lower half of a sample is nearly noise.
+//! Compression levels were measured on six maps of every built-in recipe at 512 × 512 pixels. With 8 bits,
+//! compression level 3 takes a fifth of the time of level 6 for files that are at most 5 % larger; level 1 would make
+//! them up to a third larger. With 16 bits, level 1 makes files no larger than level 6 does, since the lower half of
+//! a sample is nearly noise.
 
 use super::filter::{Row, filter};
 use super::{GAMMA_OF_SRGB, PngPixel, Transfer};
@@ -15,7 +16,7 @@ use dapple_raster::{RasterView, parallel};
 use flate2::{Compress, CompressError, Compression, FlushCompress};
 use std::io::{self, Write};
 
-/// Maximum side of the format, in pixels.
+/// Maximum side length that the format allows, in pixels.
 const SIDE_LIMIT: u32 = i32::MAX as u32;
 
 /// Maximum length of a row, in bytes.
@@ -27,7 +28,8 @@ const STRIP: usize = 1 << 19;
 /// Number of strips per thread that are compressed before they are written.
 const STRIPS: usize = 2;
 
-/// Number of zero bytes before each row, in place of the pixel at its left: the size of the largest pixel.
+/// Number of zero bytes before each row, which stand for the pixel left of the image. Equals the size of the largest
+/// pixel type.
 const LEFT: usize = 8;
 
 /// A PNG file being written into a sink. It does not own the sink, so that the code is compiled only once.
@@ -92,7 +94,7 @@ impl PngStream {
         })
     }
 
-    /// Writes complete rows, at most as many as the file still lacks. `code` encodes a pixel.
+    /// Writes complete rows, at most as many as the file still needs. `code` encodes a pixel.
     pub(crate) fn write_rows<T: Sync, P: PngPixel>(
         &mut self,
         sink: &mut dyn Write,
@@ -202,8 +204,8 @@ fn compressed(bytes: &[u8], level: u32) -> Result<Vec<u8>, CompressError> {
     }
 }
 
-/// Returns the Adler-32 checksum (RFC 1950) of bytes followed by a strip: the sum of the bytes, and the sum of all
-/// partial sums.
+/// Returns the Adler-32 checksum (RFC 1950) of the preceding bytes followed by a strip. It combines the sum of the
+/// bytes and the sum of all partial sums.
 fn joined(before: u32, strip: &Strip) -> u32 {
     const BASE: u64 = 65521;
     let sums = |adler: u32| [u64::from(adler & 0xffff), u64::from(adler >> 16)];

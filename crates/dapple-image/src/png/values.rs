@@ -1,4 +1,4 @@
-//! Conversion of PNG codes to values and colors.
+//! Converts PNG codes to values and colors.
 
 use super::{PngImage, PngPixels};
 use crate::image::transparent;
@@ -94,7 +94,7 @@ impl PngImage {
         })
     }
 
-    /// Returns the maximum code.
+    /// Returns the maximum code for the bit depth.
     fn max(&self) -> u16 {
         match self.bits() {
             8 => u8::MAX.into(),

@@ -1,4 +1,4 @@
-//! Decoders of NumPy arrays and raw heights.
+//! Decoders for NumPy arrays and raw heights.
 //!
 //! Reference: NumPy Developers, "A Simple File Format for NumPy Arrays" (`numpy.lib.format`), versions 1 to 3. A file
 //! has a magic string, the version, the length of the header, and the header as a Python dictionary. Little-endian
@@ -15,7 +15,7 @@ const MAGIC: &[u8] = b"\x93NUMPY";
 /// Maximum number of channels of an image.
 const CHANNELS_MAX: usize = 4;
 
-/// Conversion of the bytes of a number.
+/// Function that converts the bytes of a number to `f32`.
 type Number = fn(&[u8]) -> f32;
 
 /// Decodes a NumPy array with the shape (height, width) or (height, width, channels), with at most four channels.
@@ -25,7 +25,7 @@ type Number = fn(&[u8]) -> f32;
 ///
 /// [`ImageErrorKind::UnknownFormat`] if the bytes lack the magic string, [`ImageErrorKind::Damaged`] if their number
 /// does not match the shape, [`ImageErrorKind::Unsupported`] for other shapes, orders and types,
-/// [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::Empty`] by its size.
+/// [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::Empty`] if the size is above the limit or zero.
 ///
 /// # Examples
 ///
@@ -95,7 +95,7 @@ pub fn decode_npy(bytes: &[u8], limits: &Limits) -> Result<Vec<Raster<f32>>, Ima
 /// # Errors
 ///
 /// [`ImageErrorKind::Damaged`] if the number of bytes does not match the size, [`ImageErrorKind::TooManyPixels`] or
-/// [`ImageErrorKind::Empty`] by its size.
+/// [`ImageErrorKind::Empty`] if the size is above the limit or zero.
 pub fn decode_r16(
     bytes: &[u8],
     size: [u32; 2],
@@ -117,7 +117,7 @@ pub fn decode_r16(
         .map_err(|error| ImageError::damaged("raw", error))
 }
 
-/// Returns the text of a value in the header, a Python dictionary with three keys.
+/// Returns the text of the value for `key` in the header, a Python dictionary with three keys.
 fn value_of<'a>(header: &'a str, key: &str) -> Option<&'a str> {
     let at = ['\'', '"']
         .iter()
@@ -132,7 +132,7 @@ fn value_of<'a>(header: &'a str, key: &str) -> Option<&'a str> {
     Some(value[..end].trim())
 }
 
-/// Returns the number of bytes of a value, and its conversion.
+/// Returns the size in bytes of a value of type `descr`, and the function that converts it.
 fn number_of(descr: &str) -> Result<(usize, Number), ImageError> {
     let feature = match descr.trim_matches(['\'', '"']) {
         "<f4" => return Ok((4, |b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))),
@@ -149,7 +149,7 @@ fn number_of(descr: &str) -> Result<(usize, Number), ImageError> {
     Err(ImageError::new(ImageErrorKind::Unsupported { feature }))
 }
 
-/// Returns the height and width, and number of channels.
+/// Parses a shape into height and width, and the number of channels.
 fn shape_of(shape: &str) -> Result<([u64; 2], usize), ImageError> {
     let sides = shape.trim_matches(['(', ')']).split(',').map(str::trim);
     let sides = sides.filter(|side| !side.is_empty()).map(str::parse);

@@ -1,4 +1,4 @@
-//! Construction of the bounding volume hierarchy.
+//! Builds the bounding volume hierarchy.
 //!
 //! The tree is built top-down. Every box is split where the surface area heuristic, evaluated at the borders of 16
 //! bins along each axis, predicts the lowest cost. Reference: Ingo Wald, "On fast Construction of SAH-based Bounding
@@ -10,7 +10,7 @@ use glam::DVec3;
 
 /// Number of bins along an axis; Wald found no gain from more.
 const BINS: usize = 16;
-/// Maximum number of triangles in a leaf whose split would cost more than the leaf.
+/// Maximum number of triangles in a leaf. Smaller ranges are still split if the split costs less than the leaf.
 const LEAF_MAX: usize = 8;
 /// Cost of visiting a box, relative to the cost of testing a triangle.
 const STEP_COST: f64 = 1.0;
@@ -68,7 +68,7 @@ pub(crate) struct Builder {
     margin: f64,
 }
 
-/// A split of a range of triangles in two.
+/// A split of a range of triangles into two.
 struct Split {
     axis: usize,
     /// Bins below this one belong to the first half.

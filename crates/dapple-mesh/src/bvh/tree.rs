@@ -1,15 +1,15 @@
-//! Traversal of the bounding volume hierarchy for rays and nearest points.
+//! Traverses the bounding volume hierarchy for rays and nearest-point queries.
 //!
-//! Boxes are stored in `f32`, rounded outward, with a margin of 1e-9 of the size of the mesh. The margin is far larger
-//! than the rounding of a distance between a ray and a triangle. Therefore the result equals that of a search through
-//! all triangles, bit for bit. The module `build` describes how the boxes are chosen.
+//! Boxes are stored in `f32`, rounded outward, with a margin of 1e-9 times the size of the mesh. The margin is far
+//! larger than the rounding of a distance between a ray and a triangle. Therefore the result equals that of a search
+//! through all triangles, bit for bit. The module `build` describes how the boxes are chosen.
 
 use super::Ray;
 use super::build::{Bounds, Builder, STACK};
 use core::ops::Range;
 use glam::DVec3;
 
-/// A box with either two children or triangles.
+/// A box that contains either two child nodes or triangles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
     pub(crate) low: [f32; 3],
@@ -52,7 +52,8 @@ impl Tree {
 
     /// Visits the leaves whose boxes a ray intersects between two distances, roughly from near to far.
     ///
-    /// `leaf` receives a range of indices into [`order`](Self::order), and may return a shorter end of the search.
+    /// `leaf` receives a range of indices into [`order`](Self::order), and may return a smaller distance at which the
+    /// search ends.
     pub(crate) fn visit(
         &self,
         ray: &Ray,

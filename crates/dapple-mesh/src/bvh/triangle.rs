@@ -9,7 +9,7 @@
 use super::Ray;
 use glam::DVec3;
 
-/// Corners of a triangle.
+/// The corners of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Corners([[f64; 3]; 3]);
 
@@ -23,11 +23,11 @@ impl Corners {
     }
 }
 
-/// A ray, with the shear that maps it to an axis.
+/// A ray, with the shear that maps it to a coordinate axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Probe {
     origin: [f64; 3],
-    /// Axes of space: two across the ray, then the dominant axis of its direction.
+    /// Permutation of the coordinate axes: two across the ray, then the dominant axis of its direction.
     axes: [usize; 3],
     shear: [f64; 3],
 }
@@ -55,7 +55,8 @@ impl Probe {
         }
     }
 
-    /// Returns the signed distance along the ray, and the barycentric weights of the hit.
+    /// Intersects the ray with a triangle, and returns the signed distance along the ray and the barycentric weights;
+    /// `None` if the ray's line misses it.
     #[inline]
     pub(crate) fn meet(&self, corners: &Corners) -> Option<(f64, [f64; 3])> {
         let [a, b, c] = corners.0.map(|corner| self.sheared(corner));
@@ -88,7 +89,7 @@ impl Probe {
 /// Returns the barycentric weights of the point of a triangle nearest to a position.
 ///
 /// Reference: Christer Ericson, "Real-Time Collision Detection", 2005, section 5.1.5: the nearest feature is the
-/// corner, edge or interior whose Voronoi region contains the position. A triangle without an area counts as its
+/// corner, edge or interior whose Voronoi region contains the position. A triangle with zero area counts as its
 /// longest edge or its corner.
 pub(crate) fn nearest_weights([a, b, c]: [DVec3; 3], position: DVec3) -> [f64; 3] {
     let (ab, ac) = (b - a, c - a);

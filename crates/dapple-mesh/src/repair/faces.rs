@@ -1,4 +1,4 @@
-//! Removal of duplicate faces and faces without an area.
+//! Removes duplicate faces and faces with zero area.
 
 use super::Draft;
 use crate::adjacency::{Adjacency, FaceEdge, names_twice, root, sorted_edges, unite};
@@ -6,15 +6,15 @@ use crate::triangle::{Shape, THIN_MAX, area_vector, edge_lengths_sq, is_thin, sh
 use crate::{FaceIdx, Mesh, VertexIdx};
 use std::collections::BinaryHeap;
 
-/// Maximum number of turns of mending before the remaining faces without an area are dropped.
+/// Maximum number of repair rounds before the remaining faces with zero area are dropped.
 const TURNS_MAX: usize = 64;
-/// Maximum number of flips in one turn, per face of the mesh. Flips usually shorten edges, but not always.
+/// Maximum number of flips per round, per face of the mesh. Flips usually shorten edges, but not always.
 const FLIPS_MAX: usize = 4;
 /// Maximum ratio of the shortest to the longest edge at which a cap that cannot be flipped counts as a needle: 2^-20.
 const STUCK_MAX: f64 = 1.0 / 1_048_576.0;
 
 impl Draft {
-    /// Drops duplicate faces, and mends or drops faces without an area.
+    /// Drops duplicate faces, and repairs or drops faces with zero area.
     pub(super) fn mend_faces(&mut self) {
         for _ in 0..TURNS_MAX {
             self.drop_useless();
@@ -41,8 +41,8 @@ impl Draft {
 
     /// Drops faces that contain a vertex twice, and duplicates.
     ///
-    /// Two thin duplicates cancel each other, so that the faces around them become neighbors. Of other duplicates one
-    /// stays, since both may be all that is left of a sheet.
+    /// Two thin duplicates cancel each other, so that the faces around them become neighbors. Of other duplicates,
+    /// one is kept, since both may be all that is left of a sheet.
     fn drop_useless(&mut self) {
         let faces = self.mesh.faces.iter();
         let mut keep: Vec<bool> = faces.map(|&corners| !names_twice(corners)).collect();
@@ -77,8 +77,8 @@ impl Draft {
         welded
     }
 
-    /// Flips the longest edges of caps, longest first, and drops caps without a neighbor there. Returns whether the
-    /// mesh changed.
+    /// Flips the longest edges of caps, longest first, and drops caps that have no neighbor across that edge. Returns
+    /// whether the mesh changed.
     fn flip_caps(&mut self, caps: Vec<Cap>) -> bool {
         let edges = sorted_edges(&self.mesh);
         let mut across = Adjacency::paired(self.mesh.faces.len(), &edges);
@@ -120,7 +120,8 @@ impl Draft {
         changed
     }
 
-    /// Returns whether a flip gives a shorter edge or only faces with an area; other flips could repeat forever.
+    /// Returns whether a flip gives a shorter edge, or only faces with nonzero area. Other flips could repeat
+    /// forever.
     fn gains(&self, cap: &Cap, to: FaceEdge) -> bool {
         let corner = |vertex: VertexIdx| self.mesh.positions[vertex.index()];
         let [tip, third] = [self.third(cap.of), self.third(to)].map(corner);
@@ -131,8 +132,8 @@ impl Draft {
                 .all(|corners| area_vector(corners).is_some())
     }
 
-    /// Returns the neighbors across the other two edges of a cap and of its neighbor: first at the start of the
-    /// shared edge, as the neighbor traverses it, then at its end.
+    /// Returns the neighbors across the other two edges of a cap and of its neighbor: first those at the start of the
+    /// shared edge (as the neighbor traverses it), then those at its end.
     fn sides(&self, cap: FaceEdge, to: FaceEdge, across: &Adjacency) -> [[Option<FaceEdge>; 2]; 2] {
         let after = |at: FaceEdge, steps| across.across(step(at, steps));
         let [past_end, past_start] = [1, 2].map(|steps| after(to, steps));
@@ -173,7 +174,7 @@ impl Draft {
     }
 }
 
-/// A cap and its longest edge, ordered by length; on a tie the lower face is greater.
+/// A cap and its longest edge. Caps are ordered by the length of this edge; on a tie, the lower face is greater.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cap {
     length_sq: f64,
@@ -212,7 +213,7 @@ impl PartialOrd for Cap {
     }
 }
 
-/// Returns the edge of the same face, `steps` later.
+/// Returns the edge `steps` after `at` in the same face.
 fn step(at: FaceEdge, steps: u8) -> FaceEdge {
     FaceEdge {
         edge: (at.edge + steps) % 3,

@@ -1,4 +1,4 @@
-//! Consistent winding of the faces of each piece, and cuts in one-sided pieces.
+//! Makes the winding of each piece's faces consistent, and makes cuts in non-orientable pieces.
 
 use super::Draft;
 use crate::adjacency::{Adjacency, FaceEdge, sorted_edges};
@@ -54,7 +54,7 @@ impl Draft {
         self.mesh.faces[at.face.index()][usize::from(at.edge)]
     }
 
-    /// Flips either the marked or the other faces of a piece; returns the number of flipped faces.
+    /// Flips either the marked or the unmarked faces of a piece, and returns the number of flipped faces.
     fn turn_piece(&mut self, piece: &Piece) -> usize {
         // Sum the signed volume, and the areas of marked and unmarked faces.
         let origin = self.mesh.corners(piece.faces[0].0)[0];
@@ -133,9 +133,9 @@ impl Draft {
     }
 }
 
-/// Faces connected across edges of two faces.
+/// A piece: faces that are connected across edges with exactly two faces.
 struct Piece {
-    /// Faces in the order of the flood, and whether their winding is opposite to that of the first face.
+    /// Faces in flood order, each with whether its winding is opposite to the first face's.
     faces: Vec<(FaceIdx, bool)>,
     /// Whether every edge has two faces.
     closed: bool,

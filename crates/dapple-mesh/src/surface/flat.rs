@@ -1,10 +1,10 @@
-//! Planes of faces, and transitions across their edges.
+//! Planar coordinates of faces, and transitions across their edges.
 
 use crate::adjacency::FaceEdge;
 use crate::triangle::area_vector;
 use glam::{DVec2, DVec3};
 
-/// A face in its plane.
+/// A face laid out in its own plane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FaceFrame {
     /// Position of the first corner.
@@ -15,7 +15,7 @@ pub(crate) struct FaceFrame {
     pub(crate) y: DVec3,
     /// Length of the first edge: the second corner is at `[width, 0]`.
     pub(crate) width: f64,
-    /// Third corner in the plane.
+    /// Position of the third corner in the plane.
     pub(crate) apex: DVec2,
     /// Transitions across the three edges; `None` at a border.
     pub(crate) across: [Option<EdgeTransition>; 3],
@@ -25,7 +25,7 @@ pub(crate) struct FaceFrame {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EdgeTransition {
     pub(crate) to: FaceEdge,
-    /// Rotation as cosine and sine, followed by a shift, from this plane to the other one.
+    /// Rotation from this plane to the neighbor's, as cosine and sine. A shift follows it.
     pub(crate) turn: DVec2,
     pub(crate) shift: DVec2,
 }
@@ -49,7 +49,7 @@ impl FaceFrame {
         })
     }
 
-    /// Returns the corners in the plane.
+    /// Returns the positions of the corners in the plane.
     #[inline]
     pub(crate) fn corners(&self) -> [DVec2; 3] {
         [DVec2::ZERO, DVec2::new(self.width, 0.0), self.apex]

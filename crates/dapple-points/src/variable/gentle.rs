@@ -199,7 +199,7 @@ mod tests {
     use dapple_raster::Varying;
     use glam::DVec2;
 
-     /// Returns black, white and gray squares with hard edges.
+    /// Returns black, white and gray squares with hard edges.
     fn squares() -> Varying {
         Varying::function(|at| {
             let [x, y] = (at * 3.0).floor().to_array();
