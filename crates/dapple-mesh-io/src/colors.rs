@@ -1,8 +1,8 @@
-//! Vertex colors in formats other than glTF, which are encoded as sRGB.
+//! Decodes vertex colors, which formats other than glTF encode as sRGB.
 
 use dapple_color::{Code, LinearRgb, LinearRgba};
 
-/// Encoding of a color component as a number. Values out of range are clamped, and NaN becomes 0.
+/// How a file encodes a color component as a number. Values out of range are clamped, and NaN becomes 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Coding {
     /// Integers from 0 to 255.

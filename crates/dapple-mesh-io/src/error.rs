@@ -1,9 +1,9 @@
-//! Errors of mesh files.
+//! Errors from mesh files.
 
 use dapple_mesh::MeshError;
 
 dapple_raster::error! {
-    /// An error of reading or writing a mesh file.
+    /// An error from reading or writing a mesh file.
     MeshIoError,
     /// Cause of a [`MeshIoError`], with the limit and the value.
     MeshIoErrorKind {
@@ -11,7 +11,7 @@ dapple_raster::error! {
         File {
             /// Name of the format.
             format: &'static str,
-            /// Reason and location in the file.
+            /// Reason for the error, and its location in the file.
             why: String,
         } => "this is not a valid {format} file: {why}";
         /// A file is valid, but uses a feature that is not supported.
@@ -23,19 +23,19 @@ dapple_raster::error! {
         Io {
             /// Path of the file.
             path: String,
-            /// Error of the operating system, as text.
+            /// The operating system's error, as text.
             why: String,
-            /// Error number, if the error is from the operating system.
+            /// The operating system's error number; `None` if the error has another origin.
             code: Option<i32>,
         } => "{path}: {why}";
-        /// There is no readable, or no writable, format with this name.
+        /// No readable (or writable) format has this name.
         Format {
-            /// Requested name, as in the extension of a path.
+            /// Requested name, such as the extension of a path.
             name: String,
             /// Supported extensions, as text.
             known: String,
         } => "no mesh format is named `{name}`; there are {known}";
-        /// The name cannot be used for files that refer to each other.
+        /// The file name cannot be used, because the files written with it refer to each other by name.
         Name {
             /// Name of the files without extension.
             name: String,
@@ -49,7 +49,7 @@ dapple_raster::error! {
         } => "the {format} file would have {bytes} bytes, but must have less than 2^32";
     }
     from {
-        /// An error of the mesh or the model.
+        /// An error in the mesh or the model.
         Mesh(MeshError),
     }
 }

@@ -12,11 +12,11 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Component, Path};
 
-/// Maximum number of bytes that are read from a file, and from all files that it refers to. The length of a device or
-/// a pipe is unknown, and a small file may refer to a large one many times.
+/// Maximum number of bytes read from a file, and from all files that it refers to. The length of a device or a pipe
+/// is unknown, and a small file may refer to a large one many times.
 const BYTES_MAX: u64 = 1 << 32;
 
-/// Reads a mesh file. The extension of its path determines the format in [`FORMATS`](crate::FORMATS).
+/// Reads a mesh file. The path's extension selects the format from [`FORMATS`](crate::FORMATS).
 ///
 /// Materials, buffers and textures are read only from regular files in the same folder and its subfolders, up to 4 GiB
 /// in total.
@@ -24,7 +24,7 @@ const BYTES_MAX: u64 = 1 << 32;
 /// # Errors
 ///
 /// [`MeshIoErrorKind::Io`] if the file cannot be read or is larger than 4 GiB; [`MeshIoErrorKind::Format`] if no
-/// format has this extension; and the errors of the reader of the format.
+/// format has this extension; or any error from the format's reader.
 pub fn read_model(path: impl AsRef<Path>) -> Result<Model, MeshIoError> {
     let path = path.as_ref();
     let format = format_of(path)?;
@@ -33,13 +33,13 @@ pub fn read_model(path: impl AsRef<Path>) -> Result<Model, MeshIoError> {
     format.read(&bytes, &mut |name| resolve(path, name, &mut left))
 }
 
-/// Reads a mesh file and encodes it again with the first image of each pair replaced by the second. Nothing else
-/// changes. The result is one file with the [written extension](MeshFormat::written_ending) of its format; `None` if
-/// the format does not contain images.
+/// Reads a mesh file and encodes it again, with the first image of each pair replaced by the second. Nothing else
+/// changes. Returns a single file whose extension is [`written_ending`](MeshFormat::written_ending), or `None` if the
+/// format cannot contain images.
 ///
 /// # Errors
 ///
-/// Same as [`read_model`] about files, or any error from [`MeshFormat::replace_images`].
+/// Same as [`read_model`] for access to the files, or any error from [`MeshFormat::replace_images`].
 pub fn replace_images(
     path: impl AsRef<Path>,
     replaced: &[(EncodedImage, EncodedImage)],
@@ -51,16 +51,16 @@ pub fn replace_images(
     format.replace_images(&bytes, &mut |name| resolve(path, name, &mut left), replaced)
 }
 
-/// Writes a mesh file. The extension of its path determines the format in [`FORMATS`](crate::FORMATS).
+/// Writes a mesh file. The path's extension selects the format from [`FORMATS`](crate::FORMATS).
 ///
 /// The file is written under a temporary name, flushed to the disk and then renamed. Other programs never see a
-/// partial file, and a power cut leaves the old or the new one. Files that it refers to, such as materials and
-/// textures, are written to the same folder first, with the same stem.
+/// partial file, and a power failure leaves either the old or the new one. Files that it refers to, such as materials
+/// and textures, are written to the same folder first, with the same stem.
 ///
 /// # Errors
 ///
 /// [`MeshIoErrorKind::Io`] if a file cannot be written; [`MeshIoErrorKind::Format`] if no writable format has this
-/// extension; and the errors of the writer of the format.
+/// extension; or any error from the format's writer.
 pub fn write_model(path: impl AsRef<Path>, model: &Model) -> Result<(), MeshIoError> {
     let path = path.as_ref();
     let ending = ending(path);
@@ -86,7 +86,7 @@ fn format_of(path: &Path) -> Result<&'static MeshFormat, MeshIoError> {
     })
 }
 
-/// Creates the error for an extension without a writable format.
+/// Creates the error for an extension that no writable format has.
 pub(crate) fn unwritable(name: String) -> MeshIoError {
     let known = writable_endings().collect::<Vec<_>>().join(", ");
     let known = format!("{known} to write");

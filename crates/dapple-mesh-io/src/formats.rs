@@ -1,4 +1,4 @@
-//! Table of formats. Reading and writing by path, errors and help texts are derived from it.
+//! Table of mesh file formats. Reading and writing by path, error messages and help texts are derived from it.
 //!
 //! A format is a module of this folder with a [`MeshFormat`]. A new format needs that module and two lines here.
 
@@ -13,7 +13,7 @@ use crate::MeshIoError;
 use dapple_mesh::{EncodedImage, Model};
 use std::path::Path;
 
-/// All formats, in the order in which texts list them.
+/// All formats, in the order used in error messages and help texts.
 pub static FORMATS: &[MeshFormat] = &[
     obj::OBJ,
     ply::PLY,
@@ -43,18 +43,19 @@ struct Writer {
     has_colors: bool,
     /// Encodes the files, the main file last.
     files: fn(&Model, &str) -> Result<Vec<NamedFile>, MeshIoError>,
-    /// Encodes the file that was read with some images replaced.
+    /// Encodes an existing file again with some images replaced; `None` if the format cannot contain images.
     replace_images: Option<ReplaceImages>,
 }
 
-/// Function that takes the bytes of a file, a resolver, and pairs of an image and its replacement.
+/// Function that replaces images. It takes the bytes of a file, a resolver, and pairs of an image and its
+/// replacement.
 type ReplaceImages = fn(
     &[u8],
     &mut FileResolver<'_>,
     &[(EncodedImage, EncodedImage)],
 ) -> Result<Vec<u8>, MeshIoError>;
 
-/// Location of the material of a model, with its textures, in written files.
+/// Where a format writes a model's material and its textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MaterialPlace {
     /// The material is omitted; [vertex colors](MeshFormat::has_colors) may be written.
@@ -65,14 +66,14 @@ pub enum MaterialPlace {
     Beside,
 }
 
-/// Function that returns the content of a file by the name that another file uses for it; `None` if there is no such
-/// file.
+/// Function that returns the content of a referenced file, given the name that the referring file uses; `None` if
+/// there is no such file.
 ///
-/// Readers of formats with several files take it as an argument. The name is passed as in the file, with slashes and
-/// without percent-encoding. It may be a path to anywhere, so a caller that opens files must check it first.
+/// Readers of multi-file formats take it as an argument. The name is passed as in the file, with slashes and without
+/// percent-encoding. It may be a path to anywhere, so a caller that opens files must check it first.
 pub type FileResolver<'a> = dyn FnMut(&str) -> Option<Vec<u8>> + 'a;
 
-/// Name and content of a file to write.
+/// A file to write: its name and content.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NamedFile {
     /// File name, without a folder.
@@ -108,7 +109,7 @@ impl MeshFormat {
         self.writer.map(|writer| writer.ending)
     }
 
-    /// Returns the location of the material, with its textures, in written files.
+    /// Returns where the format writes the material and its textures.
     #[must_use]
     pub fn material_place(&self) -> MaterialPlace {
         self.writer
@@ -125,18 +126,18 @@ impl MeshFormat {
     ///
     /// # Errors
     ///
-    /// The errors of the function `read` in the module of the format.
+    /// Any error from the `read` function in the format's module.
     pub fn read(&self, bytes: &[u8], resolve: &mut FileResolver<'_>) -> Result<Model, MeshIoError> {
         (self.read)(bytes, resolve)
     }
 
-    /// Encodes a file of this format again with the first image of each pair replaced by the second. Nothing else
-    /// changes. The result is one file with [`written_ending`](Self::written_ending); `None` if the format does not
-    /// contain images.
+    /// Encodes a file of this format again, with the first image of each pair replaced by the second. Nothing else
+    /// changes. Returns a single file whose extension is [`written_ending`](Self::written_ending), or `None` if the
+    /// format cannot contain images.
     ///
     /// # Errors
     ///
-    /// The errors of the function `replace_images` in the module of the format.
+    /// Any error from the `replace_images` function in the format's module.
     pub fn replace_images(
         &self,
         bytes: &[u8],
@@ -154,8 +155,8 @@ impl MeshFormat {
     ///
     /// # Errors
     ///
-    /// [`MeshIoErrorKind::Format`](crate::MeshIoErrorKind::Format) if the format is read-only; and the errors of the
-    /// function `write` in the module of the format.
+    /// [`MeshIoErrorKind::Format`](crate::MeshIoErrorKind::Format) if the format is read-only; or any error from the
+    /// `write` function in the format's module.
     pub fn write(&self, model: &Model, stem: &str) -> Result<Vec<NamedFile>, MeshIoError> {
         let Some(writer) = self.writer else {
             return Err(crate::files::unwritable(self.endings[0].to_owned()));
@@ -180,7 +181,7 @@ pub(crate) fn ending(path: &Path) -> String {
     ending.to_ascii_lowercase()
 }
 
-/// Returns the single file of a format that does not refer to other files.
+/// Wraps the bytes of a format that writes a single file.
 fn alone(stem: &str, ending: &str, bytes: Vec<u8>) -> Vec<NamedFile> {
     let name = format!("{stem}.{ending}");
     vec![NamedFile { name, bytes }]

@@ -1,4 +1,4 @@
-//! Files of triangle meshes: reads OBJ with MTL, PLY, glTF, GLB, OFF and STL, and writes OBJ, PLY, GLB and STL.
+//! Mesh file formats: reads OBJ with MTL, PLY, glTF, GLB, OFF and STL, and writes OBJ, PLY, GLB and STL.
 //!
 //! ```no_run
 //! use dapple_mesh_io::{MeshFormat, read_model, write_model};
@@ -43,24 +43,25 @@
 //! |---|---|---|
 //! | `gltf` | on | reads glTF and GLB files, and writes GLB files, with `serde` and `serde_json` |
 //!
-//! The other formats need no further crate and are always there.
+//! The other formats need no other crates and are always available.
 //!
 //! # Limits
 //!
-//! * A reader takes at most 256 bytes of memory for each byte of the file and of the files that it refers to, and 1 GiB
-//!   more, whatever counts the file states. A file on disk, and all files that it refers to, have at most 4 GiB.
+//! * A reader takes at most 256 bytes of memory per byte of the file and the files it refers to, plus 1 GiB, whatever
+//!   counts the file states. A file on disk, and all files that it refers to, have at most 4 GiB.
 //! * No file makes a reader panic. A damaged file is a [`MeshIoError`].
 //! * Buffers, materials and textures are read from the folder of the file and its subfolders only.
-//! * Omitted parts are listed in [`Model::left_out`](dapple_mesh::Model::left_out): missing textures, further
-//!   materials, animations, polygons that cross themselves. Skins, morph targets and maps of texture coordinates are
+//! * Omitted parts, such as missing textures, further materials, animations and self-intersecting polygons, are
+//!   listed in [`Model::left_out`](dapple_mesh::Model::left_out). Skins, morph targets and texture transforms are
 //!   applied.
 //! * A convex polygon becomes a fan of triangles around its first corner, and a concave one the triangles of ear
-//!   clipping in its plane. One that crosses itself stays a fan. One with fewer than three corners is left out.
-//! * Colors of vertices are coded as sRGB in OBJ, PLY and OFF, in whole numbers and in fractions alike, and linear in
+//!   clipping in its plane. A self-intersecting polygon stays a fan. A polygon with fewer than three corners is left
+//!   out.
+//! * Vertex colors are encoded as sRGB in OBJ, PLY and OFF, both as integers and as fractions, and are linear in
 //!   glTF.
 //! * An OBJ with `<UDIM>` or `<UVTILE>` in the name of its texture has one texture for each unit square. glTF has no
 //!   such names, and its writer refuses them.
-//! * A file that is written is the old one or the whole new one.
+//! * Writing is atomic: the file on disk is either the old one or the complete new one.
 //!
 //! # Without std
 //!

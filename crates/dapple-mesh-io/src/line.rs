@@ -1,4 +1,4 @@
-//! Lines of text, for line-based formats.
+//! Splits text into lines and words, for line-based formats.
 
 use super::text::{content, in_range, parse, words};
 use crate::MeshIoError;
@@ -9,13 +9,13 @@ pub(crate) struct Line<'a> {
     format: &'static str,
     /// Line number, starting at 1; of several joined lines, the last.
     number: usize,
-    /// The whole line.
+    /// The text of the whole line.
     text: &'a [u8],
     /// Words before a comment; at least one.
     pub(crate) words: Vec<&'a [u8]>,
 }
 
-/// Returns the lines of a text without comments, which start with `#`, and without empty lines.
+/// Returns the lines of a text, without empty lines and without comments (which start with `#`).
 ///
 /// Fails if the text is neither ASCII nor UTF-8.
 pub(crate) fn lines<'a>(
@@ -51,25 +51,25 @@ impl Line<'_> {
         )))
     }
 
-    /// Parses the word at an index as a number.
+    /// Parses word `at` as a number.
     pub(crate) fn number(&self, at: usize) -> Result<f64, MeshIoError> {
         let word = self.words.get(at).copied();
         word.and_then(parse)
             .ok_or_else(|| self.error(format!("a number is needed in place {}", at + 1)))
     }
 
-    /// Parses the word at an index as a component of a position, a normal or a texture coordinate.
+    /// Parses word `at` as a component of a position, a normal or a texture coordinate.
     pub(crate) fn part(&self, at: usize) -> Result<f64, MeshIoError> {
         in_range(self.number(at)?).map_err(|why| self.error(why))
     }
 
-    /// Parses three words, starting at an index, as a position or normal.
+    /// Parses three words, starting with word `at`, as a position or normal.
     pub(crate) fn position(&self, at: usize) -> Result<DVec3, MeshIoError> {
         let [x, y, z] = [at, at + 1, at + 2].map(|at| self.part(at));
         Ok(DVec3::new(x?, y?, z?))
     }
 
-    /// Parses three words, starting at an index, as numbers without a limit.
+    /// Parses three words, starting with word `at`, as numbers without a range check.
     pub(crate) fn vector(&self, at: usize) -> Result<DVec3, MeshIoError> {
         Ok(DVec3::new(
             self.number(at)?,
@@ -89,7 +89,7 @@ impl Line<'_> {
         self.words.extend(next.words);
     }
 
-    /// Creates the error about the line, with its number.
+    /// Creates an error about this line that states its number.
     pub(crate) fn error(&self, why: impl core::fmt::Display) -> MeshIoError {
         MeshIoError::file(self.format, format!("line {}: {why}", self.number))
     }

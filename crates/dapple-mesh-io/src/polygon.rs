@@ -1,4 +1,4 @@
-//! Triangulation of polygons and strips.
+//! Triangulates polygons and strips.
 //!
 //! Readers first convert each polygon to a fan of triangles around its first corner, since a file may refer to
 //! vertices before it defines them. [`Polygons`] records which faces belong to one polygon. Once all positions are
@@ -15,7 +15,7 @@ use glam::{DVec2, DVec3};
 use std::collections::VecDeque;
 
 /// Maximum number of tests of corner pairs over all polygons of a file; concave polygons beyond it stay fans. A
-/// polygon seldom takes more than a hundred tests per corner, but a hostile one takes a number quadratic in its
+/// polygon seldom takes more than a hundred tests per corner, but a malicious polygon takes a number quadratic in its
 /// corners.
 const TESTS_MAX: usize = 1 << 28;
 
@@ -25,7 +25,7 @@ pub(crate) struct Polygons {
     fans: Vec<Range<usize>>,
 }
 
-/// Triangulations of concave polygons, as corner indices of the polygons.
+/// Triangulations of concave polygons, as indices into each polygon's corners.
 #[derive(Default)]
 pub(crate) struct Ears {
     polygons: Vec<(Range<usize>, Vec<[u32; 3]>)>,
@@ -43,10 +43,11 @@ struct Ring {
     at: Vec<DVec2>,
     next: Vec<u32>,
     before: Vec<u32>,
-    /// Corners that may lie inside of an ear, sorted by x: those without a left turn in the initial polygon.
+    /// Corners that may be inside an ear, sorted by x. These are the corners where the initial polygon does not turn
+    /// left.
     reflex: Vec<u32>,
-    /// For each entry of `reflex`, a later index, such that all entries before it are cut or turn left now. An entry
-    /// that refers to itself is live.
+    /// For each entry of `reflex`, the index of itself or a later entry, such that all entries in between are cut or
+    /// now turn left. An entry that refers to itself is live.
     live: Vec<u32>,
     /// Index of each corner in `reflex`; `u32::MAX` if it is not there.
     rank: Vec<u32>,
@@ -54,7 +55,7 @@ struct Ring {
     tests_left: usize,
 }
 
-/// Strictness of the ear test.
+/// How strictly a corner must qualify as an ear.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Ear {
     /// The ear has a positive area, and no corner inside or on its sides.
@@ -135,7 +136,7 @@ impl Polygons {
 }
 
 impl Ears {
-    /// Replaces the fans of concave polygons in a column of face corners.
+    /// Replaces the fans of concave polygons in an array of per-corner face data.
     pub(crate) fn apply<T: Copy>(&self, faces: &mut [[T; 3]]) {
         for (range, triangles) in &self.polygons {
             let faces = &mut faces[range.clone()];
@@ -161,8 +162,8 @@ impl Ears {
     }
 }
 
-/// Projects the corners along the axis nearest to the normal. The first corner becomes the origin, and the orientation
-/// is chosen so that the area is not negative.
+/// Projects the corners along the coordinate axis nearest to the normal. The first corner becomes the origin, and the
+/// orientation is chosen so that the area is not negative.
 fn in_plane(corners: &[DVec3]) -> Vec<DVec2> {
     let first = corners[0];
     let from_first = |at: usize| corners[at % corners.len()] - first;
@@ -243,13 +244,13 @@ impl Ring {
         [self.before[at], corner, self.next[at]]
     }
 
-    /// Returns twice the signed area of a corner and its neighbors.
+    /// Returns twice the signed area of the triangle of a corner and its neighbors.
     fn area(&self, corner: u32) -> f64 {
         let [a, b, c] = self.triangle(corner).map(|corner| self.at(corner));
         area(a, b, c)
     }
 
-    /// Triangulates the polygon; `None` if it intersects itself, or no tests are left.
+    /// Triangulates the polygon; `None` if it intersects itself, or the test limit is reached.
     fn triangles(&mut self) -> Option<Vec<[u32; 3]>> {
         if self.crosses()? {
             return None;
@@ -307,7 +308,7 @@ impl Ring {
         }
     }
 
-    /// Counts a test; `None` if none is left.
+    /// Counts a test; `None` if the test limit is reached.
     fn count_test(&mut self) -> Option<()> {
         self.tests_left = self.tests_left.checked_sub(1)?;
         Some(())
@@ -365,7 +366,7 @@ impl Ring {
         at
     }
 
-    /// Removes a corner from the live corners.
+    /// Removes a corner from the list of live reflex corners.
     fn pass_over(&mut self, corner: u32) {
         if let Some(live) = self.live.get_mut(self.rank[corner as usize] as usize) {
             *live = self.rank[corner as usize] + 1;
@@ -417,7 +418,7 @@ impl Ring {
     }
 }
 
-/// Returns the order of two points by x. All coordinates are finite.
+/// Compares two points by x. All coordinates are finite.
 fn by_x(a: DVec2, b: DVec2) -> Ordering {
     a.x.total_cmp(&b.x)
 }

@@ -1,17 +1,17 @@
-//! Vertex splitting, for formats that have normals only for vertices.
+//! Splits vertices, for formats that have normals only per vertex.
 
 use dapple_mesh::{Mesh, MeshError, Model, VertexIdx};
 use glam::DVec3;
 use std::borrow::Cow;
 
-/// Converts corner normals of a model to vertex normals.
+/// Converts a model's corner normals to vertex normals.
 ///
 /// A vertex is split where its corners have different normals. Vertices keep their indices, and additional ones
 /// follow.
 ///
 /// # Errors
 ///
-/// Same as [`Mesh::new`]: too many vertices.
+/// If the mesh would have too many vertices, as in [`Mesh::new`].
 pub(crate) fn with_vertex_normals(model: &Model) -> Result<Cow<'_, Model>, MeshError> {
     let Some(corner_normals) = &model.corner_normals else {
         return Ok(Cow::Borrowed(model));
@@ -41,11 +41,11 @@ pub(crate) fn with_vertex_normals(model: &Model) -> Result<Cow<'_, Model>, MeshE
 }
 
 struct Split {
-    /// Original vertex of each new vertex; the first ones are the mesh vertices in order.
+    /// Mesh vertex that each new vertex is a copy of. The first entries are the mesh vertices in order.
     vertex: Vec<usize>,
     /// Normal of each new vertex; `None` until a corner sets it.
     normals: Vec<Option<DVec3>>,
-    /// Next new vertex of the same mesh vertex.
+    /// For each new vertex, the next copy of the same mesh vertex; `None` for the last copy.
     next: Vec<Option<usize>>,
 }
 
@@ -59,7 +59,7 @@ impl Split {
         }
     }
 
-    /// Returns the copy of a vertex with this normal, which is created if necessary.
+    /// Returns the copy of a vertex with this normal, and creates it if necessary.
     fn vertex_with(&mut self, vertex: VertexIdx, normal: DVec3) -> VertexIdx {
         let mut at = vertex.index();
         while *self.normals[at].get_or_insert(normal) != normal {

@@ -1,4 +1,4 @@
-//! Text files: decoding, and parsing and formatting of words and numbers.
+//! Decodes text files, and parses and formats words and numbers.
 
 use crate::MeshIoError;
 use core::fmt::Display;
@@ -7,7 +7,7 @@ use core::str::FromStr;
 use dapple_mesh::POSITION_MAX;
 use dapple_raster::text::without_mark;
 
-/// Returns the text of a file without the byte order mark of UTF-8. All readers of text use this function.
+/// Returns the text of a file without a UTF-8 byte order mark. All readers of text formats use this function.
 ///
 /// Fails for UTF-16 and UTF-32, with or without a mark: the first character of every format is ASCII.
 pub(crate) fn content<'a>(format: &'static str, bytes: &'a [u8]) -> Result<&'a [u8], MeshIoError> {
@@ -25,7 +25,8 @@ pub(crate) fn parse<T: FromStr>(word: &[u8]) -> Option<T> {
     core::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// Checks the range of a component of a position, a normal or a texture coordinate; the error is the message.
+/// Checks the range of a component of a position, a normal or a texture coordinate; an error is returned as its
+/// message.
 pub(crate) fn in_range(part: f64) -> Result<f64, String> {
     if part.abs() <= POSITION_MAX {
         return Ok(part);

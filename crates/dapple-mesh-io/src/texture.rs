@@ -1,18 +1,19 @@
-//! External textures, and messages for textures that cannot be read.
+//! Reads external textures, and formats messages for textures that cannot be read.
 
 use crate::FileResolver;
 use dapple_mesh::{EncodedImage, Model};
 
-/// Tolerance for texture coordinates outside of 0 to 1; smaller differences are rounding.
+/// Tolerance for texture coordinates outside the range 0 to 1; smaller excesses are rounding errors.
 const OUTSIDE: f64 = 1e-4;
 
-/// Reads the texture with a name; the error is the entry of [`Model::left_out`](dapple_mesh::Model::left_out) for it.
+/// Reads the texture called `name`. An error is returned as the entry for
+/// [`Model::left_out`](dapple_mesh::Model::left_out).
 pub(crate) fn texture(name: &str, resolve: &mut FileResolver<'_>) -> Result<EncodedImage, String> {
     let bytes = resolve(name).ok_or_else(|| unreadable("texture", name))?;
     encoded(name, bytes)
 }
 
-/// Wraps the bytes of a texture file; `name` is used in the error.
+/// Wraps the bytes of a texture file; `name` is used in error messages.
 pub(crate) fn encoded(name: &str, bytes: Vec<u8>) -> Result<EncodedImage, String> {
     let wrong = |_| format!("the texture {}, which is neither PNG nor JPEG", shown(name));
     EncodedImage::new(bytes).map_err(wrong)
@@ -23,8 +24,9 @@ const UDIM: &str = "<UDIM>";
 /// Placeholder for the column and row of a unit square, starting at 1, as in `u2_v1`.
 const UVTILE: &str = "<UVTILE>";
 
-/// Returns the texture name of a [unit square](Model::unit_squares) for a name with a placeholder; `None` without one.
-/// The placeholders, in any case, are `<UDIM>` for the number, and `<UVTILE>` for the column and row.
+/// Returns the texture name of a [unit square](Model::unit_squares), given a name with a placeholder; `None` if the
+/// name has no placeholder. The placeholders, in upper or lower case, are `<UDIM>` for the number, and `<UVTILE>` for
+/// the column and row.
 ///
 /// # Examples
 ///
@@ -49,7 +51,8 @@ pub fn tile_name(name: &str, number: u32) -> Option<String> {
     })
 }
 
-/// Replaces the number of one of several unit squares in a name, such as `skin.1001.png`, by the placeholder.
+/// Replaces a unit square's number in a name such as `skin.1001.png` by the placeholder; `None` if the name contains
+/// no number from `squares`.
 pub(crate) fn name_of_all(name: &str, squares: &[u32]) -> Option<String> {
     let is_digit = |letter: Option<char>| letter.is_some_and(|letter| letter.is_ascii_digit());
     let with_mark = |number: &u32| {
@@ -62,7 +65,7 @@ pub(crate) fn name_of_all(name: &str, squares: &[u32]) -> Option<String> {
     (squares.len() > 1).then(|| squares.iter().find_map(with_mark))?
 }
 
-/// Returns the message for a file that is missing or outside of the folder.
+/// Returns the message for a file that is missing or outside the folder.
 pub(crate) fn unreadable(what: &str, name: &str) -> String {
     format!("the {what} {}, which cannot be read", shown(name))
 }
@@ -79,7 +82,7 @@ pub(crate) fn shown(name: &str) -> String {
     name.chars().map(plain).collect()
 }
 
-/// Returns whether a corner has texture coordinates outside of 0 to 1.
+/// Returns whether a corner has texture coordinates outside the range 0 to 1.
 pub(crate) fn is_outside(model: &Model) -> bool {
     let mut parts = model
         .uvs

@@ -3,16 +3,15 @@
 //! Reference: The Khronos Group, *glTF 2.0 Specification*, 2021 (ISO/IEC 12113:2022).
 //!
 //! All triangles of the default scene become one mesh, with the transforms of their nodes applied. Without a scene,
-//! all nodes are used. Each copy by `EXT_mesh_gpu_instancing` is included. Triangle strips and fans become triangles,
-//! and point primitives become vertices without faces; lines and animations are omitted. Skins and morph targets are
-//! applied in the pose without animation. Primitives of one node with the same attributes share their vertices. If
-//! only some primitives have colors or texture coordinates, the others become white and zero; normals are kept only if
-//! all primitives have them. The material is the first one used by a primitive.
+//! all nodes are used. All copies made by `EXT_mesh_gpu_instancing` are included. Triangle strips and fans become
+//! triangles, and point primitives become vertices without faces; lines and animations are omitted. Skins and morph
+//! targets are applied in the pose without animation. Primitives of one node with the same attributes share their
+//! vertices. If only some primitives have colors or texture coordinates, the others become white and zero; normals
+//! are kept only if all primitives have them. The material is the first one used by a primitive.
 //!
-//! Textures are copied unchanged if they are PNG or JPEG and use the same texture coordinates as the base color, whose
-//! `KHR_texture_transform` is applied to the corners. Everything else in a file that a
+//! Textures are copied unchanged if they are PNG or JPEG and use the same texture coordinates as the base color,
+//! whose `KHR_texture_transform` is applied to the corners. Everything else in a file that a
 //! [`Material`](dapple_mesh::Material) cannot represent, such as an alpha cutoff other than one half, is listed in
-//! [`Model::left_out`].
 //! [`Model::left_out`].
 //!
 //! At a seam of the texture, a glTF file has two vertices at one position; [`Mesh::repair`](dapple_mesh::Mesh::repair)
@@ -50,7 +49,7 @@ use std::borrow::Cow;
 
 const FORMAT: &str = "glTF";
 
-/// Entry in the table of formats.
+/// Entry for glTF in the table of formats.
 pub(super) const GLTF: MeshFormat = MeshFormat {
     name: FORMAT,
     endings: &["glb", "gltf"],
@@ -64,8 +63,8 @@ pub(super) const GLTF: MeshFormat = MeshFormat {
     }),
 };
 
-/// Extensions that a file may require. Instancing and texture transforms are supported. The others do not affect the
-/// model, or only add accessor types, all of which are read.
+/// Names of extensions that a file may require. Instancing and texture transforms are supported. The others do not
+/// affect the model, or only add accessor types, all of which are read.
 const EXTENSIONS: [&str; 6] = [
     "EXT_mesh_gpu_instancing",
     "KHR_texture_transform",
@@ -75,10 +74,10 @@ const EXTENSIONS: [&str; 6] = [
     "KHR_lights_punctual",
 ];
 
-/// A document with its buffers.
+/// A parsed document and its buffers.
 struct Source<'a> {
     document: Document,
-    /// Bytes of each buffer; `None` if they are missing, which is an error only where they are used.
+    /// Bytes of each buffer; `None` for a missing buffer, which is an error only if it is used.
     buffers: Vec<Option<Cow<'a, [u8]>>>,
 }
 
@@ -195,7 +194,7 @@ impl Source<'_> {
         bytes.ok_or_else(|| wrong(format!("there are no bytes for buffer view {index}")))
     }
 
-    /// Creates the error for a buffer without bytes, with the name of its file.
+    /// Creates the error for a buffer without bytes, which states the name of its file.
     fn missing(&self, buffer: usize) -> MeshIoError {
         let uri = self.document.buffers.get(buffer);
         let uri = uri.and_then(|buffer| buffer.uri.as_deref());

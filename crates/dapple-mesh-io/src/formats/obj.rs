@@ -1,4 +1,4 @@
-//! The OBJ format of Wavefront, with materials in MTL.
+//! Wavefront's OBJ format, with materials in MTL files.
 //!
 //! Reference: Wavefront, *Advanced Visualizer Manual*, appendix B1 (Object Files) and B2 (MTL). Vertex colors follow
 //! `v x y z`, as many programs write them. The v axis of OBJ points up, so v becomes 1 - v when reading and writing.
@@ -15,8 +15,8 @@
 //! exist, is one texture per unit square: see [`Model::tiles`]. A texture that is missing, or neither PNG nor JPEG, is
 //! omitted and listed, as are other textures and options.
 //!
-//! Our own reader guarantees all bits of `f64`, errors with line numbers, a list of omitted parts, and bounded memory
-//! for any input.
+//! This reader, written for dapple, guarantees all bits of `f64`, errors with line numbers, a list of omitted parts,
+//! and bounded memory for any input.
 
 mod mtl;
 mod write;
@@ -42,7 +42,7 @@ use std::collections::BTreeSet;
 
 const FORMAT: &str = "OBJ";
 
-/// Entry in the table of formats.
+/// Entry for OBJ in the table of formats.
 pub(super) const OBJ: MeshFormat = MeshFormat {
     name: FORMAT,
     endings: &["obj"],
@@ -56,9 +56,9 @@ pub(super) const OBJ: MeshFormat = MeshFormat {
     }),
 };
 
-/// Index of a texture coordinate or normal that a corner does not have.
+/// Index that stands for a missing texture coordinate or normal of a corner.
 const NONE: u32 = u32::MAX;
-/// Index of a texture coordinate or normal that cannot exist, such as one that is too large.
+/// Index that stands for a texture coordinate or normal that cannot exist, such as one whose index is too large.
 const MISSING: u32 = u32::MAX - 1;
 
 /// Indices of the position, texture coordinate and normal of a corner.
@@ -67,7 +67,7 @@ type Corner = [u32; 3];
 #[derive(Default)]
 struct Draft {
     positions: Vec<DVec3>,
-    /// Colors of the vertices, up to the last vertex that has one; the others are white.
+    /// Colors of the vertices, up to the last vertex that has one; later vertices are white.
     colors: Vec<LinearRgba>,
     uvs: Vec<DVec2>,
     normals: Vec<DVec3>,
@@ -78,7 +78,8 @@ struct Draft {
     skipped: BTreeSet<&'static str>,
     /// Name of the current material, and whether a face uses it.
     material: Option<(String, bool)>,
-    /// Whether the current material differs from the first used one, and whether a face uses such a material.
+    /// Whether the current material differs from the first material used, and whether any face uses such a different
+    /// material.
     others: [bool; 2],
 }
 
@@ -106,7 +107,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
 /// # Errors
 ///
 /// Same as [`read`]. In other files, only text that is neither ASCII nor UTF-8, a keyword that is not ASCII, and a
-/// `Kd` outside of the range of `f32` are errors.
+/// `Kd` outside the range of `f32` give errors.
 pub fn read_with(bytes: &[u8], resolve: &mut FileResolver<'_>) -> Result<Model, MeshIoError> {
     let mut draft = Draft::default();
     let text = joined(content(FORMAT, bytes)?);
@@ -217,8 +218,8 @@ impl Draft {
         Ok(())
     }
 
-    /// Returns the zero-based indices of a corner. Numbers in the file start at 1; negative numbers count backward
-    /// from the last item.
+    /// Parses a corner into zero-based indices. Numbers in the file start at 1; negative numbers count backward from
+    /// the last item.
     fn corner(&self, word: &[u8]) -> Option<Corner> {
         let counts = [self.positions.len(), self.uvs.len(), self.normals.len()];
         let mut corner = [NONE; 3];

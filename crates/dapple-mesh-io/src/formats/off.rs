@@ -6,7 +6,7 @@
 //! texture coordinates, colors and normals of the vertices. A missing header means `OFF`. The counts may follow the
 //! header on its line, even without a space. Colors are three or four numbers, from 0 to 255 if the vertex has only
 //! integers, else from 0 to 1. Face colors are omitted and listed in [`Model::left_out`]. A vertex is on one line; a
-//! face may span several lines. The four-dimensional, n-dimensional and binary variants are errors.
+//! face may span several lines. The four-dimensional, n-dimensional and binary variants give errors.
 
 use super::MeshFormat;
 use crate::MeshIoError;
@@ -20,7 +20,7 @@ use glam::{DVec2, DVec3};
 
 const FORMAT: &str = "OFF";
 
-/// Entry in the table of formats.
+/// Entry for OFF in the table of formats.
 pub(super) const OFF: MeshFormat = MeshFormat {
     name: FORMAT,
     endings: &["off"],
@@ -136,7 +136,7 @@ fn strip<'a>(word: &'a [u8], prefix: &[u8]) -> (&'a [u8], bool) {
         .map_or((word, false), |rest| (rest, true))
 }
 
-/// Returns the numbers of vertices and faces; the number of edges, which follows, is ignored.
+/// Parses the numbers of vertices and faces; the number of edges, which follows, is ignored.
 fn counts_of(line: Option<&Line<'_>>) -> Result<[u64; 2], MeshIoError> {
     let line = line.ok_or_else(|| MeshIoError::file(FORMAT, "there are no counts"))?;
     let count = |at: usize| line.words.get(at).copied().and_then(parse::<u64>);
@@ -158,7 +158,7 @@ fn polygon_count(line: &Line<'_>) -> Result<usize, MeshIoError> {
     parse(line.words[0]).ok_or_else(|| line.error("the number of corners of a face is needed"))
 }
 
-/// Returns the zero-based vertex index of a corner.
+/// Parses a corner into a zero-based vertex index.
 fn corner(line: &Line<'_>, word: &[u8], n_vertices: u64) -> Result<u32, MeshIoError> {
     let corner: u32 =
         parse(word).ok_or_else(|| line.error("a corner is not the number of a vertex"))?;
@@ -169,7 +169,7 @@ fn corner(line: &Line<'_>, word: &[u8], n_vertices: u64) -> Result<u32, MeshIoEr
 }
 
 impl Vertices {
-    /// Adds the vertex of a line: position, normal, color, texture coordinates.
+    /// Adds the vertex that a line describes: position, normal, color, texture coordinates.
     fn add(&mut self, header: Header, line: &Line<'_>) -> Result<(), MeshIoError> {
         self.positions.push(line.position(0)?);
         let mut at = 3;
@@ -210,7 +210,7 @@ impl Vertices {
     }
 }
 
-/// Returns the color of three or four components, starting at a word.
+/// Parses a color of three or four components, starting at word `at`.
 fn color(line: &Line<'_>, at: usize, count: usize) -> Result<LinearRgba, MeshIoError> {
     let whole = line
         .words

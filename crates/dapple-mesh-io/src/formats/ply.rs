@@ -16,8 +16,8 @@
 //! names the base color texture, as many programs write it. Colors are encoded as sRGB: 0 to 255, for `ushort` 0 to
 //! 65535, and for `float` and `double` 0 to 1. As in OBJ, the v axis of the file points up, so v becomes 1 - v.
 //!
-//! Our own reader guarantees any scalar type for any property, errors with line numbers, and bounded memory for any
-//! header.
+//! This reader, written for dapple, guarantees any scalar type for any property, errors with line numbers, and
+//! bounded memory for any header.
 
 mod body;
 mod header;
@@ -42,7 +42,7 @@ use header::{Element, Header, Kind, Scalar};
 
 const FORMAT: &str = "PLY";
 
-/// Entry in the table of formats.
+/// Entry for PLY in the table of formats.
 pub(super) const PLY: MeshFormat = MeshFormat {
     name: FORMAT,
     endings: &["ply"],
@@ -56,7 +56,7 @@ pub(super) const PLY: MeshFormat = MeshFormat {
     }),
 };
 
-/// Vertex attributes, and the property names of each.
+/// Property names of each vertex attribute.
 const COLUMNS: [&[&str]; 12] = [
     &["x"],
     &["y"],
@@ -76,7 +76,7 @@ const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 #[derive(Default)]
 struct Draft {
-    /// Number of vertices in the header, known even if faces precede them.
+    /// Number of vertices that the header states, which is known even if faces precede vertices.
     n_vertices: u64,
     positions: Vec<DVec3>,
     normals: Vec<DVec3>,
@@ -88,7 +88,7 @@ struct Draft {
     left_out: Vec<String>,
 }
 
-/// Attribute of a vertex property, and the encoding of a color in it.
+/// The attribute that a vertex property holds, and how it encodes a color.
 struct Target {
     column: usize,
     coding: Coding,
@@ -300,7 +300,7 @@ impl Draft {
         Ok(())
     }
 
-    /// Returns the vertex index from a number in the file.
+    /// Converts a number in the file to a vertex index.
     fn vertex(&self, number: f64, body: &Body<'_>) -> Result<u32, MeshIoError> {
         let vertex = number as u32;
         if f64::from(vertex) == number && u64::from(vertex) < self.n_vertices {
@@ -335,7 +335,7 @@ impl Draft {
     }
 }
 
-/// Returns the attribute of a property.
+/// Returns the attribute for a property called `name`.
 fn target(name: &str, kind: Kind) -> Option<Target> {
     let column = COLUMNS.iter().position(|names| names.contains(&name))?;
     let Kind::Scalar(scalar) = kind else {

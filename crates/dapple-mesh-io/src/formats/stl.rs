@@ -1,4 +1,4 @@
-//! STL, the format of 3D printing: triangles without attributes.
+//! STL, the 3D printing format, which stores triangles without attributes.
 //!
 //! Reference: 3D Systems, *Stereolithography Interface Specification* (1989), as Marshall Burns describes it in *Automated
 //! Fabrication* (1993), section 6.5.
@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 
 const FORMAT: &str = "STL";
 
-/// Entry in the table of formats.
+/// Entry for STL in the table of formats.
 pub(super) const STL: MeshFormat = MeshFormat {
     name: FORMAT,
     endings: &["stl"],
@@ -33,7 +33,7 @@ pub(super) const STL: MeshFormat = MeshFormat {
     }),
 };
 
-/// Number of bytes before the first face of a binary file: a text and the number of faces.
+/// Number of bytes before the first face of a binary file; they hold a text and the number of faces.
 const HEAD: usize = 84;
 /// Number of bytes per face of a binary file: a normal, three positions, and two bytes of attributes.
 const FACE: usize = 50;
@@ -42,7 +42,7 @@ const FACE: usize = 50;
 #[derive(Default)]
 struct Draft {
     positions: Vec<DVec3>,
-    /// Vertex at each position.
+    /// Vertex at each position, keyed by the bits of its coordinates.
     vertices: BTreeMap<[u64; 3], u32>,
     faces: Vec<[u32; 3]>,
 }
@@ -69,9 +69,9 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
     }
 }
 
-/// Encodes the mesh as a binary STL file, with values rounded to `f32`. If that would move a vertex by more than 2^-20
-/// of the extent, because the mesh is far from the origin, the file is text with the shortest digits of `f64`. Colors,
-/// texture coordinates and the material are omitted.
+/// Encodes the mesh as a binary STL file, with values rounded to `f32`. If that would move a vertex by more than
+/// 2^-20 of the extent, because the mesh is far from the origin, the file is text, with the shortest digits that read
+/// back as the same `f64`. Colors, texture coordinates and the material are omitted.
 ///
 /// # Errors
 ///

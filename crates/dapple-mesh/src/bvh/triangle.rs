@@ -56,7 +56,7 @@ impl Probe {
     }
 
     /// Intersects the ray with a triangle, and returns the signed distance along the ray and the barycentric weights;
-    /// `None` if the ray's line misses it.
+    /// `None` if the line of the ray misses the triangle, or sees it edge-on.
     #[inline]
     pub(crate) fn meet(&self, corners: &Corners) -> Option<(f64, [f64; 3])> {
         let [a, b, c] = corners.0.map(|corner| self.sheared(corner));

@@ -4,14 +4,14 @@ use super::document::{Accessor, Sparse};
 use super::{Source, wrong};
 use crate::MeshIoError;
 
-/// Values of an accessor.
+/// The values of an accessor.
 pub(super) struct Column {
     /// Number of values per element.
     pub(super) width: usize,
     pub(super) values: Vec<f64>,
 }
 
-/// Remaining number of values that the accessors of a file may have.
+/// Number of values that a file's accessors may still have.
 ///
 /// Accessors may share bytes, represent zeros, and be used by many nodes, so a small file can claim a large amount of
 /// memory. The limit is four values per byte of the file plus 2^24.
@@ -64,7 +64,7 @@ impl Source<'_> {
         Ok(accessor.buffer_view.is_none() && accessor.sparse.is_none())
     }
 
-    /// Returns the values of an accessor as indices.
+    /// Reads an accessor's values as indices.
     pub(super) fn indices(
         &self,
         index: usize,
@@ -81,7 +81,7 @@ impl Source<'_> {
         Ok(column.values.iter().map(|&index| index as u32).collect())
     }
 
-    /// Returns the values of an accessor.
+    /// Reads an accessor's values.
     ///
     /// Integers become fractions if they are normalized, or if `fractions` is set because the attribute is always
     /// fractional.
@@ -184,7 +184,7 @@ impl Source<'_> {
 }
 
 impl Elements<'_> {
-    /// Returns the values of `count` elements.
+    /// Reads the values of `count` elements.
     fn read(&self, count: usize) -> Result<Vec<f64>, MeshIoError> {
         let size = self.component.size();
         // The last element may be shorter than the stride.

@@ -1,4 +1,4 @@
-//! Containers of glTF: GLB files with their chunks, buffers, and data URIs.
+//! Reads glTF containers: GLB files with their chunks, buffers, and data URIs.
 
 use super::document::Document;
 use super::{FORMAT, unsupported, wrong};
@@ -62,7 +62,7 @@ impl<'a> Container<'a> {
     }
 }
 
-/// Returns the type and content of the first chunk, and the rest.
+/// Splits off the first chunk, and returns its type, its content and the remaining bytes.
 fn chunk(bytes: &[u8]) -> Option<([u8; 4], &[u8], &[u8])> {
     let length = word(bytes, 0)?;
     let kind = bytes.get(4..8)?.try_into().ok()?;

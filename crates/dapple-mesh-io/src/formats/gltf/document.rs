@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use std::collections::BTreeMap;
 
-/// Part of the document that all versions of glTF have in common.
+/// The part of the document that is common to all glTF versions.
 #[derive(Deserialize)]
 pub(super) struct Head {
     pub(super) asset: Asset,
@@ -202,7 +202,7 @@ pub(super) struct TextureTransform {
     pub(super) offset: Option<[f64; 2]>,
     pub(super) rotation: Option<f64>,
     pub(super) scale: Option<[f64; 2]>,
-    /// Set of texture coordinates, which overrides the set of the texture.
+    /// Index of the texture coordinate set, which overrides the texture's own.
     pub(super) tex_coord: Option<u32>,
 }
 

@@ -1,4 +1,4 @@
-//! Replacement of images in a file. The rest of the document is preserved.
+//! Replaces images in a file and preserves the rest of the document.
 
 use super::container::Container;
 use super::document::Document;
@@ -10,7 +10,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// A document with the bytes of its merged buffer.
+/// A document under edit, with the bytes of its merged buffer.
 struct Draft {
     value: Value,
     bin: Vec<u8>,
@@ -22,14 +22,14 @@ struct Draft {
 
 /// Encodes a glTF or GLB file as GLB with some images replaced.
 ///
-/// `replaced` contains pairs of an image and its replacement. Every image of the file whose bytes equal the first
-/// becomes the second. The rest of the document is unchanged: materials, nodes, skins, animations, extensions. Buffers
-/// are merged into one, and external images become part of the file. A texture whose image is replaced loses the
-/// alternatives in other formats, which viewers would prefer.
+/// `replaced` contains pairs of an image and its replacement. Every image in the file whose bytes equal the first is
+/// replaced by the second. The rest of the document is unchanged: materials, nodes, skins, animations, extensions.
+/// Buffers are merged into one, and external images become part of the file. A texture whose image is replaced loses
+/// the alternatives in other formats, which viewers would prefer.
 ///
 /// # Errors
 ///
-/// Same as [`read`](super::read) about the container, the JSON and missing buffers;
+/// Same as [`read`](super::read) for the container, the JSON and missing buffers;
 /// [`MeshIoErrorKind::Size`](crate::MeshIoErrorKind::Size) if the file would have 2^32 bytes or more.
 pub fn replace_images(
     bytes: &[u8],
@@ -118,7 +118,7 @@ fn count_views(value: &Value, uses: &mut BTreeMap<u64, usize>) {
     }
 }
 
-/// Returns an index or offset in the document; 0 if missing.
+/// Returns the index or offset called `name`; 0 if it is missing.
 fn number(entries: &Map<String, Value>, name: &str) -> usize {
     let number = entries.get(name).and_then(Value::as_u64);
     number
@@ -166,7 +166,7 @@ impl Draft {
         }
     }
 
-    /// Replaces the bytes of an image: in its buffer view if nothing else uses that view, else in a new view.
+    /// Replaces the bytes of an image: in its buffer view if nothing else uses that view, otherwise in a new view.
     fn set_image(&mut self, at: usize, bytes: Vec<u8>, media_type: &str) {
         let n_views = self.value["bufferViews"].as_array().map_or(0, Vec::len);
         let image = self.value["images"]
@@ -234,7 +234,7 @@ impl Draft {
         self.contents = contents;
         kept.sort_by_key(|range| range.start);
         freed.sort_by_key(|range| range.start);
-        // Running maximum of the ends of the kept ranges.
+        // Running maximum of the ends of the retained ranges.
         let ends: Vec<_> = kept
             .iter()
             .scan(0, |end, range| {

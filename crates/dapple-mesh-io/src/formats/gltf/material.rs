@@ -1,4 +1,4 @@
-//! Conversion of a material of a glTF file, with what is left out of it.
+//! Converts a glTF material, and lists the properties that a model cannot represent.
 
 use super::Source;
 use super::document::{Material as Entry, Pbr, TextureInfo};
@@ -19,7 +19,7 @@ pub(super) struct Placement {
 }
 
 impl Placement {
-    /// The first set without a transform.
+    /// The first texture coordinate set, without a transform.
     pub(super) const PLAIN: Self = Self {
         set: 0,
         map: DAffine2::IDENTITY,
@@ -50,8 +50,8 @@ impl Placement {
 }
 
 impl Source<'_> {
-    /// Returns the placement of the textures of a material: of the base color, else of the normals, else of metalness
-    /// and roughness.
+    /// Returns the placement of a material's textures. It is taken from the base color texture, or else the normal
+    /// map, or else the metallic-roughness texture.
     pub(super) fn placement(&self, material: usize) -> Placement {
         let material = self.document.materials.get(material);
         let pbr = material.and_then(|material| material.pbr_metallic_roughness.as_deref());

@@ -1,4 +1,4 @@
-//! Conversion of the scene of a glTF file to a single mesh.
+//! Converts a glTF scene to a single mesh.
 
 use super::accessor::{Budget, Column};
 use super::document::{Instancing, Primitive};
@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Accessors of positions, normals, colors and texture coordinates.
 type Attributes = [Option<usize>; 4];
 
-/// Sources of the vertices of a primitive.
+/// Where the vertices of a primitive come from.
 struct Vertices<'a> {
     attributes: Attributes,
     /// Transform of texture coordinates.
@@ -33,14 +33,15 @@ struct Draft<'a> {
     positions: Vec<DVec3>,
     /// Normals of all vertices; incomplete if a primitive lacks them.
     normals: Vec<DVec3>,
-    /// Colors of the vertices, up to the last vertex that has one. The same holds for `uvs`.
+    /// Colors of the vertices, up to the last vertex that has one. `uvs` likewise ends with the last vertex that has
+    /// texture coordinates.
     colors: Vec<LinearRgba>,
     uvs: Vec<DVec2>,
     faces: Vec<[u32; 3]>,
     material: Option<usize>,
     /// Materials of the faces.
     materials: BTreeSet<Option<usize>>,
-    /// Whether the scene has lines, and texture coordinate sets that no texture uses.
+    /// Whether the scene has lines. The next field tells whether it has texture coordinate sets that no texture uses.
     has_lines: bool,
     has_further_uvs: bool,
 }
@@ -107,7 +108,7 @@ pub(super) fn read(
     draft.into_model()
 }
 
-/// Returns the roots of the default scene; without scenes, all nodes that are not a child.
+/// Returns the root nodes of the default scene. Without scenes, these are all nodes that have no parent.
 fn roots(source: &Source<'_>) -> Result<Vec<usize>, MeshIoError> {
     let document = &source.document;
     if document.scene.is_none() && document.scenes.is_empty() {
@@ -128,7 +129,7 @@ fn roots(source: &Source<'_>) -> Result<Vec<usize>, MeshIoError> {
 }
 
 impl Draft<'_> {
-    /// Returns the transforms of the instances of a mesh.
+    /// Returns the transforms of a mesh's instances.
     fn copies(
         &mut self,
         instancing: &Instancing,
@@ -237,7 +238,7 @@ impl Draft<'_> {
         }
     }
 
-    /// Returns the vectors of an attribute with the morph targets applied.
+    /// Reads a vector attribute and applies the morph targets.
     fn vectors(
         &mut self,
         name: &str,
@@ -408,7 +409,7 @@ impl Draft<'_> {
 }
 
 impl Vertices<'_> {
-    /// Returns the key of the vertices of a primitive: primitives of a mesh with equal keys share their vertices.
+    /// Returns a key for the vertices of a primitive. Primitives of a mesh with equal keys share their vertices.
     fn key(&self, primitive: &Primitive) -> (Attributes, Option<usize>, Vec<Option<usize>>) {
         let material = primitive
             .material
@@ -428,7 +429,7 @@ impl Vertices<'_> {
     }
 }
 
-/// Returns the values of an element, if the column exists.
+/// Returns the values of element `index`; `None` if there is no column.
 fn element<const N: usize>(column: &Option<Column>, index: usize) -> Option<[f64; N]> {
     let (elements, _) = column.as_ref()?.values.as_chunks();
     elements.get(index).copied()

@@ -1,4 +1,4 @@
-//! Skins and morph targets, in the pose without animation.
+//! Applies skins and morph targets, in the pose without animation.
 //!
 //! Reference: The Khronos Group, *glTF 2.0 Specification*, sections 3.7.2.2 (morph targets) and 3.7.3 (skins).
 
@@ -9,11 +9,11 @@ use super::{Source, wrong};
 use crate::MeshIoError;
 use glam::{DMat4, DVec3};
 
-/// Transform of a mesh to the scene.
+/// How a mesh is transformed to the scene.
 pub(super) enum Pose {
-    /// Transform of the node.
+    /// The transform of the mesh's node.
     Node(DMat4),
-    /// Per joint, its transform multiplied by its inverse bind matrix. The transform of the node has no effect.
+    /// For each joint, its transform multiplied by its inverse bind matrix. The node's transform has no effect.
     Skin(Vec<DMat4>),
 }
 
@@ -50,7 +50,7 @@ impl Source<'_> {
         worlds.into_iter().map(Option::unwrap_or_default).collect()
     }
 
-    /// Returns the pose of the mesh of a node with this transform to the scene.
+    /// Returns the pose of a node's mesh, given the node's transform to the scene.
     pub(super) fn pose(
         &self,
         node: &Node,
@@ -92,13 +92,13 @@ impl Influences {
         self.weights.push(weights);
     }
 
-    /// Returns whether all columns match a number of vertices.
+    /// Returns whether all columns have `n_vertices` entries.
     pub(super) fn fits(&self, n_vertices: usize) -> bool {
         let mut columns = self.joints.iter().chain(&self.weights);
         columns.all(|column| column.width == 4 && column.values.len() == 4 * n_vertices)
     }
 
-    /// Returns the weighted mean of the matrices of the joints of a vertex; `None` without weights.
+    /// Returns the weighted mean of a vertex's joint matrices; `None` if the vertex has no weights.
     fn matrix(&self, vertex: usize, joints: &[DMat4]) -> Result<Option<DMat4>, MeshIoError> {
         let (mut sum, mut total) = (DMat4::ZERO, 0.0);
         for (numbers, weights) in self.joints.iter().zip(&self.weights) {

@@ -1,4 +1,4 @@
-//! Transforms of nodes for positions and normals.
+//! Node transforms for positions and normals.
 
 use super::document::Node;
 use glam::{DMat3, DMat4, DQuat, DVec3};
@@ -33,7 +33,8 @@ pub(super) fn trs(
     )
 }
 
-/// Returns the matrix that transforms normals, up to their lengths. It exists even if the transform has no inverse.
+/// Returns the matrix that transforms normals, except for their lengths. It exists even if the transform has no
+/// inverse.
 pub(super) fn cofactors(transform: DMat4) -> DMat3 {
     let matrix = DMat3::from_mat4(transform);
     let (x, y, z) = (matrix.x_axis, matrix.y_axis, matrix.z_axis);

@@ -1,4 +1,4 @@
-//! Encoder of GLB.
+//! GLB encoder.
 
 use super::container::{BIN, JSON, MAGIC};
 use crate::single::{narrow, origin};
@@ -22,7 +22,7 @@ const LINEAR_MIPMAP_LINEAR: u32 = 9987;
 /// Wrap mode that repeats the texture.
 const REPEAT: u32 = 10497;
 
-/// Binary chunk with its views and accessors.
+/// A binary chunk under construction, with its views and accessors.
 #[derive(Default)]
 struct Bin {
     bytes: Vec<u8>,
@@ -31,9 +31,9 @@ struct Bin {
     images: Vec<Value>,
 }
 
-/// Vertices of a file: a vertex of the mesh is split where its corners have different texture coordinates.
+/// The vertices of a file. A mesh vertex is split where its corners have different texture coordinates.
 struct Split {
-    /// Mesh vertex of each file vertex; the first ones are the mesh vertices in order.
+    /// Mesh vertex of each file vertex. The first entries are the mesh vertices in order.
     vertex: Vec<usize>,
     uvs: Vec<[f32; 2]>,
     faces: Vec<[u32; 3]>,
@@ -50,7 +50,7 @@ struct Split {
 ///   +z.
 /// - Colors are clamped to 0 to 1. Without texture coordinates, textures are omitted.
 /// - The material is rough and not metallic unless a texture defines both. It is double-sided if the model is, or if
-///   the mesh is open. It blends if it is opaque but its base color factor is not.
+///   the mesh is open. Its alpha mode is blend if the model's is opaque but the base color factor is not.
 /// - If the material disallows mipmaps, the samplers have a minification filter without them; otherwise viewers may
 ///   use any number of levels.
 /// - A model without faces becomes a point cloud, and a model without vertices an empty scene.
@@ -252,7 +252,7 @@ pub(super) fn container(mut json: Vec<u8>, mut bin: Vec<u8>) -> Result<Vec<u8>, 
 }
 
 impl Bin {
-    /// Adds a column of `f32`, and returns the index of its accessor.
+    /// Adds an array of `f32` vectors, and returns the index of its accessor.
     fn floats<const N: usize>(&mut self, column: &[[f32; N]]) -> usize {
         let bytes: Vec<_> = column
             .iter()

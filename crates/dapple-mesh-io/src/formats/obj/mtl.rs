@@ -1,4 +1,4 @@
-//! MTL: materials of an OBJ file.
+//! Reads MTL files, which contain the materials of OBJ files.
 
 use super::{joined_words, name};
 use crate::FileResolver;
@@ -21,7 +21,7 @@ struct Entry {
     alpha: Option<f32>,
     diffuse_map: Option<Texture>,
     normal_map: Option<Texture>,
-    /// Keywords of other textures.
+    /// Keywords of textures that a model cannot represent.
     other_maps: BTreeSet<String>,
 }
 
@@ -35,17 +35,17 @@ struct Texture {
     other_options: Vec<String>,
 }
 
-/// Scale followed by an offset of texture coordinates, v up.
+/// A scale followed by an offset, applied to texture coordinates with v pointing up.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct UvMap {
     scale: DVec2,
     offset: DVec2,
 }
 
-/// Sets the material of a model: the one with this name, or the first one if `name` is `None`, in the available
-/// libraries. The transform of its textures is applied to the texture coordinates.
+/// Sets a model's material to the one called `name` in the available libraries, or to the first one if `name` is
+/// `None`. The transform of its textures is applied to the texture coordinates.
 ///
-/// Fails if any material of the libraries has a color outside of the range of `f32`.
+/// Fails if any material of the libraries has a color outside the range of `f32`.
 pub(super) fn add_material(
     model: &mut Model,
     libraries: &[String],
@@ -182,7 +182,7 @@ impl Entry {
     }
 }
 
-/// State of reading the textures of a material.
+/// State while the textures of a material are read.
 struct Reading<'a, 'b> {
     /// Unit squares that contain faces.
     squares: Vec<u32>,
@@ -192,7 +192,8 @@ struct Reading<'a, 'b> {
 }
 
 impl Reading<'_, '_> {
-    /// Returns the images of a texture: one per unit square if the squares have separate textures, else at most one.
+    /// Returns the images of a texture. There is one per unit square if the squares have separate textures, and
+    /// otherwise at most one.
     fn images(&mut self, found: Option<&Texture>) -> Vec<Option<EncodedImage>> {
         let Some(found) = found else {
             return Vec::new();
@@ -268,7 +269,7 @@ impl Reading<'_, '_> {
     }
 }
 
-/// Returns the color of a `Kd`; an error outside of the range of `f32`.
+/// Converts a `Kd` to a color; an error if it is outside the range of `f32`.
 fn diffuse(color: DVec3, line: &Line<'_>) -> Result<LinearRgb, MeshIoError> {
     let parts = color.as_vec3().to_array();
     match parts.iter().position(|part| !part.is_finite()) {
@@ -330,7 +331,7 @@ impl Texture {
         (!words.is_empty()).then_some(texture)
     }
 
-    /// Returns the transform of texture coordinates, v down; `None` if it is the identity.
+    /// Returns the transform for texture coordinates; `None` if it is the identity.
     fn map(&self) -> Option<UvMap> {
         let (scale, offset) = (self.scale, self.offset);
         (scale != DVec2::ONE || offset != DVec2::ZERO).then_some(UvMap { scale, offset })
@@ -338,7 +339,7 @@ impl Texture {
 }
 
 impl UvMap {
-    /// Transforms texture coordinates, v down; the transform in the file is for v up.
+    /// Transforms texture coordinates with v pointing down, although the transform in the file is for v pointing up.
     pub(super) fn apply(&self, uv: DVec2) -> DVec2 {
         let up = DVec2::new(uv.x, 1.0 - uv.y) * self.scale + self.offset;
         DVec2::new(up.x, 1.0 - up.y)

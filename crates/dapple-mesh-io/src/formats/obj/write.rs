@@ -1,4 +1,4 @@
-//! Encoder of OBJ, MTL, and the textures in the same folder.
+//! Encoder for OBJ, MTL, and the textures in the same folder.
 
 use crate::NamedFile;
 use crate::text::shortest;
@@ -21,11 +21,12 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
     Ok(text(model, None)?.into_bytes())
 }
 
-/// Encodes the model as an OBJ file `stem.obj`, which is the last file. A material adds `stem.mtl` and the textures
-/// `stem_base_color.png` and `stem_normal.png`, or `.jpg`.
+/// Encodes the model as an OBJ file `stem.obj`, which comes last in the result. A material adds `stem.mtl` and the
+/// textures `stem_base_color.png` and `stem_normal.png`, or `.jpg`.
 ///
-/// The metallic-roughness texture is omitted, since MTL has separate textures for both. Textures of unit squares
-/// ([`Model::tiles`]) are named `stem_base_color.1001.png` and so on, and the material refers to them with `<UDIM>`.
+/// The metallic-roughness texture is omitted, since MTL has separate textures for metalness and roughness. Textures
+/// of unit squares ([`Model::tiles`]) are named `stem_base_color.1001.png` and so on, and the material refers to them
+/// with `<UDIM>`.
 ///
 /// # Errors
 ///
@@ -125,7 +126,7 @@ fn numbers(text: &mut String, vector: DVec3) {
     }
 }
 
-/// Returns the sRGB code of a color as fractions; rounding to 1e-6 preserves all 16-bit codes.
+/// Returns a color's sRGB codes as fractions from 0 to 1; rounding to 1e-6 preserves all 16-bit codes.
 fn coded(color: LinearRgb) -> DVec3 {
     let unit = |code: u16| (f64::from(code.to_unit()) * 1e6).round() / 1e6;
     DVec3::from_array(color.to_srgb::<u16>().map(unit))

@@ -1,4 +1,4 @@
-//! Body of a PLY file: the values after the header.
+//! Reads the body of a PLY file, which holds the values after the header.
 
 use super::FORMAT;
 use super::header::{Element, Encoding, Kind, Scalar};
@@ -6,7 +6,7 @@ use crate::MeshIoError;
 use crate::text::{in_range, parse};
 use core::fmt::Display;
 
-/// Unread rest of the file.
+/// The unread rest of the file.
 pub(super) struct Body<'a> {
     encoding: Encoding,
     /// The whole file, including its header.
@@ -23,7 +23,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Creates the error about the values read last, with the line number if the body is text.
+    /// Creates an error about the last values read, with the line number if the body is text.
     pub(super) fn error(&self, why: impl Display) -> MeshIoError {
         if self.encoding != Encoding::Text {
             return MeshIoError::file(FORMAT, why.to_string());
@@ -57,8 +57,8 @@ impl<'a> Body<'a> {
         Err(MeshIoError::file(FORMAT, why))
     }
 
-    /// Checks the last value as a component of a position, a normal or a texture coordinate. Values of binary files
-    /// are checked after reading, with the vertex index instead of a line number.
+    /// Checks that the last value is in range for a component of a position, a normal or a texture coordinate. Values
+    /// of binary files are checked after reading, with the vertex index instead of a line number.
     pub(super) fn in_range(&self, part: f64) -> Result<f64, MeshIoError> {
         if self.encoding == Encoding::Text {
             return in_range(part).map_err(|why| self.error(why));
@@ -80,7 +80,7 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    /// Returns the length of a list.
+    /// Reads the length of a list.
     fn count(&mut self, scalar: Scalar) -> Result<usize, MeshIoError> {
         let count = self.scalar(scalar)?;
         // Each value has at least one byte, so reading soon fails for a false count; memory is not allocated in

@@ -1,10 +1,10 @@
-//! Header of a PLY file: its elements and their properties.
+//! Parses the header of a PLY file, which lists the elements and their properties.
 
 use super::FORMAT;
 use crate::MeshIoError;
 use crate::text::{parse, words};
 
-/// Header of a PLY file, which describes the body.
+/// The header of a PLY file, which describes the body.
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
@@ -57,7 +57,7 @@ pub(super) enum Scalar {
 }
 
 impl Header {
-    /// Parses the header, and returns it with the rest of the bytes.
+    /// Parses the header, and returns it and the remaining bytes.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, &[u8]), MeshIoError> {
         let mut header = Self {
             encoding: Encoding::Text,
@@ -135,7 +135,7 @@ impl Element {
 }
 
 impl Scalar {
-    /// Returns the size in bytes in a binary file.
+    /// Returns the type's size in a binary file, in bytes.
     pub(super) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,

@@ -1,4 +1,4 @@
-//! Encoder of PLY.
+//! PLY encoder.
 
 use crate::MeshIoError;
 use crate::split::with_vertex_normals;
@@ -8,10 +8,10 @@ use dapple_mesh::Model;
 use glam::DVec3;
 use std::fmt::Write as _;
 
-/// Output of numbers as bytes or text.
+/// Writes numbers as bytes or text.
 struct Out {
     bytes: Vec<u8>,
-    /// Current line, for text.
+    /// Current line of a text file; `None` for a binary file.
     line: Option<String>,
     /// Whether positions, normals and texture coordinates are `double`.
     wide: [bool; 3],
