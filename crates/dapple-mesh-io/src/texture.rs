@@ -51,8 +51,8 @@ pub fn tile_name(name: &str, number: u32) -> Option<String> {
     })
 }
 
-/// Replaces a unit square's number in a name such as `skin.1001.png` by the placeholder; `None` if the name contains
-/// no number from `squares`.
+/// Replaces a unit square's number in a name such as `skin.1001.png` by the placeholder; `None` if there is only one
+/// square, or the name contains no number from `squares`.
 pub(crate) fn name_of_all(name: &str, squares: &[u32]) -> Option<String> {
     let is_digit = |letter: Option<char>| letter.is_some_and(|letter| letter.is_ascii_digit());
     let with_mark = |number: &u32| {

@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// every few milliseconds of work.
 pub type IsCancelled<'a> = dyn Fn() -> bool + Sync + 'a;
 
-/// A cancellation callback like [`IsCancelled`] that options of textures can store [default: none].
+/// A cancellation callback that texture options can store, unlike [`IsCancelled`], which is borrowed [default: none].
 #[derive(Clone, Default)]
 pub struct Cancel(Option<Arc<dyn Fn() -> bool + Send + Sync>>);
 

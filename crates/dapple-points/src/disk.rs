@@ -1,12 +1,12 @@
-//! Maximal Poisson-disk sets: random points at least a radius apart, without room for another point.
+//! Maximal Poisson-disk sets: random points at least a radius apart, with no room for another point.
 //!
-//! The distribution is random sequential addition: darts fall uniformly at random, one at a time, and a dart becomes a
-//! point if it is far enough from all earlier points (R. L. Cook, "Stochastic Sampling in Computer Graphics", ACM
-//! Transactions on Graphics 5(1), 1986, <https://doi.org/10.1145/7529.8927>). Taken literally, this never ends. As in
-//! M. S. Ebeida, S. A. Mitchell, A. Patney, A. A. Davidson and J. D. Owens ("A Simple Algorithm for Maximal
-//! Poisson-Disk Sampling in High Dimensions", Computer Graphics Forum 31, 2012,
-//! <https://doi.org/10.1111/j.1467-8659.2012.03059.x>), darts are kept away from covered area. This implementation
-//! differs from theirs in two ways:
+//! The distribution is random sequential addition: darts fall uniformly at random, one at a time, and a dart becomes
+//! a point if it is far enough from all earlier points (R. L. Cook, "Stochastic Sampling in Computer Graphics", ACM
+//! Transactions on Graphics 5(1), 1986, <https://doi.org/10.1145/7529.8927>). Taken literally, this process never
+//! ends. As in M. S. Ebeida, S. A. Mitchell, A. Patney, A. A. Davidson and J. D. Owens ("A Simple Algorithm for
+//! Maximal Poisson-Disk Sampling in High Dimensions", Computer Graphics Forum 31, 2012,
+//! <https://doi.org/10.1111/j.1467-8659.2012.03059.x>), darts are thrown only where the area is not known to be
+//! covered. This implementation differs from theirs in two ways:
 //!
 //! * Time is divided into slices. In each slice every cell throws at most one dart, at the part of the cell that is
 //!   not known to be covered, and darts of one slice are settled by random ranks. There are no passes over colored
@@ -33,19 +33,19 @@ use solve::Solution;
 /// Maximum expected number of points of a set: 2^26.
 pub const MAX_POISSON_DISK_POINTS: u64 = 1 << 26;
 
-/// Relative tolerance for the distance of given points, whose positions may have been rounded.
+/// Relative tolerance for the distance between given points, whose positions may have been rounded.
 const GIVEN_SLACK: f64 = 1e-9;
 
-/// Creates a maximal Poisson-disk set: random points at least `radius` apart, without room for another point.
+/// Creates a maximal Poisson-disk set: random points at least `radius` apart, with no room for another point.
 ///
-/// `radius` is in units of the domain. Distances wrap around wrapped axes. The points are ordered by rows of cells, so
+/// `radius` is in units of the domain. Distances wrap around wrapped axes. Points are ordered by rows of cells, so
 /// neighbors in the plane are often neighbors in memory.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/poisson-disk.md"))]
 ///
 /// # Errors
 ///
-/// [`PointsErrorKind::Domain`] for a domain without area; [`PointsErrorKind::NotPositive`] for a radius that is not
+/// [`PointsErrorKind::Domain`] if the domain has no area; [`PointsErrorKind::NotPositive`] for a radius that is not
 /// above zero and finite; [`PointsErrorKind::PeriodTooShort`] if a wrapped side is shorter than two radii;
 /// [`PointsErrorKind::TooMany`] if there would be more than about [`MAX_POISSON_DISK_POINTS`] points.
 ///
@@ -62,7 +62,7 @@ pub fn poisson_disk(domain: Domain, radius: f64, seed: Seed) -> Result<PointSet,
     poisson_disk_cancellable(domain, radius, seed, &|| false)
 }
 
-/// Creates the set of [`poisson_disk`], unless `is_cancelled` returns true.
+/// Same as [`poisson_disk`], but fails if `is_cancelled` returns true.
 ///
 /// # Errors
 ///
@@ -87,8 +87,8 @@ pub fn poisson_disk_cancellable(
 
 /// Creates a maximal Poisson-disk set of about `n_points` points.
 ///
-/// The radius is [`poisson_disk_radius`]. The number of points varies with the seed; for a large set by less than its
-/// square root.
+/// The radius is [`poisson_disk_radius`]. The number of points varies with the seed. For a large set, the deviation
+/// is less than its square root.
 ///
 /// # Errors
 ///
@@ -119,7 +119,7 @@ pub fn poisson_disk_about(
 ///
 /// # Errors
 ///
-/// [`PointsErrorKind::Domain`] for a domain without area, [`PointsErrorKind::NoPoints`] for `n_points` of zero.
+/// [`PointsErrorKind::Domain`] if the domain has no area, [`PointsErrorKind::NoPoints`] for `n_points` of zero.
 pub fn poisson_disk_radius(domain: Domain, n_points: u32) -> Result<f64, PointsError> {
     let domain = domain.checked()?;
     if n_points == 0 {
@@ -143,8 +143,8 @@ pub fn poisson_disk_radius(domain: Domain, n_points: u32) -> Result<f64, PointsE
     Ok(((half + root) / n_points).min(0.5 * narrowest))
 }
 
-/// Number of points that a border adds to a set, per radius of its length. Measured on cylinders and squares of 100 to
-/// 30 000 points: 0.232 ± 0.003. A corner adds less than a tenth of a point.
+/// Number of points that a border adds to a set, per length of one radius along the border. Measured on cylinders and
+/// squares of 100 to 30 000 points: 0.232 ± 0.003. A corner adds less than a tenth of a point.
 const BORDER_DENSITY: f64 = 0.232;
 
 /// Creates a maximal Poisson-disk set that contains the given points, which come first and in order.
@@ -173,7 +173,7 @@ pub fn extend_poisson_disk(
     extend_poisson_disk_cancellable(given, radius, seed, &|| false)
 }
 
-/// Creates the set of [`extend_poisson_disk`], unless `is_cancelled` returns true.
+/// Same as [`extend_poisson_disk`], but fails if `is_cancelled` returns true.
 ///
 /// # Errors
 ///
@@ -196,7 +196,7 @@ pub struct PoissonDisk {
 }
 
 impl PoissonDisk {
-    /// Prepares sets of points at least `radius` apart, in units of the domain.
+    /// Creates a sampler for sets of points at least `radius` apart, in units of the domain.
     ///
     /// # Errors
     ///
@@ -211,11 +211,11 @@ impl PoissonDisk {
         })
     }
 
-    /// Creates the set of a seed; see [`poisson_disk`].
+    /// Creates the point set for `seed`; see [`poisson_disk`].
     ///
     /// # Errors
     ///
-    /// None if [`new`](Self::new) succeeded.
+    /// Never fails if [`new`](Self::new) succeeded.
     pub fn sample(&self, seed: Seed) -> Result<PointSet, PointsError> {
         self.sample_cancellable(seed, &|| false)
     }
@@ -230,7 +230,7 @@ impl PoissonDisk {
         PointSet::new(self.grid.domain, solution.positions()?)
     }
 
-    /// Creates the set of a seed that contains the given points; see [`extend_poisson_disk`].
+    /// Creates the point set for `seed` that contains the given points; see [`extend_poisson_disk`].
     ///
     /// # Errors
     ///
@@ -261,7 +261,7 @@ impl PoissonDisk {
         PointSet::new(self.grid.domain, positions)
     }
 
-    /// Returns the cells and offsets of the given points, sorted by cell.
+    /// Returns the given points as cells and offsets, sorted by cell.
     fn places(&self, given: &PointSet) -> Result<Vec<(Cell, [f32; 2])>, PointsError> {
         let grid = &self.grid;
         let mut holders = vec![u32::MAX; grid.stride() * grid.rows()];

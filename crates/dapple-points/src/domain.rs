@@ -3,7 +3,7 @@
 use crate::{PointsError, PointsErrorKind};
 use glam::DVec2;
 
-/// Maximum absolute coordinate and side of a domain, such that positions some periods away are still finite.
+/// Maximum absolute coordinate and side of a domain, such that positions several periods away are still finite.
 const FARTHEST: f64 = 1e300;
 
 /// A rectangle from `origin` with the given `size` that wraps along the axes where `wrap` is true.
@@ -42,7 +42,7 @@ impl Domain {
         }
     }
 
-    /// Returns the square `[-1, 1]²`, wrapped along both axes: the domain of Caron and Mould's figures.
+    /// Returns the square `[-1, 1]²`, wrapped along both axes. Caron and Mould's figures use this domain.
     #[must_use]
     pub const fn paper_torus() -> Self {
         Self::torus(DVec2::NEG_ONE, DVec2::splat(2.0))
@@ -68,7 +68,7 @@ impl Domain {
         }
     }
 
-    /// Returns the domain extended by a margin along the axes that do not wrap.
+    /// Returns the domain, extended by `margin` on each side along the axes that do not wrap.
     #[must_use]
     pub fn grown(self, margin: DVec2) -> Self {
         let margin = DVec2::select(self.wrap.into(), DVec2::ZERO, margin);
@@ -79,13 +79,13 @@ impl Domain {
         }
     }
 
-    /// Returns the width times height.
+    /// Returns the area: width times height.
     #[must_use]
     pub fn area(&self) -> f64 {
         self.size.x * self.size.y
     }
 
-    /// Returns the period of the domain along each axis: its side, if the axis wraps.
+    /// Returns the domain's period along each axis: its side length if the axis wraps, and otherwise `None`.
     #[must_use]
     pub fn period(&self) -> [Option<f64>; 2] {
         [0, 1].map(|axis| self.wrap[axis].then_some(self.size[axis]))
@@ -136,7 +136,7 @@ impl Domain {
         }
     }
 
-    /// Returns the shortest vector from `from` to `to`, across the wrapped axes where that is shorter.
+    /// Returns the shortest vector from `from` to `to`, which goes across wrapped sides where that is shorter.
     ///
     /// Both positions must be inside of the domain.
     #[must_use]

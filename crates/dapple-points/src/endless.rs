@@ -1,16 +1,16 @@
-//! Poisson-disk points of the whole plane, evaluated in windows that are consistent with each other.
+//! Poisson-disk points on the whole plane, evaluated in windows that agree with each other.
 //!
 //! Random sequential addition (R. L. Cook, "Stochastic Sampling in Computer Graphics", ACM Transactions on Graphics
 //! 5(1), 1986, <https://doi.org/10.1145/7529.8927>) with darts that are hashes of their cell. The plane is divided
 //! into square cells whose diagonal is the radius, so that a cell contains at most one point. A cell throws at most
 //! [`N_ROUNDS`] darts, one per round; within a round, darts have random ranks. A dart becomes a point if no point of
 //! an earlier dart is too close. This depends on the earlier darts around it, which depend on the darts around them.
-//! These chains end after a few radii and are followed completely: the points are exactly those of a construction of
-//! the whole plane.
+//! These chains end after a few radii and are followed completely: the points are exactly those that constructing the
+//! whole plane would give.
 //!
-//! Sampling an unbounded plane on demand is an idea of D. Dunbar and G. Humphreys ("A Spatial Data Structure for Fast
-//! Poisson-Disk Sample Generation", SIGGRAPH 2006, <https://doi.org/10.1145/1141911.1141915>) and of corner tiles (A.
-//! Lagae and P. Dutré, "An Alternative for Wang Tiles", ACM Transactions on Graphics 25(4), 2006,
+//! The idea of sampling an unbounded plane on demand is from D. Dunbar and G. Humphreys ("A Spatial Data Structure
+//! for Fast Poisson-Disk Sample Generation", SIGGRAPH 2006, <https://doi.org/10.1145/1141911.1141915>) and from
+//! corner tiles (A. Lagae and P. Dutré, "An Alternative for Wang Tiles", ACM Transactions on Graphics 25(4), 2006,
 //! <https://doi.org/10.1145/1183287.1183296>). Tiles repeat a finite set of patterns; ranks do not.
 //!
 //! Coordinates are integers in steps, a power of two between 2^-23 and 2^-22 of the radius, so that distances are
@@ -25,7 +25,7 @@ mod block;
 
 /// Maximum number of darts per cell.
 ///
-/// Measured N r² relative to a maximal set: 0.85 with 4 darts, 0.89 with 8, 0.92 with 16, 0.94 with 32.
+/// Measured densities N r², relative to a maximal set: 0.85 with 4 darts, 0.89 with 8, 0.92 with 16, 0.94 with 32.
 const N_ROUNDS: u8 = 16;
 
 /// Side of a block in cells. A block is processed in one allocation.
@@ -37,7 +37,7 @@ const FARTHEST: f64 = (1_u64 << 39) as f64;
 /// Maximum expected number of points of a window: 2^26.
 const MAX_POINTS: u64 = 1 << 26;
 
-/// Maximum ratio of the two bounds of a variable radius.
+/// Maximum ratio between the two bounds of a variable radius.
 const MAX_RATIO: f64 = 16.0;
 
 /// A point of an endless set.
@@ -45,16 +45,17 @@ const MAX_RATIO: f64 = 16.0;
 pub struct EndlessPoint {
     /// Position, in the units of the radius.
     pub position: DVec2,
-    /// The radius at the position, between the bounds of the set.
+    /// Radius at the position, between the set's bounds.
     pub radius: f64,
-    /// 64 random bits that identify the point in every window: the seed of its other properties. Copies of a point in
-    /// a set with a period have the same id.
+    /// 64 random bits that identify the point in every window. Use them as the seed for its other properties. In a
+    /// periodic set, copies of a point have the same id.
     pub id: u64,
 }
 
-/// Poisson-disk points of the endless plane: random points at least a radius apart, evaluated in any window on demand.
+/// Poisson-disk points on the endless plane: random points at least a radius apart, evaluated in any window on
+/// demand.
 ///
-/// Windows that overlap have the same points, bit for bit. Chunks of a world therefore agree at their borders,
+/// Overlapping windows contain the same points, bit for bit. Chunks of a world therefore agree at their borders,
 /// regardless of the order, thread or machine that creates them. Nothing is stored.
 ///
 /// * Distances: no two points are closer than the radius. Up to 2^30 radii from the origin, positions are not rounded,
@@ -88,7 +89,7 @@ pub struct EndlessPoissonDisk {
 }
 
 impl EndlessPoissonDisk {
-    /// Creates the point set of a seed with points at least `radius` apart.
+    /// Creates the point set for `seed`, with points at least `radius` apart.
     ///
     /// # Errors
     ///
@@ -137,16 +138,17 @@ impl EndlessPoissonDisk {
     }
 }
 
-/// Poisson-disk points of the endless plane with a radius that varies in space: [`EndlessPoissonDisk`] with a
+/// Poisson-disk points on the endless plane with a spatially varying radius: [`EndlessPoissonDisk`] with a radius
 /// function.
 ///
-/// The radius is evaluated at each dart and clamped to two bounds. The minimum distance of two points follows from
-/// their radii by a [`DiskRule`], by default their mean. Where the radius is r, the density is about 0.63 / r².
+/// The radius is evaluated at each dart and clamped to two bounds. A [`DiskRule`] derives the minimum distance
+/// between two points from their radii; by default it is their mean. Where the radius is r, the density is about 0.63
+/// / r².
 ///
-/// The function must depend only on the position; then windows agree as for [`EndlessPoissonDisk`]. Cells are sized
-/// for the smaller bound s. Per s² of area, a window costs as much as with the fixed radius s, and up to five times as
-/// much if the larger bound is 16 times s, because points with a large radius are searched in more cells. The radius
-/// is evaluated about 5 times per s² where it is close to s, and up to 40 times where it is 4 s.
+/// Windows agree, as for [`EndlessPoissonDisk`], provided that the function depends only on the position. Cells are
+/// sized for the smaller bound s. A window costs as much per s² of area as with the fixed radius s, and up to five
+/// times as much if the larger bound is 16 times s, because points with a large radius are searched in more cells.
+/// The radius is evaluated about 5 times per s² where it is close to s, and up to 40 times where it is 4 s.
 ///
 /// # Examples
 ///
@@ -167,7 +169,7 @@ pub struct EndlessVariablePoissonDisk<F> {
 }
 
 impl<F: Fn([f64; 2]) -> f64> EndlessVariablePoissonDisk<F> {
-    /// Creates the point set of a seed, with a radius between two bounds, smaller bound first.
+    /// Creates the point set for `seed`, with a radius between two bounds (smaller bound first).
     ///
     /// # Errors
     ///
@@ -179,7 +181,7 @@ impl<F: Fn([f64; 2]) -> f64> EndlessVariablePoissonDisk<F> {
         Ok(Self { plane, radius })
     }
 
-    /// Sets the rule for the distance of points with different radii.
+    /// Sets the rule for the minimum distance between points with different radii.
     #[must_use]
     pub fn with_rule(mut self, rule: DiskRule) -> Self {
         self.plane.rule = rule;
@@ -221,12 +223,12 @@ struct Plane {
     rule: DiskRule,
     /// Minimum and maximum radius.
     radii: [f64; 2],
-    /// Length of a step in the caller's units: a power of two.
+    /// Length of a step in the caller's units, a power of two.
     step: f64,
     axes: [Axis; 2],
 }
 
-/// Cells along an axis.
+/// The cells along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Axis {
     /// Width of a cell in steps. On an axis with a period, the maximum width.
@@ -234,7 +236,7 @@ struct Axis {
     period: Option<Period>,
 }
 
-/// Period of an axis.
+/// The period of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Period {
     /// Length in the caller's units.
@@ -244,7 +246,7 @@ struct Period {
     n_cells: i64,
 }
 
-/// A column or row of cells.
+/// A column or a row of cells.
 #[derive(Clone, Copy, Debug)]
 struct Strip {
     /// Index of the cell, equal in all periods.
@@ -304,7 +306,7 @@ impl Plane {
         Ok(())
     }
 
-    /// Returns the points of a window, given by its first and second corner.
+    /// Returns the points of the window between its minimum and maximum corner.
     fn points(
         &self,
         window: [[f64; 2]; 2],
@@ -345,7 +347,7 @@ impl Plane {
         Ok(points)
     }
 
-    /// Returns the points of a block of cells: a half-open range along each axis.
+    /// Returns the points of a block of cells, given as a half-open range along each axis.
     fn block(
         &self,
         cells: [[i64; 2]; 2],
@@ -365,7 +367,7 @@ impl Plane {
         }
     }
 
-    /// Returns the search radius in cells: conflicting points are at most this many cells apart.
+    /// Returns the search radius in cells. Conflicting points are at most this many cells apart.
     fn reach(&self) -> i64 {
         let most = (self.radii[1] / self.step) as i64 + 1;
         let narrowest = self.axes[0].narrowest().min(self.axes[1].narrowest());
@@ -374,7 +376,7 @@ impl Plane {
 }
 
 impl Axis {
-    /// Returns the approximate index of the cell at a coordinate in the caller's units.
+    /// Returns the approximate index of the cell at `coordinate`, in the caller's units.
     fn cell(&self, coordinate: f64, step: f64) -> i64 {
         let cells = match self.period {
             Some(period) => coordinate / period.length * period.n_cells as f64,
@@ -383,7 +385,7 @@ impl Axis {
         cells.floor() as i64
     }
 
-    /// Returns the column or row of a cell index, which may be in any period.
+    /// Returns the column or row for a cell index, which may be in any period.
     fn strip(&self, cell: i64) -> Strip {
         let Some(period) = self.period else {
             return Strip {
@@ -416,7 +418,7 @@ impl Axis {
     }
 }
 
-/// Rejects a number outside of a range.
+/// Fails if a number is outside a range.
 fn check_range(what: &'static str, value: f64, range: [f64; 2]) -> Result<(), PointsError> {
     if value >= range[0] && value <= range[1] {
         return Ok(());

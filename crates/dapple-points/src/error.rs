@@ -1,14 +1,14 @@
-//! Errors of point sets.
+//! Errors from creating and checking point sets.
 
 use crate::{Domain, PointIdx};
 use glam::DVec2;
 
 dapple_raster::error! {
-    /// An error of making or checking a point set.
+    /// An error from creating or checking a point set.
     PointsError,
     /// Cause of a [`PointsError`], with the limit and the value.
     PointsErrorKind {
-        /// The origin of the domain is beyond 1e300, or a side is not above zero and at most 1e300, or is lost in
+        /// The origin of the domain is beyond 1e300, or a side is not above zero and at most 1e300, or is lost to
         /// rounding relative to the origin.
         Domain {
             /// The domain.
@@ -30,7 +30,7 @@ dapple_raster::error! {
             /// Maximum number of points.
             limit: u64,
         } => "about {needed:.0} points would be needed, but the limit is {limit}";
-        /// A number that must be above zero and finite is not.
+        /// A number is not above zero and finite, as required.
         NotPositive {
             /// The name of the number.
             what: &'static str,
@@ -51,13 +51,13 @@ dapple_raster::error! {
             /// Slope of the radius.
             slope: f64,
         } => "the radius changes by {slope} per distance near {position}, but it must change by less than 1";
-        /// A wrapped axis is shorter than two radii, so that a point would conflict with its own copy.
+        /// A wrapped axis is shorter than two radii, so a point would conflict with its own copy.
         PeriodTooShort {
             /// The axis, 0 or 1.
             axis: u32,
             /// The length of the axis.
             period: f64,
-            /// Radius; the largest one if it varies.
+            /// The radius; the largest one if it varies.
             radius: f64,
         } => "axis {axis} wraps around after {period}, but it must reach over two radii of {radius}";
         /// Two given points are too close to each other.
@@ -84,7 +84,7 @@ dapple_raster::error! {
             what: &'static str,
             /// The number.
             value: f64,
-            /// Minimum and maximum.
+            /// Allowed minimum and maximum.
             range: [f64; 2],
         } => "{what} is {value}, but it must be between {} and {}", range[0], range[1];
         /// A nonempty point set is required.

@@ -1,5 +1,5 @@
 //! Point sets for scattering and sampling: maximal Poisson disk (blue noise), variable density, nested levels, and
-//! endless sets for worlds in chunks. Sides of a domain may be joined, so that points tile.
+//! endless sets for worlds in chunks. Opposite sides of a domain may be joined, so that points tile seamlessly.
 //!
 //! ```
 //! use dapple_points::{Domain, EndlessPoissonDisk, glam::DVec2, hash::Seed, poisson_disk};
@@ -35,7 +35,7 @@
 //! | independent, uniform | [`white_noise`] | |
 //!
 //! Times are from one thread of a server processor (AMD EPYC). Functions named `…_cancellable` take a callback that
-//! stops them.
+//! can cancel them.
 //!
 //! To measure a [`PointSet`]: [`PointSet::minimum_distance`], [`PointSet::largest_empty_circle`] and [`spectrum`]. For
 //! triangles and Voronoi cells, use `dapple-graph`.
@@ -54,9 +54,10 @@
 //! * A Poisson-disk set, or a window of an endless one, has at most about 2^26 points. Grids and uniform sets have at
 //!   most 2^31.
 //! * A joined side of a domain must be at least two radii long.
-//! * An endless set has 0.92 of the density of a maximal set. Windows may lie up to 2^39 radii from the origin.
+//! * An endless set has 0.92 of the density of a maximal set. Windows may be up to 2^39 radii from the origin.
 //! * The radius of an endless variable set varies by a factor of at most 16.
-//! * A set is a function of its options and its seed: the same bits on every machine and any number of threads.
+//! * A set depends only on its options and its seed. It has the same bits on every machine and with any number of
+//!   threads.
 //!
 //! # Without std
 //!

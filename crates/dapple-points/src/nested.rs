@@ -1,16 +1,17 @@
 //! Nested Poisson-disk sets with decreasing radius, each of which contains the previous one.
 //!
-//! The coarsest set is an ordinary one. Each following level keeps the previous points and adds points until none fits
-//! at its radius. Every level is therefore a maximal Poisson-disk set, and the points of coarser levels come first.
-//! Finer levels differ from an independent set of their radius: the coarse points are farther apart than such a set
-//! requires.
+//! The coarsest set is an ordinary one. Each following level keeps the previous points and adds points until none
+//! fits at its radius. Every level is therefore a maximal Poisson-disk set, and the points of coarser levels come
+//! first. A finer level differs from an independent set with the same radius, because its coarse points are farther
+//! apart than that radius requires.
 
 use crate::{
     Domain, IsCancelled, PointSet, PointsError, PointsErrorKind, extend_poisson_disk_cancellable,
 };
 use dapple_hash::Seed;
 
-/// Points in nested levels. Each level is a prefix of the points, from the coarsest level to all points.
+/// Points in nested levels. Each level is a prefix of the point list; the coarsest is the shortest, and the finest is
+/// the whole list.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NestedPointSet {
     points: PointSet,
@@ -18,7 +19,7 @@ pub struct NestedPointSet {
 }
 
 impl NestedPointSet {
-    /// Returns all points: the finest level.
+    /// Returns all points, which are the finest level.
     #[must_use]
     pub fn points(&self) -> &PointSet {
         &self.points
@@ -56,8 +57,8 @@ impl NestedPointSet {
 ///
 /// # Errors
 ///
-/// Same as [`poisson_disk`](crate::poisson_disk) for each radius; [`PointsErrorKind::NotDescending`] if a radius is
-/// larger than the one before.
+/// Same as [`poisson_disk`](crate::poisson_disk) for each radius, plus [`PointsErrorKind::NotDescending`] if a radius
+/// is larger than the one before.
 ///
 /// # Examples
 ///
@@ -77,7 +78,7 @@ pub fn nested_poisson_disk(
     nested_poisson_disk_cancellable(domain, radii, seed, &|| false)
 }
 
-/// Creates the sets of [`nested_poisson_disk`], unless `is_cancelled` returns true.
+/// Same as [`nested_poisson_disk`], but fails if `is_cancelled` returns true.
 ///
 /// # Errors
 ///

@@ -62,7 +62,7 @@ impl PointSet {
     /// # Errors
     ///
     /// [`PointsErrorKind::Domain`] for a domain without area, [`PointsErrorKind::Outside`] for a position that is not
-    /// finite or lies outside along an axis that does not wrap, [`PointsErrorKind::TooMany`] past 2^31 points.
+    /// finite or is outside along an axis that does not wrap, [`PointsErrorKind::TooMany`] for more than 2^31 points.
     pub fn new(domain: Domain, mut positions: Vec<DVec2>) -> Result<Self, PointsError> {
         let domain = domain.checked()?;
         if positions.len() > 1 << 31 {

@@ -1,8 +1,9 @@
-//! Statistics of point sets: distances, empty circles, spectra.
+//! Point set statistics: distances, empty circles and spectra.
 //!
 //! All statistics are exact for any domain and depend only on the set: sums run in a fixed order. Distances are
-//! shortest distances, across the wrapped axes where that is shorter. Running times are roughly proportional to the
-//! number of points if they are evenly spread, and approach its square if most points are concentrated in one spot.
+//! shortest distances, which go across wrapped sides where that is shorter. Running times are roughly proportional to
+//! the number of points if they are evenly spread, and approach its square if most points are concentrated in one
+//! spot.
 
 mod circle;
 mod distance;

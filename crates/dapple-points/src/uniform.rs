@@ -3,7 +3,7 @@
 //! Each point is a hash of its index or its cell, so that a larger set starts with the points of a smaller one.
 //! Positions are in the units of the domain.
 //!
-//! Reference: our own; both are as old as sampling.
+//! Reference: none; both methods are as old as sampling.
 
 use crate::{Domain, PointSet, PointsError, PointsErrorKind};
 use dapple_hash::{CellHash, Seed, unit_f64};
@@ -20,7 +20,7 @@ const MAX_POINTS: u64 = 1 << 31;
 ///
 /// # Errors
 ///
-/// [`PointsErrorKind::Domain`] for a domain without area, [`PointsErrorKind::TooMany`] past 2^31 points.
+/// [`PointsErrorKind::Domain`] for a domain without area, [`PointsErrorKind::TooMany`] for more than 2^31 points.
 ///
 /// # Examples
 ///
@@ -46,14 +46,14 @@ pub fn white_noise(domain: Domain, n_points: u32, seed: Seed) -> Result<PointSet
 
 /// Creates one point in each cell of a grid of `cells[0]` columns and `cells[1]` rows, row by row.
 ///
-/// With a `jitter` of 0 a point is at the center of its cell, with 1 anywhere in the cell. In between, it is in a
-/// concentric cell scaled by `jitter`.
+/// With a `jitter` of 0, each point is at the center of its cell; with 1, it can be anywhere in the cell. In between,
+/// it is in a concentric cell scaled by `jitter`.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/jittered-grid.md"))]
 ///
 /// # Errors
 ///
-/// [`PointsErrorKind::Domain`] for a domain without area, [`PointsErrorKind::TooMany`] past 2^31 points,
+/// [`PointsErrorKind::Domain`] for a domain without area, [`PointsErrorKind::TooMany`] for more than 2^31 points,
 /// [`PointsErrorKind::OutOfRange`] for a jitter outside of `0..=1`.
 ///
 /// # Examples
@@ -112,7 +112,7 @@ fn unit_square(hash: CellHash) -> DVec2 {
     DVec2::new(unit_f64(hash.at(0)), unit_f64(hash.at(1)))
 }
 
-/// Returns the position at `unit`, from 0 to 1 across the domain along each axis.
+/// Converts `unit`, from 0 to 1 along each axis, to a position in the domain.
 fn place(domain: &Domain, unit: DVec2) -> DVec2 {
     // Rounding must not move the position across a border that does not wrap.
     (domain.origin + unit * domain.size).min(domain.end())

@@ -1,15 +1,15 @@
-//! Maximal Poisson-disk sets with a radius that varies in space.
+//! Maximal Poisson-disk sets with a spatially varying radius.
 //!
 //! Random sequential addition: darts fall at random positions and become points if they are far enough from all
-//! earlier points, until no dart fits. [`DiskRule`] defines the distance of two points with different radii.
-//! Reference: the rules go back to Scott A. Mitchell, Alexander Rand, Mohamed S. Ebeida and Chandrajit Bajaj,
+//! earlier points, until no dart fits. [`DiskRule`] defines the minimum distance between two points with different
+//! radii. Reference: the rules go back to Scott A. Mitchell, Alexander Rand, Mohamed S. Ebeida and Chandrajit Bajaj,
 //! "Variable Radii Poisson-Disk Sampling", Canadian Conference on Computational Geometry 2012.
 //!
-//! The domain is divided into rectangles of some hundred points in which the radius hardly changes. Each rectangle
+//! The domain is divided into rectangles of a few hundred points in which the radius hardly changes. Each rectangle
 //! becomes a block with a grid of cells of suitable size. Darts come in rounds: in each round, a fraction of the open
 //! cells of all blocks receives one dart. Blocks that could conflict take turns, in an order that changes between
-//! rounds; other blocks run in parallel. The result depends only on the order of turns, not on threads. After the last
-//! round, the open area is subdivided into quarters until all of it is covered.
+//! rounds; other blocks run in parallel. The result depends only on the order of turns, not on threads. After the
+//! last round, the open area is subdivided into quarters until all of it is covered.
 
 mod block;
 mod density;
@@ -35,14 +35,15 @@ pub use rule::DiskRule;
 
 /// Fraction of the open cells that receives a dart in each round. The first rounds, in which nearly every dart is
 /// accepted, are sparse, which reduces the influence of the order of blocks. Seven rounds from 1/8 to 1 gave N r² of
-/// 0.6967 instead of 0.6988 (30 sets of 2000 points on a torus), the same anisotropy of 1.05, and took a tenth longer.
+/// 0.6967 instead of 0.6988 (30 sets of 2000 points on a torus), the same anisotropy of 1.05, but took a tenth
+/// longer.
 const ROUNDS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
 
 /// Maximum slope of the radius between its sampled positions. If the radius is steeper, the set is recomputed with a
 /// larger slope.
 const RISE: f64 = 0.1;
 
-/// Options of Poisson-disk sets with a varying radius.
+/// Options for Poisson-disk sets with a varying radius.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -77,8 +78,8 @@ impl Default for VariablePoissonOptions {
 /// radius is evaluated about three times per point.
 ///
 /// Along a wrapped axis, the radius should be periodic too. Otherwise there is a step at the seam, which is handled
-/// but visible: next to a step from r to R, the larger discs extend across it by (r + R) / 2. A ramp from left to
-/// right belongs on a cylinder. The order of the points is unspecified.
+/// but visible: next to a step from r to R, the larger discs extend across it by (r + R) / 2. For a ramp from left to
+/// right, use a cylinder that wraps only along y. The order of the points is unspecified.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/variable-poisson-disk.md"))]
 ///
@@ -113,7 +114,7 @@ pub fn variable_poisson_disk(
     variable_poisson_disk_cancellable(domain, radius, options, seed, &|| false)
 }
 
-/// Creates the set of [`variable_poisson_disk`], unless `is_cancelled` returns true.
+/// Same as [`variable_poisson_disk`], but fails if `is_cancelled` returns true.
 ///
 /// # Errors
 ///
@@ -142,8 +143,8 @@ pub fn variable_poisson_disk_cancellable(
     }
 }
 
-/// Places the points. Between its sampled positions, the slope of the radius is at most the slope between them or
-/// `field.rise`.
+/// Places the points. Assumes that between sampled positions, the slope of the radius is at most the slope between
+/// the samples, or `field.rise` if that is larger.
 fn place_points(
     field: RadiusField<'_>,
     options: &VariablePoissonOptions,
@@ -201,7 +202,7 @@ fn check_periods(domain: &Domain, tree: &Tree) -> Result<(), PointsError> {
     Ok(())
 }
 
-/// Creates the blocks with their neighbors.
+/// Creates a block for each leaf, and finds its neighbors.
 fn blocks_of(tree: &Tree, setting: &Setting<'_>) -> Vec<Block> {
     parallel::map(tree.leaves.len(), |index| {
         let leaf = &tree.leaves[index];
@@ -221,7 +222,7 @@ fn blocks_of(tree: &Tree, setting: &Setting<'_>) -> Vec<Block> {
     })
 }
 
-/// Shifts to the adjacent copies of the domain.
+/// Returns the shifts to the adjacent copies of the domain.
 fn shifts(domain: &Domain) -> impl Iterator<Item = DVec2> {
     let turns = |axis: usize| if domain.wrap[axis] { -1..=1 } else { 0..=0 };
     let (columns, rows, size) = (turns(0), turns(1), domain.size);
@@ -251,7 +252,7 @@ fn colors_of(blocks: &[Block]) -> Vec<Vec<u32>> {
     colors
 }
 
-/// Number of blocks between checks for cancellation; a block has some hundred points.
+/// Number of blocks between checks for cancellation; a block has a few hundred points.
 const BLOCKS: usize = 64;
 
 /// Processes the blocks of one color in parallel; all other blocks are read-only meanwhile.
@@ -280,7 +281,7 @@ fn take_turns(
     cancelled(is_over.into_inner())
 }
 
-/// Returns the points of all blocks, or the first error.
+/// Merges the points of all blocks, or returns the first error.
 fn collect(domain: Domain, blocks: Vec<Block>) -> Result<PointSet, PointsError> {
     let mut positions = Vec::with_capacity(blocks.iter().map(|block| block.samples.len()).sum());
     for block in blocks {

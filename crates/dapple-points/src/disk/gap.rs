@@ -1,7 +1,7 @@
 //! Exact search for positions in a cell that no disc covers.
 //!
-//! The open subcells of a cell are squares of lattice positions. A square inside of a single disc is dropped. One
-//! random position of the remaining squares is tried, then each square is split into four, and so on down to single
+//! The open subcells of a cell are squares of lattice positions. A square inside a single disc is dropped. One random
+//! position of the remaining squares is tried, then each square is split into four, and so on down to single
 //! positions. The result is uniformly distributed among the free positions of the cell, and there is always a result
 //! if a free position exists.
 //!
@@ -14,13 +14,13 @@ use super::sheet::{COLUMNS, LANES, Sheet};
 use dapple_hash::CellHash;
 use fearless_simd::{f32x8, prelude::*};
 
-/// A square of positions: its first corner in lattice steps.
+/// First corner of a square of positions, in lattice steps.
 type Corner = [u32; 2];
 
 /// Maximum number of discs that reach into a cell, one per surrounding cell, rounded up to whole lanes.
 const MAX_DISCS: usize = (REACH * REACH).next_multiple_of(LANES);
 
-/// The search, with scratch memory that is reused for the next cell.
+/// Searches for gaps, with scratch memory that is reused from cell to cell.
 #[derive(Clone, Debug)]
 pub(crate) struct GapSearch {
     /// Centers of the discs that reach into the cell, relative to it; unused lanes are far away.
@@ -76,7 +76,7 @@ impl GapSearch {
     /// Returns a random free position of the cell whose discs were [gathered](Self::gather) and whose mask is `mask`;
     /// `None` if all positions are covered.
     ///
-    /// Bits of subcells covered by a single disc are cleared.
+    /// Clears the bits in `mask` of subcells that a single disc covers.
     #[inline(always)]
     pub(crate) fn find<S: Simd>(
         &mut self,
@@ -189,7 +189,7 @@ impl GapSearch {
     }
 }
 
-/// Returns the first and last position of a square along an axis.
+/// Converts the first and last position of a square along an axis.
 #[inline(always)]
 fn span(first: u32, size: u32) -> [f32; 2] {
     [first as f32 * STEP, (first + size - 1) as f32 * STEP]

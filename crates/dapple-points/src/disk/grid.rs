@@ -1,16 +1,17 @@
-//! Grid of a Poisson-disk set, with cells small enough for at most one point each.
+//! The grid for a Poisson-disk set. Its cells are small enough to contain at most one point each.
 //!
 //! The domain is divided into equal cells whose diagonal is at most the radius. A cell therefore contains at most one
 //! point, and two points conflict only if their cells are at most two apart. A margin of [`HALO`] cells around the
 //! grid contains copies from the other side along wrapped axes, and empty cells along other axes, so that neighbor
 //! loops need no border checks.
 //!
-//! **Units.** A position is a cell and an offset in `[0, 1)²` of the cell, a multiple of 2^-22 ([`LATTICE`] steps per
-//! cell). Differences of offsets across up to three cells are exact in `f32`. Two positions conflict if their squared
-//! distance, relative to the reach, is below 1: `(dx * scale)² + (dy * scale)²` in `f32` with [`Grid::scale`], rounded
-//! after each operation. This is monotonic in `|dx|` and `|dy|`. The reach is larger than the radius by [`SLACK`],
-//! which exceeds all rounding, so no second, exact test is needed. Points that do not conflict are at least a radius
-//! apart in `f64`. Where all positions conflict, no empty circle is larger than the radius times 1 + 1e-6.
+//! **Units.** A position is a cell and an offset in `[0, 1)²` within the cell, a multiple of 2^-22 ([`LATTICE`] steps
+//! per cell). Differences of offsets across up to three cells are exact in `f32`. Two positions conflict if their
+//! squared distance, relative to the reach, is below 1: `(dx * scale)² + (dy * scale)²` in `f32` with
+//! [`Grid::scale`], rounded after each operation. This is monotonic in `|dx|` and `|dy|`. The reach is larger than
+//! the radius by [`SLACK`], which exceeds all rounding, so no second, exact test is needed. Points that do not
+//! conflict are at least a radius apart in `f64`. Where all positions conflict, no empty circle is larger than the
+//! radius times 1 + 1e-6.
 
 use crate::{Domain, PointsError, PointsErrorKind, RSA_DENSITY};
 use dapple_hash::{CellHash, Seed};
@@ -40,14 +41,15 @@ const SLACK: f64 = 4e-7;
 /// still in different cells after rounding.
 const CELL_SLACK: f64 = 1e-6;
 
-/// A cell by its row and column in the arrays, including the margin: the first cell of the domain is `(HALO, HALO)`.
+/// A cell, given by its row and column in the arrays. Both include the margin, so the first cell of the domain is
+/// `(HALO, HALO)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Cell {
     pub(crate) row: u32,
     pub(crate) column: u32,
 }
 
-/// Cells of a domain for one radius.
+/// The grid cells of a domain for one radius.
 #[derive(Clone, Debug)]
 pub(crate) struct Grid {
     pub(crate) domain: Domain,
@@ -103,7 +105,7 @@ impl Grid {
         CellHash::new(seed, [i64::from(number)])
     }
 
-    /// Returns the cell of the domain that a margin cell is a copy of.
+    /// Returns the domain cell that a margin cell is a copy of.
     ///
     /// Other cells are returned unchanged, including margin cells along an axis that does not wrap.
     #[inline(always)]
@@ -114,7 +116,7 @@ impl Grid {
         }
     }
 
-    /// Returns the coordinate of [`original`](Self::original) along axis 0 or 1.
+    /// Returns the column (axis 0) or row (axis 1) of [`original`](Self::original).
     #[inline(always)]
     pub(crate) fn original_index(&self, axis: usize, index: u32) -> u32 {
         let count = self.cells[axis];
@@ -129,7 +131,7 @@ impl Grid {
         }
     }
 
-    /// Returns the position of an offset in a cell.
+    /// Converts a cell and an offset to a position.
     pub(crate) fn position(&self, cell: Cell, offset: [f32; 2]) -> DVec2 {
         let along = |index: u32, offset: f32| f64::from(index - HALO) + f64::from(offset);
         let cells = DVec2::new(along(cell.column, offset[0]), along(cell.row, offset[1]));
@@ -137,7 +139,7 @@ impl Grid {
         (self.domain.origin + cells * self.cell).min(self.domain.end())
     }
 
-    /// Returns the cell of a position, and its offset rounded to the lattice.
+    /// Converts a position to its cell and its offset, which is rounded to the lattice.
     pub(crate) fn place(&self, position: DVec2) -> (Cell, [f32; 2]) {
         let cells = (position - self.domain.origin) / self.cell;
         let along = |at: f64, count: u32| {

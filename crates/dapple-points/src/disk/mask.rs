@@ -1,7 +1,7 @@
-//! Masks of the open parts of a cell: 64 bits, one for each of 8 × 8 subcells.
+//! Bit masks of a cell's open parts, with one bit for each of its 8 × 8 subcells.
 //!
 //! A bit is cleared once a single disc covers its subcell. A subcell that is covered only by several discs together
-//! keeps its bit: masks guide the darts, but do not find the gaps.
+//! keeps its bit. Masks therefore guide the darts, but do not find the last gaps.
 //!
 //! The subcells that a point covers depend on its offset in its cell. [`Coverage`] tabulates them for 16 × 16 boxes of
 //! offsets. A box lists only the subcells that are covered from every offset in the box.
@@ -37,7 +37,8 @@ impl Coverage {
         Self { kept }
     }
 
-    /// Returns the masks that a point at `offset` of the center cell leaves in the cells around it.
+    /// Returns the masks of the subcells that stay open in the 5 × 5 cells around a point at `offset` in the center
+    /// cell.
     #[inline(always)]
     pub(crate) fn kept(&self, offset: [f32; 2]) -> &[[u64; REACH]; REACH] {
         let [x, y] = offset.map(|at| ((at * BOXES as f32) as usize).min(BOXES - 1));
@@ -59,7 +60,7 @@ fn farthest(scale: f32) -> [[f32; REACH * SIDE]; BOXES] {
     })
 }
 
-/// Masks of the subcells that are not covered, for a row of boxes.
+/// Computes the masks of subcells that are not covered, for a row of boxes.
 #[inline(always)]
 fn kept_in_row<S: Simd>(
     simd: S,
@@ -98,7 +99,7 @@ pub(crate) fn select(mask: u64, rank: u32) -> u32 {
     byte + bytes_up_to(bits.wrapping_mul(ONES), rank)
 }
 
-/// One in every byte.
+/// The value 1 in every byte.
 const ONES: u64 = 0x0101_0101_0101_0101;
 
 /// Returns the number of bytes of `ends` that are at most `rank`; all bytes are below 128.

@@ -1,4 +1,4 @@
-//! Contents of the cells: at most one point or proposal each.
+//! Cell contents: at most one point or proposal per cell.
 
 use super::grid::{Cell, FAR, Grid, HALO};
 use super::mask::REACH;
@@ -88,7 +88,7 @@ impl Sheet {
         }
     }
 
-    /// Returns the conflicts of a position with the five cells starting at `start`, as two bit masks: cells with a
+    /// Finds the conflicts of a position with the five cells starting at `start`, as two bit masks: cells with a
     /// conflicting point, and cells with a conflicting point or proposal of at least `rank`.
     #[inline(always)]
     fn conflicts_in_row<S: Simd>(
@@ -111,7 +111,7 @@ impl Sheet {
         [points.to_bitmask(), above.to_bitmask()]
     }
 
-    /// Returns the conflicts of the position stored in `cell`.
+    /// Finds the conflicts of the position stored in `cell`.
     #[inline(always)]
     pub(crate) fn rivals<S: Simd>(&self, simd: S, grid: &Grid, cell: Cell) -> Rivals {
         let middle = grid.index(cell);
@@ -131,7 +131,7 @@ impl Sheet {
     }
 }
 
-/// Conflicts of a proposed point.
+/// The conflicts of a proposed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Rivals {
     /// Conflict with a point, and possibly with proposals.
@@ -203,7 +203,7 @@ impl SheetRows<'_> {
     }
 }
 
-/// Returns the range of the domain rows in the arrays.
+/// Returns the range that the domain's rows occupy in the arrays.
 pub(crate) fn domain_rows(grid: &Grid) -> Range<usize> {
     let margin = HALO as usize * grid.stride();
     margin..margin + grid.cells[1] as usize * grid.stride()

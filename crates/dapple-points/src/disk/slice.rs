@@ -1,4 +1,4 @@
-//! One time slice: every open cell proposes at most one point, and the proposals are settled among themselves.
+//! A time slice, in which every open cell proposes at most one point and conflicts between proposals are resolved.
 //!
 //! Proposals have random ranks. A proposal is accepted if it conflicts with no point and with no accepted proposal of
 //! higher rank. This equals sequential dart throwing in the order of the ranks. Each decision depends only on a few
@@ -13,7 +13,7 @@ use dapple_hash::Seed;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, prelude::*};
 
-/// Proposed point of a cell.
+/// The point that a cell proposes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     pub(crate) cell: Cell,
@@ -33,10 +33,10 @@ pub(crate) enum Verdict {
 /// Number of cells whose darts are drawn together.
 const BATCH: usize = 64;
 
-/// Probability that a cell proposes, in units of 2^-32, by the number of its open subcells.
+/// Probability that a cell proposes a point, in units of 2^-32, indexed by the number of its open subcells.
 pub(crate) type Chances = [u64; SIDE * SIDE + 1];
 
-/// Probabilities for a slice in which an empty cell receives `mean` darts on average.
+/// Returns the probabilities for a slice in which an empty cell receives `mean` darts on average.
 pub(crate) fn dart_chances(mean: f64) -> Chances {
     let subcells = (SIDE * SIDE) as f64;
     core::array::from_fn(|open| {
@@ -48,14 +48,14 @@ pub(crate) fn dart_chances(mean: f64) -> Chances {
 /// Consecutive rows of cells that are processed together.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Band {
-    /// Rows of the band, including the margin in the count.
+    /// Rows of the band, as array rows that count the margin.
     pub(crate) rows: Range<u32>,
     /// Cells that may still take a point.
     pub(crate) open: Vec<Cell>,
     proposals: Vec<Proposal>,
     /// Positions of the proposals accepted in the latest slice.
     pub(crate) accepted: Vec<(Cell, [f32; 2])>,
-    /// Index of the proposal of each cell; stale if the cell has none.
+    /// For each cell, the index of its proposal; stale if the cell has none.
     slots: Vec<u32>,
     search: GapSearch,
 }
@@ -253,7 +253,7 @@ impl Band {
     }
 }
 
-/// Returns the rank of a proposal from the upper half of its random bits; the lower half is used elsewhere.
+/// Derives a proposal's rank from the upper half of its random bits; the lower half is used elsewhere.
 #[inline(always)]
 fn rank(lot: u64) -> i32 {
     ((lot >> 33) as i32).min(HIGHEST_PROPOSAL)

@@ -1,4 +1,4 @@
-//! Construction of a set in slices, on all cores.
+//! Constructs a point set slice by slice, on all cores.
 //!
 //! Each step of a slice runs over bands of rows in parallel. A band reads the results of the previous step and writes
 //! only its own rows, so that the result does not depend on the number of threads.
@@ -94,7 +94,7 @@ impl<'a> Solution<'a> {
         Ok(())
     }
 
-    /// Returns the positions of the points that were not given, cell by cell.
+    /// Returns the positions of the added points (not the given ones), cell by cell.
     pub(crate) fn positions(&self) -> Result<Vec<DVec2>, PointsError> {
         let mut parts = vec![Vec::new(); self.bands.len()];
         let items = self.bands.iter().zip(&mut parts);
@@ -148,7 +148,7 @@ impl<'a> Solution<'a> {
         })
     }
 
-    /// Settles the proposals, and converts accepted ones to points.
+    /// Resolves conflicts between proposals, and converts accepted ones to points.
     fn settle(&mut self) -> Result<(), PointsError> {
         let (grid, level) = (self.grid, self.level);
         self.sheet.wrap_rows(grid);
@@ -181,13 +181,13 @@ impl<'a> Solution<'a> {
     }
 }
 
-/// Returns the indices of a band and its neighbors, wrapped around the domain, without duplicates.
+/// Returns the indices of a band and its two neighbors, wrapped around the domain, without duplicates.
 fn neighbors(band: usize, count: usize) -> impl Iterator<Item = usize> {
     let around = [band, (band + 1) % count, (band + count - 1) % count];
     (0..around.len().min(count)).map(move |at| around[at])
 }
 
-/// Calls `work` for every item until a cancellation, on all cores if the feature `rayon` is enabled.
+/// Calls `work` for every item unless canceled, on all cores if the feature `rayon` is enabled.
 fn for_each<T: Send>(
     is_cancelled: &IsCancelled,
     items: impl Iterator<Item = T>,

@@ -1,4 +1,4 @@
-//! Evaluation of a block of cells: which darts become points.
+//! Evaluates a block of cells, that is, decides which darts become points.
 //!
 //! Lengths are in steps, relative to the first cell of the block.
 
@@ -17,7 +17,7 @@ pub(super) enum Stop {
     Radius { position: DVec2, radius: f64 },
 }
 
-/// Cells of a block and of the margin around it.
+/// The cells of a block and the margin around it.
 pub(super) struct Block<'a, F> {
     plane: &'a Plane,
     radius: &'a F,
@@ -29,17 +29,17 @@ pub(super) struct Block<'a, F> {
     around: Vec<Neighbor>,
     /// Stack of cells that must be decided before the darts in progress.
     earlier: Vec<usize>,
-    /// Scratch memory of [`cover_around`](Self::cover_around).
+    /// Scratch memory for [`cover_around`](Self::cover_around).
     quarters: [Vec<[f64; 4]>; 2],
     /// Minimum and maximum radius.
     radii: [f64; 2],
 }
 
-/// State of a cell: its current dart, and whether the dart is a point.
+/// A cell's state: its current dart, and whether the dart is a point.
 #[derive(Clone, Copy)]
 struct Cell {
     hash: CellHash,
-    /// Random bits of the positions of its darts.
+    /// Random bits for the positions of the cell's darts.
     place: u64,
     dart: Dart,
     /// Current round; [`N_ROUNDS`] after the last one.
@@ -57,7 +57,7 @@ struct Dart {
     radius: f64,
 }
 
-/// Conflict between a dart and a neighboring cell.
+/// A conflict between a dart and a neighboring cell.
 enum Rival {
     /// No conflict.
     None,
@@ -79,12 +79,12 @@ enum State {
     Point,
 }
 
-/// A cell near another one.
+/// The relative position of a nearby cell.
 #[derive(Clone, Copy)]
 struct Neighbor {
-    /// Offset in columns and rows.
+    /// Offset to the nearby cell, in columns and rows.
     by: [i64; 2],
-    /// Offset of the index.
+    /// Offset to the nearby cell's index.
     offset: isize,
     /// Minimum squared distance between positions of the two cells.
     distance_sq: f64,
@@ -115,7 +115,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         block
     }
 
-    /// Marks the cells without a complete neighborhood in the block.
+    /// Marks the cells whose neighborhood extends beyond the block.
     fn close_edge(&mut self, reach: usize) {
         let (width, height) = (self.columns.len(), self.rows.len());
         for (y, row) in self.cells.chunks_mut(width).enumerate() {
@@ -226,7 +226,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         Ok(is_free)
     }
 
-    /// Returns the conflict of a dart with another cell; `hash` is the hash of the cell of the dart.
+    /// Finds the conflict of a dart with another cell; `hash` is the hash of the dart's cell.
     fn next_rival(
         &self,
         dart: &Dart,
@@ -258,7 +258,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         } else {
             self.dart(other_index, round)?
         };
-        // Both darts are of the same round: the lower rank comes first.
+        // Both darts are in the same round, so the lower rank comes first.
         if !its_dart.is_some_and(|its_dart| self.are_too_close(dart, &its_dart)) {
             return Ok(Rival::None);
         }
@@ -287,7 +287,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         self.throw(index)
     }
 
-    /// Throws darts, starting with the current round, until one is in an uncovered part.
+    /// Throws darts, starting with the current round, until one falls in an uncovered part.
     fn throw(&mut self, index: usize) -> Result<(), Stop> {
         while self.cells[index].round < N_ROUNDS {
             let cell = &self.cells[index];
@@ -344,7 +344,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         DVec2::new(along(0), along(1))
     }
 
-    /// Returns the column and row of a cell.
+    /// Returns the column and row of the cell at `index`.
     fn strips(&self, index: usize) -> [Strip; 2] {
         let width = self.columns.len();
         [self.columns[index % width], self.rows[index / width]]
@@ -405,7 +405,7 @@ impl Cell {
     }
 }
 
-/// Counters of the hash of a cell: positions of its darts, id of its point, ranks and thinning of its darts.
+/// Counters for a cell's hash: positions of its darts, id of its point, ranks and thinning of its darts.
 const PLACE: u32 = 0;
 const ID: u32 = 1;
 const RANK: u32 = 2;

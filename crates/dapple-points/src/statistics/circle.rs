@@ -1,26 +1,26 @@
-//! Largest empty circle of a point set.
+//! Finds the largest empty circle of a point set.
 //!
 //! The position farthest from all points is a corner of a Voronoi cell, clipped at the sides of the domain. Each cell
 //! is clipped by the bisectors to surrounding points, starting with the nearest ring of the grid, until no farther
 //! point can affect it. Corners are relative to the point of the cell, so that a distant origin costs no precision.
 //!
-//! Reference: our own.
+//! Original method.
 
 use super::grid::{Grid, Images};
 use crate::PointSet;
 use glam::DVec2;
 
-/// A circle without a point inside.
+/// A circle with no point inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EmptyCircle {
-    /// Center, inside of the domain.
+    /// Center of the circle, inside the domain.
     pub center: DVec2,
     /// Distance from the center to the nearest points.
     pub radius: f64,
 }
 
 impl PointSet {
-    /// Returns the largest empty circle with its center in the domain; `None` for an empty set.
+    /// Returns the largest empty circle whose center is in the domain; `None` for an empty set.
     ///
     /// Its radius is the maximum distance of any position in the domain to the nearest point. Along wrapped axes,
     /// every copy of every point counts, including copies of a single point. Along other axes, the circle may extend
@@ -59,7 +59,7 @@ impl PointSet {
     }
 }
 
-/// Corners of a convex polygon around a point, relative to it.
+/// A convex polygon around a point, with corners relative to the point.
 #[derive(Debug, Default)]
 struct VoronoiCell {
     corners: Vec<DVec2>,
@@ -69,7 +69,7 @@ struct VoronoiCell {
 }
 
 impl VoronoiCell {
-    /// Computes the cell of the point at `position`.
+    /// Computes the Voronoi cell of the point at `position`.
     fn cut_out(&mut self, set: &PointSet, grid: &Grid, position: DVec2) {
         self.start(set, position);
         let center = grid.cell(position);

@@ -1,4 +1,4 @@
-//! Distances between points, and packing densities.
+//! Measures distances between points, and packing densities.
 
 use super::grid::{Grid, Images};
 use crate::PointSet;
@@ -7,8 +7,8 @@ use core::f64::consts::PI;
 impl PointSet {
     /// Returns the minimum distance between two points; `None` for fewer than two points.
     ///
-    /// The distance of a point to its own copies around a wrapped axis does not count. Coinciding points have a
-    /// distance of 0.
+    /// Distances from a point to its own copies across wrapped axes do not count. Coinciding points have a distance
+    /// of 0.
     ///
     /// # Examples
     ///
@@ -47,8 +47,8 @@ impl PointSet {
 
     /// Returns the mean number of other points within `distance` of a point; 0 for an empty set.
     ///
-    /// The distance is inclusive. Each other point counts once, by its shortest distance, even if `distance` exceeds
-    /// the period. Near sides that do not wrap, points have fewer neighbors.
+    /// Points at exactly `distance` are included. Each other point counts once, by its shortest distance, even if
+    /// `distance` exceeds the period. Near sides that do not wrap, points have fewer neighbors.
     #[must_use]
     pub fn mean_neighbor_count(&self, distance: f64) -> f64 {
         let grid = Grid::new(self);
@@ -66,9 +66,10 @@ impl PointSet {
         n_pairs as f64 / self.len().max(1) as f64
     }
 
-    /// Returns the normalized density: number of points per square of side `radius`, N r² / area.
+    /// Returns the normalized density N r² / area, that is, the number of points per square of side `radius`.
     ///
-    /// Random sequential addition with the minimum distance `radius` reaches 0.697; the densest lattice has 1.155.
+    /// Random sequential addition with the minimum distance `radius` reaches 0.697; the densest lattice reaches
+    /// 1.155.
     #[must_use]
     pub fn normalized_density(&self, radius: f64) -> f64 {
         self.len() as f64 * (radius * radius) / self.domain().area()
@@ -81,7 +82,7 @@ impl PointSet {
         self.normalized_density(radius) * (PI / 4.0)
     }
 
-    /// Returns the mean number of discs with this radius that cover a position: N π r² / area.
+    /// Returns the mean number of discs of radius `radius` that cover a position: N π r² / area.
     ///
     /// Discs that extend beyond a side that does not wrap count in full.
     #[must_use]

@@ -1,4 +1,4 @@
-//! Grid of square cells with sorted points, searched ring by ring.
+//! A grid of square cells that contain sorted points, for searches ring by ring.
 
 use crate::{Domain, PointSet};
 use glam::DVec2;
@@ -9,13 +9,13 @@ const POINTS_PER_CELL: f64 = 2.0;
 /// Upper bound of the fraction of a cell by which rounding may assign a point to the wrong cell.
 const ROUNDING: f64 = 1e-6;
 
-/// How a search visits the cells of a domain that wraps.
+/// How a search visits the cells of a wrapping domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Images {
-    /// Each cell once, at the shortest distance.
+    /// Each cell is visited once, at the shortest distance.
     Nearest,
-    /// Each cell with its copies within one period on either side. A more distant copy cannot be the nearest one to a
-    /// position within half a period.
+    /// Each cell is visited together with its copies within one period on either side. A more distant copy cannot be
+    /// the nearest one to a position within half a period.
     All,
 }
 
@@ -23,7 +23,7 @@ pub(super) enum Images {
 #[derive(Debug)]
 pub(super) struct Grid {
     domain: Domain,
-    /// Number of columns and rows.
+    /// Numbers of columns and rows.
     counts: [i64; 2],
     /// Length of the shorter side of a cell.
     side: f64,
@@ -86,7 +86,8 @@ impl Grid {
         (ring as f64 - 1.0 - ROUNDING) * self.side
     }
 
-    /// Returns the last ring that can contain a point within `distance`, or any point at all.
+    /// Returns the last ring that can contain a point within `distance`, or the last ring with any point if that is
+    /// nearer.
     pub(super) fn last_ring(&self, distance: f64) -> i64 {
         let reach = (distance / self.side + 1.0 + ROUNDING) as i64;
         reach.clamp(0, self.counts[0].max(self.counts[1]))
@@ -131,7 +132,8 @@ impl Grid {
         }
     }
 
-    /// Returns the column or row at `offset` from `center`, and its shift from the original in the domain.
+    /// Returns the column or row `offset` away from `center`, and the shift from the original cell in the domain to
+    /// this copy.
     fn along(&self, axis: usize, center: i64, offset: i64, images: Images) -> Option<(i64, f64)> {
         let count = self.counts[axis];
         if !self.domain.wrap[axis] {

@@ -26,7 +26,7 @@ const FREQUENCY_LIMIT: u64 = 1 << 24;
 /// Maximum number of rings of a spectrum.
 const RING_LIMIT: f64 = 65_536.0;
 
-/// Options of a spectrum: range and resolution.
+/// Options for a spectrum: its range and resolution.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -52,7 +52,7 @@ impl Default for SpectrumOptions {
 /// A power spectrum, averaged over rings of equal frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
-    /// Rings that contain a frequency, lowest first.
+    /// Rings that contain at least one frequency, lowest first.
     pub rings: Vec<SpectrumRing>,
 }
 
@@ -65,13 +65,13 @@ pub struct SpectrumRing {
     pub n_frequencies: u32,
     /// Mean power of the frequencies: 1 for white noise.
     pub power: f64,
-    /// Variance of the power relative to an isotropic process: 1 for an isotropic set. A ring with a single frequency,
-    /// or without power, has 1.
+    /// Variance of the power relative to an isotropic process: 1 for an isotropic set. It is 1 for a ring with a
+    /// single frequency or without power.
     pub anisotropy: f64,
 }
 
 impl Spectrum {
-    /// Returns the mean power of all frequencies in the rings with a center in `from..to`; NaN if there is no such
+    /// Returns the mean power over all frequencies in rings whose center is in `from..to`; NaN if there is no such
     /// ring.
     #[must_use]
     pub fn mean_power(&self, from: f64, to: f64) -> f64 {
@@ -85,7 +85,7 @@ impl Spectrum {
         sum / count
     }
 
-    /// Returns the maximum power of a ring.
+    /// Returns the maximum over the rings of their mean power.
     #[must_use]
     pub fn peak_power(&self) -> f64 {
         self.rings.iter().map(|ring| ring.power).fold(0.0, f64::max)
@@ -107,8 +107,8 @@ impl Spectrum {
 /// Computes the spectrum of one set, or the average over several sets of the same domain.
 ///
 /// More sets reduce the noise of the power and of the anisotropy. If the sets have different numbers of points, the
-/// unit of frequency uses their mean. The time is two multiplications per point, set and frequency, with 2π
-/// (`highest_frequency`)² N frequencies.
+/// unit of frequency uses their mean. The computation takes two multiplications per point, set and frequency, and
+/// there are 2π (`highest_frequency`)² N frequencies.
 ///
 /// # Errors
 ///
@@ -132,7 +132,7 @@ pub fn spectrum(sets: &[PointSet], options: &SpectrumOptions) -> Result<Spectrum
     spectrum_cancellable(sets, options, &|| false)
 }
 
-/// Computes the spectrum of [`spectrum`], unless `is_cancelled` returns true.
+/// Same as [`spectrum`], but fails if `is_cancelled` returns true.
 ///
 /// The callback is called on any thread, once for each column of frequencies of each block of 256 points.
 ///
@@ -238,7 +238,7 @@ fn unit_frequency(sets: &[PointSet]) -> Result<f64, PointsError> {
     Ok((n_points / sets.len() as f64 / first.domain().area()).sqrt())
 }
 
-/// Sums over a ring.
+/// Sums over the frequencies of a ring.
 #[derive(Clone, Copy, Debug, Default)]
 struct RingSums {
     count: u32,

@@ -1,4 +1,4 @@
-//! Block: a leaf with its cells, a margin for surrounding points, and its darts.
+//! A block: a leaf with its cells, a margin for surrounding points, and the darts thrown at it.
 //!
 //! The diagonal of a cell is at most the smallest radius, so a cell contains at most one point. In the margin, where
 //! radii may be smaller, further points of a cell go to a separate list. Most darts are too close to a point. The
@@ -15,7 +15,7 @@ use glam::DVec2;
 /// Number of cells on each side of a dart that the quick test searches.
 const QUICK_REACH: usize = 2;
 
-/// Number of cells of a row that the quick test reads at once: the cells within reach, and some beyond.
+/// Number of cells that the quick test reads at once from a row: those within reach, and a few beyond.
 const LANES: usize = 8;
 
 /// Relative margin of squared distances in the quick test: coordinates of up to 40 cells with 24 bits have an error of
@@ -51,7 +51,7 @@ pub(super) struct Neighbor {
     pub(super) seen: usize,
 }
 
-/// Domain, radius and rule that all blocks share.
+/// The domain, radius and rule that all blocks share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Setting<'a> {
     pub(super) field: RadiusField<'a>,
@@ -69,16 +69,16 @@ pub(super) struct Block {
     pub(super) samples: Vec<Sample>,
     /// Points of this block and of its neighbors.
     pub(super) locals: Vec<Local>,
-    /// First error.
+    /// The first error that occurred; `None` if there was none.
     pub(super) error: Option<PointsError>,
     /// Columns and rows of the cells without a point, in random order.
     pub(super) open: Vec<[u16; 2]>,
     cursor: usize,
-    /// Sides of a cell. `per_cell` is the inverse.
+    /// Width and height of a cell; `per_cell` holds their inverses.
     pub(super) cell: DVec2,
     per_cell: DVec2,
-    /// Margin on each side in cells. `stride` is the number of cells in a row, with its margins and the excess that
-    /// the quick test reads.
+    /// Margin on each side, in cells. `stride` is the number of cells in a row, including its margins and the padding
+    /// that the quick test reads.
     margin: usize,
     stride: usize,
     /// Maximum radius of `locals`.
@@ -87,9 +87,9 @@ pub(super) struct Block {
     quick: [Vec<f32>; 3],
     /// For each cell, the index of its point in `locals`.
     slots: Vec<u32>,
-    /// Points without a cell slot.
+    /// Indices of points that have no cell slot.
     aside: Vec<u32>,
-    /// Scratch memory.
+    /// Scratch memory for the indices of points that were found.
     found: Vec<u32>,
 }
 
@@ -146,7 +146,7 @@ impl Block {
         }
     }
 
-    /// Adds a point of another block, or a copy of one of its own, if a dart could conflict with it.
+    /// Adds another block's point, or a copy of one of this block's points, if a dart could conflict with it.
     fn take_in(&mut self, sample: &Sample, shift: DVec2, setting: &Setting<'_>) {
         let at = (sample.position - setting.field.domain.origin) + shift - self.leaf.min;
         let away = (at - self.leaf.size).max(-at).max(DVec2::ZERO);
@@ -214,7 +214,7 @@ impl Block {
         }
     }
 
-    /// Returns the minimum corner of a cell.
+    /// Returns a cell's minimum corner.
     pub(super) fn min_of(&self, [column, row]: [u16; 2]) -> DVec2 {
         DVec2::new(f64::from(column), f64::from(row)) * self.cell
     }
@@ -268,7 +268,7 @@ impl Block {
         None
     }
 
-    /// Quick test: returns whether a position in a cell is certainly too close to a point.
+    /// Returns whether a position in a cell is certainly too close to a point, by the quick test.
     #[inline(always)]
     fn is_surely_taken(&self, [column, row]: [u16; 2], place: u64) -> bool {
         let scale = (1.0 / self.leaf.radii.least) * self.cell;
@@ -307,7 +307,7 @@ impl Block {
         room.iter().any(|&inside| inside > 0.0)
     }
 
-    /// Quick test: returns whether each quarter of a cell is certainly covered by a single point.
+    /// Returns whether each quarter of a cell is certainly covered by a single point's disc, by the quick test.
     #[inline(always)]
     pub(super) fn is_surely_covered(&self, [column, row]: [u16; 2]) -> bool {
         let side = (1.0 / self.leaf.radii.least) * self.cell;
@@ -336,7 +336,7 @@ impl Block {
         is_covered
     }
 
-    /// Returns the first slot of the neighborhood of a cell for the quick test.
+    /// Returns the first slot that the quick test reads around a cell.
     #[inline(always)]
     fn quick_corner(&self, [column, row]: [u16; 2]) -> usize {
         let first = self.margin - QUICK_REACH;
@@ -354,7 +354,7 @@ impl Block {
         ])
     }
 
-    /// Returns whether a point is far enough from all others.
+    /// Returns whether a new point is far enough from all others.
     fn fits(&mut self, new: &Local, rule: DiskRule) -> bool {
         let mut found = core::mem::take(&mut self.found);
         let reach = rule.distance(new.radius, self.largest);
@@ -407,8 +407,8 @@ impl Block {
     }
 }
 
-/// Returns the squared distances from `at` to the farther ends of the first `N` intervals of length `side`, starting
-/// at 0.
+/// Returns the squared distances from `at` to the farther ends of the first `N` intervals of length `side`; the first
+/// interval starts at 0.
 #[inline(always)]
 pub(super) fn farthest_sq<const N: usize>(at: f32, side: f32) -> [f32; N] {
     let mut squares = [0.0; N];
@@ -420,7 +420,7 @@ pub(super) fn farthest_sq<const N: usize>(at: f32, side: f32) -> [f32; N] {
     squares
 }
 
-/// Returns two numbers in [0, 1) from 64 bits.
+/// Converts 64 random bits to two numbers in [0, 1).
 pub(super) fn fractions(bits: u64) -> DVec2 {
     let unit = 1.0 / (1_u64 << 32) as f64;
     DVec2::new(f64::from(bits as u32), f64::from((bits >> 32) as u32)) * unit

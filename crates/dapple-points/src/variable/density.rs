@@ -1,4 +1,4 @@
-//! Radii for a desired density or number of points.
+//! Computes radii for a desired density or number of points.
 
 use crate::{Domain, PointsError, PointsErrorKind};
 use dapple_raster::Varying;
@@ -8,7 +8,7 @@ use glam::DVec2;
 /// corresponds to a packing fraction of 0.547 for discs of diameter r.
 pub const RSA_DENSITY: f64 = 0.697;
 
-/// Number of samples per axis for the mean of a density.
+/// Number of samples per axis for computing the mean of a density.
 const PLACES: u32 = 256;
 
 /// Returns the radius at which a Poisson-disk set has the given density, in points per area: sqrt(0.697 / density).
@@ -26,7 +26,7 @@ pub fn radius_from_density(density: &Varying) -> Varying {
     scaled_radius(density, RSA_DENSITY)
 }
 
-/// Returns the radius at which about `n_points` points follow a density that is given up to a factor.
+/// Returns the radius at which about `n_points` points follow the given density, whose scale does not matter.
 ///
 /// The density is sampled at 256 × 256 positions. Sides that do not wrap have room for some additional points, about
 /// 0.24 per radius of their length (measured).
@@ -67,7 +67,7 @@ pub fn radius_for_count(
     ))
 }
 
-/// sqrt(scale / density).
+/// Returns the radius sqrt(scale / density).
 fn scaled_radius(density: &Varying, scale: f64) -> Varying {
     match density {
         Varying::Constant(density) => Varying::Constant((scale / density).sqrt()),

@@ -1,4 +1,4 @@
-//! Last step: filling the open area until no further point fits.
+//! Last step of the construction: fills the open area until no further point fits.
 //!
 //! Mohamed S. Ebeida, Scott A. Mitchell, Anjul Patney, Andrew A. Davidson and John D. Owens, "A Simple Algorithm for
 //! Maximal Poisson-Disk Sampling in High Dimensions", Computer Graphics Forum 31(2), 2012,
@@ -27,10 +27,10 @@ const DARTS: usize = 4;
 /// Maximum number of parts of a cell; a cell with more is left unfilled. This happens only for a discontinuous radius.
 const MOST_PARTS: usize = 4096;
 
-/// Maximum slack of the bound of the radius, relative to the sum of the half sides of a part.
+/// Maximum slack of the bound of the radius, relative to the sum of a part's half-side lengths.
 const LOOSE: f64 = 0.25;
 
-/// Offsets from the center of a part to the centers of its quarters, in half sides of a quarter.
+/// Offsets from the center of a part to the centers of its quarters, in multiples of a quarter's half-side length.
 const WAYS: [DVec2; 4] = [
     DVec2::NEG_ONE,
     DVec2::new(1.0, -1.0),
@@ -42,9 +42,9 @@ const WAYS: [DVec2; 4] = [
 #[derive(Clone, Copy, Debug)]
 struct Part {
     center: DVec2,
-    /// Lower bound of the radius.
+    /// Lower bound on the radius.
     least: f64,
-    /// Maximum excess of the radius over `least`.
+    /// Maximum amount by which the radius exceeds `least`.
     slack: f64,
 }
 
@@ -54,7 +54,7 @@ pub(super) struct Filler {
     found: Vec<u32>,
     near: Vec<Local>,
     parts: Vec<Part>,
-    /// Parts of the previous level.
+    /// Parts from the previous level.
     whole: Vec<Part>,
 }
 
@@ -163,7 +163,7 @@ impl Filler {
         !self.parts.is_empty()
     }
 
-    /// Divides all parts into quarters with half sides `half`.
+    /// Divides all parts into quarters with half-side lengths `half`.
     fn quarter(&mut self, block: &mut Block, half: DVec2, setting: &Setting<'_>) {
         core::mem::swap(&mut self.parts, &mut self.whole);
         self.parts.clear();

@@ -1,6 +1,6 @@
-//! Radii for arbitrary densities, including densities with edges, gaps and grain, such as photographs.
+//! Radii for arbitrary densities, such as photographs, including those with edges, gaps and grain.
 //!
-//! A point set cannot follow a density that changes strongly within the distance of its points, and
+//! A point set cannot follow a density that changes strongly within the distance between its points, and
 //! [`variable_poisson_disk`](crate::variable_poisson_disk) rejects a radius whose slope is 1 or more. Here the radius
 //! is sampled on a lattice, and each position p gets the minimum of `radius(q) + slope · |p - q|` over all positions
 //! `q`: the largest radius below the given one whose slope is limited. The points therefore thin out gradually around
@@ -21,20 +21,21 @@ use std::sync::Arc;
 /// Maximum slope of the radius along an axis or a diagonal. In between, a bilinear radius can be 1.42 times as steep,
 /// which is still below 1.
 const SLOPE: f64 = 0.5;
-/// Number of times the radius is rescaled toward the desired number of points. Each time removes about 0.9 of the
+/// Number of times the radius is rescaled toward the desired number of points. Each time removes about 90 % of the
 /// error.
 const ROUNDS: usize = 6;
 
-/// Returns the radius at which about `n_points` points follow an arbitrary density, given up to a factor.
+/// Returns the radius at which about `n_points` points follow an arbitrary density, whose scale does not matter.
 ///
-/// The density is sampled at `places` positions, in columns and rows. It must be at least 0; where it is 0, points are
-/// as far apart as the maximum slope of ½ allows. A lattice finer than half of the distance of the points has no
+/// The density is sampled at `places` positions, in columns and rows. It must be at least 0; where it is 0, points
+/// are as far apart as the maximum slope of ½ allows. A lattice finer than half the distance between points has no
 /// benefit.
 ///
 /// # Errors
 ///
-/// [`PointsErrorKind::Domain`] for a domain without area, [`PointsErrorKind::NotPositive`] if `n_points` or the mean of
-/// the density is not above zero and finite, [`PointsErrorKind::TooMany`] for no positions or more than 2^26.
+/// [`PointsErrorKind::Domain`] for a domain without area, [`PointsErrorKind::NotPositive`] if `n_points` or the mean
+/// of the density is not above zero and finite, [`PointsErrorKind::TooMany`] if `places` has no positions or more
+/// than 2^26.
 ///
 /// # Examples
 ///
@@ -100,7 +101,7 @@ pub fn gentle_radius_for_count(
 /// Maximum number of lattice positions.
 const PLACES_MAX: u64 = 1 << 26;
 
-/// Lattice positions of a domain, in columns and rows.
+/// The lattice positions of a domain, in columns and rows.
 struct Lattice<'a> {
     domain: &'a Domain,
     columns: usize,
@@ -156,7 +157,7 @@ impl<'a> Lattice<'a> {
         }
     }
 
-    /// Lowers one radius to the limit given by its neighbors on one side: the preceding or the following ones.
+    /// Lowers one radius to the limit that its neighbors on one side (preceding or following) impose.
     fn lower(&self, radii: &mut [f64], index: usize, side: i64) -> bool {
         let (column, row) = (index % self.columns, index / self.columns);
         let [x, y, diagonal] = self.rises;
@@ -180,7 +181,7 @@ impl<'a> Lattice<'a> {
     }
 }
 
-/// Returns the neighboring index on an axis, if it exists.
+/// Returns the index `step` away on an axis; `None` if there is none.
 fn neighbor(place: usize, step: i64, length: usize, wraps: bool) -> Option<usize> {
     let beside = place as i64 + step;
     if wraps {

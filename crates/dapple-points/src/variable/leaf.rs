@@ -1,4 +1,4 @@
-//! Division of the domain into rectangles in which the radius hardly changes.
+//! Divides the domain into rectangles in which the radius hardly changes.
 //!
 //! A rectangle is halved along its longer side until a few hundred points fit and the radius varies by less than half.
 //! The radius is sampled on a lattice of 10 × 10 positions, and differences of neighboring samples give the slope.
@@ -25,13 +25,13 @@ const FEW_CELLS: f64 = 4.0;
 /// Maximum ratio of the largest to the smallest radius in a leaf with more cells.
 const MOST_RATIO: f64 = 1.5;
 
-/// Factor by which slopes between lattice samples may exceed the slopes along them.
+/// Factor by which slopes in between lattice samples may exceed the slopes from sample to sample.
 const SLOPE_MARGIN: f64 = 1.5;
 
 /// Relative upper bound, with some slack, of the rounding error of the diagonal of a cell.
 const ROUNDING: f64 = 1e-9;
 
-/// A rectangle with its radii, relative to the origin of the domain.
+/// A rectangle and its radii. Positions are relative to the domain's origin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Leaf {
     pub(super) min: DVec2,
@@ -59,7 +59,7 @@ impl Leaf {
     }
 }
 
-/// Range and slope of the radius in a rectangle.
+/// The range and slope of the radius in a rectangle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Radii {
     /// Lower bound of the radius, provided that its slope between samples is at most the slope along them.
@@ -74,8 +74,8 @@ pub(super) struct Radii {
     pub(super) spread: f64,
 }
 
-/// Number of rectangles between checks for cancellation. In each, the radius is evaluated a hundred times, by a
-/// function of the caller that takes at most some microseconds.
+/// Number of rectangles between checks for cancellation. In each, the radius is evaluated a hundred times, by the
+/// caller's function, which takes at most a few microseconds.
 const NODES: u32 = 64;
 
 /// Tree of rectangles; parents precede their children.
@@ -123,7 +123,8 @@ impl RadiusField<'_> {
         }
     }
 
-    /// Returns the leaf of a rectangle, if the rectangle is suitable, and the approximate number of points in it.
+    /// Returns the leaf for a rectangle (`None` if the rectangle must be divided), and the approximate number of
+    /// points in it.
     fn leaf(&self, min: DVec2, size: DVec2) -> Result<(Option<Leaf>, f64), PointsError> {
         // The smallest radius is at most the radius at the center, which suffices to divide most rectangles.
         let middle = self.at(self.domain.origin + (min + size * 0.5))?;
@@ -178,7 +179,7 @@ impl RadiusField<'_> {
         Ok((radii, values, RSA_DENSITY * n_points))
     }
 
-    /// Returns the maximum slope along the lattice.
+    /// Returns the maximum slope between neighboring lattice samples.
     fn slope(&self, values: &Lattice, min: DVec2, step: DVec2) -> Result<f64, PointsError> {
         let mut steepest = 0.0_f64;
         for y in 0..LATTICE - 1 {
@@ -205,7 +206,7 @@ impl RadiusField<'_> {
 }
 
 impl Tree {
-    /// Divides the whole domain.
+    /// Builds the tree by dividing the whole domain.
     pub(super) fn new(
         field: RadiusField<'_>,
         point_limit: u64,
@@ -262,7 +263,7 @@ impl Tree {
         }
     }
 
-    /// Propagates the maximum radius from the leaves to all nodes.
+    /// Propagates the maximum radius from the leaves up to all nodes.
     fn sum_up(&mut self) {
         for node in (0..self.nodes.len()).rev() {
             if let Below::Nodes(children) = self.nodes[node].below {
@@ -272,7 +273,7 @@ impl Tree {
         }
     }
 
-    /// Calls `visit` with every leaf that, shifted by `shift`, is close enough to `leaf` for a conflict.
+    /// Calls `visit` with every leaf that, after a shift by `shift`, is close enough to `leaf` for a conflict.
     pub(super) fn visit_near(
         &self,
         leaf: &Leaf,
@@ -297,7 +298,7 @@ impl Tree {
     }
 }
 
-/// Returns the columns and rows of cells of a leaf of this size, if the leaf is suitable.
+/// Returns the numbers of columns and rows of cells in a leaf of this size; `None` if the leaf must be divided.
 fn cells_of(size: DVec2, radii: &Radii) -> Option<[u32; 2]> {
     let cells = (size * (SQRT_2 * (1.0 + ROUNDING)) / radii.least).ceil();
     let is_leaf = radii.least > 0.0

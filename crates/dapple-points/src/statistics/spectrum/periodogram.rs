@@ -13,7 +13,7 @@ const BLOCK: usize = 256;
 /// Number of parallel sums in vector registers; the order of summation affects the values.
 const LANES: usize = 8;
 
-/// Accumulated power of sets at the frequencies `[x, y]` with `0 <= x <= counts[0]` and `|y| <= counts[1]`.
+/// Accumulated power of point sets at the frequencies `[x, y]` with `0 <= x <= counts[0]` and `|y| <= counts[1]`.
 #[derive(Debug)]
 pub(super) struct Periodogram {
     counts: [u32; 2],
@@ -75,7 +75,7 @@ impl Periodogram {
         }
     }
 
-    /// Calls `visit` with each frequency except `[0, 0]` and its power; of f and -f only one is visited.
+    /// Calls `visit` with each frequency except `[0, 0]` and its power; only one of f and -f is visited.
     pub(super) fn for_each(&self, mut visit: impl FnMut([i32; 2], f64)) {
         let n_rows = self.counts[1] as usize + 1;
         for (x, column) in (0..).zip(self.powers.chunks(n_rows)) {
@@ -117,7 +117,8 @@ impl Multiples {
         multiples
     }
 
-    /// Returns the products of multiple `a` of these angles and multiple `b` of the others, summed over the points.
+    /// Returns the sums over the points of the products of multiple `a` of these angles and multiple `b` of the
+    /// others.
     fn products(&self, a: usize, others: &Self, b: usize) -> Products {
         let [a, b] = [a, b].map(|multiple| multiple * self.per_row..(multiple + 1) * self.per_row);
         let mut sums = [[0.0; LANES]; 4];
