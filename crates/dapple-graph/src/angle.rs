@@ -1,4 +1,4 @@
-//! Exact angular order of vectors around a point, without computing angles.
+//! Sorts vectors by their angle around a point, exactly and without computing angles.
 
 use core::cmp::Ordering;
 use glam::DVec2;
@@ -12,8 +12,8 @@ pub(crate) fn by_angle(a: DVec2, b: DVec2) -> Ordering {
         .then_with(|| a.length_squared().total_cmp(&b.length_squared()))
 }
 
-/// Returns the orientation of `b` relative to `a`: positive if counterclockwise, negative if clockwise, zero if
-/// parallel; the sign is exact.
+/// Returns the cross product of `a` and `b`: positive if `b` is counterclockwise from `a`, negative if clockwise,
+/// zero if parallel. The sign is exact.
 pub(crate) fn turn(a: DVec2, b: DVec2) -> f64 {
     let coord = |v: DVec2| Coord { x: v.x, y: v.y };
     let cross = orient2d(Coord { x: 0.0, y: 0.0 }, coord(a), coord(b));

@@ -1,4 +1,4 @@
-//! Construction of a graph from the axes that each point chooses.
+//! Constructs a graph from the axes that each point chooses.
 
 use crate::lattice::Lattice;
 use crate::{Axis, Graph, GraphError, GraphErrorKind};
@@ -17,14 +17,15 @@ pub enum EdgeDirection {
     Symmetric,
 }
 
-/// A candidate axis: the target point, and the offset of its image from the choosing point, in steps.
+/// An axis that a point has chosen: the target point, and the offset from the choosing point to the target's image,
+/// in steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Choice {
     pub(crate) to: u32,
     pub(crate) steps: DVec2,
 }
 
-/// Builds the graph of the chosen axes. `rows` has one list per site, in any order.
+/// Builds the graph from the chosen axes. `rows` has one list per site, in any order.
 pub(crate) fn graph_of(
     lattice: Lattice,
     sites: Vec<DVec2>,

@@ -1,4 +1,4 @@
-//! Serialized form of a graph, and its validation.
+//! Serializes graphs, and validates serialized graphs.
 //!
 //! Positions and vectors are integers in steps, so that no format rounds them.
 
@@ -21,7 +21,7 @@ pub(crate) struct GraphData {
     wrap: [bool; 2],
     /// Positions of the points relative to the origin, in steps.
     sites: Vec<[i64; 2]>,
-    /// Axes of each point: the target and the vector in steps.
+    /// Axes of each point, each given by its target and its vector in steps.
     axes: Vec<Vec<(PointIdx, [i64; 2])>>,
     /// Whether the graph was created as a Delaunay graph.
     delaunay: bool,

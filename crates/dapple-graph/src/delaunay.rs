@@ -3,17 +3,16 @@
 //! Reference: Boris Delaunay, "Sur la sphère vide", Izvestia Akademii Nauk SSSR, 1934. The crate `spade` computes the
 //! triangulations.
 //!
-//! On a domain that wraps, the graph is that of the points and all of their images, restricted to the points in the
-//! domain. Only few images are needed: first the images in a margin around the domain, then, circle by circle, images
-//! inside of the circumcircle of a triangle at a point of the domain. When no such circumcircle contains another
-//! image, all of these triangles belong to the true triangulation. Any number of points is accepted, including one or
-//! two, and points may be connected to their own images.
+//! On a wrapping domain, the graph connects the points and all of their images, restricted to the points in the
+//! domain. Only a few images are needed: first those in a margin around the domain, then, circle by circle, those
+//! inside the circumcircle of a triangle at a point of the domain. When no such circumcircle contains another image,
+//! all of these triangles belong to the true triangulation. Any number of points is accepted, including one or two,
+//! and points may be connected to their own images.
 //!
 //! If four or more points (including images) are on one empty circle, the triangulation is not unique. The diagonals
 //! in that circle are dropped, by exact predicates. The remaining graph is unique: it connects the pairs of points
 //! whose Voronoi cells share a side of positive length. It is the same for all images and does not depend on the
 //! origin of the domain.
-//! share a side of positive length. It is the same for all images and does not depend on where the domain begins.
 
 mod buckets;
 mod editable;
@@ -37,7 +36,7 @@ use patch::{Patch, Rows};
 use tiles::Tiles;
 
 /// Creates the Delaunay graph of the points: two points are connected if some circle through both has no other point
-/// on it or inside, including images.
+/// (or image of a point) on it or inside it.
 ///
 /// Equivalently, their Voronoi cells share a side of positive length: diagonals of squares and other co-circular
 /// points are omitted. The graph is symmetric, bit for bit. Without wrapping, collinear points are connected to a
@@ -68,11 +67,11 @@ pub fn delaunay(points: &PointSet) -> Result<Graph, GraphError> {
     delaunay_cancellable(points, &|| false)
 }
 
-/// Creates the graph of [`delaunay`], unless `is_cancelled` returns true.
+/// Same as [`delaunay`], but fails if `is_cancelled` returns true.
 ///
-/// On domains that wrap along both axes, the callback is called about once per 8192 points, on any thread. On other
-/// domains all points belong to a single triangulation, which cannot be stopped and takes about a second for a million
-/// points; the callback is called before and after it.
+/// On domains that wrap along both axes, the callback is called about once per 8192 points, possibly from several
+/// threads. On other domains, all points belong to a single triangulation, which cannot be canceled and takes about a
+/// second for a million points; the callback is called before and after it.
 ///
 /// # Errors
 ///
@@ -123,7 +122,7 @@ pub(crate) fn is_delaunay(graph: &Graph) -> bool {
     expected.is_ok_and(|rows| rows.offsets == graph.offsets && rows.axes == graph.axes)
 }
 
-/// Reason why the rows could not be computed.
+/// Why the rows could not be computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Refusal {
     /// Two sites coincide.
@@ -172,7 +171,8 @@ fn whole(
     Ok(patch.rows(&LazyGrid::new(lattice, sites))?)
 }
 
-/// Initial margin of images around the domain, in mean distances (the square root of the area per point).
+/// Initial margin of images around the domain, in multiples of the mean point spacing (the square root of the area
+/// per point).
 const MARGIN: f64 = 1.6;
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
-//! Errors of graphs.
+//! Errors from creating and checking graphs.
 
 use crate::grid::Budget;
 use dapple_points::{PointIdx, PointSet};
 use glam::DVec2;
 
 dapple_raster::error! {
-    /// Error of creating or checking a graph.
+    /// An error from creating or checking a graph.
     GraphError,
     /// Cause of a [`GraphError`], with the limit and the value.
     GraphErrorKind {
@@ -26,9 +26,9 @@ dapple_raster::error! {
         } => "the adjacency has {rows} rows, but the set has {n_points} points";
         /// A row refers to a point that the set does not contain.
         NoSuchPoint {
-            /// Point of the row.
+            /// Point whose row it is.
             from: PointIdx,
-            /// Index in the row.
+            /// Point index found in the row.
             to: PointIdx,
             /// Number of points.
             n_points: usize,
@@ -49,7 +49,7 @@ dapple_raster::error! {
         Neighbors {
             /// Requested number of neighbors.
             k: u32,
-            /// Maximum number of neighbors that is allowed and available.
+            /// Maximum number of neighbors, given the limit and the available points.
             limit: u32,
         } => "asked for {k} nearest neighbors, but 1 to {limit} can be had";
         /// The number of cones is zero or too large.
@@ -64,7 +64,8 @@ dapple_raster::error! {
             /// Number of axes.
             n_axes: usize,
         } => "the graph has {n_axes} axes, but the limit is {}", u32::MAX;
-        /// The domain wraps and is so thin for the distance of its points that too many images would be needed.
+        /// The domain wraps and is so thin, relative to the distance between its points, that too many images would
+        /// be needed.
         Thin {
             /// Width and height of the domain.
             size: DVec2,
@@ -77,18 +78,18 @@ dapple_raster::error! {
         Cancelled => "the callback asked to stop";
         /// The graph was not created as a Delaunay graph, so it has no triangles and no Voronoi diagram.
         NotDelaunay => "the graph was not made as a Delaunay graph, so that it has no triangles and no Voronoi diagram";
-        /// The serialized step or size of a graph does not belong to any domain.
+        /// A serialized graph's step or size does not belong to any domain.
         Lattice {
             /// Length of a step.
             step: f64,
-            /// Width and height in steps.
+            /// Width and height, in steps.
             size: [i64; 2],
         } =>
             "the graph has steps of {step} and a size of {} by {} steps, but a step must be a power of two, and the \
              larger side have 2^49 to 2^50 steps", size[0], size[1];
         /// The axes of a row are not in order, or contain a duplicate.
         Order {
-            /// Point of the row.
+            /// Point whose row it is.
             point: PointIdx,
         } => "the axes of point {} are not in counterclockwise order from the x axis", point.0;
         /// The vector of an axis does not lead to an image of its target.

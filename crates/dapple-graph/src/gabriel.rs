@@ -3,16 +3,16 @@
 //! Reference: K. Ruben Gabriel and Robert R. Sokal, "A New Statistical Approach to Geographic Variation Analysis",
 //! Systematic Zoology 18(3), 1969, doi:10.2307/2412323.
 //!
-//! The Gabriel graph is a subgraph of the Delaunay graph. A point on the circle counts as inside, as in the paper. The
-//! remaining edges are those that cross the shared side of the Voronoi cells of their ends.
+//! The Gabriel graph is a subgraph of the Delaunay graph. A point on the circle counts as inside, as in the paper.
+//! The remaining edges are those that cross the side shared by the Voronoi cells of their two ends.
 
 use crate::build::{Choice, EdgeDirection, graph_of};
 use crate::{Axis, Graph, GraphError, IsCancelled, delaunay_cancellable};
 use dapple_points::PointSet;
 use glam::DVec2;
 
-/// Creates the Gabriel graph: two points are connected if the circle with the segment between them as its diameter has
-/// no other point on it or inside, including images.
+/// Creates the Gabriel graph: two points are connected if the circle whose diameter is the segment between them has
+/// no other point (or image of a point) on it or inside it.
 ///
 /// It is symmetric, and connects each point to its nearest neighbor if that is unique.
 ///
@@ -39,7 +39,7 @@ pub fn gabriel(points: &PointSet) -> Result<Graph, GraphError> {
     gabriel_cancellable(points, &|| false)
 }
 
-/// Creates the graph of [`gabriel`], unless `is_cancelled` returns true. The callback is called as in
+/// Same as [`gabriel`], but fails if `is_cancelled` returns true. The callback is called as in
 /// [`delaunay_cancellable`].
 ///
 /// # Errors
@@ -75,8 +75,8 @@ pub fn gabriel_cancellable(
     graph_of(lattice, sites, rows, EdgeDirection::Directed)
 }
 
-/// Returns whether a position is outside of the circle with the diameter from the origin to `edge`, or equal to
-/// `edge`; exact.
+/// Returns whether a position equals `edge`, or is outside the circle whose diameter goes from the origin to `edge`.
+/// The test is exact.
 fn is_outside(edge: DVec2, at: DVec2) -> bool {
     // The angle at the position is acute: at · (at - edge) > 0. Products of integers below 2^53 are below 2^106.
     let dot = at.x as i128 * (at.x - edge.x) as i128 + at.y as i128 * (at.y - edge.y) as i128;

@@ -1,4 +1,4 @@
-//! Graph in compressed rows: the axes of each point.
+//! A graph in compressed rows, which lists the axes of each point.
 
 use crate::angle::{by_angle, is_lower};
 use crate::build::{Choice, graph_of};
@@ -14,18 +14,18 @@ use glam::DVec2;
 pub struct Axis {
     /// Target point of the axis.
     pub to: PointIdx,
-    /// Vector from the point to an image of `to`, in the units of the positions; never zero.
+    /// Vector from the point to an image of `to`, in the same units as positions; never zero.
     pub vector: DVec2,
 }
 
 /// A graph over a point set: a list of axes for each point.
 ///
-/// Vectors are exact differences of positions. Positions are first snapped to the nearest multiple (relative to the
-/// origin of the domain) of a power of two between 2^-50 and 2^-49 of the larger side of the domain.
+/// Vectors are exact differences between positions. Positions are first snapped to the nearest multiple, relative to
+/// the domain's origin, of a power of two between 2^-50 and 2^-49 of the larger side of the domain.
 ///
 /// The serialized form (feature `serde`) stores positions and vectors as integer multiples of that power of two.
-/// Reading performs all checks of [`sanity_check`](Graph::sanity_check), and triangulates the points of a Delaunay
-/// graph again for comparison.
+/// Reading performs all checks of [`sanity_check`](Graph::sanity_check), and for a Delaunay graph, triangulates the
+/// points again for comparison.
 ///
 /// Two graphs are equal if they have the same points and axes, regardless of the function that created them.
 #[derive(Clone, Debug)]
@@ -135,15 +135,16 @@ impl Graph {
         &self.axes
     }
 
-    /// Returns the edges of a symmetric graph, each once: a point, and its axis along the edge. The axis leads toward
-    /// larger y or, for equal y, toward larger x.
+    /// Returns the edges of a symmetric graph, each exactly once, as a point and its axis along the edge. The axis
+    /// leads toward larger y or, for equal y, toward larger x.
     pub fn edges(&self) -> impl Iterator<Item = (PointIdx, Axis)> + '_ {
         let points = (0..self.n_points() as u32).map(PointIdx);
         let axes = points.flat_map(|from| self.axes(from).iter().map(move |&axis| (from, axis)));
         axes.filter(|(_, axis)| !is_lower(axis.vector))
     }
 
-    /// Returns whether every axis has an opposite: from the other end back, with exactly the negated vector.
+    /// Returns whether every axis has an opposite axis, which leads back from the other end with exactly the negated
+    /// vector.
     #[must_use]
     pub fn is_symmetric(&self) -> bool {
         self.symmetric
@@ -167,15 +168,15 @@ impl Graph {
 }
 
 impl Axis {
-    /// Returns the order of the axes of a point.
+    /// Compares two axes of a point by the order in which the point lists them.
     pub(crate) fn order(&self, other: &Self) -> core::cmp::Ordering {
         let scale = scale(self.vector.abs().max(other.vector.abs()).max_element());
         by_angle(self.vector * scale, other.vector * scale).then(self.to.cmp(&other.to))
     }
 }
 
-/// Returns the power of two that scales a length to between 1 and 2, so that products do not underflow or overflow.
-/// On a lattice, vectors of such lengths are multiplied without rounding.
+/// Returns the power of two that scales a length to the range from 1 to 2, so that products do not underflow or
+/// overflow. On a lattice, vectors of such lengths are multiplied without rounding.
 fn scale(length: f64) -> f64 {
     let exponent_only = f64::from_bits(length.to_bits() & f64::INFINITY.to_bits());
     1.0 / exponent_only.max(f64::MIN_POSITIVE)

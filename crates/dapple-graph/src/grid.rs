@@ -1,17 +1,17 @@
-//! Bucket grid of sites, for finding the images near a position.
+//! A bucket grid of sites, for finding the images near a position.
 
 use crate::lattice::Lattice;
 use glam::DVec2;
 use std::sync::OnceLock;
 
-/// Error for a domain so thin that a search would visit too many copies of it.
+/// Error for a domain that is so thin that a search would visit too many copies of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TooThin;
 
-/// Number of images that the searches for a point set may still visit in total.
+/// Number of images that all searches for a point set may still visit in total.
 ///
 /// If the points of any domain are concentrated in one spot, the number of visits approaches the square of the number
-/// of points. On a square torus, up to 25 copies are within the reach of a search that finds little. On a domain that
+/// of points. On a square torus, up to 25 copies are within reach of a search that finds few points. On a domain that
 /// is thin relative to the distance of its points, the number of copies would be unbounded.
 #[derive(Debug)]
 pub(crate) struct Budget {
@@ -45,7 +45,7 @@ pub(crate) fn triangulated_limit(n: usize) -> u64 {
     64 * n as u64 + 4096
 }
 
-/// Sites sorted into equal cells of about two sites each.
+/// Sites, sorted into equal cells with about two sites each.
 #[derive(Debug)]
 pub(crate) struct Grid<'a> {
     lattice: &'a Lattice,
@@ -89,7 +89,7 @@ impl<'a> Grid<'a> {
         grid
     }
 
-    /// Calls `visit` with the index and position of every image in the box, and possibly of some near it.
+    /// Calls `visit` with the index and position of every image in the box, and possibly of some images near it.
     ///
     /// Fails if the budget is exhausted, possibly after some calls of `visit`.
     pub(crate) fn visit_box(
@@ -127,7 +127,7 @@ impl<'a> Grid<'a> {
         Ok(())
     }
 
-    /// Returns the mean distance: square root of the area per point.
+    /// Returns the mean point spacing, which is the square root of the area per point.
     pub(crate) fn mean_distance(&self) -> f64 {
         let size = self.lattice.size;
         (size.x * (size.y / self.sites.len().max(1) as f64)).sqrt()
@@ -150,7 +150,7 @@ impl<'a> Grid<'a> {
         self.bucket(1, site.y) * self.cells[0] + self.bucket(0, site.x)
     }
 
-    /// Returns the column or row of a coordinate, clamped to the domain.
+    /// Returns the column or row that contains a coordinate, clamped to the domain.
     #[inline]
     fn bucket(&self, axis: usize, coordinate: f64) -> usize {
         // The cast saturates, so negative numbers become zero.

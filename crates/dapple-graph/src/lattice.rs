@@ -1,19 +1,19 @@
-//! Positions as integers, so that differences and images are exact.
+//! Represents positions as integers, so that differences and images are exact.
 //!
-//! Unit: one step, a power of two of the caller's units.
+//! The unit is one step, whose length is a power of two in the caller's units.
 
 use crate::GraphError;
 use dapple_points::{Domain, PointIdx, PointSet};
 use glam::DVec2;
 
-/// Lattice of a domain: its larger side has between 2^49 and 2^50 steps.
+/// The lattice of a domain, whose larger side has between 2^49 and 2^50 steps.
 ///
 /// A site is a position in steps relative to the origin of the domain: an integer in an `f64`. Images up to three
 /// times the larger side away are below 2^52, so that sites, their images and their differences are exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Lattice {
     origin: DVec2,
-    /// Length of a step in the caller's units.
+    /// Length of a step, in the caller's units.
     step: f64,
     per_step: f64,
     /// Width and height in steps.
@@ -35,7 +35,7 @@ impl Lattice {
         }
     }
 
-    /// Creates the lattice from its parts; `None` if no domain has it.
+    /// Creates the lattice from its serialized parts; `None` if no domain has such a lattice.
     #[cfg(feature = "serde")]
     pub(crate) fn from_parts(
         origin: DVec2,
@@ -62,7 +62,7 @@ impl Lattice {
         is_domain.then_some(lattice)
     }
 
-    /// Returns the origin of the domain and length of a step, in the caller's units.
+    /// Returns the domain's origin and the length of a step, both in the caller's units.
     #[cfg(feature = "serde")]
     pub(crate) fn origin_and_step(&self) -> (DVec2, f64) {
         (self.origin, self.step)
@@ -73,7 +73,7 @@ impl Lattice {
         points.positions().iter().map(|&p| self.site(p)).collect()
     }
 
-    /// Returns the site of a position, in steps, wrapped into the domain along the wrapped axes.
+    /// Converts a position to its site in steps, wrapped into the domain along the wrapped axes.
     pub(crate) fn site(&self, position: DVec2) -> DVec2 {
         self.snapped((position - self.origin) * self.per_step)
     }
@@ -111,7 +111,7 @@ impl Lattice {
         site
     }
 
-    /// Returns the position of a site, in the caller's units.
+    /// Converts a site to a position in the caller's units.
     pub(crate) fn position(&self, site: DVec2) -> DVec2 {
         self.origin + self.vector(site)
     }
@@ -128,7 +128,8 @@ impl Lattice {
         vector * self.per_step
     }
 
-    /// Returns the shortest vector from one site to an image of the other; on a tie, the vector without wrapping.
+    /// Returns the shortest vector from one site to an image of the other. On a tie, returns the vector that does not
+    /// wrap.
     pub(crate) fn delta(&self, from: DVec2, to: DVec2) -> DVec2 {
         let mut delta = to - from;
         for axis in 0..2 {
@@ -139,7 +140,7 @@ impl Lattice {
         delta
     }
 
-    /// Returns the first and last image of the domain that an interval along an axis touches.
+    /// Returns the numbers of the first and last image of the domain that an interval along an axis touches.
     pub(crate) fn images(&self, axis: usize, low: f64, high: f64) -> (f64, f64) {
         if self.wrap[axis] {
             let size = self.size[axis];
@@ -155,7 +156,7 @@ impl Lattice {
     }
 }
 
-/// Fails with the first two points that share a site, if there are any.
+/// Fails if two points share a site; the error names the first such pair.
 pub(crate) fn check_distinct(sites: &[DVec2]) -> Result<(), GraphError> {
     let key = |&index: &u32| {
         let site = sites[index as usize];
@@ -171,7 +172,8 @@ pub(crate) fn check_distinct(sites: &[DVec2]) -> Result<(), GraphError> {
     coincident.map_or(Ok(()), |(a, b)| Err(GraphError::coincident(a, b)))
 }
 
-/// Returns the power of two of which `side` has between 2^49 and 2^50, or the smallest positive normal number.
+/// Returns the power of two that fits into `side` between 2^49 and 2^50 times, but at least the smallest positive
+/// normal number.
 fn step_of(side: f64) -> f64 {
     let exponent_only = f64::from_bits(side.to_bits() & f64::INFINITY.to_bits());
     (exponent_only / (1_u64 << 49) as f64).max(f64::MIN_POSITIVE)

@@ -1,9 +1,9 @@
 //! Delaunay graphs and Voronoi cells of points, on a plane or on a torus that tiles; Yao, Gabriel and nearest-neighbor
 //! graphs.
 //!
-//! A [`Graph`] holds, for each point of a set, its [`Axis`] list: which points it is connected to, and the vector that
-//! leads there. On a domain that wraps, the vector goes around where the edge does. An axis may lead to another image
-//! of the point itself, and several axes may lead to different images of the same point.
+//! A [`Graph`] holds a list of [`Axis`] values for each point of a set. An axis says which point it leads to, and by
+//! which vector. On a wrapping domain, the vector goes across the border where the edge does. An axis may lead to
+//! another image of the point itself, and several axes may lead to different images of the same point.
 //!
 //! ```
 //! use dapple_graph::{PointIdx, Voronoi, delaunay, points::{Domain, hash::Seed, jittered_grid}, glam::DVec2};
@@ -42,7 +42,7 @@
 //! | a graph of your own | [`Graph::from_adjacency`] | |
 //!
 //! Times are from one thread of a server processor (AMD EPYC). Functions named `…_cancellable` take a callback that
-//! stops them.
+//! can cancel them.
 //!
 //! # Features
 //!
@@ -51,15 +51,16 @@
 //! | `rayon` | on | builds large graphs on all cores; the bits do not change |
 //! | `serde` | off | reads and writes options and graphs as data; reading checks them |
 //!
-//! For `poisson_disk` and its like, depend on `dapple-points`, too. This crate leaves them out, and with them a third
-//! of the build.
+//! For `poisson_disk` and related functions, also depend on `dapple-points` directly. This crate does not enable
+//! them, which saves a third of the build.
 //!
 //! # Limits
 //!
-//! * Points are in the plane, on a rectangle, a cylinder or a torus. Two points at one place are an error.
-//! * Positions are snapped to a fine lattice first (2^-50 of the domain's larger side, see [`Graph`]). On it every
-//!   difference is exact, and all decisions are made by exact predicates. The two ends of an edge have the same axis.
-//! * A domain that wraps must not be too thin for the distance of its points.
+//! * Points are in the plane, on a rectangle, a cylinder or a torus. Two points at the same position are an error.
+//! * Positions are snapped to a fine lattice first (2^-50 of the domain's larger side, see [`Graph`]). On this
+//!   lattice, every difference is exact, and all decisions are made by exact predicates. The two ends of an edge have
+//!   the same axis.
+//! * A wrapping domain must not be too thin, relative to the distance between its points.
 //! * In the plane the outermost Voronoi cells are unbounded. Their sides end in rays.
 //! * [`k_nearest`] takes 1 to 4096 neighbors, and [`yao`] 1 to 32 cones.
 //! * The graph is the same on every machine and for any number of threads.

@@ -1,4 +1,4 @@
-//! Nearest-neighbor graph, and the neighbor search, nearest first, which other graphs use as well.
+//! The nearest-neighbor graph, and the nearest-first neighbor search that other graphs also use.
 
 use crate::build::{Choice, EdgeDirection, graph_of};
 use crate::delaunay::{Refusal, check};
@@ -10,17 +10,17 @@ use glam::DVec2;
 
 /// Creates the graph in which each point has axes to its `k` nearest neighbors.
 ///
-/// Images count as separate neighbors, including images of the point itself. On a tie, smaller indices come first,
-/// then smaller angles from the x axis.
+/// Images count as separate neighbors, including images of the point itself. On a tie, the smaller index comes first,
+/// then the smaller angle from the x axis.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/k-nearest.md"))]
 ///
 /// # Errors
 ///
-/// [`GraphErrorKind::Neighbors`] for `k = 0`, above 4096, on a rectangle above the number of other points, and on a
-/// domain that wraps above ten times the number of points; [`GraphErrorKind::Coincident`] if two points coincide;
-/// [`GraphErrorKind::TooManyAxes`] past 2^32 axes; [`GraphErrorKind::Thin`] on a wrapping domain that is too thin for
-/// the distance between its points.
+/// [`GraphErrorKind::Neighbors`] if `k` is 0, above 4096, above the number of other points (on a rectangle), or above
+/// ten times the number of points (on a wrapping domain); [`GraphErrorKind::Coincident`] if two points coincide;
+/// [`GraphErrorKind::TooManyAxes`] for more than 2^32 axes; [`GraphErrorKind::Thin`] on a wrapping domain that is too
+/// thin for the distance between its points.
 ///
 /// # Examples
 ///
@@ -37,8 +37,7 @@ pub fn k_nearest(points: &PointSet, k: u32, direction: EdgeDirection) -> Result<
     k_nearest_cancellable(points, k, direction, &|| false)
 }
 
-/// Creates the graph of [`k_nearest`], unless `is_cancelled` returns true. The callback is called about once per 256
-/// points.
+/// Same as [`k_nearest`], but fails if `is_cancelled` returns true. The callback is called about once per 256 points.
 ///
 /// # Errors
 ///
@@ -95,7 +94,7 @@ pub fn k_nearest_cancellable(
 /// millisecond.
 const POINTS: usize = 256;
 
-/// Computes the row of each site until a cancellation.
+/// Computes the row of each site, unless canceled.
 pub(crate) fn rows_of(
     sites: &[DVec2],
     is_cancelled: &IsCancelled,
@@ -111,7 +110,7 @@ pub(crate) fn rows_of(
     Ok(rows)
 }
 
-/// Converts the reason for missing rows to an error of the graph.
+/// Converts the reason why rows are missing to a graph error.
 pub(crate) fn made<T>(rows: Result<T, Refusal>, points: &PointSet) -> Result<T, GraphError> {
     rows.map_err(|refusal| match refusal {
         Refusal::Cancelled => GraphError::new(GraphErrorKind::Cancelled),
@@ -122,7 +121,7 @@ pub(crate) fn made<T>(rows: Result<T, Refusal>, points: &PointSet) -> Result<T, 
 /// Maximum number of neighbors.
 const MAX_NEIGHBORS: u32 = 4096;
 
-/// Returns all images within a distance of a site, except the site itself, nearest first.
+/// Returns all images within the given distance of a site, nearest first, without the site itself.
 pub(crate) fn near(
     grid: &Grid<'_>,
     site: DVec2,
@@ -159,7 +158,7 @@ mod tests {
     use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
     use dapple_points::{Domain, hash::Seed, white_noise};
 
-    /// Creates a graph unless it is canceled.
+    /// Function that creates a graph unless canceled.
     type Make<'a> = &'a dyn Fn(&IsCancelled) -> Result<Graph, GraphError>;
 
     #[test]

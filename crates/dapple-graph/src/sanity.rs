@@ -1,4 +1,4 @@
-//! Check of the invariants of a graph.
+//! Checks a graph's invariants.
 
 use crate::{Axis, Graph, GraphError, GraphErrorKind};
 use core::cmp::Ordering;
@@ -6,7 +6,7 @@ use dapple_points::PointIdx;
 use glam::DVec2;
 
 impl Graph {
-    /// Checks the invariants of the whole graph: for tests, and for graphs that passed through other code.
+    /// Checks all invariants of the graph. Useful in tests, and for graphs that passed through other code.
     ///
     /// Every axis leads to a point of the graph, with a nonzero vector that leads exactly to an image of that point.
     /// The axes of each point are in order, without duplicates. If the graph [is symmetric](Self::is_symmetric), every
@@ -14,8 +14,8 @@ impl Graph {
     ///
     /// # Errors
     ///
-    /// The first violation: [`GraphErrorKind::NoSuchPoint`], [`GraphErrorKind::Vector`], [`GraphErrorKind::Order`] or
-    /// [`GraphErrorKind::OneWay`].
+    /// If an invariant is violated, an error for the first violation: [`GraphErrorKind::NoSuchPoint`],
+    /// [`GraphErrorKind::Vector`], [`GraphErrorKind::Order`] or [`GraphErrorKind::OneWay`].
     pub fn sanity_check(&self) -> Result<(), GraphError> {
         let n_points = self.n_points();
         for point in self.points() {

@@ -1,4 +1,4 @@
-//! Voronoi diagram of a point set, in the plane and on domains that wrap.
+//! The Voronoi diagram of a point set, in the plane and on wrapping domains.
 //!
 //! Reference: Georges Voronoi, "Nouvelles applications des paramètres continus à la théorie des formes quadratiques",
 //! Journal für die reine und angewandte Mathematik 134, 1908, <https://doi.org/10.1515/crll.1908.134.198>. The nearest
@@ -17,10 +17,11 @@ use core::cmp::Ordering;
 use dapple_points::{PointIdx, PointSet};
 use glam::DVec2;
 
-/// Index for a missing vertex.
+/// Index that stands for a missing vertex.
 const NONE: u32 = u32::MAX;
 
-/// The Voronoi diagram of a point set: for each point (site), the cell of all positions nearest to it.
+/// The Voronoi diagram of a point set. It has a cell for each point (site), which contains all positions nearer to
+/// this site than to any other.
 ///
 /// On a torus every cell is a bounded polygon, in coordinates relative to its site. In the plane, the cells of sites
 /// on the convex hull are unbounded: their outermost sides are rays, and [`VoronoiCell::clipped`] clips them. Four or
@@ -46,7 +47,7 @@ const NONE: u32 = u32::MAX;
 pub struct Voronoi {
     graph: Graph,
     vertices: Vec<VoronoiVertex>,
-    /// Sites around all vertices, vertex by vertex, and the index of the first site of each vertex.
+    /// Sites around each vertex, vertex by vertex. The next field has the index of each vertex's first site.
     vertex_sites: Vec<PointIdx>,
     first_sites: Vec<u32>,
     /// For each axis, the vertex on its left, or [`NONE`], relative to the start point of the axis.
@@ -62,14 +63,14 @@ pub struct VoronoiVertex {
     pub offset: DVec2,
 }
 
-/// Cell of a site in a [`Voronoi`] diagram.
+/// The cell of a site in a [`Voronoi`] diagram.
 #[derive(Clone, Copy, Debug)]
 pub struct VoronoiCell<'a> {
     voronoi: &'a Voronoi,
     site: PointIdx,
 }
 
-/// A side of a Voronoi cell: the positions equally near to its site and a neighbor's, and nearer than to all others.
+/// A side of a Voronoi cell: the positions that are equally near to two sites and farther from all others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VoronoiSide {
     /// Axis of the Delaunay graph that leads to the site of the neighbor.
@@ -77,11 +78,12 @@ pub struct VoronoiSide {
     /// Vertices at both ends, counterclockwise (from the x axis toward the y axis) around the cell; `None` where the
     /// side is an unbounded ray.
     pub vertices: [Option<u32>; 2],
-    /// Ends relative to the site of the cell.
+    /// Positions of both ends relative to the cell's site, counterclockwise; `None` where the side is an unbounded
+    /// ray.
     pub ends: [Option<DVec2>; 2],
 }
 
-/// Site nearest to a position.
+/// The site nearest to a queried position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestSite {
     /// The nearest site.
@@ -91,7 +93,7 @@ pub struct NearestSite {
 }
 
 impl Voronoi {
-    /// Creates the Voronoi diagram of the points, from their [`delaunay`] graph.
+    /// Computes the Voronoi diagram of the points from their [`delaunay`] graph.
     ///
     /// # Errors
     ///
@@ -100,7 +102,7 @@ impl Voronoi {
         Self::of_graph(delaunay(points)?)
     }
 
-    /// Creates the Voronoi diagram of a Delaunay graph.
+    /// Computes the Voronoi diagram that is dual to a Delaunay graph.
     ///
     /// # Errors
     ///
@@ -188,9 +190,10 @@ impl Voronoi {
 
     /// Finds the site nearest to a position by walking from the site `hint` to ever nearer neighbors.
     ///
-    /// The position is snapped like points (see [`Graph`]), and distances are compared exactly. On a tie, the site
-    /// with the lowest index is returned, and of its images the one with the smallest angle of `offset` from the x
-    /// axis in `[0, 2π)`. The hint affects only the time, which grows with the number of cells between the two.
+    /// The position is snapped like points (see [`Graph`]), and distances are compared exactly. On a tie, this is the
+    /// site with the lowest index, and of its images the one with the smallest angle of `offset` from the x axis in
+    /// `[0, 2π)`. The hint affects only the running time, which grows with the number of cells between the hint and
+    /// the result.
     ///
     /// # Errors
     ///
@@ -227,7 +230,7 @@ impl Voronoi {
         })
     }
 
-    /// Returns the neighbor nearest to the position, if it is nearer than the site.
+    /// Returns the neighbor nearest to the position; `None` if no neighbor is nearer than the site itself.
     fn nearest_neighbor(&self, from: &Step) -> Option<Step> {
         let mut best = None;
         let mut best_sq = from.distance_sq();
@@ -240,7 +243,7 @@ impl Voronoi {
         best
     }
 
-    /// Returns the among all sites at the same minimum distance as `start`, the first in order. They are on an empty
+    /// Returns the first in order of all sites at the same minimum distance as `start`. These sites are on an empty
     /// circle, along which neighbors are connected.
     fn first_of_equals(&self, start: Step) -> Step {
         let mut equals = vec![start];
@@ -257,7 +260,7 @@ impl Voronoi {
         equals.into_iter().min_by(Step::order).unwrap_or(start)
     }
 
-    /// Returns the neighbors of a site, relative to the same position.
+    /// Returns the neighbors of a site, with steps to the same searched position.
     fn neighbors<'a>(&'a self, from: &'a Step) -> impl Iterator<Item = Step> + 'a {
         let axes = self.graph.axes(from.site).iter();
         axes.map(move |axis| Step {
@@ -267,7 +270,7 @@ impl Voronoi {
     }
 }
 
-/// A site, and the steps from an image of it to the searched position.
+/// A site, and the vector in steps from one of its images to the searched position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Step {
     site: PointIdx,
@@ -288,13 +291,13 @@ impl Step {
 }
 
 impl<'a> VoronoiCell<'a> {
-    /// Returns the site of the cell.
+    /// Returns the cell's site.
     #[must_use]
     pub fn site(&self) -> PointIdx {
         self.site
     }
 
-    /// Returns the position of the site, snapped as described in [`Graph`].
+    /// Returns the site's position, snapped as described in [`Graph`].
     #[must_use]
     pub fn position(&self) -> DVec2 {
         let graph = &self.voronoi.graph;
@@ -318,7 +321,7 @@ impl<'a> VoronoiCell<'a> {
         })
     }
 
-    /// Returns whether the cell is a polygon; cells on the convex hull in the plane are not.
+    /// Returns whether the cell is a bounded polygon. In the plane, cells of sites on the convex hull are unbounded.
     #[must_use]
     pub fn is_bounded(&self) -> bool {
         let mut sides = self.sides();
@@ -375,17 +378,17 @@ impl<'a> VoronoiCell<'a> {
 }
 
 impl VoronoiSide {
-    /// Returns the direction of the side, counterclockwise around its cell, with the length of the axis to the
-    /// neighbor. A ray without a start comes from infinity in this direction; a ray without an end extends in this
-    /// direction. A side without both is the line through the midpoint of the axis.
+    /// Returns the direction of the side, counterclockwise around its cell; the vector is as long as the axis to the
+    /// neighbor. A side without a start comes from infinity in this direction, and a side without an end extends to
+    /// infinity in it. A side without either is the line through the midpoint of the axis.
     #[must_use]
     pub fn direction(&self) -> DVec2 {
         self.neighbor.vector.perp()
     }
 }
 
-/// Clips a convex polygon to this side of the bisector between the origin and a neighbor (I. E. Sutherland and G. W.
-/// Hodgman, "Reentrant Polygon Clipping", Communications of the ACM 17(1), 1974).
+/// Clips a convex polygon to the origin's side of the bisector between the origin and a neighbor (I. E. Sutherland
+/// and G. W. Hodgman, "Reentrant Polygon Clipping", Communications of the ACM 17(1), 1974).
 fn cut(corners: &[DVec2], neighbor: DVec2) -> Vec<DVec2> {
     // Positive beyond the bisector
     let beyond = |corner: DVec2| (corner - 0.5 * neighbor).dot(neighbor);
@@ -403,7 +406,7 @@ fn cut(corners: &[DVec2], neighbor: DVec2) -> Vec<DVec2> {
     kept
 }
 
-/// Returns the area of a polygon.
+/// Returns the area of a polygon, given its corners.
 fn area(corners: &[DVec2]) -> f64 {
     let [first, rest @ ..] = corners else {
         return 0.0;
@@ -415,7 +418,7 @@ fn area(corners: &[DVec2]) -> f64 {
         .sum::<f64>()
 }
 
-/// Returns the circumcenter of a face in steps, relative to its first corner.
+/// Returns the circumcenter of a face, in steps relative to the face's first corner.
 ///
 /// The determinant is exact. The corner opposite to the longest edge of a triangle is used as the origin, since this
 /// avoids cancellation of nearly equal products: the error is below 10^-15 circumradii, however thin the triangle is.

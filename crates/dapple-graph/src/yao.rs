@@ -1,12 +1,12 @@
 //! The Yao graph: the nearest neighbor in each of several cones.
 //!
 //! Reference: Andrew Chi-Chih Yao, "On Constructing Minimum Spanning Trees in k-Dimensional Spaces and Related
-//! Problems", SIAM Journal on Computing 11(4), 1982, doi:10.1137/0211059. Caron and Mould name it as future work for
-//! partition of unity parametrics.
+//! Problems", SIAM Journal on Computing 11(4), 1982, doi:10.1137/0211059. Caron and Mould suggest it as future work
+//! for partition of unity parametrics.
 //!
 //! Cone `i` of `k` contains the directions from the angle `2π i / k` (included) to `2π (i + 1) / k`. The borders are
-//! vectors that are computed once, and are equal for all points and on every machine. The side of a border that a
-//! neighbor is on is determined exactly. Borders along the axes are exact; the others are rounded.
+//! vectors that are computed once. They are the same for all points and on every machine. Which side of a border a
+//! neighbor is on is decided exactly. Borders along the axes are exact; the others are rounded.
 
 use crate::angle::{by_angle, turn};
 use crate::build::{Choice, EdgeDirection, graph_of};
@@ -30,9 +30,9 @@ use glam::DVec2;
 ///
 /// # Errors
 ///
-/// [`GraphErrorKind::Cones`] for no cones and for more than 32; [`GraphErrorKind::Coincident`] if two points
-/// coincide; [`GraphErrorKind::TooManyAxes`] past 2^32 axes; [`GraphErrorKind::Thin`] on a wrapping domain that is
-/// too thin for the distance between its points.
+/// [`GraphErrorKind::Cones`] for zero cones or more than 32; [`GraphErrorKind::Coincident`] if two points coincide;
+/// [`GraphErrorKind::TooManyAxes`] for more than 2^32 axes; [`GraphErrorKind::Thin`] on a wrapping domain that is too
+/// thin for the distance between its points.
 ///
 /// # Examples
 ///
@@ -48,7 +48,7 @@ pub fn yao(points: &PointSet, cones: u32, direction: EdgeDirection) -> Result<Gr
     yao_cancellable(points, cones, direction, &|| false)
 }
 
-/// Creates the graph of [`yao`], unless `is_cancelled` returns true. The callback is called about once per 256 points.
+/// Same as [`yao`], but fails if `is_cancelled` returns true. The callback is called about once per 256 points.
 ///
 /// # Errors
 ///
@@ -87,7 +87,7 @@ pub fn yao_cancellable(
 /// Maximum number of cones.
 const MAX_CONES: u32 = 32;
 
-/// Returns the first of the neighbors in each cone, if any.
+/// Returns the first neighbor in each cone; `None` for an empty cone.
 fn nearest_per_cone(neighbors: &[Choice], borders: &[DVec2]) -> Vec<Option<Choice>> {
     let mut chosen = vec![None; borders.len()];
     let mut left = borders.len();

@@ -6,7 +6,7 @@ use glam::DVec2;
 /// Initial number of sites per cell.
 const SITES_PER_CELL: f64 = 2.0;
 
-/// Sites of each cell of a domain, by their numbers.
+/// The sites in each cell of a domain, listed by number.
 #[derive(Clone, Debug)]
 pub(super) struct Buckets {
     size: [usize; 2],
@@ -41,13 +41,13 @@ impl Buckets {
         self.cells[cell].retain(|&other| other != number);
     }
 
-    /// Returns the sites in the same cell as a site.
+    /// Returns the numbers of the sites in the same cell as `site`.
     pub(super) fn beside(&self, site: DVec2) -> &[u32] {
         &self.cells[self.cell(site)]
     }
 
-    /// Calls `visit` with every site whose image is in a rectangle, and some near it, and with the shift of that
-    /// image. Stops if `visit` returns false.
+    /// Calls `visit` with every site that has an image in a rectangle, and with that image's shift. It may also be
+    /// called for some images near the rectangle. Stops if `visit` returns false.
     pub(super) fn visit(
         &self,
         lattice: &Lattice,

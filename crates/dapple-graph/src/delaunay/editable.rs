@@ -1,8 +1,8 @@
 //! A Delaunay graph whose points can be inserted, moved and removed individually.
 //!
-//! An edit changes the axes of the point and of the points that it is or was connected to. The points near the edit
-//! are triangulated again, like a tile of [`delaunay`], in a square that grows until no image outside of it can affect
-//! one of these stars. If there are few points, or at the hull of points that do not wrap, all points are
+//! An edit changes the axes of the edited point, and of the points that it is or was connected to. The points near
+//! the edit are triangulated again, like a tile of [`delaunay`], in a square that grows until no image outside of it
+//! can affect one of these stars. If there are few points, or at the hull of points that do not wrap, all points are
 //! triangulated.
 //!
 //! The triangulation is not stored. On a torus it would contain several images of points at its border, all of which
@@ -25,10 +25,11 @@ use std::collections::BTreeMap;
 /// Maximum number of points for which an edit triangulates all points.
 const FEW: usize = 256;
 
-/// Half side lengths of the squares in which points are triangulated, tried in order, in mean distances.
+/// Half-side lengths of the squares in which points are triangulated, in multiples of the mean point spacing. They
+/// are tried in order.
 const REACHES: [f64; 3] = [4.0, 7.0, 14.0];
 
-/// Maximum number of images in such a square. Only clustered points and thin domains exceed it.
+/// Maximum number of images in a square of [`REACHES`]. Only clustered points and thin domains exceed it.
 const IMAGES_LIMIT: usize = 4096;
 
 /// Number of points per cell of the buckets above which the number of cells grows.
@@ -54,16 +55,16 @@ const CROWD: usize = 8;
 pub struct EditableDelaunay {
     domain: Domain,
     lattice: Lattice,
-    /// Position, site and axes of each number; axes refer to numbers. Entries of removed points remain.
+    /// Position, site and axes for each number. Axes refer to numbers. Entries of removed points are retained.
     positions: Vec<DVec2>,
     sites: Vec<DVec2>,
     rows: Vec<Vec<Axis>>,
-    /// Numbers of the points in order, ascending.
+    /// Numbers of the current points, in ascending order; the index of a point is its index in this list.
     numbers: Vec<u32>,
     buckets: Buckets,
 }
 
-/// A point with the vectors of its axes, in order.
+/// A point, and the vectors of its axes in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Star {
     /// Position of the point.
@@ -109,7 +110,7 @@ impl EditableDelaunay {
         &self.domain
     }
 
-    /// Returns a point with its axes.
+    /// Returns the position of `point` and the vectors of its axes.
     ///
     /// # Errors
     ///
@@ -118,7 +119,7 @@ impl EditableDelaunay {
         Ok(self.star_of(self.number(point)?))
     }
 
-    /// Returns the points with an image in a rectangle, and possibly some near it, in index order.
+    /// Returns the points that have an image in a rectangle, and possibly some points near it, in index order.
     #[must_use]
     pub fn points_in(&self, low: DVec2, high: DVec2) -> Vec<PointIdx> {
         let steps = |at: DVec2, slack: f64| self.lattice.steps(at - self.domain.origin) + slack;
@@ -146,7 +147,7 @@ impl EditableDelaunay {
     ///
     /// # Errors
     ///
-    /// None in practice: each position was validated before.
+    /// Never fails in practice, because each position was validated before.
     pub fn to_points(&self) -> Result<PointSet, dapple_points::PointsError> {
         let numbers = self.numbers.iter();
         let positions = numbers.map(|&number| self.positions[number as usize]);
@@ -181,8 +182,8 @@ impl EditableDelaunay {
     /// # Errors
     ///
     /// [`Outside`](GraphErrorKind::Outside) for a position outside of the domain,
-    /// [`Coincident`](GraphErrorKind::Coincident) if another point is there, [`Thin`](GraphErrorKind::Thin) as for
-    /// [`delaunay`]. The graph is unchanged after an error.
+    /// [`Coincident`](GraphErrorKind::Coincident) if another point is at this position,
+    /// [`Thin`](GraphErrorKind::Thin) as for [`delaunay`]. The graph is unchanged after an error.
     pub fn insert(&mut self, position: DVec2) -> Result<Vec<Star>, GraphError> {
         let (position, site) = self.accepted(position, None)?;
         let number = self.positions.len() as u32;
@@ -289,7 +290,7 @@ impl EditableDelaunay {
         }
     }
 
-    /// Returns the numbers of the other points that a point is connected to.
+    /// Returns the numbers of the other points that point `number` is connected to.
     fn neighbors(&self, number: u32) -> Vec<u32> {
         let axes = self.rows[number as usize].iter();
         let mut neighbors: Vec<u32> = axes.map(|axis| axis.to.0).collect();
@@ -325,8 +326,8 @@ impl EditableDelaunay {
         Ok((wrapped, site))
     }
 
-    /// Computes the axes of the `asked` points near a position, and of the point `hub` there with all its neighbors;
-    /// `None` if too many points would have to be triangulated.
+    /// Computes the axes of the `asked` points near a position, and those of the point `hub` at this position and all
+    /// its neighbors; `None` if too many points would have to be triangulated.
     fn rows_about(
         &self,
         place: DVec2,
@@ -353,7 +354,7 @@ impl EditableDelaunay {
         })
     }
 
-    /// Computes the axes of the points in the square around a position that no image outside of it can affect.
+    /// Computes the axes of those points in the square around a position that no image outside the square can affect.
     fn certain_rows(&self, place: DVec2, reach: f64) -> Option<BTreeMap<u32, Vec<Axis>>> {
         let cover = Cover::about(&self.lattice, place, reach);
         let mut images = Vec::new();
@@ -380,7 +381,8 @@ impl EditableDelaunay {
         Some(numbers.into_iter().filter_map(taken).collect())
     }
 
-    /// Replaces the given rows, or all rows for `None`. Returns the stars that changed, in their old and new states.
+    /// Replaces the given rows; `None` computes and replaces all rows. Returns the stars that changed, in their old
+    /// and new states.
     fn replace(&mut self, rows: Option<Vec<(u32, Vec<Axis>)>>) -> Result<Vec<Star>, GraphError> {
         let rows = match rows {
             Some(rows) => rows,

@@ -1,4 +1,4 @@
-//! Images of points that a patch needs.
+//! Finds the images of points that a patch needs.
 
 use super::patch::Image;
 use super::star::Star;
@@ -8,7 +8,7 @@ use glam::DVec2;
 use robust::{Coord, incircle};
 use std::collections::BTreeSet;
 
-/// A rectangle of which a patch contains all images; unbounded along axes that do not wrap.
+/// A rectangle in which a patch contains all images; it is unbounded along axes that do not wrap.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cover {
     low: DVec2,
@@ -28,8 +28,8 @@ impl Cover {
         }
     }
 
-    /// Creates the square with the half side `reach` around a position. Where it extends beyond an end of the domain
-    /// that does not wrap, it is unbounded, since there are no further images.
+    /// Creates the square with half-side length `reach` around a position. Where it extends beyond an end of the
+    /// domain that does not wrap, it is unbounded, since there are no further images.
     pub(super) fn about(lattice: &Lattice, place: DVec2, reach: f64) -> Self {
         let (mut low, mut high) = (place - reach, place + reach);
         for axis in (0..2).filter(|&axis| !lattice.wrap[axis]) {
@@ -48,7 +48,7 @@ impl Cover {
         [self.low, self.high]
     }
 
-    /// Returns the distance of a position in the rectangle from its border.
+    /// Returns the distance from a position in the rectangle to the rectangle's border.
     #[inline]
     pub(super) fn depth(&self, at: DVec2) -> f64 {
         (at - self.low).min(self.high - at).min_element()
@@ -96,13 +96,13 @@ impl Cover {
     }
 }
 
-/// Search for the images that a patch lacks.
+/// A search for the images that a patch lacks.
 pub(super) struct Missing<'g, 'a> {
     lattice: &'a Lattice,
     cover: Cover,
     grid: &'g LazyGrid<'a>,
-    /// Maximum extent, along each axis, of the circumcircles of a point's true triangles (inside of the strip of the
-    /// domain).
+    /// Maximum extent, along each axis, of the circumcircles of a point's triangles in the final triangulation
+    /// (inside the strip of the domain).
     reach: DVec2,
     /// Positions of images that were already inserted.
     inserted: BTreeSet<(i64, i64)>,
@@ -111,9 +111,9 @@ pub(super) struct Missing<'g, 'a> {
     /// Images to insert next, each with the row that requires it.
     found: Vec<(Image, u32)>,
     scaffolded: bool,
-    /// Row whose star is searched.
+    /// Row of the point whose star is being searched.
     row: u32,
-    /// Whether the star will change.
+    /// Whether the star will change once the found images are inserted.
     changes: bool,
     budget: Budget,
     /// Whether there were too many images to search.
@@ -164,7 +164,7 @@ impl<'g, 'a> Missing<'g, 'a> {
         self.changes
     }
 
-    /// Adds the nearest missing image on an edge next to a gap, or the scaffold if there should be no gap.
+    /// Adds the nearest missing image for an edge next to a gap, or adds the scaffold if there should be no gap.
     fn search_border(&mut self, p: DVec2, vector: DVec2) {
         // On a cylinder, only edges on the borders of the unrolled strip may be next to a gap.
         let is_border = match self.lattice.wrap {
@@ -273,7 +273,7 @@ impl<'g, 'a> Missing<'g, 'a> {
         }
     }
 
-    /// Takes the images that were found, for insertion.
+    /// Removes and returns the images that were found, for insertion.
     ///
     /// Fails if there were too many images to search, or if their number exceeds the limit.
     pub(super) fn take(&mut self) -> Result<Vec<(Image, u32)>, TooThin> {
@@ -286,12 +286,12 @@ impl<'g, 'a> Missing<'g, 'a> {
     }
 }
 
-/// Returns a site as integers, which have a total order.
+/// Converts a site to integers, which have a total order.
 fn key(at: DVec2) -> (i64, i64) {
     (at.x as i64, at.y as i64)
 }
 
-/// Circle through the origin and two other positions, slightly enlarged for rounding.
+/// A circle through the origin and two other positions, slightly enlarged for rounding.
 struct Circle {
     center: DVec2,
     radius: f64,

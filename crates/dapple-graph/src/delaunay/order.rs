@@ -1,4 +1,4 @@
-//! Insertion order of the vertices for `spade`.
+//! Sorts vertices into the insertion order that `spade` expects.
 
 use super::patch::Image;
 use core::cmp::Ordering;

@@ -1,4 +1,4 @@
-//! Patch: a triangulated part of the periodic plane, and the graph rows of the points inside of it.
+//! A patch: a triangulated part of the periodic plane, and the graph rows for the points inside it.
 
 use super::Refusal;
 use super::images::{Cover, Missing};
@@ -17,7 +17,7 @@ pub(super) struct Image {
     pub(super) position: Point2<f64>,
     /// Index of the point.
     pub(super) point: u32,
-    /// Row of the image in the patch, or [`Image::FOREIGN`].
+    /// The image's row in the patch, or [`Image::FOREIGN`].
     pub(super) row: u32,
 }
 
@@ -45,19 +45,19 @@ impl HasPosition for Image {
 /// A vertex of a patch.
 pub(super) type Vertex<'a> = VertexHandle<'a, Image>;
 
-/// Compressed rows.
+/// Graph rows in compressed form.
 #[derive(Debug)]
 pub(super) struct Rows {
     pub(super) offsets: Vec<u32>,
     pub(super) axes: Vec<Axis>,
 }
 
-/// Triangulation of all images in a rectangle, and of some outside of it.
+/// A triangulation of all images in a rectangle, and of some outside it.
 pub(super) struct Patch<'a> {
     lattice: &'a Lattice,
     cover: Cover,
     triangulation: DelaunayTriangulation<Image>,
-    /// Vertex of each row.
+    /// Triangulation vertex of each row.
     vertices: Vec<FixedVertexHandle>,
 }
 
@@ -116,7 +116,8 @@ impl<'a> Patch<'a> {
         Ok(rows)
     }
 
-    /// Computes the axes of each point with a row; `None` if an image outside of the patch could affect them.
+    /// Computes the axes of each point with a row; `None` for a point whose axes an image outside the patch could
+    /// affect.
     pub(super) fn certain_rows(&self) -> Vec<Option<Vec<Axis>>> {
         let mut star = Star::default();
         let row = |&vertex: &FixedVertexHandle| {
@@ -157,7 +158,7 @@ impl<'a> Patch<'a> {
         }
     }
 
-    /// Returns the rows in which the rows `again` are read again from the triangulation.
+    /// Returns a copy of `rows` in which the rows `again` are read again from the triangulation.
     fn replaced(&self, rows: &Rows, again: &[u32]) -> Rows {
         let mut star = Star::default();
         let mut result = Rows {

@@ -1,6 +1,6 @@
-//! Edges around a vertex of a triangulation, and the edges among them that are axes.
+//! Reads the edges around a triangulation vertex, and selects those that are axes.
 //!
-//! Unit: lattice steps relative to the vertex, integers.
+//! Positions are integers: lattice steps relative to the vertex.
 
 use super::patch::Vertex;
 use crate::Axis;
@@ -15,7 +15,7 @@ use robust::{Coord, incircle};
 pub(super) struct Spoke {
     /// Position of the neighbor relative to the vertex, in steps.
     pub(super) at: DVec2,
-    /// Index of its point.
+    /// Index of the neighbor's point.
     to: u32,
     /// Whether there is no triangle between this neighbor and the next one.
     pub(super) gap_after: bool,
@@ -30,7 +30,7 @@ pub(super) struct Star {
     lower: u64,
     /// Whether two adjacent circumcircles may be equal.
     co_circular: bool,
-    /// Whether a circumcircle may exceed the reach.
+    /// Whether a circumcircle may exceed the reach passed to [`read`](Self::read).
     far: bool,
 }
 
@@ -69,7 +69,7 @@ impl Star {
         self.far || self.has_gaps || self.spokes.len() < 3
     }
 
-    /// Returns the pairs of each neighbor and the next one.
+    /// Iterates over all pairs of a neighbor and the next one.
     pub(super) fn wedges(&self) -> impl Iterator<Item = (Spoke, Spoke)> + '_ {
         let next = self.spokes.iter().cycle().skip(1);
         self.spokes.iter().copied().zip(next.copied())
@@ -125,10 +125,10 @@ impl Star {
     }
 }
 
-/// Quick test of the neighbors while they are read. It may have false positives, but no false negatives.
+/// A quick test of the neighbors while they are read. It may give false positives, but no false negatives.
 struct Look {
     reach_sq: f64,
-    /// Last two neighbors, their squared lengths and their cross product; NaN at first.
+    /// The last two neighbors, their squared lengths and their cross product; initially NaN.
     a: DVec2,
     b: DVec2,
     a_sq: f64,

@@ -1,4 +1,4 @@
-//! Tiling of large sets on a torus: each triangulation fits the cache, and tiles are independent.
+//! Divides large sets on a torus into independent tiles, whose triangulations fit the cache.
 
 use super::images::Cover;
 use super::patch::{Image, Patch, Rows};
@@ -12,7 +12,7 @@ use glam::DVec2;
 /// Approximate number of points per tile.
 const POINTS_PER_TILE: f64 = 8192.0;
 
-/// Tiles of a domain.
+/// The tiles of a domain.
 pub(super) struct Tiles<'a> {
     lattice: &'a Lattice,
     margin: f64,
@@ -20,7 +20,7 @@ pub(super) struct Tiles<'a> {
     starts: [Vec<f64>; 2],
 }
 
-/// Images of a tile, and the points whose rows it computes.
+/// A tile: its images, and the points whose rows it computes.
 #[derive(Default)]
 struct Tile {
     images: Vec<Image>,
@@ -99,7 +99,8 @@ impl<'a> Tiles<'a> {
         tiles
     }
 
-    /// Returns the column (or row) of a coordinate, followed by those within the margin, each with the shift to add.
+    /// Returns the column (or row) that contains a coordinate, followed by those within the margin, each with the
+    /// shift to add.
     fn near(&self, axis: usize, at: f64) -> [Option<(usize, f64)>; 3] {
         let starts = &self.starts[axis];
         let (count, size) = (self.count(axis), self.lattice.size[axis]);
@@ -122,7 +123,7 @@ impl<'a> Tiles<'a> {
     }
 }
 
-/// Returns the rows of all tiles, in the order of the points.
+/// Merges the rows of all tiles, in the order of the points.
 fn merged(tiles: &[Tile], parts: &[Rows], n: usize) -> Rows {
     let mut places = vec![(0_u32, 0_u32); n];
     for (index, tile) in (0..).zip(tiles) {

@@ -1,4 +1,4 @@
-//! Triangles of a Delaunay graph: its faces, traversed axis by axis.
+//! Computes the triangles of a Delaunay graph by traversing its faces axis by axis.
 //!
 //! Every face except the outer one is inscribed in an empty circle. A face with more than three corners is a polygon,
 //! which is divided into a fan.
@@ -13,13 +13,14 @@ use glam::DVec2;
 /// A triangle of points, or of images of points on a domain that wraps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
-    /// Points at its corners, ordered from x toward y.
+    /// Points at the corners, counterclockwise (from the x axis toward the y axis).
     pub corners: [PointIdx; 3],
     /// Vectors from the first corner to the images of the second and third, in the units of the positions.
     pub sides: [DVec2; 2],
 }
 
-/// Computes the triangles of the Delaunay triangulation: their circumcircles contain no other point, including images.
+/// Computes the triangles of the Delaunay triangulation, whose circumcircles contain no other point or image of a
+/// point.
 ///
 /// On a torus there are twice as many triangles as points, and they cover it once. If more than three points are on an
 /// empty circle, the triangulation is not unique: their polygon is divided by the diagonals from one of them.
@@ -44,7 +45,7 @@ pub fn delaunay_triangles(points: &PointSet) -> Result<Vec<Triangle>, GraphError
     delaunay_triangles_cancellable(points, &|| false)
 }
 
-/// Computes the triangles of [`delaunay_triangles`], unless `is_cancelled` returns true. The callback is called as in
+/// Same as [`delaunay_triangles`], but fails if `is_cancelled` returns true. The callback is called as in
 /// [`delaunay_cancellable`].
 ///
 /// # Errors
@@ -58,7 +59,7 @@ pub fn delaunay_triangles_cancellable(
 }
 
 impl Graph {
-    /// Computes the triangles of a Delaunay graph, like [`delaunay_triangles`] for its points.
+    /// Computes the triangles of a Delaunay graph. They equal the result of [`delaunay_triangles`] for its points.
     ///
     /// # Errors
     ///
@@ -85,7 +86,7 @@ impl Graph {
 }
 
 /// Calls `visit` for every face that is inscribed in an empty circle, with its first point and the axes around it,
-/// ordered from x toward y. Skips the outer face.
+/// counterclockwise (from the x axis toward the y axis). Skips the outer face.
 pub(crate) fn visit_faces(graph: &Graph, mut visit: impl FnMut(PointIdx, &[FaceAxis])) {
     let next = next_around_faces(graph);
     let mut is_walked = vec![false; graph.n_axes()];
@@ -119,12 +120,12 @@ pub(crate) fn visit_faces(graph: &Graph, mut visit: impl FnMut(PointIdx, &[FaceA
 /// An axis on the border of a face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FaceAxis {
-    /// Index among all axes.
+    /// Index of the axis among all axes of the graph.
     pub(crate) index: usize,
     pub(crate) axis: Axis,
 }
 
-/// For each axis, the next axis around its face, in the direction from x toward y.
+/// Returns, for each axis, the next axis around its face, counterclockwise (from the x axis toward the y axis).
 fn next_around_faces(graph: &Graph) -> Vec<u32> {
     let next = |from: PointIdx, axis: &Axis| {
         let row = graph.axes(axis.to);

@@ -189,7 +189,8 @@ impl GapSearch {
     }
 }
 
-/// Converts the first and last position of a square along an axis.
+/// Returns a square's first and last position along an axis, in cells, from its first lattice step and its side in
+/// steps.
 #[inline(always)]
 fn span(first: u32, size: u32) -> [f32; 2] {
     [first as f32 * STEP, (first + size - 1) as f32 * STEP]
