@@ -1,9 +1,9 @@
-//! Arctangent of 16 numbers at once, with identical bits on every platform.
+//! Computes the arctangent of 16 numbers at once, with the same bits on every platform.
 //!
 //! For `|x|` up to 1 the result is `x P(x²)`, where `P` is the polynomial of degree 8 with the minimum largest
 //! relative error (1.5e-8 before rounding), found by the Remez exchange algorithm. Above 1 it is a right angle minus
-//! the arctangent of the reciprocal. The code uses only `+ - × ÷` and selects. The result is in radians, its error is
-//! below 2e-7, and the function is exactly odd.
+//! the arctangent of the reciprocal. The code uses only `+ - × ÷` and select operations. The result is in radians,
+//! its error is below 2e-7, and the function is exactly odd.
 
 use fearless_simd::{f32x16, prelude::*};
 

@@ -1,7 +1,7 @@
-//! Color bleeding: gives transparent pixels the color of the nearest visible pixel.
+//! Color bleeding, which gives transparent pixels the color of the nearest visible pixel.
 //!
 //! A mip level averages the straight (not premultiplied) colors of all pixels, transparent ones too. If the color of
-//! the visible area does not continue into pixels of alpha 0, their color shows as a rim around that area. Game
+//! the visible area does not continue into pixels with alpha 0, their color shows as a rim around that area. Game
 //! engines call this step "fix alpha border" or "alpha is transparency".
 //!
 //! Reference: Pedro F. Felzenszwalb and Daniel P. Huttenlocher, "Distance Transforms of Sampled Functions", Theory of
@@ -12,10 +12,10 @@
 use crate::LinearRgba;
 use dapple_raster::{Raster, parallel};
 
-/// Gives each pixel of alpha 0 the color of the nearest pixel with alpha above 0. Its alpha remains 0.
+/// Gives each pixel with alpha 0 the color of the nearest pixel with alpha above 0. Its alpha remains 0.
 ///
-/// Along an axis that wraps, the nearest pixel may lie past the edge of the image. An image without a visible pixel
-/// stays unchanged. The time is proportional to the number of pixels.
+/// Along an axis that wraps, the nearest pixel may be across the image's edge. An image without a visible pixel stays
+/// unchanged. The time is proportional to the number of pixels.
 ///
 /// # Examples
 ///
@@ -58,11 +58,11 @@ fn is_seen(pixel: &LinearRgba) -> bool {
     pixel.alpha > 0.0
 }
 
-/// Number of rows in a column without a visible pixel.
+/// Value for columns without a visible pixel.
 const NONE: i32 = i32::MAX;
 
-/// Returns for each pixel the signed number of rows, positive downward, to the nearest visible pixel of its column, or
-/// [`NONE`] if the column has no such pixel. Of two at equal distance the upper one wins.
+/// Returns, for each pixel, the signed number of rows (positive downward) to the nearest visible pixel in its column,
+/// or [`NONE`] if the column has none. Of two pixels at equal distance, the upper one wins.
 fn steps_to_seen(image: &Raster<LinearRgba>, wraps: bool) -> Vec<i32> {
     let [width, height] = image.size().map(|side| side as usize);
     let mut steps = vec![NONE; width * height];
@@ -94,11 +94,12 @@ fn steps_to_seen(image: &Raster<LinearRgba>, wraps: bool) -> Vec<i32> {
     steps
 }
 
-/// Lower envelope of the parabolas of a row: the columns that are nearest to at least one pixel, from left to right.
+/// The lower envelope of a row's parabolas. It lists the columns that are nearest to at least one pixel, from left to
+/// right.
 struct Envelope {
     /// A column, counted past the edges of a row that wraps, and the first pixel to which it is nearest.
     parts: Vec<(i64, i64)>,
-    /// Width of the row if it wraps.
+    /// Width of the row if it wraps; `None` if it does not.
     period: Option<i64>,
 }
 
@@ -135,7 +136,7 @@ impl Envelope {
         }
     }
 
-    /// Returns the nearest column of each pixel of the row. At least one column has a visible pixel.
+    /// Returns the nearest column for each pixel in the row. At least one column must have a visible pixel.
     fn nearest(&self, width: usize) -> impl Iterator<Item = usize> {
         let mut part = 0;
         (0..width as i64).map(move |pixel| {

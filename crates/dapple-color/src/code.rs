@@ -1,4 +1,4 @@
-//! Integer codes of values in a file: linear quantization, and the sRGB curve by exact tables.
+//! Integer codes for values in a file, by linear quantization or by exact tables of the sRGB curve.
 //!
 //! Data (heights, masks, normals) is quantized with `round(value · max)`. Color goes through the sRGB transfer
 //! function of IEC 61966-2-1; both directions are in [`crate::srgb`].
@@ -93,7 +93,7 @@ impl Code for u16 {
 }
 
 mod sealed {
-    /// Restricts [`super::Code`] to the two bit depths of files.
+    /// Restricts [`super::Code`] to the two bit depths that files use.
     pub trait Sealed {}
     impl Sealed for u8 {}
     impl Sealed for u16 {}

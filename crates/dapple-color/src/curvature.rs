@@ -6,8 +6,8 @@
 //! -((1 + z_y²) z_xx - 2 z_x z_y z_xy + (1 + z_x²) z_yy) / (2 (1 + z_x² + z_y²)^(3/2)).
 //! ```
 //!
-//! It is positive where the surface is convex and negative where it is concave. Every point of a spherical hill has
-//! the reciprocal of the sphere's radius, whatever its slope.
+//! It is positive where the surface is convex and negative where it is concave. On a spherical hill, it is the
+//! reciprocal of the sphere's radius at every point, whatever the slope.
 //!
 //! Reference: Manfredo P. do Carmo, "Differential Geometry of Curves and Surfaces", 1976, section 3.3, example 5, with
 //! the opposite sign, as is usual in curvature maps.
@@ -21,7 +21,7 @@ use crate::{ColorError, HeightPlane, plane};
 use dapple_raster::Raster;
 use dapple_raster::glam::DVec2;
 
-/// Options of curvature: the plane of the heights and the radius of the differences.
+/// Options for computing curvature: the plane of the heights, and the radius of the differences.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -43,7 +43,7 @@ impl Default for CurvatureOptions {
 }
 
 impl From<HeightPlane> for CurvatureOptions {
-    /// Returns options for heights in a plane, with the default radius.
+    /// Creates options for heights in `plane`, with the default radius.
     fn from(plane: HeightPlane) -> Self {
         Self {
             plane,
@@ -53,16 +53,17 @@ impl From<HeightPlane> for CurvatureOptions {
 }
 
 impl CurvatureOptions {
-    /// Returns the margin in columns and rows around a pixel on which its value depends, in a raster of `size` pixels.
+    /// Returns the halo: the margin around a pixel, in columns and rows, on which the pixel's value depends. `size`
+    /// is the size of the raster in pixels.
     ///
-    /// A crop with these margins has the same bits inside: see [`curvature_of_part`]. For options that [`curvature`]
-    /// rejects, the halo is 1 × 1.
+    /// Inside a crop with these margins, the result has the same bits; see [`curvature_of_part`]. For options that
+    /// [`curvature`] rejects, the halo is 1 × 1.
     #[must_use]
     pub fn halo(&self, size: [u32; 2]) -> [u32; 2] {
         self.spans(size).unwrap_or([1; 2])
     }
 
-    /// Returns the radius in columns and rows.
+    /// Converts the radius to columns and rows.
     fn spans(&self, size: [u32; 2]) -> Result<[u32; 2], ColorError> {
         self.plane.check("strength of the curvature")?;
         let pixel = self.plane.pixel(size);
@@ -82,8 +83,8 @@ impl CurvatureOptions {
 /// [`NotFinite`](crate::ColorErrorKind::NotFinite) if the strength or the radius is NaN or infinite,
 /// [`Extent`](crate::ColorErrorKind::Extent) if the extent is not above zero and finite,
 /// [`Radius`](crate::ColorErrorKind::Radius) if the radius is negative or more than 16384 pixels,
-/// [`Raster`](crate::ColorErrorKind::Raster) if a raster that does not repeat becomes too large with margins of the
-/// radius.
+/// [`Raster`](crate::ColorErrorKind::Raster) if a raster that does not repeat would become too large when extended by
+/// the radius.
 ///
 /// # Examples
 ///
@@ -113,12 +114,12 @@ pub fn curvature(
     Ok(bent.crop(margin, height.size())?)
 }
 
-/// Computes the curvature of a part of a raster of `whole` pixels. The extent in the options is that of the whole
-/// raster; see [`curvature`].
+/// Computes the curvature of a part of a raster of `whole` pixels. The extent in the options is the whole raster's
+/// extent; see [`curvature`].
 ///
-/// The wrap in the options selects the neighbors past the edges of the part; heights are not extrapolated there. Every
-/// pixel that is further from the edges of the part than the [halo](CurvatureOptions::halo) of the whole has the same
-/// bits as in the whole.
+/// The wrap in the options selects the neighbors past the edges of the part; heights are not extrapolated there.
+/// Every pixel that is farther from the part's edges than the whole raster's [halo](CurvatureOptions::halo) has the
+/// same bits as when the whole raster is computed.
 ///
 /// # Errors
 ///
@@ -153,8 +154,8 @@ pub fn curvature_of_part(
 
 /// Converts a curvature to a gray value from 0 to 1: 0.5 for flat, brighter for convex.
 ///
-/// `radius` is in units of the plane. A hill on a sphere of that radius or a smaller one is white, and a pit of that
-/// radius is black. NaN becomes 0.5.
+/// `radius` is in units of the plane. A hill with the shape of a sphere of that radius or a smaller one is white, and
+/// a pit of that shape is black. NaN becomes 0.5.
 #[must_use]
 pub fn curvature_to_gray(curvature: f32, radius: f32) -> f32 {
     let part = curvature * radius;
@@ -164,13 +165,13 @@ pub fn curvature_to_gray(curvature: f32, radius: f32) -> f32 {
     0.5 + 0.5 * part.clamp(-1.0, 1.0)
 }
 
-/// Factors that turn differences of heights into derivatives.
+/// Factors that convert height differences to derivatives.
 struct Scales {
     /// Factors for the difference of a pixel's two neighbors, along x and y.
     first: DVec2,
     /// Factors for the second difference at a pixel, along x and y.
     second: DVec2,
-    /// Factor for the mixed difference: along x of the differences along y.
+    /// Factor for the mixed difference, which is the difference along x of the differences along y.
     mixed: f64,
 }
 
@@ -185,7 +186,7 @@ impl Scales {
         }
     }
 
-    /// Returns the curvature at the center of 3 × 3 heights.
+    /// Returns the mean curvature at the center of 3 × 3 heights.
     #[inline(always)]
     fn mean_curvature(&self, heights: [[f32; 3]; 3]) -> f32 {
         let [above, here, below] = heights;

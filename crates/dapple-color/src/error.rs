@@ -1,14 +1,14 @@
-//! Errors of colors, ramps and maps.
+//! Errors from colors, ramps and maps.
 
 use dapple_raster::RasterError;
 use dapple_raster::glam::DVec2;
 
 dapple_raster::error! {
-    /// An error of a color, a ramp or a map.
+    /// An error from a color, a ramp or a map.
     ColorError,
     /// The cause of a [`ColorError`], with the limit and the value.
     ColorErrorKind {
-        /// A text is not a color in hexadecimal.
+        /// A text is not a hexadecimal color.
         Hex {
             /// The text.
             text: String,
@@ -22,23 +22,23 @@ dapple_raster::error! {
             /// The number.
             value: f64,
         } => "the {what} is {value}, but it must be finite";
-        /// A size is not above zero and finite.
+        /// An extent is not above zero and finite.
         Extent {
-            /// The size.
+            /// The extent.
             extent: DVec2,
         } => "the extent is {} × {}, but both must be above zero and finite", extent.x, extent.y;
-        /// A radius is negative, or reaches over too many pixels.
+        /// A radius is negative, or spans too many pixels.
         Radius {
             /// The radius.
             radius: f64,
-            /// The radius in pixels, along the axis on which pixels are smaller.
+            /// The radius in pixels, measured along the axis on which pixels are smaller.
             pixels: f64,
             /// The largest radius in pixels.
             limit: u32,
         } => "the radius {radius} is {pixels} pixels, but it must be from 0 to {limit} pixels";
-        /// The part of a radius over which something fades is not from 0 to 1.
+        /// The fraction of a radius over which occlusion fades is not from 0 to 1.
         Fade {
-            /// The part.
+            /// The fraction.
             fade: f64,
         } => "the fade is {fade}, but it must be from 0 to 1";
         /// The stops of a ramp are not in order.
@@ -52,7 +52,7 @@ dapple_raster::error! {
         Cancelled => "the callback asked to stop";
     }
     from {
-        /// An error of the resulting raster.
+        /// An error in the resulting raster, such as its size.
         Raster(RasterError),
     }
 }

@@ -1,4 +1,4 @@
-//! Colors in hexadecimal, as in a style sheet.
+//! Parses hexadecimal colors, as in a style sheet.
 
 use crate::{ColorError, ColorErrorKind, LinearRgb};
 use core::str::FromStr;

@@ -32,8 +32,9 @@
 //! | ambient occlusion | [`ambient_occlusion`] | [`ambient_occlusion_of_field`] | [`ambient_occlusion_of_part`] | grows with the logarithm of the radius above 16 pixels |
 //! | curvature | [`curvature`] | [`curvature_of_field`] | [`curvature_of_part`] | reads [`CurvatureOptions::halo`] pixels around |
 //!
-//! Use the `_of_field` functions for chunks of a terrain: they read the field past the sides of the window, so that
-//! chunks fit. The `_of_part` functions need a margin around the part, and give the bits of the whole.
+//! Use the `_of_field` functions for chunks of a terrain: they read the field beyond the sides of the window, so that
+//! adjacent chunks match. The `_of_part` functions need a margin around the part, and give the same bits as for the
+//! whole raster.
 //!
 //! | to | use |
 //! |---|---|
@@ -53,10 +54,10 @@
 //!
 //! * Color in memory is linear light in `f32`. It becomes sRGB only in codes of 8 or 16 bits. Heights, masks and
 //!   normals are linear everywhere.
-//! * The sRGB curve is exact for 8 and 16 bits: each code is that of exact arithmetic.
+//! * The sRGB curve is exact for 8 and 16 bits: each code equals the result of exact arithmetic.
 //! * Ramps mix in Oklab by default, where equal steps look equal, or in sRGB codes or linear light ([`RampSpace`]).
 //! * Lengths are in units of the plane, so that the resolution does not change the maps.
-//! * Green of a normal points up by default, as in OpenGL. [`NormalY`] turns it over for DirectX.
+//! * Green of a normal points up by default, as in OpenGL. [`NormalY`] flips it for DirectX.
 //! * The radius of occlusion and of curvature is at most 16,384 pixels.
 //! * Tone mapping is left to the caller. Files, and the conversion of their color spaces, are in `dapple-image`.
 //! * Results have the same bits on every platform and any number of threads.

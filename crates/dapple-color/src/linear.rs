@@ -5,8 +5,8 @@ use core::ops::{Add, Mul, Sub};
 
 /// A color in linear light with the primaries and the white point of sRGB.
 ///
-/// Each component is 0 for no light and 1 for the maximum of a screen. Intermediate results may be below 0, above 1,
-/// or NaN. Colors can be added and scaled, so a `Raster<LinearRgb>` can be interpolated between its pixels.
+/// Each component is 0 for no light and 1 for a screen's maximum. Intermediate results may be below 0, above 1, or
+/// NaN. Colors can be added and scaled, so a `Raster<LinearRgb>` can be interpolated between its pixels.
 ///
 /// # Examples
 ///
@@ -40,7 +40,7 @@ pub struct LinearRgba {
 impl LinearRgb {
     /// Black: no light.
     pub const BLACK: Self = Self::gray(0.0);
-    /// White: the maximum of a screen.
+    /// White: a screen's maximum.
     pub const WHITE: Self = Self::gray(1.0);
 
     /// Creates a color from its linear components.
@@ -55,7 +55,7 @@ impl LinearRgb {
         Self::new(value, value, value)
     }
 
-    /// Decodes the sRGB codes of a file, red first.
+    /// Decodes sRGB codes, red first.
     #[must_use]
     pub fn from_srgb<C: Code>(codes: [C; 3]) -> Self {
         codes.map(C::linear_from_srgb).into()
@@ -81,8 +81,8 @@ impl LinearRgb {
         0.2126 * self.r + 0.7152 * self.g + 0.0722 * self.b
     }
 
-    /// Interpolates linearly to another color: `part` 0 gives this color, 1 gives `other`, numbers outside
-    /// extrapolate.
+    /// Interpolates linearly between this color (at `part` = 0) and `other` (at `part` = 1). Values of `part` outside
+    /// this range extrapolate.
     #[must_use]
     pub fn lerp(self, other: Self, part: f32) -> Self {
         // In this form both end values are exact.
@@ -97,7 +97,7 @@ impl LinearRgba {
         Self { color, alpha: 1.0 }
     }
 
-    /// Decodes the codes of a file: red, green and blue with the sRGB curve, then linear alpha.
+    /// Decodes codes: red, green and blue with the sRGB curve, then linear alpha.
     #[must_use]
     pub fn from_srgb<C: Code>([r, g, b, alpha]: [C; 4]) -> Self {
         Self {

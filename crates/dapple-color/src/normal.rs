@@ -1,16 +1,16 @@
-//! Normal maps from heights, or from exact gradients.
+//! Computes normal maps from heights or exact gradients.
 //!
 //! A height `h` over the plane has the normal `normalize(-s ∂h/∂x, ±s ∂h/∂y, 1)`, where `s` is the strength. Rows go
 //! down in dapple, so the sign of the y component is plus for Y up (OpenGL) and minus for Y down (DirectX). The
-//! derivatives of a raster are central differences over two pixels, `(h[i+1] - h[i-1]) / (2 pixel)`. Heights that
-//! repeat along an axis take their neighbors from the opposite edge, so the normal map of a tile tiles. Other heights
-//! [continue](crate::continue_heights) with their slope.
+//! derivatives of a raster are central differences over two pixels, `(h[i+1] - h[i-1]) / (2 pixel)`. Along an axis
+//! where heights repeat, neighbors at the edge come from the opposite edge, so the normal map of a tile tiles too.
+//! Other heights [continue](crate::continue_heights) with their slope.
 //!
 //! Reference: James F. Blinn, "Simulation of Wrinkled Surfaces", SIGGRAPH 1978, for the perturbed normal.
 //!
-//! Slopes are heights per unit of the *plane*, in which the raster has a given extent, and not per pixel. Twice the
-//! resolution therefore gives the same normals on finer pixels. Where a component of the slope is not finite, the
-//! normal is flat.
+//! Slopes are height differences per unit of the *plane*, in which the raster has a given extent, not per pixel.
+//! Twice the resolution therefore gives the same normals on finer pixels. Where a component of the slope is not
+//! finite, the normal is flat.
 
 use crate::{Code, ColorError, HeightPlane, plane};
 use dapple_raster::Raster;
@@ -40,7 +40,7 @@ dapple_raster::named! {
     }
 }
 
-/// Options of normals from heights or gradients.
+/// Options for computing normals from heights or gradients.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -55,7 +55,7 @@ pub struct NormalOptions {
 }
 
 impl From<HeightPlane> for NormalOptions {
-    /// Returns options for heights in a plane, with green up.
+    /// Creates options for heights in `plane`, with green up.
     fn from(plane: HeightPlane) -> Self {
         let y = NormalY::default();
         Self { plane, y }
@@ -63,7 +63,7 @@ impl From<HeightPlane> for NormalOptions {
 }
 
 impl NormalOptions {
-    /// Returns the normal for a slope: heights per unit of the plane to the right and downward.
+    /// Returns the normal for a slope, given as the height change per unit of the plane to the right and downward.
     #[must_use]
     pub fn normal(&self, slope: DVec2) -> Normal {
         let strength = self.plane.strength;
@@ -93,8 +93,8 @@ impl NormalOptions {
 ///
 /// [`NotFinite`](crate::ColorErrorKind::NotFinite) if the strength is NaN or infinite,
 /// [`Extent`](crate::ColorErrorKind::Extent) if the extent is not above zero and finite,
-/// [`Raster`](crate::ColorErrorKind::Raster) if a raster that does not repeat becomes too large with margins of one
-/// pixel.
+/// [`Raster`](crate::ColorErrorKind::Raster) if a raster that does not repeat would become too large when extended by
+/// one pixel.
 ///
 /// # Examples
 ///
@@ -121,11 +121,12 @@ pub fn normal_map(
     Ok(normals.crop(margin, height.size())?)
 }
 
-/// Computes the normals of a part of a raster of `whole` pixels. The extent in the options is that of the whole
-/// raster; see [`normal_map`].
+/// Computes the normals of a part of a raster of `whole` pixels. The extent in the options is the whole raster's
+/// extent; see [`normal_map`].
 ///
-/// The wrap in the options selects the neighbors past the edges of the part; heights are not extrapolated there. Every
-/// pixel that is more than one pixel from the edges of the part has the same bits as in the whole.
+/// The wrap in the options selects the neighbors past the edges of the part; heights are not extrapolated there.
+/// Every pixel that is more than one pixel from the edges of the part has the same bits as when the whole raster is
+/// computed.
 ///
 /// # Errors
 ///
@@ -162,7 +163,8 @@ pub fn normal_map_of_part(
     Ok(normals)
 }
 
-/// Computes the normals of a raster of exact slopes: heights per unit of the plane to the right and downward.
+/// Computes the normals for a raster of exact slopes, given as the height change per unit of the plane to the right
+/// and downward.
 ///
 /// Only the strength and the direction of green are read from the options. Uses all cores if the feature `rayon` is
 /// enabled.
@@ -193,8 +195,8 @@ impl Normal {
         [self.x, self.y, self.z]
     }
 
-    /// Returns the codes of an image: `round((component + 1) / 2 · max)`, with red for x, green for y and blue for z,
-    /// all linear.
+    /// Converts the normal to image codes: `round((component + 1) / 2 · max)`, with red for x, green for y and blue
+    /// for z, all linear.
     ///
     /// A flat normal becomes (128, 128, 255), or (32768, 32768, 65535) in 16 bits.
     #[must_use]
@@ -202,13 +204,13 @@ impl Normal {
         self.to_array().map(|part| C::from_unit(part * 0.5 + 0.5))
     }
 
-    /// Sets x and y to 0 where they come from a code next to the middle: 127 or 128 in 8 bits, 32767 or 32768 in 16
-    /// bits.
+    /// Sets x and y to 0 where they were decoded from a code next to the middle of the range: 127 or 128 in 8 bits,
+    /// 32767 or 32768 in 16 bits.
     ///
-    /// No code has the value 0, so images store 128, which is read as a slope of 1/255. Rotated or mirrored, that
-    /// slope becomes a different code, although a flat surface has no direction. Components from 8 bits are recognized
-    /// by their ratios to the other components: these are ratios of odd numbers up to 255, whatever the length of the
-    /// vector before normalization. Components from 16 bits are recognized by their small size.
+    /// No code has the value 0, so images store 128, which decodes to a slope of 1/255. Rotated or mirrored, that
+    /// slope becomes a different code, although a flat surface has no direction. Components from 8 bits are
+    /// recognized by their ratios to the other components: these are ratios of odd numbers up to 255, whatever the
+    /// length of the vector before normalization. Components from 16 bits are recognized by their small size.
     #[must_use]
     pub fn centered(self) -> Self {
         let Self { x, y, z } = self;
@@ -225,7 +227,7 @@ impl Normal {
         Self::unit([x, y, z])
     }
 
-    /// Returns the unit vector for the codes of an image by the usual rule: `2 code / max - 1`, normalized.
+    /// Converts image codes to a unit vector by the usual rule: `2 code / max - 1`, normalized.
     ///
     /// No code has the value 0, so a flat normal is read back tilted by `1 / max` in x and in y. Codes whose vector
     /// cannot be normalized become a flat normal.
@@ -246,14 +248,14 @@ impl Normal {
     }
 }
 
-/// Components below this come from 16-bit codes next to the middle. Those are 2^-16 for a vector of unit length and
-/// the next codes three times as large; the vector of codes has unit length within a quarter.
+/// Components below this come from 16-bit codes next to the middle. Such components are 2^-16 for a vector of unit
+/// length, and the next codes are three times as large. The length of a decoded vector is within a quarter of 1.
 const STEP_OF_16_BITS: f32 = 1.5 / (1 << 16) as f32;
 
 /// Range of 1/255 divided by the length of a vector of 8-bit codes, which is near 1.
 const STEPS_OF_8_BITS: core::ops::RangeInclusive<f32> = 0.9 / 255.0..=1.1 / 255.0;
 
-/// Returns whether a ratio is an odd number within the rounding of codes to `f32`: 1e-7 of 1/255, times 255.
+/// Returns whether a ratio is an odd number, up to the rounding of decoded codes to `f32` (1e-7 of 1/255, times 255).
 fn is_odd(ratio: f32) -> bool {
     let rest = (ratio.abs() * 0.5).fract();
     (rest - 0.5).abs() < 0.01

@@ -1,9 +1,9 @@
-//! Ambient occlusion of heights: the fraction of the sky that is visible from each point.
+//! Computes the ambient occlusion of heights, which is the fraction of the sky that is visible from each point.
 //!
 //! A point on the surface `z = s h(x, y)` with the unit normal `n` receives light from every part of the sky that no
-//! height hides. In each of 16 azimuths `d`, the horizon is the maximum slope `H` from the point to a point on the ray
-//! within the radius, and at least the slope `t` of the tangent plane. Light from the angle `θ` to the zenith is
-//! weighted by the cosine to the normal, so one azimuth contributes
+//! height hides. In each of 16 azimuths `d`, the horizon is the maximum slope `H` from the point to a point on the
+//! ray within the radius, and at least the slope `t` of the tangent plane. Light arriving at the angle `θ` from the
+//! zenith is weighted by the cosine of its angle to the normal, so one azimuth contributes
 //!
 //! ```text
 //! ∫ (n_z cos θ + (n·d) sin θ) sin θ dθ  =  n_z/2 ((1 + t H)/(1 + H²) - t (π/2 - arctan H)),  θ from 0 to arccot H.
@@ -37,7 +37,7 @@ mod lines;
 mod rays;
 mod sky;
 
-/// Options of ambient occlusion.
+/// Options for ambient occlusion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -62,7 +62,7 @@ impl Default for OcclusionOptions {
 }
 
 impl From<HeightPlane> for OcclusionOptions {
-    /// Returns options for heights in a plane, with the default radius and fade.
+    /// Creates options for heights in `plane`, with the default radius and fade.
     fn from(plane: HeightPlane) -> Self {
         Self {
             plane,
@@ -73,10 +73,11 @@ impl From<HeightPlane> for OcclusionOptions {
 }
 
 impl OcclusionOptions {
-    /// Returns the margin in columns and rows around a pixel on which its value depends, in a raster of `size` pixels.
+    /// Returns the halo: the margin around a pixel, in columns and rows, on which the pixel's value depends. `size`
+    /// is the size of the raster in pixels.
     ///
-    /// A crop with these margins has the same bits inside: see [`ambient_occlusion_of_part`]. For options that
-    /// [`ambient_occlusion`] rejects, the halo is 1 × 1.
+    /// Inside a crop with these margins, the result has the same bits; see [`ambient_occlusion_of_part`]. For options
+    /// that [`ambient_occlusion`] rejects, the halo is 1 × 1.
     #[must_use]
     pub fn halo(&self, size: [u32; 2]) -> [u32; 2] {
         // The tangent plane needs the adjacent pixels.
@@ -106,15 +107,15 @@ impl OcclusionOptions {
 /// cores if the feature `rayon` is enabled.
 ///
 /// The sky is the half space above the tangent plane, weighted by the cosine to the normal, as for a matte surface
-/// under a uniform sky. A flat raster is 1 everywhere, the wall of a long groove with the opening angle `a` is
-/// `sin²(a/2)`, and the inside of a hemispherical bowl is 1/2.
+/// under a uniform sky. The result is 1 everywhere on a flat raster, `sin²(a/2)` on the wall of a long groove with
+/// the opening angle `a`, and 1/2 inside a hemispherical bowl.
 ///
 /// # Errors
 ///
-/// [`ColorErrorKind::NotFinite`] if the strength or the radius is NaN or infinite, [`ColorErrorKind::Extent`] if the extent
-/// is not above zero and finite, [`ColorErrorKind::Radius`] if the radius is negative or more than 16384 pixels,
-/// [`ColorErrorKind::Fade`] if the fade is not from 0 to 1, [`ColorErrorKind::Raster`] if the raster becomes too large
-/// with margins of the radius.
+/// [`ColorErrorKind::NotFinite`] if the strength or the radius is NaN or infinite, [`ColorErrorKind::Extent`] if the
+/// extent is not above zero and finite, [`ColorErrorKind::Radius`] if the radius is negative or more than 16384
+/// pixels, [`ColorErrorKind::Fade`] if the fade is not from 0 to 1, [`ColorErrorKind::Raster`] if the raster would
+/// become too large when extended by the radius.
 ///
 /// # Examples
 ///
@@ -135,8 +136,8 @@ pub fn ambient_occlusion(
     ambient_occlusion_cancellable(height, options, &|| false)
 }
 
-/// Computes [`ambient_occlusion`], and stops when `is_cancelled` returns true. It is called once per row, on any
-/// thread.
+/// Same as [`ambient_occlusion`], but fails when `is_cancelled` returns true. The callback is called once per row, on
+/// any thread.
 ///
 /// # Errors
 ///
@@ -159,13 +160,12 @@ pub fn ambient_occlusion_cancellable(
     }
 }
 
-/// Computes the occlusion of a part of a raster of `whole` pixels. The extent in the options is that of the whole
-/// raster; see [`ambient_occlusion`]. The result has the pixels inside `margin` columns and rows at each side; the
-/// margins are only read.
+/// Computes the occlusion of a part of a raster of `whole` pixels. The extent in the options is the whole raster's
+/// extent; see [`ambient_occlusion`]. The result omits `margin` columns and rows at each side, which are only read.
 ///
 /// The wrap in the options selects the heights past the edges of the part; heights are not extrapolated there. If the
-/// margins are at least the [halo](OcclusionOptions::halo) of the whole, every pixel has the same bits as in the
-/// whole.
+/// margins are at least the whole raster's [halo](OcclusionOptions::halo), every pixel has the same bits as when the
+/// whole raster is computed.
 ///
 /// # Errors
 ///
@@ -179,8 +179,8 @@ pub fn ambient_occlusion_of_part(
     ambient_occlusion_of_part_cancellable(height, margin, whole, options, &|| false)
 }
 
-/// Computes [`ambient_occlusion_of_part`], and stops when `is_cancelled` returns true. It is called once per row, on
-/// any thread.
+/// Same as [`ambient_occlusion_of_part`], but fails when `is_cancelled` returns true. The callback is called once per
+/// row, on any thread.
 ///
 /// # Errors
 ///

@@ -1,7 +1,7 @@
-//! Maps of a field in a window, which evaluate the field past the sides of the window.
+//! Computes maps of a field in a window, with neighbors that are evaluated beyond the window's sides.
 //!
-//! A raster ends at its sides, so its map needs a rule for the heights beyond them. A field has heights everywhere:
-//! the maps of two adjacent windows match, and a point has the same value in every window that contains it.
+//! A raster ends at its sides, so its map needs a rule for the heights beyond them. A field has heights everywhere,
+//! so the maps of two adjacent windows match, and a point has the same value in every window that contains it.
 
 use crate::{
     ColorError, CurvatureOptions, HeightPlane, Normal, NormalOptions, OcclusionOptions,
@@ -9,14 +9,14 @@ use crate::{
 };
 use dapple_raster::{Field, Raster, Window, Wrap};
 
-/// Computes the normals of a field of heights in a window: [`normal_map`](crate::normal_map) with neighbors from the
-/// field.
+/// Computes the normals of a height field in a window. Like [`normal_map`](crate::normal_map), but neighbors beyond
+/// the window's sides come from the field.
 ///
 /// The extent and the wrap in the options are ignored.
 ///
 /// # Errors
 ///
-/// Same as [`normal_map`](crate::normal_map), and the errors of rendering the field.
+/// Same as [`normal_map`](crate::normal_map), or if rendering the field fails.
 ///
 /// # Examples
 ///
@@ -47,14 +47,14 @@ pub fn normal_map_of_field(
     Ok(normals.crop([1; 2], window.size)?)
 }
 
-/// Computes the visible fraction of the sky for a field of heights in a window:
-/// [`ambient_occlusion`](crate::ambient_occlusion) with neighbors from the field.
+/// Computes the visible fraction of the sky for a height field in a window. Like
+/// [`ambient_occlusion`](crate::ambient_occlusion), but heights beyond the window's sides come from the field.
 ///
 /// The extent and the wrap in the options are ignored.
 ///
 /// # Errors
 ///
-/// Same as [`ambient_occlusion`](crate::ambient_occlusion), and the errors of rendering the field.
+/// Same as [`ambient_occlusion`](crate::ambient_occlusion), or if rendering the field fails.
 pub fn ambient_occlusion_of_field(
     field: &(impl Field + ?Sized),
     window: &Window,
@@ -69,14 +69,14 @@ pub fn ambient_occlusion_of_field(
     ambient_occlusion_of_part(&heights, halo, window.size, &options)
 }
 
-/// Computes the mean curvature of a field of heights in a window: [`curvature`](crate::curvature()) with neighbors
-/// from the field.
+/// Computes the mean curvature of a height field in a window. Like [`curvature`](crate::curvature()), but neighbors
+/// beyond the window's sides come from the field.
 ///
 /// The extent and the wrap in the options are ignored.
 ///
 /// # Errors
 ///
-/// Same as [`curvature`](crate::curvature()), and the errors of rendering the field.
+/// Same as [`curvature`](crate::curvature()), or if rendering the field fails.
 pub fn curvature_of_field(
     field: &(impl Field + ?Sized),
     window: &Window,
@@ -92,7 +92,7 @@ pub fn curvature_of_field(
     Ok(bent.crop(halo, window.size)?)
 }
 
-/// Returns the plane of the heights in a window. The wrap has no effect, since neighbors are read from the field.
+/// Returns `plane` with the extent of a window. The wrap has no effect, since neighbors are read from the field.
 fn in_window(plane: HeightPlane, window: &Window) -> HeightPlane {
     HeightPlane {
         strength: plane.strength,

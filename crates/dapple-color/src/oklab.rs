@@ -6,7 +6,7 @@
 
 use crate::LinearRgb;
 
-/// Returns lightness, a and b of a color, which may lie outside the gamut of a screen.
+/// Converts a color, which may be outside a screen's gamut, to lightness, a and b.
 pub(crate) fn oklab_from_linear(color: LinearRgb) -> [f64; 3] {
     let [r, g, b] = color.to_array().map(f64::from);
     let l = libm::cbrt(0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b);
@@ -19,7 +19,7 @@ pub(crate) fn oklab_from_linear(color: LinearRgb) -> [f64; 3] {
     ]
 }
 
-/// Returns the color with the given lightness, a and b.
+/// Converts lightness, a and b to a color.
 pub(crate) fn linear_from_oklab([lightness, a, b]: [f64; 3]) -> LinearRgb {
     let cube = |root: f64| root * root * root;
     let l = cube(lightness + 0.396_337_777_4 * a + 0.215_803_757_3 * b);

@@ -1,7 +1,7 @@
 //! Named color ramps.
 //!
-//! The colors are original, chosen by eye for the textures of the gallery. Each list goes from the color of low values
-//! to the color of high values.
+//! The colors are original and were chosen by eye for the gallery's textures. Each list goes from the color of low
+//! values to the color of high values.
 
 use crate::{ColorRamp, LinearRgb};
 
@@ -66,7 +66,7 @@ impl Palette {
         ColorRamp::even_unchecked(&self.colors())
     }
 
-    /// Returns the color of a label. Labels past the last color start again at the first.
+    /// Returns the color of a label. Labels beyond the last color start again at the first.
     #[must_use]
     pub fn color(self, label: u32) -> LinearRgb {
         let codes = self.codes();

@@ -1,4 +1,4 @@
-//! The plane of the heights, shared by all maps from heights.
+//! The plane that heights are measured in, shared by all maps computed from heights.
 //!
 //! Lengths are in units of the plane; a raster covers a given extent of it.
 
@@ -9,7 +9,7 @@ use dapple_raster::{Raster, Window, Wrap, parallel};
 /// Maximum radius in pixels.
 const MAX_RADIUS: u32 = 1 << 14;
 
-/// Position of a raster of heights in the plane, for normals, occlusion and curvature.
+/// The extent, strength and wrapping of a raster of heights, for computing normals, occlusion and curvature.
 ///
 /// The options of each map contain a plane and can be created from it with [`From`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,13 +19,13 @@ const MAX_RADIUS: u32 = 1 << 14;
     serde(default, deny_unknown_fields)
 )]
 pub struct HeightPlane {
-    /// Height of the value 1 in units of the plane; negative turns hills into dents. [default: 1]
+    /// Height that the value 1 stands for, in units of the plane; negative turns hills into dents. [default: 1]
     pub strength: f64,
-    /// Width and height of the raster in the plane, above 0. The default is 1 × 1, as in [`Window::unit`]. A raster
-    /// that is not square but has square pixels needs its true proportions here.
+    /// Width and height of the raster in the plane, above 0. The default is 1 × 1, as in [`Window::unit`]. For a
+    /// raster that is not square but has square pixels, set the true proportions here.
     pub extent: DVec2,
-    /// Wrapping of the heights past the edges, along x and y. [default: both repeat] Past a side that does not repeat,
-    /// heights continue as in [`continue_heights`], for both other values.
+    /// How heights wrap beyond the edges, along x and y. [default: both repeat] Beyond a side that does not repeat,
+    /// heights continue as in [`continue_heights`], whichever of the other two modes is set.
     pub wrap: [Wrap; 2],
 }
 
@@ -40,9 +40,9 @@ impl Default for HeightPlane {
 }
 
 impl HeightPlane {
-    /// Returns the plane of heights that were rendered in a window, with the given wrap of its sides. Both axes repeat
-    /// in a raster that tiles. In a part of a larger plane neither repeats; then
-    /// [`normal_map_of_field`](crate::normal_map_of_field) and its siblings read the heights past the sides.
+    /// Returns the plane of heights that were rendered in a window, with the given wrap of its sides. Both axes
+    /// repeat in a raster that tiles. In a part of a larger plane, neither axis repeats; in that case, use
+    /// [`normal_map_of_field`](crate::normal_map_of_field) and its siblings, which read the heights beyond the sides.
     #[must_use]
     pub fn for_window(window: &Window, wrap: [Wrap; 2]) -> Self {
         let side = |axis: usize| {
@@ -71,7 +71,8 @@ impl HeightPlane {
         Ok(())
     }
 
-    /// Returns the margins past sides that do not repeat, for a map that depends on `halo` pixels around each pixel.
+    /// Returns the margins beyond sides that do not repeat, for a map that depends on `halo` pixels around each
+    /// pixel.
     pub(crate) fn open_margin(&self, halo: [u32; 2]) -> [u32; 2] {
         [0, 1].map(|axis| match self.wrap[axis] {
             Wrap::Repeat => 0,
@@ -85,7 +86,7 @@ impl HeightPlane {
     }
 }
 
-/// Continues heights past the sides of an image that does not repeat: `h(-k) = 2 h(0) - h(k)`.
+/// Continues heights beyond the sides of an image that does not repeat: `h(-k) = 2 h(0) - h(k)`.
 ///
 /// The raster contains the image and margins around it. For an axis along which the image does not repeat, `sides` is
 /// the range of its pixels in the raster: the first one, and the one after the last. Heights outside this range are
@@ -126,8 +127,8 @@ fn terms_outside([from, end]: [i64; 2], length: u32) -> Vec<(usize, Term)> {
         .collect()
 }
 
-/// A height past the end of a line as a sum of heights inside: the height at `at` times `sign`, plus the heights at
-/// both sides times their factors.
+/// A height beyond the end of a line, as a sum of heights inside it: the height at `at` times `sign`, plus the
+/// heights at both ends times their factors.
 struct Term {
     at: usize,
     sign: f64,
@@ -136,7 +137,7 @@ struct Term {
 }
 
 impl Term {
-    /// Returns the sum for an index if all its heights are within the line.
+    /// Returns the sum for an index; `None` if any of its heights is outside the line.
     fn new(index: i64, [from, end]: [i64; 2], length: u32) -> Option<Self> {
         let last = end
             .checked_sub(from)?
@@ -152,7 +153,7 @@ impl Term {
             true => (-1.0, [-turns, turns + 2.0]),
             false => (1.0, [-turns, turns]),
         };
-        // A height with factor 0 may lie outside the line.
+        // A height with factor 0 may be outside the line.
         let within = |inside: i64, factor: f64| {
             let inside = from + inside;
             let is_within = (0..i64::from(length)).contains(&inside);
@@ -196,7 +197,7 @@ pub(crate) fn check_radius(
     Ok(())
 }
 
-/// Returns the index within the line, like [`Wrap::index`] but fast for indices inside.
+/// Maps an index into the line, like [`Wrap::index`] but faster for indices that are already inside.
 #[inline(always)]
 pub(crate) fn index(wrap: Wrap, index: i64, length: u32) -> usize {
     if (0..i64::from(length)).contains(&index) {
@@ -206,11 +207,11 @@ pub(crate) fn index(wrap: Wrap, index: i64, length: u32) -> usize {
     }
 }
 
-/// Returns heights with margins, into which they [continue](continue_heights).
+/// Adds margins to heights and [continues](continue_heights) the heights into them.
 ///
 /// # Errors
 ///
-/// [`Raster`](ColorErrorKind::Raster) if the raster becomes too large with its margins.
+/// [`Raster`](ColorErrorKind::Raster) if the raster would become too large with its margins.
 pub(crate) fn with_margin(
     height: &Raster<f32>,
     margin: [u32; 2],

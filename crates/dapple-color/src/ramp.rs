@@ -1,11 +1,11 @@
 //! Color ramps, which map numbers to colors.
 //!
-//! A ramp is a list of stops, each with a position and a color. Positions never decrease. Two stops at one position
-//! make a hard edge; at the position itself the later stop applies. Colors between stops are mixed in a [`RampSpace`].
-//! The colors of the stops are converted to this space when the ramp is created, so mixing in Oklab needs no root per
-//! color.
+//! A ramp is a list of stops, each with a position and a color. Positions never decrease. Two stops at the same
+//! position make a hard edge; at the position itself the later stop applies. Colors between stops are mixed in a
+//! [`RampSpace`]. The colors of the stops are converted to this space when the ramp is created, so mixing in Oklab
+//! computes no cube root per color.
 //!
-//! Reference: original; `oklab.rs` has the reference of Oklab.
+//! Original implementation; see `oklab.rs` for the reference on Oklab.
 
 use crate::oklab::{linear_from_oklab, oklab_from_linear};
 use crate::srgb::{linear_from_srgb, srgb_from_linear};
@@ -16,7 +16,7 @@ use dapple_raster::Raster;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ColorStop {
-    /// Position, in the unit of the numbers that the ramp maps; usually from 0 to 1.
+    /// Position, in the units of the numbers that the ramp maps; usually from 0 to 1.
     pub position: f32,
     /// Color at the position, linear.
     pub color: LinearRgb,
@@ -92,7 +92,7 @@ dapple_raster::named! {
 )]
 pub struct ColorRamp {
     stops: Vec<ColorStop>,
-    /// Colors of the stops in the mixing space.
+    /// Colors of the stops, converted to the mixing space.
     mixed: Vec<[f64; 3]>,
     space: RampSpace,
     interpolation: Interpolation,
@@ -164,7 +164,7 @@ impl ColorRamp {
         Self::even(&colors?)
     }
 
-    /// Creates bands of equal width from 0 to 1, one per color, without mixing.
+    /// Creates a ramp of equally wide bands from 0 to 1, one per color, without mixing.
     ///
     /// # Errors
     ///
@@ -212,7 +212,7 @@ impl ColorRamp {
         &self.stops
     }
 
-    /// Returns the color of a number. NaN has the color of the first stop.
+    /// Returns the color for a number. NaN gets the first stop's color.
     #[must_use]
     pub fn at(&self, value: f32) -> LinearRgb {
         let value = self.bring_inside(value);
@@ -234,7 +234,7 @@ impl ColorRamp {
         }
     }
 
-    /// Mixes stop `to` and the one before it; `part` is 0 at the earlier one.
+    /// Mixes stop `to` with the stop before it; `part` is 0 at the earlier stop and 1 at stop `to`.
     fn mixture(&self, to: usize, part: f32) -> LinearRgb {
         let from = to - 1;
         let (before, after) = (self.stops[from].color, self.stops[to].color);
@@ -256,7 +256,8 @@ impl ColorRamp {
         values.par_map(|&value| self.at(value))
     }
 
-    /// Returns a number within the stops that has the same color, or the number itself with [`Outside::Clamp`].
+    /// Maps a number into the range of the stops without changing its color. With [`Outside::Clamp`], returns the
+    /// number itself.
     fn bring_inside(&self, value: f32) -> f32 {
         let [first, last] =
             [self.stops[0], self.stops[self.stops.len() - 1]].map(|stop| stop.position);
@@ -278,7 +279,7 @@ impl ColorRamp {
 }
 
 impl RampSpace {
-    /// Converts a color to this space.
+    /// Converts a color to this mixing space.
     fn of_linear(self, color: LinearRgb) -> [f64; 3] {
         match self {
             Self::Oklab => oklab_from_linear(color),
@@ -289,7 +290,7 @@ impl RampSpace {
         }
     }
 
-    /// Converts the components in this space to a color.
+    /// Converts components in this mixing space to a color.
     fn to_linear(self, parts: [f64; 3]) -> LinearRgb {
         match self {
             Self::Oklab => linear_from_oklab(parts),

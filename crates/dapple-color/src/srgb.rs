@@ -1,12 +1,12 @@
 //! The sRGB transfer function in both directions, exact for 8 and 16 bits.
 //!
-//! Reference: IEC 61966-2-1:1999. Its curve decodes a code value `v` from 0 to 1 to the linear value `v / 12.92` up to
-//! 0.04045 and to `((v + 0.055) / 1.055)^2.4` above. It encodes a linear value `x` as `12.92 x` up to 0.0031308 and as
-//! `1.055 x^(1/2.4) - 0.055` above. The two limits of the standard do not match exactly, but no threshold between two
-//! codes of 8 or 16 bits lies in the gap, so both directions agree on every threshold.
+//! Reference: IEC 61966-2-1:1999. Its curve decodes a code value `v` from 0 to 1 to the linear value `v / 12.92` up
+//! to 0.04045 and to `((v + 0.055) / 1.055)^2.4` above. It encodes a linear value `x` as `12.92 x` up to 0.0031308
+//! and as `1.055 x^(1/2.4) - 0.055` above. The two limits of the standard do not match exactly, but no threshold
+//! between two 8- or 16-bit codes is in the gap, so both directions agree on every threshold.
 //!
 //! A table per bit depth, created at first use, contains the linear value of every code and, for every code, the
-//! smallest `f32` that encodes to it. Encoding guesses a code and then steps until the value lies between two
+//! smallest `f32` that encodes to it. Encoding guesses a code and then steps until the value is between two
 //! thresholds. The guess affects only the speed; the thresholds alone decide the result. The powers come from `libm`
 //! in `f64`, so the tables are the same on every platform. The tests prove every entry with integers of arbitrary
 //! size, where the curve is `x^5 = y^12`.
@@ -26,7 +26,7 @@ pub(crate) struct Curve {
     linear: Vec<f32>,
     /// Thresholds: `borders[k]` is the smallest number whose code is above `k`. The last element is infinity.
     borders: Vec<f32>,
-    /// Segment bits of the first threshold.
+    /// Segment bits (exponent and upper mantissa) of the first threshold.
     first_part: u32,
     /// Unrounded code at the start of each segment, and at the end of the last one.
     guesses: Vec<f32>,

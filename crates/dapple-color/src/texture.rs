@@ -1,19 +1,19 @@
-//! Rasters as the bytes of a GPU texture, and their mip levels.
+//! Converts rasters to the bytes and mip levels of GPU textures.
 //!
 //! The bytes have the layout of `Rgba8Unorm` and `Rgba8UnormSrgb` in WebGPU and of the equivalent formats elsewhere:
 //! red, green, blue, alpha, row by row from the top, without padding. Colors are sRGB codes, which the GPU decodes to
 //! linear light when it samples. Data is linear in the texture too.
 //!
-//! A mip level has half of the columns and rows of the previous level, rounded down, and at least one. Its pixels are
-//! means over their areas in linear light; along an odd side adjacent areas share pixels. The levels of an image that
-//! repeats also repeat.
+//! A mip level has half of the columns and rows of the previous level, rounded down, and at least one. Each pixel is
+//! the mean in linear light over the area it covers; along a side of odd length, adjacent areas share pixels. The
+//! levels of an image that repeats also repeat.
 
 use crate::{Code as _, LinearRgb, LinearRgba, Normal};
 use dapple_raster::{Raster, RasterError, parallel};
 
 /// A pixel of a texture: a color, a normal, a number, or three or four numbers that are not a color.
 pub trait TexturePixel: Copy + Send + Sync {
-    /// Returns the linear codes of the pixel for the format `Rgba8Unorm`: `round(value · 255)`, and for normals
+    /// Returns the pixel's linear codes for the format `Rgba8Unorm`: `round(value · 255)`, and for normals
     /// `round((component + 1) / 2 · 255)`. Alpha is 255 if the pixel has none.
     #[must_use]
     fn to_rgba8(self) -> [u8; 4];
@@ -26,7 +26,7 @@ pub trait TexturePixel: Copy + Send + Sync {
 
 /// A pixel whose first three numbers are a color in linear light.
 pub trait ColorPixel: TexturePixel {
-    /// Returns the sRGB codes of the pixel and its linear alpha, for the format `Rgba8UnormSrgb`.
+    /// Returns the pixel's sRGB codes and its linear alpha for the format `Rgba8UnormSrgb`.
     #[must_use]
     fn to_rgba8_srgb(self) -> [u8; 4];
 }
@@ -60,7 +60,7 @@ pub trait TextureRaster<T> {
     where
         T: ColorPixel;
 
-    /// Returns the mip levels: this raster first, a single pixel last.
+    /// Returns the mip levels, from this raster down to a single pixel.
     ///
     /// # Errors
     ///
@@ -129,8 +129,8 @@ fn halved<T: TexturePixel>(raster: &Raster<T>) -> Result<Raster<T>, RasterError>
     })
 }
 
-/// Returns for each pixel of the halved side the pixels that it covers, and the fraction of its length that each of
-/// them takes.
+/// Returns, for each pixel of the halved side, the pixels that it covers, each with the fraction of the new pixel's
+/// length that it fills.
 fn taps(side: u32) -> Vec<Vec<(u32, f64)>> {
     let half = (side / 2).max(1);
     let (side, length) = (f64::from(side), f64::from(side) / f64::from(half));
@@ -148,7 +148,7 @@ fn taps(side: u32) -> Vec<Vec<(u32, f64)>> {
         .collect()
 }
 
-/// Returns the codes of numbers from 0 to 1.
+/// Converts numbers from 0 to 1 to 8-bit codes.
 fn codes<const N: usize>(numbers: [f32; N]) -> [u8; N] {
     numbers.map(u8::from_unit)
 }

@@ -1,7 +1,7 @@
-//! Errors of rasters, windows and fields.
+//! Errors from rasters, windows and fields.
 
 crate::error! {
-    /// Error of an operation on rasters, windows or fields.
+    /// An error from an operation on rasters, windows or fields.
     RasterError,
     /// Cause of a [`RasterError`], with the limit and the value.
     RasterErrorKind with Range {
@@ -40,7 +40,7 @@ crate::error! {
         } =>
             "the rectangle of {} × {} pixels at ({}, {}) leaves the raster of {} × {}",
             size[0], size[1], first[0], first[1], bounds[0], bounds[1];
-        /// The tile of a field was requested, but the field does not repeat along both axes.
+        /// A field's tile was requested, but the field does not repeat along both axes.
         NoPeriod => "the field does not repeat along both axes, so that there is no tile of it";
         /// A number is not finite, or the size of a pixel is zero.
         NotFinite {
@@ -53,7 +53,7 @@ crate::error! {
 }
 
 impl RasterError {
-    /// Checks that a buffer of `length` values has exactly the `needed` length. For implementations of
+    /// Checks that a buffer's `length` equals the `needed` length. Intended for implementations of
     /// [`Field`](crate::Field).
     ///
     /// # Errors
@@ -66,7 +66,7 @@ impl RasterError {
         Err(Self::new(RasterErrorKind::Length { length, needed }))
     }
 
-    /// Checks that a number is in its range; `holds` is the result of the comparison. For implementations of
+    /// Checks that a number is in its range; `holds` is the result of the comparison. Intended for implementations of
     /// [`Field`](crate::Field).
     ///
     /// # Errors

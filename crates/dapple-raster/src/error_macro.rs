@@ -1,4 +1,4 @@
-//! Macro that defines the error types of all crates.
+//! The macro that defines the error types of all dapple crates.
 
 /// Defines an error type of dapple: an opaque struct, its kinds with their messages, and conversions from other
 /// errors.
@@ -39,7 +39,7 @@ macro_rules! error {
     ) => {
         $(#[$error_doc])*
         ///
-        /// Match on [`kind`](Self::kind); the text is for people.
+        /// Match on [`kind`](Self::kind); the message is for people.
         #[derive(Clone, Debug, PartialEq)]
         pub struct $error {
             kind: $kind,

@@ -1,4 +1,4 @@
-//! The trait [`Field`]: a function with a value at every position of the plane or of space.
+//! The trait [`Field`] for functions that have a value at every position in the plane or in space.
 
 mod combinators;
 mod fractal;
@@ -20,12 +20,12 @@ use crate::{Raster, RasterError, RasterErrorKind, RasterViewMut, Window};
 use core::fmt;
 use std::sync::Arc;
 
-/// A scalar function of positions with `N` coordinates: of the plane by default, of space, or of space and time. It
-/// can also render a window.
+/// A scalar function of positions with `N` coordinates. It is defined on the plane (by default), in space, or in
+/// space and time, and can also render a window.
 ///
 /// Generators implement this trait, and programs store `dyn Field`. [`FieldExt`] has the methods for callers:
-/// [`sample`](FieldExt::sample) accepts the vectors of any library, and other methods compose fields. References,
-/// boxes and `Arc`s of fields are fields, and so are a [`Constant`] and closures in [`field_fn`].
+/// [`sample`](FieldExt::sample) accepts any library's vectors, and other methods compose fields. References, boxes
+/// and `Arc`s of fields are fields, and so are a [`Constant`] and closures wrapped by [`field_fn`].
 ///
 /// All methods give the same bits: `render` and `values` equal `value` at every position. Implementations override
 /// them to be faster on many positions. At a position that is not finite, the value is NaN.
@@ -65,11 +65,11 @@ pub trait Field<const N: usize = 2>: Send + Sync {
         Ok(())
     }
 
-    /// Computes the values at the pixel centers of a window; `out` must have its size.
+    /// Computes the values at a window's pixel centers; `out` must be the same size as the window.
     ///
     /// # Errors
     ///
-    /// [`SizeMismatch`](crate::RasterErrorKind::SizeMismatch) if `out` has another size than the window.
+    /// [`SizeMismatch`](crate::RasterErrorKind::SizeMismatch) if `out` and the window differ in size.
     fn render(
         &self,
         window: &Window<N>,
@@ -84,8 +84,8 @@ pub trait Field<const N: usize = 2>: Send + Sync {
         Ok(())
     }
 
-    /// Renders several windows, such as the planes of a volume, each into a view of its size. This is faster than
-    /// rendering them one at a time if neighboring planes share work, as cellular noise does.
+    /// Renders several windows, such as the planes of a volume, each into a view of the same size. This is faster
+    /// than rendering them one at a time if neighboring planes share work, as cellular noise does.
     ///
     /// # Errors
     ///
@@ -100,19 +100,19 @@ pub trait Field<const N: usize = 2>: Send + Sync {
         stack.try_for_each(|(window, out)| self.render(window, out))
     }
 
-    /// Returns the period of the field along each axis: `None` if it does not repeat or the period is unknown, 0 if
-    /// the field is constant along the axis.
+    /// Returns the field's period along each axis. It is `None` if the field does not repeat or its period is
+    /// unknown, and 0 if the field is constant along the axis.
     fn period(&self) -> [Option<f64>; N] {
         [None; N]
     }
 
-    /// Renders one period of the field, starting at the origin, as a raster of `size` pixels that tiles exactly. The
-    /// period is that of the first two axes; the other coordinates are 0. Along an axis where the field is constant,
-    /// the raster covers a length of 1.
+    /// Renders one period of the field, starting at the origin, as a raster of `size` pixels that tiles exactly. Only
+    /// the first two axes are rendered; the other coordinates are 0. Along an axis where the field is constant, the
+    /// raster covers a length of 1.
     ///
     /// # Errors
     ///
-    /// [`NoPeriod`](RasterErrorKind::NoPeriod) if the field does not repeat along both axes, otherwise the errors of
+    /// [`NoPeriod`](RasterErrorKind::NoPeriod) if the field does not repeat along both axes, or any error from
     /// [`Window::new`].
     fn tile_raster(&self, size: [u32; 2]) -> Result<Raster<f32>, RasterError> {
         let mut extent = [1.0; 2];
@@ -185,7 +185,7 @@ impl<const N: usize> Field<N> for Constant {
     }
 }
 
-/// Conversion to a field: implemented for fields, and for numbers, which become a [`Constant`].
+/// Conversion to a field. It is implemented for fields, and for numbers, which become a [`Constant`].
 ///
 /// Numbers are not fields themselves, because `value.max(0.0)` would be ambiguous for an `f32` with [`FieldExt`] in
 /// scope.
@@ -200,7 +200,7 @@ impl<const N: usize> Field<N> for Constant {
 /// assert_eq!([1.0_f32, 3.0].map(|value| value.max(2.0)), [2.0, 3.0]);
 /// ```
 pub trait IntoField<const N: usize = 2> {
-    /// Type of the field.
+    /// Type of the resulting field.
     type Field: Field<N>;
 
     /// Converts `self` to a field.

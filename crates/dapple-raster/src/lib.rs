@@ -1,7 +1,7 @@
 //! Pixels in memory for procedural textures: rasters, windows of the plane, wrapping, and fields that compose.
 //!
-//! A [`Field`] is a function with a value at every position, such as noise. A [`Window`] says which positions the
-//! pixels of a [`Raster`] have. [`FieldExt`] composes fields: frequency, offset, rotation, domain warp, arithmetic,
+//! A [`Field`] is a function with a value at every position, such as noise. A [`Window`] assigns positions to the
+//! pixels of a [`Raster`]. [`FieldExt`] composes fields: frequency, offset, rotation, domain warp, arithmetic,
 //! fractal sums ([`Fractal`]).
 //!
 //! ```
@@ -37,7 +37,7 @@
 //!
 //! Pixels of a raster are read by [`Raster::at`] with a [`Wrap`] per axis, between pixels by
 //! [`Raster::sample_bilinear`], and averaged over an area by [`Raster::sample_area`]. A [`Varying`] is a number that
-//! may depend on the position, for options of generators.
+//! may depend on the position, for use in generator options.
 //!
 //! # Features
 //!
@@ -49,13 +49,15 @@
 //!
 //! # Limits
 //!
-//! * A raster or a window has at most 2^31 pixels. A larger one is a [`RasterError`] with the size.
+//! * A raster or a window has at most 2^31 pixels. A larger size gives a [`RasterError`] that states it.
 //! * Positions are `f64` and field values `f32`. Raster pixels are of any type.
 //! * Row 0 is the top; x goes right and y goes down.
 //! * A fractal sum has 1 to 32 octaves.
-//! * A composed field repeats where all its parts do. [`Field::period`] is `None` along an axis without a known period.
+//! * A composed field repeats along the axes along which all its parts repeat. [`Field::period`] is `None` along an
+//!   axis without a known period.
 //! * The crate reads and writes no files. `dapple-image` does.
-//! * Results have the same bits on every platform and any number of threads. Only closures of your own can change that.
+//! * Results have the same bits on every platform and any number of threads. The only exceptions are closures that
+//!   the caller supplies.
 //!
 //! # Without std
 //!

@@ -1,6 +1,6 @@
-//! Enums with named values: one table for recipes, the command line and documentation.
+//! Enums with named values, whose names serve recipes, the command line and documentation.
 
-/// An enum whose values have names, defined by the macro `named!`.
+/// An enum with named values, defined by the macro `named!`.
 pub trait Named: Copy + PartialEq + 'static {
     /// All values, in the order of definition.
     const ALL: &'static [Self];
@@ -8,13 +8,13 @@ pub trait Named: Copy + PartialEq + 'static {
     /// Names of the values, in the same order as `ALL`.
     const NAMES: &'static [&'static str];
 
-    /// Returns the name in snake case.
+    /// Returns the value's name in snake case.
     fn name(self) -> &'static str;
 
-    /// Returns the alternative names that are accepted when reading.
+    /// Returns the alternative names that are accepted when a value is read.
     fn aliases(self) -> &'static [&'static str];
 
-    /// Returns the documentation of the value.
+    /// Returns the value's documentation.
     fn documentation(self) -> &'static str;
 
     /// Returns the value with this name or alias; `None` if there is no such value.
@@ -28,8 +28,8 @@ pub trait Named: Copy + PartialEq + 'static {
 /// Defines an enum whose values have names. It implements [`Named`], `Display`, and serde if the feature `serde` of
 /// this crate is enabled.
 ///
-/// The name follows each value, and aliases follow after a bar. Each value has a documentation, whose first sentence
-/// is the help text on the command line.
+/// The name follows each value, and aliases follow the name after a bar. Each value is documented, and the first
+/// sentence of its documentation is the help text on the command line.
 ///
 /// ```
 /// use dapple_raster::Named;
@@ -145,7 +145,7 @@ macro_rules! named_serde {
 ///
 /// # Errors
 ///
-/// If there is no value of this name; the error lists all names.
+/// If there is no value with this name; the error lists all names.
 #[cfg(feature = "serde")]
 #[doc(hidden)]
 pub fn read_named<'de, T: Named, D: serde::Deserializer<'de>>(
@@ -154,7 +154,7 @@ pub fn read_named<'de, T: Named, D: serde::Deserializer<'de>>(
     deserializer.deserialize_str(Name(core::marker::PhantomData))
 }
 
-/// Visitor for the name of a value.
+/// Visitor that deserializes a value from its name.
 #[cfg(feature = "serde")]
 struct Name<T>(core::marker::PhantomData<T>);
 

@@ -1,14 +1,14 @@
-//! Parallel loops: on all cores if the feature `rayon` is enabled, sequential otherwise.
+//! Parallel loops, which run on all cores if the feature `rayon` is enabled and sequentially otherwise.
 //!
 //! Every piece is computed independently and stored at its position, so that the bits do not depend on the number of
-//! threads. This is the only module that uses `rayon`. Code of parallel iterators is large, compiled separately for
-//! every closure, and optimized again in each caller. Therefore closures are called through trait objects: a call
-//! costs about a nanosecond, and the surrounding code is compiled once per value type.
+//! threads. This is the only module that uses `rayon`. The code of parallel iterators is large. It is compiled
+//! separately for every closure and optimized again in each caller. Therefore closures are called through trait
+//! objects: a call costs about a nanosecond, and the surrounding code is compiled once per value type.
 
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-/// Maximum number of pieces per thread: enough that no thread waits long for another.
+/// Maximum number of pieces per thread. It is large enough that no thread waits long for another.
 const PIECES: usize = 64;
 
 /// Returns the number of threads that can run in parallel: 1 if the feature `rayon` is disabled.
@@ -31,12 +31,14 @@ pub fn for_each(count: usize, work: &(dyn Fn(usize) + Sync)) {
     (0..count).for_each(work);
 }
 
-/// Collects the results of `make` for the numbers below `count`, in order. Each call is worth a task.
+/// Collects the results of `make` for the numbers below `count`, in order. Each call may run as a separate parallel
+/// task.
 pub fn map<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync) -> Vec<T> {
     map_at_least(1, count, make)
 }
 
-/// Collects the results of `make` for the numbers below `count`, in order. `least` calls together are worth a task.
+/// Collects the results of `make` for the numbers below `count`, in order. A parallel task makes at least `least`
+/// calls.
 pub fn map_at_least<T: Send>(
     least: usize,
     count: usize,
@@ -51,8 +53,8 @@ fn all_of<T: Send>(least: usize, count: usize, make: &(dyn Fn(usize) -> T + Sync
     map_parts(least, count, &|part| part.map(make).collect())
 }
 
-/// Concatenates the results of `make` for ranges of the numbers below `count`. `least` numbers together are worth a
-/// task.
+/// Concatenates the results of `make` for ranges of the numbers below `count`. A parallel task covers at least
+/// `least` numbers.
 ///
 /// On one thread there is a single range: `make` has only one call site, so that it is compiled once.
 #[inline(never)]
@@ -80,12 +82,12 @@ pub(crate) fn map_parts<T: Send>(
     all
 }
 
-/// Calls `work` once with each item and its index, in any order. Each call is worth a task.
+/// Calls `work` once with each item and its index, in any order. Each call may run as a separate parallel task.
 pub fn for_each_mut<T: Send>(items: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
     for_each_mut_at_least(1, items, work);
 }
 
-/// Calls `work` once with each item and its index, in any order. `least` items together are worth a task.
+/// Calls `work` once with each item and its index, in any order. A parallel task covers at least `least` items.
 pub fn for_each_mut_at_least<T: Send>(
     least: usize,
     items: &mut [T],
@@ -105,7 +107,8 @@ fn each_of<T: Send>(least: usize, items: &mut [T], work: &(dyn Fn(usize, &mut T)
     });
 }
 
-/// Collects the results of `change` for each item and its index, in order. `least` items together are worth a task.
+/// Collects the results of `change` for each item and its index, in order. A parallel task covers at least `least`
+/// items.
 pub fn map_mut_at_least<T: Send, U: Send>(
     least: usize,
     items: &mut [T],
@@ -185,7 +188,7 @@ fn consume_all<T: Send, S: Send>(
     });
 }
 
-/// Runs all workers concurrently, each with its index; there are at most [`n_threads`] workers.
+/// Runs all workers concurrently, each with its index. Pass at most [`n_threads`] workers.
 ///
 /// A worker that starts late may find that the others have completed all work.
 pub fn together<W: Send>(workers: &mut [W], work: impl Fn(usize, &mut W) + Sync) {
@@ -221,7 +224,7 @@ fn piece(count: usize, least: usize) -> usize {
     size.max(least).max(1)
 }
 
-/// Locks a mutex and ignores poisoning: rayon propagates the panic.
+/// Locks a mutex and ignores poisoning, because rayon propagates the panic.
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,14 +1,14 @@
-//! Cache of parts of textures that are reused when a texture is rebuilt with other options, for example while a slider
-//! is dragged.
+//! A cache of texture parts, which are reused when a texture is rebuilt with other options, for example while a
+//! slider is dragged.
 
 use core::any::Any;
 use core::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A cache of texture parts, such as networks of control points, for textures that need equal ones.
+/// A cache of texture parts, such as networks of control points, that several textures need in identical form.
 ///
-/// Clones share the cache. By default nothing is cached; [`keeping`](Self::keeping) caches the parts used in recent
-/// rounds.
+/// Clones share the cache. The default cache stores nothing. A cache created by [`keeping`](Self::keeping) retains
+/// the parts used in recent rounds.
 ///
 /// # Examples
 ///
@@ -38,7 +38,7 @@ struct Kept {
 }
 
 impl Parts {
-    /// Creates a cache that keeps parts until [`begin`](Self::begin) drops them.
+    /// Creates a cache that retains parts until [`begin`](Self::begin) drops them.
     #[must_use]
     pub fn keeping() -> Self {
         Self {
@@ -55,13 +55,14 @@ impl Parts {
         }
     }
 
-    /// Returns the cached part of this type for which `is_it` is true, or else creates it with `make`.
+    /// Returns the cached part of type `T` for which `is_it` is true. If there is none, creates the part with `make`
+    /// and caches it.
     ///
     /// `is_it` must be true only for parts with the same bits as the result of `make`.
     ///
     /// # Errors
     ///
-    /// The error of `make`.
+    /// If `make` fails.
     pub fn get_or_make<T: Any + Send + Sync, E>(
         &self,
         is_it: impl Fn(&T) -> bool,

@@ -1,11 +1,11 @@
-//! Rasters: images that own their pixels.
+//! Rasters, which are images that own their pixels.
 
 use crate::parallel;
 use crate::window::check_size;
 use crate::{RasterError, RasterErrorKind, RasterView, RasterViewMut, Window, Wrap};
 use glam::DVec2;
 
-/// An image: `width × height` values, row by row from the top, without gaps.
+/// An image of `width × height` values, stored row by row from the top without gaps.
 ///
 /// A raster is never empty and has at most 2^31 pixels.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,13 +69,13 @@ impl<T> Raster<T> {
         &self.data
     }
 
-    /// Returns the mutable pixels, row by row from the top.
+    /// Returns the pixels for writing, row by row from the top.
     #[must_use]
     pub fn pixels_mut(&mut self) -> &mut [T] {
         &mut self.data
     }
 
-    /// Converts into the pixels, row by row from the top.
+    /// Consumes the raster and returns its pixels, row by row from the top.
     #[must_use]
     pub fn into_pixels(self) -> Vec<T> {
         self.data
@@ -103,7 +103,7 @@ impl<T> Raster<T> {
         RasterViewMut::whole(&mut self.data, self.size)
     }
 
-    /// Applies `change` to every pixel.
+    /// Returns a raster of the same size with the results of `change` for every pixel.
     #[must_use]
     pub fn map<U>(&self, change: impl FnMut(&T) -> U) -> Raster<U> {
         Raster {
@@ -135,7 +135,7 @@ impl<T> Raster<T> {
         })
     }
 
-    /// Checks that a size equals the size of this raster.
+    /// Checks that `size` equals this raster's size.
     ///
     /// # Errors
     ///
@@ -144,7 +144,7 @@ impl<T> Raster<T> {
         check_same_size(size, self.size)
     }
 
-    /// Returns the pixel at `[column, row]`, which may be outside, with the given wrap mode for each axis.
+    /// Returns the pixel at `[column, row]`. A position outside the raster is wrapped by the mode for each axis.
     #[must_use]
     #[inline]
     pub fn at(&self, column: i64, row: i64, wrap: [Wrap; 2]) -> &T {
@@ -157,7 +157,7 @@ impl<T> Raster<T> {
 }
 
 impl<T: Copy> Raster<T> {
-    /// Creates a raster of `size` pixels with the same value.
+    /// Creates a raster of `size` pixels that all have the same value.
     ///
     /// # Errors
     ///
@@ -181,21 +181,21 @@ impl<T: Copy> Raster<T> {
         }
     }
 
-    /// Copies the rectangle of `size` pixels that starts at `first`.
+    /// Copies the rectangle of `size` pixels whose top left pixel is at `first` (column, row).
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::OutOfBounds`] if it extends beyond the raster, [`RasterErrorKind::Empty`] if it has no
-    /// pixel.
+    /// [`RasterErrorKind::OutOfBounds`] if the rectangle extends beyond the raster, [`RasterErrorKind::Empty`] if it
+    /// contains no pixel.
     pub fn crop(&self, first: [u32; 2], size: [u32; 2]) -> Result<Self, RasterError> {
         Ok(Self::from_view(self.view().crop(first, size)?))
     }
 
-    /// Repeats the raster `count[0] × count[1]` times, which makes seams visible.
+    /// Repeats the raster `count[0]` times along x and `count[1]` times along y, which makes seams visible.
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for the resulting size.
+    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] if the resulting size is invalid.
     pub fn tile(&self, count: [u32; 2]) -> Result<Self, RasterError> {
         let size = [
             self.size[0].saturating_mul(count[0]),
@@ -211,7 +211,8 @@ impl<T: Copy> Raster<T> {
 }
 
 impl<T: Sync> Raster<T> {
-    /// Applies `change` to every pixel, on all cores if the feature `rayon` is enabled.
+    /// Returns a raster of the same size with the results of `change` for every pixel. Runs on all cores if the
+    /// feature `rayon` is enabled.
     #[must_use]
     pub fn par_map<U: Send>(&self, change: impl Fn(&T) -> U + Sync) -> Raster<U> {
         let data = parallel::map_parts(BAND_PIXELS, self.data.len(), &|part| {
@@ -222,7 +223,7 @@ impl<T: Sync> Raster<T> {
     }
 }
 
-/// Number of pixels that are computed at a time, unless a row has more.
+/// Number of pixels that are computed at a time, unless a single row has more.
 const BAND_PIXELS: usize = 4096;
 
 impl<T: Send> Raster<T> {

@@ -1,4 +1,4 @@
-//! Bilinear interpolation of rasters, and area averages.
+//! Samples rasters with bilinear interpolation and area averages.
 
 use crate::{Raster, Wrap};
 use core::ops::{Add, Mul, Sub};
@@ -13,8 +13,8 @@ impl<T: Texel> Raster<T> {
     /// Samples the raster at `uv` with bilinear interpolation between the four nearest pixel centers.
     ///
     /// `(0, 0)` is the top left corner of the raster and `(1, 1)` the bottom right one. The center of pixel `[i, j]`
-    /// is at `((i + ½) / width, (j + ½) / height)`, where the result equals the pixel. `wrap` is the wrap mode of each
-    /// axis. A `uv` that is not finite reads the first pixel.
+    /// is at `((i + ½) / width, (j + ½) / height)`, where the result equals the pixel. `wrap` is the wrap mode for
+    /// each axis. If `uv` is not finite, the first pixel is returned.
     #[must_use]
     pub fn sample_bilinear(&self, uv: DVec2, wrap: [Wrap; 2]) -> T {
         let [width, height] = self.size();
@@ -26,7 +26,7 @@ impl<T: Texel> Raster<T> {
         lerp(top, bottom, fy)
     }
 
-    /// Averages a rectangle around `uv` with the side lengths `area`, in units of `uv`.
+    /// Returns the average over a rectangle centered on `uv`, with the side lengths `area` in `uv` units.
     ///
     /// Each pixel is weighted by its overlap with the rectangle. Along an axis where the rectangle is at most one
     /// pixel long, the value is interpolated as in [`sample_bilinear`](Self::sample_bilinear); if this holds for both
@@ -52,15 +52,15 @@ impl<T: Texel> Raster<T> {
 /// Maximum side of a rectangle, in pixels, at which values are interpolated.
 const ONE_PIXEL: f64 = 1.0 + 1e-9;
 
-/// Overlap of an interval with the pixels of a line.
+/// The overlap of an interval with the pixels of a line.
 struct Shares {
     first: i64,
-    /// Ends of the interval, in pixels relative to the first one.
+    /// Ends of the interval, in pixels relative to the first pixel.
     ends: [f64; 2],
 }
 
-/// Returns the overlap of an interval with a line of `size` pixels. An interval of at most one pixel is extended to
-/// one pixel: the weights are then those of linear interpolation.
+/// Returns the overlap of an interval with a line of `size` pixels. An interval shorter than a pixel is extended to
+/// one pixel, so its weights equal those of linear interpolation.
 fn shares(middle: f64, length: f64, size: f64) -> Shares {
     let length = if length > ONE_PIXEL {
         length.min(size)
@@ -79,11 +79,11 @@ fn shares(middle: f64, length: f64, size: f64) -> Shares {
     }
 }
 
-/// Resolution of interval ends, in fractions of a pixel.
+/// Resolution of interval ends, in steps per pixel.
 const PARTS: f64 = (1 << 20) as f64;
 
 impl Shares {
-    /// Returns the weights of the pixels, starting at the first one, which sum to 1.
+    /// Returns the weights of the overlapped pixels, from the first one on. They sum to 1.
     fn weights(&self) -> impl Iterator<Item = f32> {
         let [from, end] = self.ends;
         let length = end - from;
@@ -97,7 +97,7 @@ impl Shares {
     }
 }
 
-/// Returns the weighted mean with weights that sum to 1; exact if all values are equal.
+/// Returns the weighted mean of values, with weights that sum to 1. It is exact if all values are equal.
 fn mean<T: Texel>(first: i64, weights: impl Iterator<Item = f32>, at: impl Fn(i64) -> T) -> T {
     let base = at(first);
     let mut sum = base;
@@ -107,7 +107,8 @@ fn mean<T: Texel>(first: i64, weights: impl Iterator<Item = f32>, at: impl Fn(i6
     sum
 }
 
-/// Returns the integer part, and fraction in `[0, 1)`. Outside of the range of `i64` the fraction is 0.
+/// Splits a coordinate into its integer part and a fraction in `[0, 1)`. Outside the range of `i64`, the fraction is
+/// 0.
 fn cell_and_fraction(coordinate: f64) -> (i64, f32) {
     let floor = coordinate.floor();
     let fraction = (coordinate - floor) as f32;
@@ -118,7 +119,8 @@ fn cell_and_fraction(coordinate: f64) -> (i64, f32) {
     }
 }
 
-/// Returns the linear interpolation, exactly `a` at 0, so that pixel centers reproduce the raster.
+/// Interpolates linearly from `a` (at `t` = 0) to `b` (at `t` = 1). The result is exactly `a` at 0, so that pixel
+/// centers reproduce the raster.
 fn lerp<T: Texel>(a: T, b: T, t: f32) -> T {
     a + (b - a) * t
 }

@@ -1,7 +1,7 @@
-//! Selection of the SIMD level, and tests of all levels.
+//! Selects the SIMD level, and helps to test all levels.
 //!
-//! For crates that render rasters with vector instructions: every level gives the same bits. Without the feature
-//! `simd` there is a single level, compiled like other code.
+//! Intended for crates that render rasters with vector instructions. Every level gives the same bits. Without the
+//! feature `simd` there is a single level, compiled like other code.
 
 #[cfg(feature = "simd")]
 mod levels;

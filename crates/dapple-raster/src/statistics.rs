@@ -1,15 +1,15 @@
-//! Range, mean, standard deviation and histogram of a raster.
+//! Computes the range, mean, standard deviation and histogram of a raster.
 
 use crate::Raster;
 
 /// Range, mean and standard deviation of the pixels of a raster.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
-    /// Minimum.
+    /// Minimum value.
     pub min: f32,
-    /// Maximum.
+    /// Maximum value.
     pub max: f32,
-    /// Mean.
+    /// Mean value.
     pub mean: f64,
     /// Standard deviation, with the number of pixels as the divisor.
     pub deviation: f64,
@@ -53,7 +53,7 @@ impl Raster<f32> {
 
     /// Returns the number of pixels in each of `bins` equal intervals of the range from `from` to `to`.
     ///
-    /// Values outside of the range count in the first or last interval; NaN is ignored.
+    /// Values outside the range count in the first or last interval; NaN is ignored.
     #[must_use]
     pub fn histogram(&self, from: f32, to: f32, bins: u32) -> Vec<usize> {
         let mut counts = vec![0; bins.max(1) as usize];

@@ -1,21 +1,21 @@
-//! Decoding of text files: recipes, tables, lists and text mesh formats.
+//! Decodes text files, such as recipes, tables, lists and text mesh formats.
 //!
 //! All text is UTF-8. A leading byte order mark is skipped, and the error for other Unicode encodings names the
 //! encoding.
 
 crate::error! {
-    /// Error of decoding text.
+    /// An error from decoding text.
     TextError,
     /// Cause of a [`TextError`].
     TextErrorKind {
-        /// The text has another Unicode encoding.
+        /// The text has a Unicode encoding other than UTF-8.
         Encoding {
             /// Name of the encoding: UTF-16 or UTF-32.
             found: &'static str,
         } => "the text is {found}, but must be UTF-8";
         /// The bytes are not UTF-8.
         NotUtf8 {
-            /// Number of bytes before the first invalid one.
+            /// Number of valid bytes before the first invalid one.
             at: usize,
         } => "the text is not UTF-8 at byte {at}";
     }
@@ -49,7 +49,8 @@ pub fn without_mark(bytes: &[u8]) -> Result<&[u8], TextError> {
 ///
 /// # Errors
 ///
-/// [`Encoding`](TextErrorKind::Encoding) for UTF-16 and UTF-32; [`NotUtf8`](TextErrorKind::NotUtf8) for other bytes.
+/// [`Encoding`](TextErrorKind::Encoding) for UTF-16 and UTF-32; [`NotUtf8`](TextErrorKind::NotUtf8) for other invalid
+/// bytes.
 ///
 /// # Examples
 ///

@@ -1,4 +1,4 @@
-//! Spatially varying numbers as plain data.
+//! Numbers that may vary in space, as plain data.
 
 #[cfg(feature = "serde")]
 mod data;
@@ -23,13 +23,13 @@ use std::sync::Arc;
 #[derive(Clone)]
 #[non_exhaustive]
 pub enum Varying {
-    /// The same number everywhere.
+    /// A constant: the same number everywhere.
     Constant(f64),
     /// A linear ramp.
     Ramp(Ramp),
     /// A ramp with constant ratios instead of constant differences over equal distances. Both ends must be above zero.
     GeometricRamp(Ramp),
-    /// Values of a raster that covers a rectangle of the plane, with bilinear interpolation. Cannot be serialized.
+    /// The bilinearly interpolated values of a raster that covers a rectangle of the plane. Cannot be serialized.
     Raster {
         /// Raster with the values.
         raster: Arc<Raster<f32>>,
@@ -37,14 +37,15 @@ pub enum Varying {
         origin: DVec2,
         /// Width and height of the rectangle.
         extent: DVec2,
-        /// Wrap modes beyond the edges of the raster, along x and y.
+        /// Wrap modes for positions beyond the raster's edges, along x and y.
         wrap: [Wrap; 2],
     },
     /// A function of the position. Cannot be serialized.
     Function(Arc<dyn Fn(DVec2) -> f64 + Send + Sync>),
 }
 
-/// Linear gradient between two positions: the value changes along the line between them, and is constant across it.
+/// A linear gradient between two positions. The value changes along the line between them, and is constant
+/// perpendicular to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -63,7 +64,8 @@ pub struct Ramp {
 }
 
 impl Ramp {
-    /// Returns the fraction of the ramp at a position, from 0 to 1. A ramp of zero length is at its end everywhere.
+    /// Returns the fraction of the ramp that is reached at `position`, from 0 to 1. For a ramp of zero length, the
+    /// fraction is 1 everywhere.
     #[must_use]
     pub fn fraction(&self, position: DVec2) -> f64 {
         let along = self.to - self.from;
@@ -75,7 +77,7 @@ impl Ramp {
         }
     }
 
-    /// Returns the value at a position.
+    /// Returns the value at `position`.
     #[must_use]
     pub fn at(&self, position: DVec2) -> f64 {
         let fraction = self.fraction(position);
@@ -84,12 +86,12 @@ impl Ramp {
 }
 
 impl Varying {
-    /// Creates a number from a function of the position.
+    /// Creates a varying number from a function of the position.
     pub fn function(value: impl Fn(DVec2) -> f64 + Send + Sync + 'static) -> Self {
         Self::Function(Arc::new(value))
     }
 
-    /// Returns the value at a position.
+    /// Returns the value at `position`.
     #[must_use]
     pub fn at(&self, position: DVec2) -> f64 {
         match self {

@@ -1,4 +1,4 @@
-//! Views: borrowed rectangles of pixels with a stride.
+//! Views, which are borrowed rectangles of pixels with a stride.
 
 use crate::parallel;
 use crate::{RasterError, RasterErrorKind};
@@ -20,7 +20,8 @@ pub struct RasterViewMut<'a, T> {
 }
 
 impl<'a, T> RasterView<'a, T> {
-    /// Creates a view of existing memory: rows of `size[0]` pixels whose starts are `stride` elements apart.
+    /// Creates a view of existing memory. It holds rows of `size[0]` pixels, whose starts are `stride` elements
+    /// apart.
     ///
     /// # Errors
     ///
@@ -30,7 +31,7 @@ impl<'a, T> RasterView<'a, T> {
         Ok(Self { data, stride, size })
     }
 
-    /// Returns a view of all pixels of a raster, whose length is already checked.
+    /// Creates a view of all pixels of a raster. The caller has checked the length of `data`.
     pub(crate) fn whole(data: &'a [T], size: [u32; 2]) -> Self {
         Self {
             data,
@@ -67,11 +68,11 @@ impl<'a, T> RasterView<'a, T> {
         (0..view.size[1]).map(move |row| view.row(row))
     }
 
-    /// Returns a view of the rectangle of `size` pixels that starts at `first`.
+    /// Returns a view of the rectangle of `size` pixels whose top left pixel is at `first` (column, row).
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::OutOfBounds`] if it extends beyond this view.
+    /// [`RasterErrorKind::OutOfBounds`] if the rectangle extends beyond this view.
     pub fn crop(&self, first: [u32; 2], size: [u32; 2]) -> Result<Self, RasterError> {
         let range = crop_range(self.stride, self.size, first, size)?;
         Ok(Self {
@@ -83,7 +84,8 @@ impl<'a, T> RasterView<'a, T> {
 }
 
 impl<'a, T> RasterViewMut<'a, T> {
-    /// Creates a view of existing memory: rows of `size[0]` pixels whose starts are `stride` elements apart.
+    /// Creates a view of existing memory. It holds rows of `size[0]` pixels, whose starts are `stride` elements
+    /// apart.
     ///
     /// # Errors
     ///
@@ -93,7 +95,7 @@ impl<'a, T> RasterViewMut<'a, T> {
         Ok(Self { data, stride, size })
     }
 
-    /// Returns a view of all pixels of a raster, whose length is already checked.
+    /// Creates a view of all pixels of a raster. The caller has checked the length of `data`.
     pub(crate) fn whole(data: &'a mut [T], size: [u32; 2]) -> Self {
         Self {
             data,
@@ -130,7 +132,7 @@ impl<'a, T> RasterViewMut<'a, T> {
             .map(move |row| &mut row[..width])
     }
 
-    /// Converts into rows from top to bottom, borrowed for the lifetime of the view.
+    /// Consumes the view and returns its rows from top to bottom, borrowed for the lifetime of the pixels.
     pub fn into_rows(self) -> impl Iterator<Item = &'a mut [T]> {
         let [width, height] = self.size.map(|side| side as usize);
         let rows = self.data.chunks_mut(self.stride).take(height);
@@ -147,11 +149,11 @@ impl<'a, T> RasterViewMut<'a, T> {
         }
     }
 
-    /// Returns a view of the rectangle of `size` pixels that starts at `first`.
+    /// Returns a view of the rectangle of `size` pixels whose top left pixel is at `first` (column, row).
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::OutOfBounds`] if it extends beyond this view.
+    /// [`RasterErrorKind::OutOfBounds`] if the rectangle extends beyond this view.
     pub fn crop(self, first: [u32; 2], size: [u32; 2]) -> Result<Self, RasterError> {
         let range = crop_range(self.stride, self.size, first, size)?;
         Ok(Self {
@@ -207,7 +209,7 @@ impl<T: Copy> RasterViewMut<'_, T> {
     }
 }
 
-/// Checks that memory is long enough for its rows.
+/// Checks that the memory is long enough for all rows.
 fn check(length: usize, stride: usize, size: [u32; 2]) -> Result<(), RasterError> {
     let [width, height] = size.map(|side| side as usize);
     if width == 0 || height == 0 {
@@ -231,7 +233,7 @@ fn check(length: usize, stride: usize, size: [u32; 2]) -> Result<(), RasterError
     }
 }
 
-/// Returns the range of elements from the first to the last pixel of a rectangle.
+/// Returns the range of memory elements from the first to the last pixel of a rectangle.
 fn crop_range(
     stride: usize,
     bounds: [u32; 2],

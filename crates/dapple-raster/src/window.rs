@@ -1,4 +1,4 @@
-//! Windows: pixel grids in the plane, and in planes through space.
+//! Windows, which are pixel grids in the plane and in planes through space.
 
 use crate::raster::check_same_size;
 use crate::{RasterError, RasterErrorKind};
@@ -6,11 +6,11 @@ use crate::{RasterError, RasterErrorKind};
 /// A pixel grid along the first two axes. Pixel `[i, j]` has its center at `(origin + (first + [i, j] + ½) · pixel) ·
 /// scale`.
 ///
-/// In three or four dimensions the window is in a plane along the first two axes: all pixels have the further
-/// coordinates `origin · scale`. Create it with [`in_space`](Self::in_space).
+/// In three or four dimensions, the window is in a plane along the first two axes, and all pixels share the
+/// coordinates `origin · scale` along the other axes. Create it with [`in_space`](Self::in_space).
 ///
-/// `first` is the integer offset of the first pixel from the origin. A part of a window keeps the origin and the pixel
-/// size of the whole, and therefore has the same positions, bit for bit: see [`crop`](Self::crop).
+/// `first` is the integer offset of the first pixel from the origin. A part of a window has the origin and the pixel
+/// size of the whole window, and therefore the same positions, bit for bit; see [`crop`](Self::crop).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -21,16 +21,17 @@ use crate::{RasterError, RasterErrorKind};
     ))
 )]
 pub struct Window<const N: usize = 2> {
-    /// Corner from which pixels are counted, before scaling, and the coordinates along further axes.
+    /// Corner from which pixels are counted, before scaling, and the coordinates along the axes after the second.
     pub origin: [f64; N],
-    /// Width and height of a pixel. With a negative height, y decreases from row to row.
+    /// Width and height of a pixel, in units of positions before scaling. With a negative height, y decreases from
+    /// row to row.
     pub pixel: [f64; 2],
     /// Column and row of the first pixel, relative to the origin.
     pub first: [i64; 2],
     /// Number of columns and rows.
     pub size: [u32; 2],
     /// Factor that multiplies positions last, such as the frequency of a texture [default: 1]. Only
-    /// [`scaled`](Self::scaled) windows have another value.
+    /// [`scaled`](Self::scaled) windows have a value other than 1.
     #[cfg_attr(feature = "serde", serde(default = "one"))]
     pub scale: [f64; N],
 }
@@ -40,8 +41,8 @@ impl Window {
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::Empty`] if a side of `size` is zero, [`RasterErrorKind::TooLarge`] past 2^31 pixels,
-    /// [`RasterErrorKind::NotFinite`] if the origin or the extent is not finite or the extent is zero.
+    /// [`RasterErrorKind::Empty`] if a side of `size` is zero, [`RasterErrorKind::TooLarge`] for more than 2^31
+    /// pixels, [`RasterErrorKind::NotFinite`] if the origin or the extent is not finite or the extent is zero.
     pub fn new(
         origin: impl Into<[f64; 2]>,
         extent: impl Into<[f64; 2]>,
@@ -80,8 +81,8 @@ impl Window {
         Self::new([0.0; 2], [1.0; 2], size)
     }
 
-    /// Moves the window to the plane through `origin` along the first two axes of space. The first two coordinates of
-    /// `origin` are ignored.
+    /// Returns this window in the plane through `origin` that is parallel to the first two axes of space. The first
+    /// two coordinates of `origin` are ignored.
     ///
     /// # Examples
     ///
@@ -108,7 +109,7 @@ impl Window {
 }
 
 impl<const N: usize> Window<N> {
-    /// Returns the window in the plane, without the coordinates along further axes.
+    /// Returns the window in the plane, without the coordinates along the axes after the second.
     #[must_use]
     pub fn in_plane(&self) -> Window {
         Window {
@@ -120,7 +121,7 @@ impl<const N: usize> Window<N> {
         }
     }
 
-    /// Returns the coordinate of all pixels along an axis after the second.
+    /// Returns the coordinate that all pixels share along `axis`, an axis after the second.
     ///
     /// # Panics
     ///
@@ -131,7 +132,8 @@ impl<const N: usize> Window<N> {
         self.origin[axis] * self.scale[axis]
     }
 
-    /// Returns the part of `size` pixels that starts `first` pixels into this window (before it, if negative).
+    /// Returns the part of this window that has `size` pixels and starts `first` columns and rows after the window's
+    /// first pixel (before it, if negative).
     ///
     /// # Errors
     ///
@@ -149,8 +151,8 @@ impl<const N: usize> Window<N> {
         })
     }
 
-    /// Multiplies all positions by `factor`, bit for bit, to render a field at another frequency. Returns `None` if
-    /// the product of the scales would be rounded.
+    /// Multiplies all positions by `factor`, to render a field at another frequency; the products are exactly those
+    /// of single positions. Returns `None` if the product of the scales would be rounded.
     ///
     /// # Examples
     ///
@@ -190,7 +192,7 @@ impl<const N: usize> Window<N> {
         center(self.origin[1], self.pixel[1], self.first[1], row) * self.scale[1]
     }
 
-    /// Returns the center of a pixel.
+    /// Returns the position of a pixel's center.
     #[must_use]
     #[inline]
     pub fn position(&self, column: u32, row: u32) -> [f64; N] {
@@ -203,7 +205,7 @@ impl<const N: usize> Window<N> {
         position
     }
 
-    /// Checks that a buffer has the size of this window.
+    /// Checks that a buffer is the same size as this window.
     ///
     /// # Errors
     ///
@@ -219,8 +221,8 @@ impl<const N: usize> Window<N> {
     }
 }
 
-/// Returns the coordinate of a pixel center. The integer part is exact below 2^52; one product and one sum are
-/// rounded.
+/// Returns a pixel center's coordinate along one axis. The integer part is exact below 2^52; one product and one sum
+/// are rounded.
 #[inline]
 fn center(origin: f64, pixel: f64, first: i64, index: u32) -> f64 {
     origin + (first.saturating_add(i64::from(index)) as f64 + 0.5) * pixel
@@ -231,7 +233,7 @@ fn is_power_of_two(number: f64) -> bool {
     number.is_normal() && number.to_bits() << 12 == 0
 }
 
-/// Returns the default scale of windows that were serialized without one.
+/// Returns the default scale, for windows that were serialized without one.
 #[cfg(feature = "serde")]
 fn one<const N: usize>() -> [f64; N] {
     [1.0; N]

@@ -1,4 +1,4 @@
-//! Wrap modes: mapping of indices beyond the edge to pixels.
+//! Wrap modes, which map indices beyond the edge to pixels.
 
 crate::named! {
     /// How an index past the end of an axis is brought back, for each axis on its own.
@@ -15,7 +15,7 @@ crate::named! {
 }
 
 impl Wrap {
-    /// Maps `index` to `0..length`. `length` is at least 1.
+    /// Maps `index` into the range `0..length`. `length` must be at least 1.
     #[must_use]
     #[inline]
     pub fn index(self, index: i64, length: u32) -> u32 {

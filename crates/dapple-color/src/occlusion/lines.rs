@@ -1,6 +1,6 @@
-//! Heights that a row of pixels is compared with: one or two lines of heights for each sample of each ray.
+//! The heights that a row of pixels is compared with: one or two lines of heights for each sample of each ray.
 //!
-//! Samples lie at whole pixels along an axis, so the heights for adjacent pixels of a register are contiguous.
+//! Samples are at whole pixels along an axis, so the heights for adjacent pixels of a register are contiguous.
 
 use super::OcclusionOptions;
 use super::rays::{Ray, Sample, reach};
@@ -8,8 +8,8 @@ use super::sky::COLUMNS;
 use crate::{ColorError, plane};
 use dapple_raster::{Raster, Wrap};
 
-/// Heights, extended by columns on both sides according to the wrap, so that whole registers can be read around every
-/// pixel.
+/// The heights, extended by columns on both sides according to the wrap, so that whole registers can be read around
+/// every pixel.
 pub(super) struct Heights {
     padded: Raster<f32>,
     wrap_y: Wrap,
@@ -21,10 +21,10 @@ pub(super) struct Heights {
     scale: [f32; 2],
 }
 
-/// Heights that a row of pixels is compared with.
+/// The heights that a row of pixels is compared with.
 pub(super) struct Lines<'a> {
     pub(super) here: &'a [f32],
-    /// Neighbors on the left, right, above and below.
+    /// Lines of neighboring heights: left, right, above and below.
     pub(super) around: [&'a [f32]; 4],
     /// Factors from differences of `around` to slopes, along x and y.
     pub(super) scale: [f32; 2],
@@ -50,12 +50,12 @@ pub(super) struct Line<'a> {
 }
 
 impl Heights {
-    /// Extends the heights of a part of a raster of `whole` pixels. Its margins take less than half of each side;
-    /// pixels are computed between them.
+    /// Extends the heights of a part of a raster of `whole` pixels. Only the pixels between its margins are computed;
+    /// the margins take less than half of each side.
     ///
     /// # Errors
     ///
-    /// [`Raster`](crate::ColorErrorKind::Raster) if the raster becomes too large with the columns at its sides.
+    /// [`Raster`](crate::ColorErrorKind::Raster) if the raster would become too large with the added columns.
     pub(super) fn new(
         height: &Raster<f32>,
         margin: [u32; 2],

@@ -2,7 +2,7 @@
 //!
 //! Rays leave a pixel at 16 equally spaced azimuths of the plane. A ray advances in whole steps along the axis on
 //! which it crosses more pixels. On the other axis the height is interpolated linearly between the two adjacent
-//! pixels, so samples lie exactly on the ray. Steps are one pixel at first and later an eighth of the distance, so
+//! pixels, so samples are exactly on the ray. Steps are one pixel at first and later an eighth of the distance, so
 //! their number grows with the logarithm of the radius.
 
 use super::OcclusionOptions;
@@ -11,7 +11,7 @@ use dapple_raster::glam::DVec2;
 /// Number of azimuths.
 const AZIMUTHS: usize = 16;
 
-/// Directions of the first half turn, a sixteenth of a turn apart. The other half is opposite.
+/// Ray directions over the first half turn, a sixteenth of a turn apart. The other directions are their opposites.
 const DIRECTIONS: [[f64; 2]; AZIMUTHS / 2] = {
     // Cosines of 1/16, 2/16 and 3/16 of a turn.
     const C: [f64; 3] = [
@@ -34,11 +34,11 @@ const DIRECTIONS: [[f64; 2]; AZIMUTHS / 2] = {
 /// Approximate number of steps that double the distance, once steps are longer than a pixel.
 const STEPS_TO_DOUBLE: u32 = 8;
 
-/// Resolution of positions across a ray, in fractions of a pixel. Rounding to it makes positions equal in all windows,
+/// Resolution of positions across a ray, in steps per pixel. Rounding to it makes positions equal in all windows,
 /// whatever the rounding error of their extents.
 const PARTS: f64 = (1 << 20) as f64;
 
-/// Samples in one azimuth.
+/// A ray: the samples in one azimuth.
 #[derive(Clone, Debug)]
 pub(super) struct Ray {
     /// Direction of the ray: a unit vector in the plane.
@@ -62,7 +62,7 @@ pub(super) struct Sample {
     pub(super) weight: f32,
 }
 
-/// Returns the rays for options, each followed by the opposite one. The radius is at most a few thousand pixels.
+/// Returns all rays, each followed by the opposite one. The radius is at most a few thousand pixels.
 pub(super) fn rays(options: &OcclusionOptions, pixel: DVec2) -> Vec<Ray> {
     let halves = DIRECTIONS.iter().flat_map(|&direction| {
         let direction = DVec2::from(direction);
@@ -86,7 +86,7 @@ pub(super) fn reach(rays: &[Ray]) -> [u32; 2] {
     })
 }
 
-/// Returns the samples in a direction.
+/// Returns the samples of the ray in `direction`.
 fn samples(options: &OcclusionOptions, direction: DVec2, pixel: DVec2) -> Vec<Sample> {
     // Pixels crossed per unit of distance.
     let speed = direction / pixel;
@@ -128,7 +128,7 @@ fn weight(part: f64, fade: f64) -> f32 {
     }
 }
 
-/// Returns increasing step numbers up to and including `last`: one apart at first, then with growing gaps.
+/// Returns increasing step numbers up to and including `last`. They are one apart at first, and the gaps then grow.
 fn steps(last: u32) -> Vec<u32> {
     let mut steps = Vec::new();
     let mut step = 0;

@@ -1,4 +1,4 @@
-//! Visible sky of a row of pixels, computed in registers of adjacent pixels.
+//! Computes the visible sky for a row of pixels, in registers of adjacent pixels.
 
 use super::lines::{Lines, View};
 use crate::arctangent::arctangent;
@@ -78,7 +78,7 @@ fn slope<S: Simd>(simd: S, lines: &Lines<'_>, first: usize) -> [f32x16<S>; 2] {
     [is_finite.select(x, level), is_finite.select(y, level)]
 }
 
-/// Returns the maximum slopes to the samples of a ray, at least those of the tangent planes. NaN is ignored.
+/// Returns the maximum slopes to the samples of a ray, but at least the slopes of the tangent planes. NaN is ignored.
 #[inline(always)]
 fn horizons<S: Simd>(
     simd: S,
@@ -111,8 +111,8 @@ fn horizons<S: Simd>(
     horizons
 }
 
-/// Returns the sky between the zenith and a horizon, as a multiple of half the z component of the normal, without the
-/// terms that cancel between opposite azimuths.
+/// Returns the amount of sky between the zenith and a horizon, in multiples of half the normal's z component. Terms
+/// that cancel between opposite azimuths are omitted.
 #[inline(always)]
 fn arc<S: Simd>(simd: S, tangent: f32x16<S>, horizon: f32x16<S>) -> f32x16<S> {
     (tangent * horizon + 1.0) / (horizon * horizon + 1.0) + tangent * arctangent(simd, horizon)

@@ -1,4 +1,4 @@
-//! The trait [`FieldExt`]: sampling with vectors of any library, and composition of fields.
+//! The trait [`FieldExt`], for sampling with any library's vectors and for composing fields.
 
 use super::{
     Extruded, Linear, Mapped, Mixed, Pair, PairOperation, Rotated, Scaled, Slice, Translated,
@@ -6,14 +6,14 @@ use super::{
 };
 use crate::{Displacement, Field, Gradient, IntoField, RasterError};
 
-/// Methods of all fields: sampling and composition.
+/// Methods for sampling and composing, available on all fields.
 ///
-/// A position is an array of `N` coordinates, or any type that converts to one, such as the vectors of any version of
-/// glam.
+/// A position is an array of `N` coordinates, or any type that converts to one, such as vectors from any glam
+/// version.
 ///
-/// Compositions transform positions or change values; [`Fractal`](crate::Fractal) sums several scales. Compositions
-/// satisfy the requirements of [`Field`]: all methods give the same bits, and the period is derived from the periods
-/// of the parts. They work in the plane and in space.
+/// Compositions transform positions or change values; [`Fractal`](crate::Fractal) sums copies at several scales.
+/// Compositions satisfy the requirements of [`Field`]: all methods give the same bits, and the period is derived from
+/// the parts' periods. They work in the plane and in space.
 ///
 /// # Examples
 ///
@@ -58,7 +58,7 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
     }
 
     /// Restricts the field to the plane along the first two axes, at fixed coordinates along the others: `[z]` in
-    /// space, `[z, w]` in four dimensions, for example a depth and a time. A wrong number of coordinates is a
+    /// space, `[z, w]` in four dimensions, for example `[depth, time]`. A wrong number of coordinates is a
     /// compile-time error.
     ///
     /// # Examples
@@ -86,7 +86,7 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         }
     }
 
-    /// Extends this field of the plane to space, constant along further axes.
+    /// Extends this 2-D field to more dimensions; it is constant along the added axes.
     ///
     /// # Examples
     ///
@@ -104,7 +104,8 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         Extruded { field: self }
     }
 
-    /// Scales positions by `frequency` along each axis, which gives `frequency` times as many features.
+    /// Scales positions by `frequency` along each axis, which gives `frequency` times as many features along that
+    /// axis.
     ///
     /// For the same factor along all axes, use [`frequency`](Self::frequency).
     fn frequency_per_axis(self, frequency: impl Into<[f64; N]>) -> Scaled<Self, N> {
@@ -127,9 +128,9 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         }
     }
 
-    /// Rotates the field about the origin by an angle in radians, from x toward y: clockwise in an image, where y
-    /// points down. In space, the axis of rotation is the line where x and y are 0. The result has no period along x
-    /// and y.
+    /// Rotates the field about the origin by `angle` in radians, from the x axis toward the y axis. This is clockwise
+    /// in an image, where y points down. In space, the axis of rotation is the line where x and y are 0. The result
+    /// has no period along x and y.
     fn rotate(self, angle: f64) -> Rotated<Self> {
         let (sin, cos) = libm::sincos(angle);
         Rotated {
@@ -138,8 +139,8 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         }
     }
 
-    /// Domain warping: displaces positions by `amount` times the values of other fields, one field per axis. With an
-    /// amount of 1, a position moves by the value of the field, in units of the domain.
+    /// Warps the domain: displaces positions by `amount` times the values of other fields, one field per axis. With
+    /// an amount of 1, a position moves by the field's value, in position units.
     ///
     /// `by` is an array of fields, or a tuple of fields of different types.
     ///
@@ -162,7 +163,7 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         }
     }
 
-    /// Applies a function to the values.
+    /// Applies a function to the field's values.
     fn map<M: Fn(f32) -> f32 + Send + Sync>(self, function: M) -> Mapped<Self, M> {
         Mapped {
             field: self,
@@ -170,7 +171,7 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         }
     }
 
-    /// Linearly maps the range `from` to the range `to`, without clamping.
+    /// Maps values linearly from the range `from` to the range `to`, without clamping.
     ///
     /// # Errors
     ///
@@ -221,7 +222,7 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         self.with(other, PairOperation::Maximum)
     }
 
-    /// Combines two fields value by value with an operation.
+    /// Combines two fields value by value with `operation`.
     fn with<B: IntoField<N>>(self, other: B, operation: PairOperation) -> Pair<Self, B::Field> {
         Pair {
             first: self,
@@ -230,8 +231,8 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
         }
     }
 
-    /// Returns the linear interpolation between two fields: this field where `by` is 0 or less, `to` where it is 1 or
-    /// more.
+    /// Interpolates linearly between two fields. The result is this field where `by` is 0 or less, and `to` where
+    /// `by` is 1 or more.
     fn mix<B: IntoField<N>, T: IntoField<N>>(
         self,
         to: B,

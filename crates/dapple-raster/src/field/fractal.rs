@@ -1,4 +1,4 @@
-//! Fractal sums of fields: copies of a field at several scales, added up.
+//! Fractal sums of fields, which add copies of a field at several scales.
 //!
 //! Fractional Brownian motion, ridged and billowed sums as in F. Kenton Musgrave's chapters of Ebert et al., "Texturing
 //! and Modeling: A Procedural Approach", 3rd edition, 2003.
@@ -7,7 +7,7 @@ use super::common_period;
 use super::values::{by_bands, zip_rows};
 use crate::{Field, RasterError, RasterViewMut, Scaled, Window};
 
-/// Maximum number of octaves of a sum.
+/// Maximum number of octaves in a sum.
 const MOST_OCTAVES: usize = 32;
 
 /// A fractal sum of octaves, `Σ gain^i · shape(field_i(lacunarity^i · position))`, not divided by the sum of the
@@ -30,7 +30,7 @@ const MOST_OCTAVES: usize = 32;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Fractal<F> {
-    /// Octaves, coarsest first.
+    /// Octaves of the sum, coarsest first.
     octaves: Vec<Octave<F>>,
     shape: FractalShape,
 }
@@ -72,8 +72,8 @@ impl FractalShape {
 }
 
 impl<F> Fractal<F> {
-    /// Creates a sum of `octaves`, coarsest first. Each has `lacunarity` times the frequency and `gain` times the
-    /// weight of the previous one.
+    /// Creates a sum of `octaves`, coarsest first. Each octave has `lacunarity` times the frequency and `gain` times
+    /// the weight of the previous one.
     ///
     /// # Errors
     ///
@@ -108,7 +108,7 @@ impl<F> Fractal<F> {
         Ok(sum)
     }
 
-    /// Returns the sum of the absolute weights, w: octaves with values from -1 to 1 have sums from -w to w (see
+    /// Returns w, the sum of the absolute weights. Octaves with values from -1 to 1 have sums from -w to w (see
     /// [`FractalShape`] for other shapes).
     #[must_use]
     pub fn weight(&self) -> f32 {

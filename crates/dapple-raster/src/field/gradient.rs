@@ -1,4 +1,4 @@
-//! Exact gradients of fields, by the chain rule.
+//! Exact gradients of fields, computed by the chain rule.
 
 use super::values::unit;
 use super::{
@@ -10,9 +10,9 @@ use std::sync::Arc;
 
 /// A field with an analytic gradient.
 ///
-/// The gradient is the derivative of the formula, not a finite difference: one number per axis, per unit of the
-/// position. At a crease, such as a border between cells, it is the limit from one side. Compositions of such fields
-/// have gradients too, except [`map`](crate::FieldExt::map) with an arbitrary function.
+/// The gradient is the derivative of the formula, not a finite difference. It has one number per axis, in value per
+/// position unit. At a crease, such as a border between cells, it is the limit from one side. Compositions of such
+/// fields have gradients too, except [`map`](crate::FieldExt::map) with an arbitrary function.
 ///
 /// # Examples
 ///
@@ -105,7 +105,7 @@ impl<F: Gradient<N>, const N: usize> Gradient<N> for Rotated<F> {
 
 /// Displacement fields with gradients: an array of fields of one type, or a tuple of different types.
 pub trait DisplacementGradient<const N: usize = 2>: Displacement<N> {
-    /// Returns the displacement along an axis, which must be below `N`.
+    /// Returns the displacement field along `axis`, which must be below `N`.
     fn gradient_along(&self, axis: usize) -> &dyn Gradient<N>;
 }
 

@@ -1,11 +1,12 @@
-//! Periods of composed fields.
+//! Computes the periods of composed fields.
 
-/// Maximum number of repetitions of the longer period in a common period; beyond it, two periods have no common
-/// period.
+/// Maximum length of a common period, in multiples of the longer period. If two periods need more, they count as
+/// having no common period.
 const MOST_REPEATS: u32 = 64;
 
-/// Returns the common period of two fields along each axis: the least common multiple of their
-/// [periods](crate::Field::period), if it is at most 64 times the longer one. For implementations of composed fields.
+/// Returns the common period of two fields along each axis. It is the least common multiple of their
+/// [periods](crate::Field::period), or `None` if that exceeds 64 times the longer period. Intended for implementing
+/// composed fields.
 #[must_use]
 pub fn common_period<const N: usize>(a: [Option<f64>; N], b: [Option<f64>; N]) -> [Option<f64>; N] {
     core::array::from_fn(|axis| common_multiple(a[axis]?, b[axis]?))

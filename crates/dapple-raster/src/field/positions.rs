@@ -36,7 +36,7 @@ pub struct Warped<F, D> {
 
 /// Displacement fields, one per axis: an array of fields of one type, or a tuple of different types.
 pub trait Displacement<const N: usize = 2>: Send + Sync {
-    /// Returns the displacement along an axis, which must be below `N`.
+    /// Returns the displacement field along `axis`, which must be below `N`.
     fn along(&self, axis: usize) -> &dyn Field<N>;
 }
 
@@ -61,7 +61,7 @@ displacement!(2: X 0, Y 1);
 displacement!(3: X 0, Y 1, Z 2);
 displacement!(4: X 0, Y 1, Z 2, W 3);
 
-/// Renders a window from its positions, on all cores if the feature `rayon` is enabled.
+/// Renders a window by evaluating its positions, on all cores if the feature `rayon` is enabled.
 fn render_rows<const N: usize>(
     field: &impl Field<N>,
     window: &Window<N>,
@@ -177,7 +177,7 @@ impl<F: Field<N>, const N: usize> Field<N> for Rotated<F> {
 }
 
 impl<F, D> Warped<F, D> {
-    /// Adds the displacements along an axis to positions.
+    /// Adds the displacements along `axis` to positions.
     fn displace<const N: usize>(&self, positions: &mut [[f64; N]], axis: usize, by: &[f32]) {
         for (position, &by) in positions.iter_mut().zip(by) {
             position[axis] += self.amount * f64::from(by);

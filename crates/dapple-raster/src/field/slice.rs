@@ -2,11 +2,11 @@
 
 use crate::{Field, RasterError, RasterViewMut, Window};
 
-/// A slice of a field of space along the first two axes: see [`FieldExt::slice`](super::FieldExt::slice).
+/// A slice of a 3-D or 4-D field along the first two axes; see [`FieldExt::slice`](super::FieldExt::slice).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slice<F, const N: usize> {
     pub(super) field: F,
-    /// Coordinates of the plane; the first two are unused.
+    /// Coordinates of the slice along the other axes; the first two entries are unused.
     pub(super) rest: [f64; N],
 }
 
@@ -39,7 +39,7 @@ impl<F: Field<N>, const N: usize> Field for Slice<F, N> {
     }
 }
 
-/// A field of the plane extended to space, constant along further axes: see
+/// A 2-D field extended to more dimensions, constant along the added axes; see
 /// [`FieldExt::extrude`](super::FieldExt::extrude).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extruded<F> {

@@ -4,7 +4,7 @@ use super::common_period;
 use crate::{Field, RasterError, RasterViewMut, Window, parallel};
 use core::fmt;
 
-/// Number of values that are computed at a time, such that two bands fit the cache of a core.
+/// Number of values that are computed at a time, chosen so that two bands fit a core's cache.
 const BAND: usize = 1 << 17;
 
 /// A field with a function applied to its values: see [`FieldExt::map`](super::FieldExt::map).
@@ -26,7 +26,7 @@ impl<M: Fn(f32) -> f32 + Send + Sync> Change for M {
     }
 }
 
-/// Linear map from one range to another: see [`FieldExt::remap`](super::FieldExt::remap).
+/// A linear map from one range to another; see [`FieldExt::remap`](super::FieldExt::remap).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linear {
     pub(super) from: f32,
@@ -251,7 +251,7 @@ pub(super) fn by_bands<const N: usize>(
     done.into_iter().collect()
 }
 
-/// Calls `change` for each value and the other value of the same pixel.
+/// Calls `change` for each value, with the other raster's value at the same pixel.
 pub(super) fn zip_rows(
     values: &mut RasterViewMut<'_, f32>,
     others: &mut RasterViewMut<'_, f32>,

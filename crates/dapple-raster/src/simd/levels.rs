@@ -1,4 +1,4 @@
-//! SIMD levels of the machine, based on `fearless_simd`.
+//! Detects the machine's SIMD levels, based on `fearless_simd`.
 
 #[doc(hidden)]
 pub use fearless_simd;
@@ -69,7 +69,7 @@ macro_rules! simd_dispatch {
     };
 }
 
-/// Runs an operation at the baseline SIMD level: for code that gains little from wider registers.
+/// Runs an operation at the baseline SIMD level. Use it for code that gains little from wider registers.
 #[doc(hidden)]
 #[cfg(target_arch = "x86_64")]
 #[macro_export]
@@ -85,7 +85,7 @@ macro_rules! simd_baseline {
     }};
 }
 
-/// Runs an operation at the baseline SIMD level: for code that gains little from wider registers.
+/// Runs an operation at the baseline SIMD level. Use it for code that gains little from wider registers.
 #[doc(hidden)]
 #[cfg(not(target_arch = "x86_64"))]
 #[macro_export]
@@ -102,8 +102,8 @@ static CHOSEN: AtomicUsize = AtomicUsize::new(BEST);
 /// Value of [`CHOSEN`] if no level is forced.
 const BEST: usize = usize::MAX;
 
-/// Returns the SIMD level to use: the best level of this machine that [`dispatch`] is compiled for, detected once,
-/// unless [`for_every_level`] forces another level.
+/// Returns the SIMD level to use. It is the best level of this machine that [`dispatch`] is compiled for (detected
+/// once), unless [`for_every_level`] forces another level.
 #[inline]
 #[must_use]
 pub fn level() -> Level {
@@ -136,8 +136,8 @@ fn levels() -> &'static [Level] {
 /// Calls `check` for every level of this machine that [`dispatch`] is compiled for, from lowest to highest, to test
 /// that all levels give the same bits.
 ///
-/// Meanwhile [`level`] returns that level in all threads, so that code without a level argument is tested as well.
-/// Concurrent calls wait for each other; `check` must not call this function.
+/// During each call, [`level`] returns the tested level in all threads, so that code without a level argument is
+/// tested as well. Concurrent calls wait for each other; `check` must not call this function.
 pub fn for_every_level(mut check: impl FnMut(Level)) {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     // Ignore poisoning after a failed check.

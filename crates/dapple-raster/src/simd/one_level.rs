@@ -3,7 +3,7 @@
 #[doc(inline)]
 pub use crate::simd_dispatch as dispatch;
 
-/// Instruction set that the whole program is compiled for.
+/// The instruction set that the whole program is compiled for.
 #[derive(Clone, Copy, Debug)]
 pub struct Level;
 
