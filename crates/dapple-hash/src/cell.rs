@@ -1,9 +1,9 @@
 //! Counter-based hashes of lattice cells.
 //!
-//! A hash is a pure function of a seed, a cell and a counter. Words are absorbed from the slowest axis to the fastest,
-//! and the counter last. A [`CellHash`] is the state after a prefix of these words, so that cells of a row, or several
-//! numbers of one cell, share the work. The purpose of a number is not hashed as a word: it is the name passed to
-//! [`Seed::child`].
+//! A hash is a pure function of a seed, a cell and a counter. Words are absorbed from the slowest axis to the
+//! fastest, and the counter last. A [`CellHash`] is the state after a prefix of these words, so that cells in a row,
+//! or several numbers for one cell, share the work. To separate numbers by purpose, use child seeds: the purpose is
+//! the name passed to [`Seed::child`].
 
 use crate::Seed;
 use crate::mix::{absorb, finish};
@@ -46,7 +46,7 @@ pub const fn hash4(seed: Seed, cell: [i64; 4], index: u32) -> u64 {
     CellHash::new(seed, cell).at(index)
 }
 
-/// Hash state after a seed and a cell. Any number of values can be drawn from it.
+/// The hash state after absorbing a seed and a cell. Any number of random values can be drawn from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CellHash {
     pub(crate) state: [u32; 2],
@@ -76,7 +76,7 @@ impl CellHash {
         Self { state: words }
     }
 
-    /// Absorbs the coordinate of one more axis, which is faster than the axes absorbed before.
+    /// Absorbs the coordinate of one more axis, which then varies faster than the axes absorbed before.
     ///
     /// # Examples
     ///
@@ -95,7 +95,7 @@ impl CellHash {
         }
     }
 
-    /// Returns the 64 random bits of counter `index`.
+    /// Returns the 64 random bits for counter `index` in this cell.
     #[must_use]
     #[inline]
     pub const fn at(self, index: u32) -> u64 {
@@ -104,7 +104,7 @@ impl CellHash {
     }
 }
 
-/// Low and high half of a word.
+/// Splits a word into its low and high half.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "the halves are what is asked for"

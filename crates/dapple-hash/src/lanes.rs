@@ -1,4 +1,4 @@
-//! Hashes of sixteen cells at once in SIMD lanes, with the same bits as [`CellHash`] in every lane.
+//! Hashes sixteen cells at once in SIMD lanes, with the same bits as [`CellHash`] in every lane.
 //!
 //! The arithmetic of [`mix`](crate::mix) is repeated here for SIMD registers; a test compares both.
 
@@ -14,7 +14,7 @@ pub struct CellHashes<S: Simd> {
 }
 
 impl<S: Simd> CellHashes<S> {
-    /// Returns one hash in all lanes, such as the state at the start of a row of cells.
+    /// Copies one hash to all lanes, for example the state at the start of a row of cells.
     #[inline(always)]
     pub fn splat(simd: S, hash: CellHash) -> Self {
         let [a, b] = hash.state;
@@ -23,31 +23,31 @@ impl<S: Simd> CellHashes<S> {
         }
     }
 
-    /// Returns the hashes with these states: see [`CellHash::of_words`].
+    /// Creates hashes from two words per lane that are already random; see [`CellHash::of_words`].
     #[inline(always)]
     #[must_use]
     pub const fn of_words(words: [u32x16<S>; 2]) -> Self {
         Self { state: words }
     }
 
-    /// Absorbs the coordinate of one more axis, which is faster than the axes absorbed before: its low and its high 32
-    /// bits.
+    /// Absorbs the coordinate of one more axis, which then varies faster than the axes absorbed before. The
+    /// coordinate is given as its low and its high 32 bits.
     #[inline(always)]
     pub fn axis(self, low: u32x16<S>, high: u32x16<S>) -> Self {
         let [hashes] = Self::axis_each([self], [[low, high]]);
         hashes
     }
 
-    /// Returns the 64 random bits of counter `index`, which may differ between lanes: the high 32 bits, then the low
-    /// 32 bits.
+    /// Returns the 64 random bits for counter `index`, which may differ between lanes, as the high 32 bits followed
+    /// by the low 32 bits.
     #[inline(always)]
     pub fn at(self, index: u32x16<S>) -> [u32x16<S>; 2] {
         let [bits] = Self::at_each([self], [index]);
         bits
     }
 
-    /// [`axis`](Self::axis) for several registers, interleaved. This is faster than sequential calls, because a hash
-    /// is one long chain of dependent operations.
+    /// Computes [`axis`](Self::axis) for several registers, interleaved. This is faster than sequential calls,
+    /// because a hash is one long chain of dependent operations.
     #[inline(always)]
     pub fn axis_each<const C: usize>(hashes: [Self; C], words: [[u32x16<S>; 2]; C]) -> [Self; C] {
         let [low, high] = in_step(words);
@@ -59,7 +59,7 @@ impl<S: Simd> CellHashes<S> {
         hashes
     }
 
-    /// [`at`](Self::at) for several registers, interleaved, which is faster than sequential calls.
+    /// Computes [`at`](Self::at) for several registers, interleaved, which is faster than sequential calls.
     #[inline(always)]
     pub fn at_each<const C: usize>(
         hashes: [Self; C],
@@ -69,8 +69,8 @@ impl<S: Simd> CellHashes<S> {
     }
 }
 
-/// [`LatticeHash::part`](crate::LatticeHash::part) in every lane of several interleaved registers, for coordinates
-/// from -2³¹ to 2³¹ - 1 and the key of their axis.
+/// Computes [`LatticeHash::part`](crate::LatticeHash::part) in every lane of several interleaved registers, for
+/// coordinates from -2³¹ to 2³¹ - 1, given their axis's key.
 #[inline(always)]
 #[must_use]
 pub fn lattice_parts<S: Simd, const C: usize>(
@@ -81,8 +81,8 @@ pub fn lattice_parts<S: Simd, const C: usize>(
     mix(InStep(coordinates) ^ InStep([u32x16::splat(simd, key); C])).0
 }
 
-/// [`LatticeHash::part`](crate::LatticeHash::part) in every lane of several interleaved registers, for two hashes with
-/// the keys of one axis. Coordinates are given as their low and their high 32 bits.
+/// Computes [`LatticeHash::part`](crate::LatticeHash::part) in every lane of several interleaved registers, for two
+/// hashes, given their keys for one axis. Coordinates are given as their low and their high 32 bits.
 #[inline(always)]
 #[must_use]
 pub fn lattice_part_pairs<S: Simd, const C: usize>(
@@ -112,7 +112,7 @@ pub fn lattice_part_pairs<S: Simd, const C: usize>(
     mix32_pairs(words)
 }
 
-/// [`LatticeHash::bits`](crate::LatticeHash::bits) in every lane of several interleaved registers.
+/// Computes [`LatticeHash::bits`](crate::LatticeHash::bits) in every lane of several interleaved registers.
 #[inline(always)]
 #[must_use]
 pub fn lattice_bits<S: Simd, const C: usize>(parts: [u32x16<S>; C]) -> [u32x16<S>; C] {
@@ -120,7 +120,7 @@ pub fn lattice_bits<S: Simd, const C: usize>(parts: [u32x16<S>; C]) -> [u32x16<S
     ((bits ^ (bits >> 15)) * M1).0
 }
 
-/// [`mix32`](crate::mix32) in every lane of several interleaved pairs of registers.
+/// Computes [`mix32`](crate::mix32) in every lane of several interleaved pairs of registers.
 #[inline(always)]
 #[must_use]
 pub fn mix32_pairs<S: Simd, const C: usize>(pairs: [[u32x16<S>; 2]; C]) -> [[u32x16<S>; 2]; C] {
@@ -159,7 +159,7 @@ fn finish<S: Simd, const C: usize>([mut a, mut b]: [InStep<S, C>; 2]) -> [InStep
     [a ^ (b << 7 | b >> 25), b]
 }
 
-/// Several registers; each operation is applied to all of them before the next operation starts.
+/// A group of registers. Each operation is applied to all of them before the next operation starts.
 #[derive(Clone, Copy)]
 struct InStep<S: Simd, const C: usize>([u32x16<S>; C]);
 

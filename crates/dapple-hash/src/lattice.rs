@@ -1,14 +1,15 @@
-//! A fast hash of lattice corners, for noise that is sampled at single positions.
+//! A fast hash for lattice corners, intended for noise that is sampled at single positions.
 
 use crate::Seed;
 use crate::mix::{M1, M2, mix32};
 
-/// Hash of the corners of an `N`-dimensional lattice: 32 random bits for a seed and the coordinates of a corner.
+/// A hash of the corners of an `N`-dimensional lattice, which gives 32 random bits for a seed and a corner's
+/// coordinates.
 ///
-/// Each coordinate is hashed separately, by [`part`](Self::part), with a key of its axis. The exclusive or of the
-/// parts of all axes is hashed once more, by [`bits`](Self::bits). The corners around a position have only two
-/// coordinates along each axis, so most of the work is shared between them. A [`CellHash`](crate::CellHash) has 64
-/// bits and a counter, and is more expensive.
+/// Each coordinate is hashed separately, by [`part`](Self::part), with its axis's key. The exclusive or of the parts
+/// of all axes is hashed once more, by [`bits`](Self::bits). The corners around a position have only two coordinates
+/// along each axis, so most of the work is shared between them. A [`CellHash`](crate::CellHash) has 64 bits and a
+/// counter, and is more expensive.
 ///
 /// # Examples
 ///
@@ -25,7 +26,7 @@ pub struct LatticeHash<const N: usize> {
 }
 
 impl<const N: usize> LatticeHash<N> {
-    /// Creates the hash of a seed.
+    /// Creates the hash for `seed`.
     #[must_use]
     pub const fn new(seed: Seed) -> Self {
         let mut keys = [0; N];
@@ -37,16 +38,18 @@ impl<const N: usize> LatticeHash<N> {
         Self { keys }
     }
 
-    /// Returns the key of an axis.
+    /// Returns the key of `axis`, which is passed to the SIMD functions.
     #[must_use]
     #[inline(always)]
     pub const fn key(&self, axis: usize) -> u32 {
         self.keys[axis]
     }
 
-    /// Returns the part of a coordinate along an axis: a bijection of the coordinates from -2³¹ to 2³¹ - 1.
+    /// Hashes a coordinate along `axis`; the result is the coordinate's part of a corner's hash. For coordinates from
+    /// -2³¹ to 2³¹ - 1, this is a bijection.
     ///
-    /// The upper halves of other coordinates permute the parts, so that the lattice does not repeat after 2³² corners.
+    /// Beyond this range, the upper 32 bits of a coordinate permute the parts, so that the lattice does not repeat
+    /// after 2³² corners.
     #[must_use]
     #[inline(always)]
     pub const fn part(&self, axis: usize, coordinate: i64) -> u32 {
@@ -59,8 +62,8 @@ impl<const N: usize> LatticeHash<N> {
         })
     }
 
-    /// Returns random bits of a corner, from the exclusive or of the parts of its coordinates. Use the upper 24 bits,
-    /// which have the best quality.
+    /// Returns a corner's random bits, given the exclusive or of its coordinates' parts. Use the upper 24 bits, which
+    /// have the best quality.
     #[must_use]
     #[inline(always)]
     pub const fn bits(parts: u32) -> u32 {

@@ -1,8 +1,9 @@
 //! Seeds, counter-based lattice hashes, random streams and Poisson counts, for anything procedural that must be the same
 //! on every machine.
 //!
-//! All randomness starts from a [`Seed`] that the caller passes. A hash turns a seed, a cell of the integer lattice and a
-//! counter into random bits without any state, so a cell has the same bits in whatever order cells are visited.
+//! All randomness starts from a [`Seed`] that the caller passes. A hash turns a seed, a cell of the integer lattice
+//! and a counter into random bits without any state, so a cell has the same bits regardless of the order in which
+//! cells are visited.
 //!
 //! ```
 //! use dapple_hash::{PoissonCounts, Seed, hash2, rand_core::Rng, unit_f64};
@@ -51,7 +52,7 @@
 //!
 //! * The hashes are not cryptographic.
 //! * Coordinates are `i64`. No period is built in: wrap coordinates before hashing to repeat.
-//! * The mean of a Poisson count is above 0 and at most 64. Other means are a [`PoissonError`].
+//! * The mean of a Poisson count is above 0 and at most 64. Other means give a [`PoissonError`].
 //! * Hashes and streams use integers only. Poisson tables use `f64` and `libm`. All results have the same bits on every
 //!   platform.
 //!

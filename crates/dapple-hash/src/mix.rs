@@ -1,4 +1,4 @@
-//! Mixing functions that all hashes of this crate use.
+//! The mixing functions that all hashes in this crate use.
 //!
 //! [`mix64`] is David Stafford's variant 13 of the MurmurHash3 finalizer ("Better Bit Mixing", 2011), as used by
 //! SplitMix64. [`absorb`] and [`finish`] work on two 32-bit words, with multiplications that keep only the low half:
@@ -17,18 +17,18 @@ pub(crate) const M3: u32 = 0x27D4_EB2F;
 pub(crate) const N0: u32 = 0x7FEB_352D;
 pub(crate) const N1: u32 = 0x846C_A68B;
 
-/// Applies a bijection of 64 bits in which every input bit flips every output bit about half of the time.
+/// Applies a bijection of 64-bit words in which every input bit flips every output bit about half of the time.
 pub(crate) const fn mix64(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     z ^ (z >> 31)
 }
 
-/// Applies a bijection of 32 bits in which every input bit flips every output bit about half of the time. With only
-/// two multiplications, it is meant for numbers derived from bits that are already random, such as the bits of a
+/// Applies a bijection of 32-bit words in which every input bit flips every output bit about half of the time. With
+/// only two multiplications, it is intended for bits that are derived from already random bits, such as the bits of a
 /// [`CellHash`](crate::CellHash).
 ///
-/// The constants were found by Chris Wellons by search ("Prospecting for Hash Functions", 2018).
+/// Chris Wellons found the constants by search ("Prospecting for Hash Functions", 2018).
 #[must_use]
 #[inline]
 pub const fn mix32(mut bits: u32) -> u32 {
@@ -37,7 +37,7 @@ pub const fn mix32(mut bits: u32) -> u32 {
     bits ^ (bits >> 16)
 }
 
-/// Absorbs one word into the state. For a fixed word this is a bijection of the state, so no state is lost.
+/// Absorbs one word into the state. For a fixed word this is a bijection of the state, so no two states are merged.
 #[inline(always)]
 pub(crate) const fn absorb([mut a, mut b]: [u32; 2], word: u32) -> [u32; 2] {
     a = (a ^ word).wrapping_mul(M0);

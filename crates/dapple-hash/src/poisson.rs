@@ -1,17 +1,17 @@
 //! Poisson-distributed counts from a table.
 //!
-//! Steven Worley draws the number of feature points of a cell from a Poisson distribution with a precomputed table ("A
-//! Cellular Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>), and clamps it. Here the
-//! table contains the cumulative probabilities as 32-bit integers, so that drawing compares integers and involves no
-//! rounding.
+//! Steven Worley draws the number of feature points in a cell from a Poisson distribution with a precomputed table
+//! ("A Cellular Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>), and clamps it. Here
+//! the table contains the cumulative probabilities as 32-bit integers, so that drawing compares integers and involves
+//! no rounding.
 
 use alloc::vec::Vec;
 use core::fmt;
 
-/// Maximum mean that the table accepts.
+/// Maximum mean that a table accepts.
 const MEAN_LIMIT: f64 = 64.0;
 
-/// Table that maps 32 random bits to a Poisson-distributed count with a given mean, clamped to a range.
+/// A table that maps 32 random bits to a Poisson-distributed count with a given mean, clamped to a range.
 ///
 /// # Examples
 ///
@@ -75,7 +75,7 @@ impl PoissonCounts {
         Ok(Self { least, thresholds })
     }
 
-    /// Returns the count for 32 random bits. It increases monotonically with the bits.
+    /// Returns the count for 32 random bits, which never decreases as `bits` increases.
     #[must_use]
     #[inline]
     pub fn count(&self, bits: u32) -> u32 {
@@ -86,15 +86,15 @@ impl PoissonCounts {
             })
     }
 
-    /// Returns the minimum count, for the lowest bits.
+    /// Returns the minimum count, which `bits` of 0 gives.
     #[must_use]
     #[inline]
     pub fn least(&self) -> u32 {
         self.least
     }
 
-    /// Returns the thresholds of the bits, ascending. The count is the minimum count plus the number of thresholds at
-    /// or below the bits.
+    /// Returns the thresholds for the random bits, in ascending order. The count is the minimum count plus the number
+    /// of thresholds at or below the bits.
     #[must_use]
     #[inline]
     pub fn thresholds(&self) -> &[u32] {
@@ -108,7 +108,7 @@ impl PoissonCounts {
         self.count(0)..=self.count(u32::MAX)
     }
 
-    /// Returns the mean of the counts. Clamping moves it away from the mean of the distribution.
+    /// Returns the mean of the counts. Because of clamping, it may differ from the mean of the distribution.
     #[must_use]
     pub fn mean(&self) -> f64 {
         let above = self
@@ -119,10 +119,10 @@ impl PoissonCounts {
     }
 }
 
-/// Returns the count of an unclamped table with this mean, computed without a table: for means that are used only
-/// once.
+/// Returns the count that an unclamped table with this mean would give, but computes it without a table. Use it for
+/// means that are needed only once.
 ///
-/// The mean is clamped to the range that a table accepts; NaN becomes the lower end.
+/// The mean is clamped to the range that a table accepts; NaN becomes the lower end of the range.
 ///
 /// # Examples
 ///
@@ -158,7 +158,7 @@ pub fn poisson_count(mean: f64, bits: u32) -> u32 {
     }
 }
 
-/// Error of a table of Poisson counts with parameters out of range.
+/// An error from creating a table of Poisson counts with parameters out of range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoissonError {
     kind: PoissonErrorKind,

@@ -2,7 +2,7 @@
 
 use crate::mix::{GOLDEN, mix64};
 
-/// Source of all randomness: 64 bits that the caller chooses.
+/// The source of all randomness: 64 bits that the caller chooses.
 ///
 /// All values are equally good; `Seed(0)` and `Seed(1)` give uncorrelated results.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -20,7 +20,7 @@ impl From<u64> for Seed {
 }
 
 impl Seed {
-    /// Derives the seed of a part. Its bits depend on this seed, on `name` and on `index`.
+    /// Derives a child seed. Its bits depend on this seed, on `name` and on `index`.
     ///
     /// Use a separate child for every random choice, so that no two choices share bits. The name identifies the
     /// choice; the index distinguishes the members of a series.

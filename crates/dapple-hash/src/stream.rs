@@ -3,7 +3,7 @@
 use crate::{CellHash, Pcg32, Seed};
 
 impl Seed {
-    /// Creates a random stream: `Pcg32`, Melissa O'Neill's XSH RR 64/32 generator, seeded by two hashes.
+    /// Creates a random stream. It is a `Pcg32`, Melissa O'Neill's XSH RR 64/32 generator, seeded by two hashes.
     ///
     /// # Examples
     ///
@@ -22,7 +22,7 @@ impl Seed {
 impl CellHash {
     /// Creates the random stream of this cell, which is independent of the streams of other cells.
     ///
-    /// It uses the two highest counters; the counters of [`CellHash::at`] below them remain available.
+    /// It uses the two highest counters; the lower counters remain available for [`CellHash::at`].
     #[must_use]
     pub fn stream(self) -> Pcg32 {
         Pcg32::new(self.at(u32::MAX), self.at(u32::MAX - 1))

@@ -1,9 +1,9 @@
-//! Conversion of random bits to numbers from zero (included) to one (excluded).
+//! Converts random bits to numbers from zero (included) to one (excluded).
 //!
 //! Both functions are exact: every result is a multiple of 2^-24 or 2^-53, and all of these multiples are equally
 //! likely. Rounding never gives 1.
 
-/// Converts the upper 24 bits to a number in `[0, 1)`.
+/// Converts the upper 24 of 32 random bits to a number in `[0, 1)`.
 #[must_use]
 #[inline]
 #[expect(
@@ -14,7 +14,7 @@ pub const fn unit_f32(bits: u32) -> f32 {
     (bits >> 8) as f32 * (1.0 / (1 << 24) as f32)
 }
 
-/// Converts the upper 53 bits to a number in `[0, 1)`.
+/// Converts the upper 53 of 64 random bits to a number in `[0, 1)`.
 #[must_use]
 #[inline]
 #[expect(

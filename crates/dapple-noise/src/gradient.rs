@@ -1,4 +1,4 @@
-//! Perlin's gradient noise, at any position.
+//! Perlin's gradient noise, evaluated at any position.
 //!
 //! Ken Perlin, "An Image Synthesizer", SIGGRAPH 1985, <https://doi.org/10.1145/325334.325247>, with the quintic blend and
 //! the gradients of "Improving Noise", SIGGRAPH 2002, <https://doi.org/10.1145/566570.566636>.
@@ -25,8 +25,8 @@ const LANES: usize = 32;
 /// Maximum number of corners of a cell that share their first coordinate.
 pub(crate) const MOST_CORNERS: usize = 8;
 
-/// Perlin's improved noise. Every corner of a lattice of unit cells has a random gradient. At a corner, the noise is 0
-/// with that gradient as its slope; in between it is smooth.
+/// Perlin's improved noise. Every corner of a lattice of unit cells has a random gradient. At a corner, the noise is
+/// 0 and its slope is that gradient; in between, the noise is smooth.
 ///
 /// The value at integer positions is therefore 0, for every seed. For a grid of blocks or tiles, sample between the
 /// corners, for example at the block number times 0.1, or use [`fractal`](Self::fractal), whose octaves are offset.
@@ -49,7 +49,7 @@ pub(crate) const MOST_CORNERS: usize = 8;
 /// # Ok::<(), dapple_noise::raster::RasterError>(())
 /// ```
 ///
-/// A texture that moves, and begins again after 6 cells of time:
+/// A looping animation with a period of 6 cells of time:
 ///
 /// ```
 /// use dapple_noise::{GradientNoise3, hash::Seed, raster::prelude::*};
@@ -86,13 +86,13 @@ pub type GradientNoise3 = GradientNoise<3>;
 pub type GradientNoise4 = GradientNoise<4>;
 
 impl GradientNoise<2> {
-    /// Creates the noise of a seed.
+    /// Creates the noise for `seed`.
     #[must_use]
     pub const fn new(seed: Seed) -> Self {
         Self::of(seed)
     }
 
-    /// Maximum absolute value, which some noises attain in the middle of cells.
+    /// Maximum absolute value, which some seeds attain in the middle of cells.
     pub const BOUND: f32 = 1.0;
 
     /// Variance over all positions and seeds.
@@ -100,13 +100,13 @@ impl GradientNoise<2> {
 }
 
 impl GradientNoise<3> {
-    /// Creates the noise of a seed.
+    /// Creates the noise for `seed`.
     #[must_use]
     pub const fn new(seed: Seed) -> Self {
         Self::of(seed)
     }
 
-    /// Upper bound of the absolute value.
+    /// Upper bound on the absolute value.
     pub const BOUND: f32 = 1.0364;
 
     /// Variance over all positions and seeds.
@@ -114,26 +114,26 @@ impl GradientNoise<3> {
 }
 
 impl GradientNoise<4> {
-    /// Creates the noise of a seed.
+    /// Creates the noise for `seed`.
     #[must_use]
     pub const fn new(seed: Seed) -> Self {
         Self::of(seed)
     }
 
-    /// Upper bound of the absolute value.
+    /// Upper bound on the absolute value.
     pub const BOUND: f32 = 1.5366;
 
     /// Variance over all positions and seeds.
     pub const VARIANCE: f32 = 0.085_703;
 }
 
-/// Serialized form of a noise.
+/// Serialized form of gradient noise.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Description {
     seed: Seed,
-    /// Period along each axis, in cells.
+    /// Period along each axis, in cells; `None` for no period.
     period: Vec<Option<u32>>,
     /// Offset of an octave along each axis, in cells.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -203,7 +203,7 @@ impl<const N: usize> GradientNoise<N> {
         Ok(Self { period, ..self })
     }
 
-    /// Returns the period along each axis, in cells.
+    /// Returns the period along each axis, in cells; `None` for an axis without a period.
     #[must_use]
     pub fn periods(&self) -> [Option<u32>; N] {
         self.period.map(|cells| (cells > 0).then_some(cells))
@@ -218,7 +218,7 @@ impl<const N: usize> GradientNoise<N> {
         }
     }
 
-    /// Returns the offset of a position in its cell along each axis, and hash parts of the corners on both sides;
+    /// Returns a position's offset within its cell along each axis, and the hash parts of the corners on both sides;
     /// `None` if a coordinate is not finite.
     #[inline(always)]
     fn around(&self, position: [f64; N]) -> Option<([f32; N], [[u32; 2]; N])> {
@@ -257,7 +257,7 @@ impl<const N: usize> GradientNoise<N> {
     }
 
     /// Computes the values at many positions in cells. They equal those of [`sample`](Self::sample) and take about a
-    /// quarter of the time. `values` must have the length of `positions`.
+    /// quarter of the time. `values` must be as long as `positions`.
     ///
     /// # Errors
     ///
@@ -285,8 +285,8 @@ impl<const N: usize> GradientNoise<N> {
         self.value_and_gradient(position.into())
     }
 
-    /// Returns the gradients at corners that differ only in the first coordinate. The first coordinate of `at` is
-    /// ignored.
+    /// Returns the gradients at a line of corners, which differ only in the first coordinate and have it from
+    /// `columns`. The first coordinate of `at` is ignored.
     pub(crate) fn line(&self, level: Level, at: [i64; N], columns: &[i64]) -> Vec<[f32; N]> {
         let row = self.row(at);
         let mut gradients = Vec::with_capacity(columns.len());
@@ -301,7 +301,7 @@ impl<const N: usize> GradientNoise<N> {
         gradients
     }
 
-    /// Returns the combined hash part of all coordinates of a corner except the first, which varies fastest.
+    /// Returns the combined hash part of all of a corner's coordinates except the first, which varies fastest.
     pub(crate) fn row(&self, at: [i64; N]) -> u32 {
         (1..N).fold(0, |row, axis| row ^ self.part(axis, at[axis]))
     }
@@ -315,13 +315,13 @@ impl<const N: usize> GradientNoise<N> {
         self.hash.part(axis, coordinate)
     }
 
-    /// Returns the coordinate plus the offset of this noise.
+    /// Returns the coordinate plus the noise's offset along `axis`.
     #[inline(always)]
     pub(crate) const fn moved(&self, coordinate: f64, axis: usize) -> f64 {
         coordinate + f64::from_bits(self.offset[axis])
     }
 
-    /// Returns the coordinates of the corners on both sides of a cell along an axis, reduced by the period.
+    /// Returns the coordinates of the corners on both sides of a cell along an axis, wrapped by the period.
     #[inline(always)]
     pub(crate) fn pair(&self, cell: i64, axis: usize) -> [i64; 2] {
         match self.period[axis] {
@@ -340,11 +340,11 @@ impl<const N: usize> GradientNoise<N> {
         }
     }
 
-    /// Returns the noises of the octaves of a fractal sum, coarsest first. Each octave has a separate seed and
-    /// offset, and the common period in its own cells.
+    /// Returns the noise for each octave of a fractal sum, coarsest first. Each octave has a separate seed and
+    /// offset. Its period is the common one, measured in the octave's cells.
     ///
     /// Without offsets, all octaves with an integer lacunarity would be 0 at integer positions. Offsets are odd
-    /// multiples of 2^-9, so that positions on a coarser grid are moved exactly and periods are preserved.
+    /// multiples of 2^-9, so that positions on a coarser grid are shifted exactly and periods are preserved.
     pub(crate) fn octaves(&self, count: u32, lacunarity: f64) -> Result<Vec<Self>, RasterError> {
         RasterError::check_range(
             (1..=32).contains(&count),
@@ -382,7 +382,7 @@ impl<const N: usize> GradientNoise<N> {
         Ok(octaves)
     }
 
-    /// Returns the fractal sum of several octaves, `Σ gain^i · shape(noise_i(lacunarity^i · position + offset_i))`,
+    /// Creates the fractal sum of several octaves, `Σ gain^i · shape(noise_i(lacunarity^i · position + offset_i))`,
     /// where each octave has a separate seed and offset.
     ///
     /// The sum is not divided by the sum of the weights, `w = Σ |gain|^i` ([`Fractal::weight`]). For gains from 0 to
@@ -391,8 +391,8 @@ impl<const N: usize> GradientNoise<N> {
     ///
     /// # Errors
     ///
-    /// [`Range`](dapple_raster::RasterErrorKind::Range) unless there are 1 to 32 octaves, the gain is from -1 to 1, the
-    /// lacunarity is from 1 to 16, and a whole number where the noise has a period, and periods stay below 2^32 cells.
+    /// [`Range`](dapple_raster::RasterErrorKind::Range) unless there are 1 to 32 octaves, the gain is from -1 to 1,
+    /// the lacunarity is from 1 to 16 (a whole number if the noise has a period), and periods stay below 2^32 cells.
     #[doc(alias("fBm", "fbm", "ridged", "billow", "turbulence"))]
     pub fn fractal(
         &self,
@@ -500,7 +500,7 @@ impl Place {
     }
 }
 
-/// Contribution of a column of corners at an offset `t` along the first axis: `slope · t + value`.
+/// The contribution of a column of corners at an offset `t` along the first axis, which is `slope · t + value`.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Column {
     slope: f32,
@@ -508,7 +508,7 @@ pub(crate) struct Column {
 }
 
 impl Column {
-    /// Returns the contribution of one corner of a column, from its gradient and its index in the order of
+    /// Returns the contribution of one corner of a column, given its gradient and its index in the order of
     /// [`corner`].
     #[inline(always)]
     pub(crate) fn of<const N: usize>(gradient: [f32; N], index: usize, offsets: &[f32; N]) -> Self {
@@ -540,7 +540,7 @@ impl Column {
         columns[0]
     }
 
-    /// Returns the value between two columns, at the distance `t` from the left one; `by` is `fade(t)`.
+    /// Interpolates between two columns, at the distance `t` from the left one; `by` is `fade(t)`.
     #[inline(always)]
     pub(crate) fn between([left, right]: [Self; 2], t: f32, by: f32) -> f32 {
         let near = left.slope * t + left.value;
@@ -549,7 +549,7 @@ impl Column {
     }
 }
 
-/// Returns random bits of corners, from the hash parts of their coordinates. Compilers vectorize the loop.
+/// Returns random bits for corners, from the hash parts of their coordinates. Compilers vectorize the loop.
 #[inline(always)]
 fn bits_of<const N: usize>(parts: &[u32; LANES]) -> [u32; LANES] {
     let mut all = [0; LANES];
@@ -568,7 +568,7 @@ pub(crate) fn corner<const N: usize>(mut cell: [i64; N], index: usize) -> [i64; 
     cell
 }
 
-/// Returns the number of corners of a cell with the same first coordinate.
+/// Returns the number of corners of a cell that share their first coordinate, in `axes` dimensions.
 pub(crate) const fn corners(axes: usize) -> usize {
     1 << (axes - 1)
 }

@@ -1,8 +1,8 @@
-//! Gradient vectors at the corners of cells.
+//! The gradient vectors at the corners of cells.
 //!
-//! Perlin's improved noise uses the directions from the center of a cube to the midpoints of its edges, four of them
-//! twice to get sixteen. Here all directions are equally likely. In four dimensions there are 32, from the hypercube.
-//! In two dimensions there are eight, to the corners and sides of a square, all with the same length.
+//! Perlin's improved noise uses the directions from the center of a cube to the midpoints of its edges, listing four
+//! of them twice to get sixteen. Here all directions are equally likely. In four dimensions there are 32, from the
+//! hypercube. In two dimensions there are eight, to the corners and sides of a square, all with the same length.
 
 use core::f32::consts::SQRT_2;
 #[cfg(feature = "simd")]
@@ -30,7 +30,7 @@ static SPACE: [[f32; 3]; N_SPACE as usize] = edges();
 
 static TIME: [[f32; 4]; N_TIME as usize] = edges();
 
-/// Returns the midpoints of the edges of a cube from -1 to 1; there are `COUNT`.
+/// Returns the midpoints of the `COUNT` edges of a (hyper)cube from -1 to 1.
 const fn edges<const N: usize, const COUNT: usize>() -> [[f32; N]; COUNT] {
     let mut edges = [[0.0; N]; COUNT];
     let mut index = 0;
@@ -57,7 +57,8 @@ const fn picked(bits: u32, count: u32) -> u32 {
     ((bits >> 8) * count) >> 24
 }
 
-/// Returns the gradients that random bits select, one register per component: the SIMD form of [`gradient`].
+/// Returns the gradients that random bits select, with one register per component. This is the SIMD form of
+/// [`gradient`].
 #[cfg(feature = "simd")]
 #[inline(always)]
 pub(crate) fn gradient_lanes<S: Simd, const N: usize>(simd: S, bits: u32x16<S>) -> [f32x16<S>; N] {
@@ -103,7 +104,7 @@ pub(crate) fn gradient<const N: usize>(bits: u32) -> [f32; N] {
     gradient
 }
 
-/// Returns all gradients of a dimension.
+/// Returns all gradients in `N` dimensions.
 #[cfg(test)]
 pub(crate) fn all<const N: usize>() -> Vec<[f32; N]> {
     let count = [0, 0, PLANE.len(), SPACE.len(), TIME.len()][N] as u64;

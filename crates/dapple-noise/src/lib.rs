@@ -1,7 +1,7 @@
 //! Perlin's gradient noise in two to four dimensions for heights, caves, clouds and planets: exact periods, any
 //! position, exact derivatives, and the same bits on every machine.
 //!
-//! [`GradientNoise`] is Perlin's improved noise (2002), the noise that most programs mean by "Perlin noise". It is a
+//! [`GradientNoise`] is Perlin's improved noise (2002), which is what most programs call "Perlin noise". It is a
 //! [`Field`](dapple_raster::Field), so that [`FieldExt`](dapple_raster::FieldExt) composes it.
 //!
 //! ```
@@ -50,8 +50,8 @@
 //!
 //! # Limits
 //!
-//! * One octave is 0 at all whole positions, for every seed. Sample between them: multiply the number of a block by
-//!   0.1, for example. The octaves of `fractal` have offsets of their own, and are not 0 there.
+//! * One octave is 0 at all whole positions, for every seed. Sample between them, for example by multiplying block
+//!   numbers by 0.1. The octaves of `fractal` have offsets of their own, and are not 0 there.
 //! * Values are within `BOUND`: 1 in 2-D, 1.0364 in 3-D and 1.5366 in 4-D. `VARIANCE` is the variance. Nothing is
 //!   normalized.
 //! * A fractal sum has 1 to 32 octaves, a gain from -1 to 1 and a lacunarity from 1 to 16. With a period, the

@@ -1,4 +1,4 @@
-//! Row-by-row rendering of noise windows.
+//! Renders noise windows row by row.
 //!
 //! The pixels of a row share all coordinates except the first. A column of corners is therefore blended along the
 //! other axes once per row, and each pixel interpolates between two columns. Every corner is hashed once per band of
@@ -14,16 +14,16 @@ use std::ops::Range;
 /// Number of pixel rows in a band, the unit of parallel work.
 const ROWS: u32 = 32;
 
-/// Mean run length, in pixels, at and above which runs are rendered with the widest registers.
+/// Minimum mean run length, in pixels, for rendering runs with the widest registers.
 const LONG: usize = 24;
 
-/// Data that all rows of a window share.
+/// The data that all rows of a window share.
 pub(crate) struct Lines<'a, const N: usize> {
     noise: &'a GradientNoise<N>,
     window: &'a Window<N>,
-    /// Coordinates of all pixels along the axes after the second; the first two are unused.
+    /// Coordinates that all pixels share along the axes after the second; the first two entries are unused.
     rest: [Place; N],
-    /// First coordinates of the corners.
+    /// First coordinates of the columns of corners.
     columns: Vec<i64>,
     /// Runs of pixels in the same column of cells, from left to right.
     runs: Vec<Run>,
@@ -36,22 +36,22 @@ struct Run {
     cell: i64,
     /// Whether the first coordinates of the pixels are finite.
     is_finite: bool,
-    /// Columns of corners on the left and on the right.
+    /// Indices of the columns of corners on the left and on the right.
     sides: [usize; 2],
     pixels: Range<usize>,
 }
 
-/// Corners around a row of cells, and scratch memory for a row of pixels.
+/// The corners around a row of cells, and scratch memory for a row of pixels.
 struct Corners<const N: usize> {
-    /// Coordinates of the cells; the first is unused.
+    /// Coordinates of the row of cells; the first is unused.
     cell: [i64; N],
     /// Lines of corners, in the order of [`corner`].
     lines: Vec<Line<N>>,
-    /// Columns blended for a row of pixels.
+    /// Columns of corners, blended for a row of pixels.
     columns: Vec<Column>,
 }
 
-/// Gradients along a line of the lattice.
+/// The gradients along a line of the lattice.
 struct Line<const N: usize> {
     /// Coordinates of the corners; the first is unused.
     at: [i64; N],
@@ -137,7 +137,7 @@ impl<'a, const N: usize> Lines<'a, N> {
 }
 
 impl Run {
-    /// Starts a run at a pixel. Columns of corners that the previous run does not share are appended to `columns`.
+    /// Starts a run at `pixel`. Columns of corners that the previous run does not share are appended to `columns`.
     fn new(place: Place, before: Option<&Self>, columns: &mut Vec<i64>, pixel: usize) -> Self {
         let cell = place.cell;
         let mut add = |column| {
@@ -188,7 +188,7 @@ impl<const N: usize> Corners<N> {
             .collect();
     }
 
-    /// Blends the columns for a row of pixels with these offsets in their cells; the first offset is unused.
+    /// Blends the columns for a row of pixels with the given offsets within their cells; the first offset is unused.
     fn blend(&mut self, offsets: &[f32; N], count: usize) {
         let mut lines: [&[[f32; N]]; MOST_CORNERS] = [&[]; MOST_CORNERS];
         for (line, known) in lines.iter_mut().zip(&self.lines) {

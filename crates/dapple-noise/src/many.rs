@@ -1,4 +1,4 @@
-//! Noise at many positions, sixteen at once in SIMD lanes.
+//! Evaluates noise at many positions, sixteen at a time in SIMD lanes.
 //!
 //! The operations are the same as for a single position, in the same order, so that the bits are equal.
 
@@ -15,10 +15,10 @@ const LANES: usize = 16;
 /// Positions nearer to the origin than this have cells, and next cells, that fit 32 bits.
 const NEAR: f64 = 2_147_483_646.0;
 
-/// Cells and offsets of sixteen positions along one axis.
+/// The cells and offsets of sixteen positions along one axis.
 struct Line {
     cells: [u32; LANES],
-    /// The next cells, reduced by the period.
+    /// Next cell after each position's cell, wrapped by the period.
     next: [u32; LANES],
     offsets: [f32; LANES],
 }
@@ -67,7 +67,7 @@ fn fill_with<S: Simd, const N: usize, P: Copy + Into<[f64; N]>>(
     }
 }
 
-/// Returns the values at sixteen positions nearer than [`NEAR`].
+/// Returns the noise values at sixteen positions nearer to the origin than [`NEAR`].
 #[inline(always)]
 fn value<S: Simd, const N: usize>(
     simd: S,
@@ -129,13 +129,13 @@ fn value<S: Simd, const N: usize>(
     near + fade(t) * (far - near)
 }
 
-/// Hash key of an axis, and its period in cells or 0.
+/// Returns the hash key of an axis, and its period in cells (0 for no period).
 const fn axis_of<const N: usize>(noise: &GradientNoise<N>, axis: usize) -> (u32, u32) {
     (noise.hash.key(axis), noise.period[axis])
 }
 
-/// Returns the cell and offset of a coordinate below 2^51 in absolute value, and its floor, in operations that
-/// vectorize; `floor` is a function call at the lowest SIMD level of x86-64.
+/// Returns the cell and offset of a coordinate below 2^51 in absolute value, and its floor. Uses operations that
+/// vectorize, since `floor` is a function call at the lowest SIMD level of x86-64.
 #[inline(always)]
 fn near(coordinate: f64) -> (Place, f64) {
     let shifted = coordinate + SHIFT;
@@ -152,7 +152,7 @@ fn near(coordinate: f64) -> (Place, f64) {
 }
 
 impl Line {
-    /// Returns the cells of coordinates nearer than [`NEAR`], reduced by `period` if it is not 0.
+    /// Computes the cells of coordinates nearer to the origin than [`NEAR`], wrapped by `period` if it is not 0.
     #[inline(always)]
     fn new(coordinates: &[f64; LANES], period: u32) -> Self {
         let mut line = Self {

@@ -1,15 +1,16 @@
-//! Decomposition of a raster into frequency bands, and its reconstruction.
+//! Decomposes rasters into frequency bands, and reconstructs them.
 
 use crate::line::check_finite;
 use crate::{Border, SplineFilter, WaveletError};
 use dapple_raster::Raster;
 
-/// Bands of a raster: one detail raster per level, finest first, and the coarse remainder.
+/// A raster's frequency bands: one detail raster per level, finest first, and the coarse remainder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bands {
-    /// Detail `(I − P)` of each level, which halving loses. The first one has the size of the raster.
+    /// Detail `(I − P)` that halving loses at each level. The first detail raster is the same size as the original
+    /// raster.
     pub details: Vec<Raster<f32>>,
-    /// Coarse raster of the last level.
+    /// Coarse raster that remains after the last level.
     pub coarse: Raster<f32>,
 }
 
@@ -45,7 +46,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// Same as [`up`](Self::up): `Length` if the size of a detail does not match its level.
+    /// `Length` if the size of a detail raster does not match its level, or any error from [`up`](Self::up).
     pub fn synthesize(
         &self,
         bands: &Bands,

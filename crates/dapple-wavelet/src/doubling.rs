@@ -1,4 +1,4 @@
-//! Equation 6: representation of a spline with twice as many coefficients.
+//! Represents a spline with twice as many coefficients (equation 6).
 //!
 //! A fine coefficient is a sum of up to three coarse ones, with weights that depend on the parity of its index.
 
@@ -9,16 +9,16 @@ use dapple_raster::parallel;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, Simd};
 
-/// Filter that doubles the length of a line.
+/// A filter that doubles the length of a line.
 #[derive(Clone, Debug)]
 pub(crate) struct Doubling {
     pub(crate) fine: Line,
     pub(crate) coarse: Line,
-    /// Weights for even and for odd fine indices; both have the same number of weights.
+    /// Weights for even and for odd fine indices. Both parts have the same number of weights.
     parts: [Part; 2],
 }
 
-/// Coarse coefficients whose weighted sum is fine coefficient `2 i` or `2 i + 1`.
+/// The coarse coefficients whose weighted sum is fine coefficient `2 i` or `2 i + 1`.
 #[derive(Clone, Debug)]
 struct Part {
     /// Index of the first coefficient, relative to `i`.
@@ -26,11 +26,12 @@ struct Part {
     weights: Vec<f64>,
 }
 
-/// Number of coarse values by which a line is extended at each end: the reach of the filter.
+/// Number of coarse values by which a line is extended at each end, which is the filter's reach.
 const PAD: usize = 4;
 
 impl Doubling {
-    /// Returns the filter to lines of `fine_len`, from the coarse lines that [`Halving`] gives for them.
+    /// Creates the filter that produces lines of length `fine_len` from the coarse lines that [`Halving`] defines for
+    /// them.
     ///
     /// # Errors
     ///
@@ -90,7 +91,7 @@ impl Doubling {
         along_rows.spread(padded, fine, |value| value as f32);
     }
 
-    /// Computes fine row `row` from the coarse rows, which have the width of `sums`; rounded to `f32`.
+    /// Computes fine row `row`, rounded to `f32`, from the coarse rows, which are as long as `sums`.
     #[inline(always)]
     pub(crate) fn blend(&self, row: usize, coarse: &[f32], sums: &mut [f64]) {
         let part = &self.parts[row % 2];
@@ -110,7 +111,7 @@ impl Doubling {
         }
     }
 
-    /// Extends a coarse line, which has `PAD` free values at both ends.
+    /// Extends a coarse line, which has room for `PAD` values at both ends.
     #[inline(always)]
     fn go_on(&self, padded: &mut [f64]) {
         let len = self.coarse.len;
@@ -158,7 +159,7 @@ impl Part {
     }
 }
 
-/// Weighted sum of rows, rounded to `f32`.
+/// Computes the weighted sum of rows, rounded to `f32`.
 #[inline(always)]
 fn blend<const T: usize>(weights: [f64; T], rows: [&[f32]; T], sums: &mut [f64]) {
     let rows = rows.map(|row| &row[..sums.len()]);
@@ -188,7 +189,7 @@ fn spread<const T: usize, O>(
     }
 }
 
-/// Returns the weighted sum of the terms, in order.
+/// Returns the weighted sum of the terms, added in order.
 #[inline(always)]
 fn weigh<const T: usize>(weights: [f64; T], term: impl Fn(usize) -> f64) -> f64 {
     let mut sum = weights[0] * term(0);

@@ -1,4 +1,4 @@
-//! Extension of a line beyond its ends, and the length of its coarse line.
+//! Extends lines beyond their ends, and computes the lengths of coarse lines.
 
 use crate::{Border, Phase, SplineFilter, WaveletError, WaveletErrorKind};
 
@@ -15,7 +15,7 @@ pub(crate) struct Line {
 enum Ends {
     /// The line repeats.
     Repeat,
-    /// The line is mirrored. For the start and the end: whether the end value occurs twice or once.
+    /// The line is mirrored. `twice` says for the start and the end whether the end value occurs twice or once.
     Mirror { twice: [bool; 2] },
 }
 
@@ -28,7 +28,7 @@ pub(crate) struct Halving {
     pub(crate) offset: i64,
 }
 
-/// Maximum length: no memory can store a longer line, and no index overflows.
+/// Maximum length of a line. No memory can store a longer line, and up to this length no index overflows.
 const LONGEST: u64 = 1 << 40;
 
 impl Line {
@@ -36,7 +36,7 @@ impl Line {
     ///
     /// # Errors
     ///
-    /// `TooShort` below 1, or 2 if it is mirrored; `Range` above 2^40.
+    /// `TooShort` for a length below 1, or below 2 if the line is mirrored; `Range` for a length above 2^40.
     pub(crate) fn new(
         filter: SplineFilter,
         len: usize,
@@ -63,7 +63,7 @@ impl Line {
         Ok(Self { len, ends })
     }
 
-    /// Returns the index of the stored value for `index`, which may be outside.
+    /// Maps `index`, which may be beyond the ends, to the index of a stored value.
     pub(crate) fn index(&self, index: i64) -> usize {
         let len = self.len as i64;
         let inside = match self.ends {
@@ -86,8 +86,8 @@ impl Halving {
     ///
     /// # Errors
     ///
-    /// `NotDivisible` for an odd periodic length, `TooShort` for a line that would not get shorter; `Range` above
-    /// 2^40.
+    /// `NotDivisible` for an odd periodic length, `TooShort` for a line that would not get shorter; `Range` for a
+    /// length above 2^40.
     pub(crate) fn new(
         filter: SplineFilter,
         len: usize,
@@ -140,10 +140,10 @@ impl Halving {
     }
 }
 
-/// Returns the minimum length of a line that gets shorter by halving.
+/// Returns the minimum length of a line that halving makes shorter.
 ///
-/// A mirrored line of 2 keeps its length if its coarse coefficients are on both mirrors. With repeated halving, its
-/// variation would grow without bound.
+/// A mirrored line of length 2 keeps its length if its coarse coefficients are on both mirrors. With repeated
+/// halving, its variation would grow without bound.
 pub(crate) fn shortest(filter: SplineFilter, border: Border) -> usize {
     let is_even = filter.degree.order() % 2 == 0;
     if border == Border::Mirror && filter.phase == Phase::CookDeRose && is_even {

@@ -1,9 +1,9 @@
-//! Errors of spline filters and wavelet noise.
+//! Errors from spline filters and wavelet noise.
 
 use dapple_raster::RasterError;
 
 dapple_raster::error! {
-    /// Error of a filter or of a noise.
+    /// An error from a filter or from wavelet noise.
     WaveletError,
     /// Cause of a [`WaveletError`], with the limit and the value.
     WaveletErrorKind with Range {
@@ -11,10 +11,10 @@ dapple_raster::error! {
         NotDivisible {
             /// Length of the side.
             length: usize,
-            /// Number of halvings.
+            /// Number of times the side is halved.
             levels: u32,
         } => "a periodic side of {length} cannot be halved {levels} times; its length must be a multiple of 2^{levels}";
-        /// A side is too short.
+        /// A side is too short to be filtered.
         TooShort {
             /// Length of the side.
             length: usize,
@@ -37,7 +37,7 @@ dapple_raster::error! {
         } => "value {index} is {value}, but all must be finite";
     }
     from {
-        /// An error of the raster.
+        /// An error from creating or checking a raster.
         Raster(RasterError),
     }
 }

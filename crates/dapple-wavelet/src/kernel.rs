@@ -1,30 +1,31 @@
-//! Filter kernels: taps and poles.
+//! Filter kernels, given by their taps and poles.
 //!
-//! Halving is a least-squares fit. Let `h` be the two-scale coefficients and `b` the inner products of the spline with
-//! its own shifts (a B-spline of degree `2d + 1` at integers). The coarse coefficients `c` of the fine ones `g` solve
-//! `b * c = ↓2(q ⋆ g)` with `q = ½ h * b`. For least squares of the coefficients instead of the functions, `q` is `h`,
-//! and `b` is the autocorrelation of `h` at even distances. In both cases `b` is symmetric. Its inverse is a chain of
-//! first-order recursions, one pair for each pole inside of the unit circle. The sum of `b` is 1, so the gain of the
-//! chain is the product of all `(1 − pole)²`.
+//! Halving is a least-squares fit. Let `h` be the two-scale coefficients and `b` the inner products of the spline
+//! with its own integer shifts (a B-spline of degree `2d + 1` at integers). The coarse coefficients `c` of the fine
+//! ones `g` solve `b * c = ↓2(q ⋆ g)` with `q = ½ h * b`. For least squares of the coefficients instead of the
+//! functions, `q` is `h`, and `b` is the autocorrelation of `h` at even distances. In both cases `b` is symmetric.
+//! Its inverse is a chain of first-order recursions, one pair for each pole inside of the unit circle. The sum of `b`
+//! is 1, so the gain of the chain is the product of all `(1 − pole)²`.
 //!
 //! Reference: Michael Unser, Akram Aldroubi and Murray Eden, "B-Spline Signal Processing: Part I, Theory", IEEE
 //! Transactions on Signal Processing 41(2), 1993, for inverses by recursion.
 
 use crate::{Degree, Fit, SplineFilter};
 
-/// Filter of a line: a short weighted sum for each value, followed by recursions over the results.
+/// A filter for lines: a short weighted sum for each value, followed by recursions over the results.
 #[derive(Clone, Debug)]
 pub(crate) struct Kernel {
     /// Offset of the first tap relative to the value.
     pub(crate) first: i64,
-    /// Symmetric weights of the sum, which include the gain of the recursions.
+    /// Symmetric weights of the sum, which include the recursions' gain.
     pub(crate) taps: Vec<f64>,
     /// Poles of the recursions, each run forward and backward.
     pub(crate) poles: &'static [f64],
 }
 
 impl Kernel {
-    /// Returns the halving filter, relative to the first of the two fine coefficients of a coarse one.
+    /// Creates the halving filter. Its offsets are relative to the first of the two fine coefficients that belong to
+    /// a coarse one.
     pub(crate) fn halving(filter: SplineFilter) -> Self {
         let h = two_scale(filter.degree);
         let first = filter.first_tap();
@@ -38,17 +39,17 @@ impl Kernel {
         }
     }
 
-    /// Returns the filter that evaluates a spline at the positions of its coefficients.
+    /// Creates the filter that evaluates a spline at the positions of its coefficients.
     pub(crate) fn samples(degree: Degree) -> Self {
         Self::new(-(degree.order() / 2), samples(degree).to_vec(), &[])
     }
 
-    /// Returns the filter that computes the coefficients of the spline with given values.
+    /// Creates the filter that computes the coefficients of the spline with given values.
     pub(crate) fn coefficients(degree: Degree) -> Self {
         Self::new(0, vec![1.0], sample_poles(degree))
     }
 
-    /// Creates a kernel that preserves constants: the taps are divided by their sum.
+    /// Creates a kernel that preserves constants, by dividing the taps by their sum.
     fn new(first: i64, taps: Vec<f64>, poles: &'static [f64]) -> Self {
         let sum: f64 = taps.iter().sum();
         let gain = poles
@@ -61,8 +62,8 @@ impl Kernel {
         }
     }
 
-    /// Returns the number of steps after which the initial value of a recursion has an influence below 2^-58, less
-    /// than a rounding.
+    /// Returns the number of steps after which a recursion's initial value has an influence below 2^-58, which is
+    /// less than a rounding error.
     pub(crate) fn reach(&self) -> usize {
         let slowest = self
             .poles
@@ -77,7 +78,7 @@ impl Kernel {
     }
 }
 
-/// Maximum remaining influence of the initial value of a recursion: 2^-58.
+/// Maximum remaining influence of a recursion's initial value: 2^-58.
 const FORGOTTEN: f64 = 1.0 / (1_u64 << 58) as f64;
 
 /// Returns the two-scale coefficients `2^-d C(d + 1, k)` of equation 4.

@@ -1,9 +1,9 @@
 //! Band-limited wavelet noise, and spline wavelets that halve and double rasters exactly.
 //!
 //! A [`SplineFilter`] reads pixels as the coefficients of a B-spline. It finds the nearest spline with half as many
-//! coefficients ([`down`](SplineFilter::down)), and writes a spline exactly with twice as many
-//! ([`up`](SplineFilter::up)). Both in turn are a projection ([`project`](SplineFilter::project)), which keeps the
-//! detail that a half-size image can show, and removes all other detail.
+//! coefficients ([`down`](SplineFilter::down)), and represents a spline exactly with twice as many
+//! ([`up`](SplineFilter::up)). One after the other, they form a projection ([`project`](SplineFilter::project)),
+//! which retains the detail that a half-size image can show and removes all other detail.
 //!
 //! ```
 //! use dapple_wavelet::{Border, SplineFilter, WaveletNoise2, hash::Seed, raster::Raster};
@@ -52,12 +52,12 @@
 //!
 //! # Limits
 //!
-//! * A noise tile has at least 4 cells along each axis, an even number, and at most 2^27 in all. A 2-D tile of `size`
-//!   cells takes `4 (size + 2)²` bytes.
+//! * A noise tile has an even number of cells along each axis, at least 4, and at most 2^27 cells in total. A 2-D
+//!   tile of `size` cells takes `4 (size + 2)²` bytes.
 //! * A noise has 1 to 16 bands. Its values are nearly normal, with variance 1 for one band of weight 1, and never
 //!   exceed [`bound`](WaveletNoise::bound).
 //! * Noise is in 2-D and 3-D, and always repeats.
-//! * A periodic side must be even to be halved. A mirrored side may have any length from 3 on.
+//! * A periodic side must be even to be halved. A mirrored side may have any length of at least 3.
 //! * Pixels must be finite.
 //! * Lines are `f64`. Rasters and volumes are `f32`, filtered in `f64` and rounded after each axis.
 //! * Results have the same bits on every platform and any number of threads.
@@ -69,9 +69,9 @@
 //!
 //! # The filters
 //!
-//! Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", turn a tile into one that
-//! repeats better by halving it and doubling it again. The filters are those of Robert L. Cook and Tony DeRose,
-//! "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005), <https://doi.org/10.1145/1073204.1073264>.
+//! Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", make a tile repeat better
+//! by halving it and doubling it again. The filters are those of Robert L. Cook and Tony DeRose, "Wavelet Noise", ACM
+//! Transactions on Graphics 24(3) (SIGGRAPH 2005), <https://doi.org/10.1145/1073204.1073264>.
 //!
 //! ## The paper's equations
 //!
@@ -92,19 +92,21 @@
 //!
 //! ## What the paper leaves open
 //!
-//! * The filter of equation 7 has no end. Cook and DeRose cut it off after 32 taps, with an rms error of 1.2e-3 on
-//!   white noise of variance 1; here it is exact, as a recursion, in linear time.
-//! * Its indices wrap ([`Border::Periodic`]). The whole effect on the seam of a tile comes from that;
-//!   [`Border::Mirror`] is for images that do not repeat.
-//! * Where the coarse coefficients lie is [`Phase`], which spline is [`Degree`], and what nearest means is [`Fit`].
-//! * Pixels are coefficients and not values of the function, as in the paper; [`SplineFilter::coefficients`] and
-//!   [`SplineFilter::samples`] are the way from one to the other.
+//! * The filter in equation 7 is infinitely long. Cook and DeRose cut it off after 32 taps, with an rms error of
+//!   1.2e-3 on white noise of variance 1; here it is exact, as a recursion, in linear time.
+//! * Its indices wrap ([`Border::Periodic`]). This alone accounts for the effect on a tile's seam; [`Border::Mirror`]
+//!   is for images that do not repeat.
+//! * [`Phase`] chooses the positions of the coarse coefficients, [`Degree`] chooses the spline, and [`Fit`] defines
+//!   what "nearest" means.
+//! * As in the paper, pixels are coefficients and not values of the function. [`SplineFilter::coefficients`] and
+//!   [`SplineFilter::samples`] convert between the two.
 //!
 //! # Wavelet noise
 //!
-//! The detail that white noise loses by halving is noise of one octave. [`WaveletNoise2`] and [`WaveletNoise3`]
-//! evaluate this noise at any position, in one band or several, with its gradient and with a period. [`wavelet_tile`]
-//! sums bands of it, each made at its own size, to a raster that repeats without a seam.
+//! The detail that white noise loses when it is halved is noise with a bandwidth of one octave. [`WaveletNoise2`] and
+//! [`WaveletNoise3`] evaluate this noise at any position, in one band or several, with its gradient and with a
+//! period. [`wavelet_tile`] sums bands of it, each generated at its own size, into a raster that repeats without a
+//! seam.
 
 #![forbid(unsafe_code)]
 

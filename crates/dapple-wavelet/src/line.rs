@@ -1,9 +1,9 @@
-//! Filters of lines in `f64`: halving by recursion, doubling, and projection, which does both.
+//! Filters for `f64` lines: halving by recursion, doubling, and projection, which does both.
 //!
 //! Reference: Robert L. Cook and Tony DeRose, "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005),
 //! <https://doi.org/10.1145/1073204.1073264>, for the filter pair of equations 6 and 7 of Du, Wang and Meng.
 //!
-//! Cook and DeRose truncate the filter `a` to 32 taps. Here it is complete: see `recursion.rs`.
+//! Cook and DeRose truncate the filter `a` to 32 taps. Here it is applied in full; see `recursion.rs`.
 
 use crate::doubling::Doubling;
 use crate::ends::{Halving, lengths};
@@ -12,21 +12,22 @@ use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
 use core::ops::Mul;
 
 impl SplineFilter {
-    /// Returns the number of coefficients of a line of `length` after halving: half as many for a periodic line; see
-    /// [`Border::Mirror`] for a mirrored line.
+    /// Returns the number of coefficients after halving a line of `length` coefficients. For a periodic line it is
+    /// half of `length`; for a mirrored line, see [`Border::Mirror`].
     ///
     /// # Errors
     ///
-    /// `NotDivisible` for an odd periodic length; `TooShort` for a line that would not get shorter: a length below 2,
-    /// or below 3 for a mirrored line with an even degree in the phase of Cook and DeRose; `Range` above 2^40.
+    /// `NotDivisible` for an odd periodic length; `TooShort` for a line that would not get shorter, that is, for a
+    /// length below 2, or below 3 for a mirrored line with an even degree and
+    /// [`Phase::CookDeRose`](crate::Phase::CookDeRose); `Range` for a length above 2^40.
     pub fn coarse_len(&self, length: usize, border: Border) -> Result<usize, WaveletError> {
         Ok(Halving::new(*self, length, border)?.coarse.len)
     }
 
-    /// Equation 7: halves a line to the nearest line with half as many coefficients.
+    /// Halves a line to the nearest line with half as many coefficients (equation 7).
     ///
-    /// Absolute values are at most 3.82 times the largest absolute value of `fine`, or 2.33 times for degrees below
-    /// the cubic. Values are finite up to `f64::MAX / 4`; beyond it some may be infinite or NaN.
+    /// Absolute values in the result are at most 3.82 times the largest absolute value in `fine`, or 2.33 times for
+    /// degrees below cubic. Values are finite up to `f64::MAX / 4`; beyond that, some may be infinite or NaN.
     ///
     /// # Errors
     ///
@@ -48,7 +49,7 @@ impl SplineFilter {
         Ok(filter_line(&halving, fine))
     }
 
-    /// Equation 6: represents the same function with `fine_len` coefficients.
+    /// Represents the same function with `fine_len` coefficients (equation 6).
     ///
     /// # Errors
     ///
@@ -65,10 +66,10 @@ impl SplineFilter {
         Ok(doubling.line(coarse))
     }
 
-    /// Halves a line `levels` times and doubles it `levels` times; zero levels return the line itself.
+    /// Halves a line `levels` times and then doubles it `levels` times. Zero levels return the line itself.
     ///
     /// Each level mirrors its own line, which may differ from mirroring the fine line: see [`Border::Mirror`]. Values
-    /// are finite up to `f64::MAX / 4^levels`; beyond it some may be infinite or NaN.
+    /// are finite up to `f64::MAX / 4^levels`; beyond that, some may be infinite or NaN.
     ///
     /// # Errors
     ///

@@ -32,18 +32,21 @@ use tile::Tile;
 pub(crate) use scale::LineSums;
 pub(crate) use white::white_raster;
 
-/// Noise without low frequencies: a tile of B-spline coefficients, evaluated at any position, in one or several bands.
+/// Band-limited noise without low frequencies. A tile of B-spline coefficients is evaluated at any position, in one
+/// or several bands.
 ///
 /// A band has about 84 % of its power between ¼ and ½ cycles per cell, measured along the axis with the highest
-/// frequency. About half of the remainder is above and half below. Less than a ten-thousandth of the power is below ⅛.
+/// frequency. About half of the remaining power is above this octave and half is below. Less than a ten-thousandth of
+/// the power is below ⅛.
 ///
 /// Values are nearly normally distributed. Over all positions and seeds, the mean is 0 and the variance 1. The
 /// variance at a position depends on its offset from the coefficients: in the plane it is 0.31 at every other corner
 /// of cells along each axis, and up to 1.38 within cells. Absolute values are at most [`bound`](Self::bound). There is
 /// no other normalization.
 ///
-/// The period along each axis is [`size`](Self::size), in cells; repetition is exact if both positions are exact in
-/// `f64`. The noise and its gradient are continuous. At a position that is not finite, the value is NaN.
+/// The period along each axis is [`size`](Self::size), in cells; the noise has equal bits at two positions a period
+/// apart if both are exact in `f64`. The noise and its gradient are continuous. At a position that is not finite, the
+/// value is NaN.
 ///
 /// A new noise has one band of weight 1; [`with_weights`](Self::with_weights) sets the weights of several bands.
 ///
@@ -77,7 +80,7 @@ pub type WaveletNoise3 = WaveletNoise<3>;
 /// Maximum number of bands.
 const MOST_BANDS: usize = 16;
 
-/// Maximum weight, so that sums of weighted values do not overflow.
+/// Maximum absolute weight, chosen so that sums of weighted values do not overflow.
 const LARGEST_WEIGHT: f32 = 1e30;
 
 impl<const N: usize> WaveletNoise<N> {
@@ -91,8 +94,8 @@ impl<const N: usize> WaveletNoise<N> {
     ///
     /// # Errors
     ///
-    /// [`WaveletErrorKind::Range`] unless there are 1 to 16 weights from -1e30 to 1e30, [`WaveletErrorKind::NotFinite`] if
-    /// one is NaN or infinite.
+    /// [`WaveletErrorKind::Range`] unless there are 1 to 16 weights from -1e30 to 1e30,
+    /// [`WaveletErrorKind::NotFinite`] if a weight is NaN or infinite.
     pub fn with_weights(mut self, weights: &[f32]) -> Result<Self, WaveletError> {
         check_weights(weights)?;
         self.bands = Band::all(weights, self.size, self.seed);
@@ -105,7 +108,7 @@ impl<const N: usize> WaveletNoise<N> {
         self.size
     }
 
-    /// Returns the bound of the absolute value: the largest absolute coefficient times the sum of the absolute
+    /// Returns an upper bound on absolute values: the largest absolute coefficient times the sum of the absolute
     /// weights.
     ///
     /// With several bands, values rarely come near the bound.
@@ -128,7 +131,7 @@ impl<const N: usize> fmt::Debug for WaveletNoise<N> {
     }
 }
 
-/// Checks the number, the range and the finiteness of weights.
+/// Checks that the weights are finite and in range, and that their number is allowed.
 pub(crate) fn check_weights(weights: &[f32]) -> Result<(), WaveletError> {
     if weights.is_empty() || weights.len() > MOST_BANDS {
         return Err(WaveletError::new(WaveletErrorKind::Range {

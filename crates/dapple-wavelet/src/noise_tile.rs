@@ -1,14 +1,15 @@
-//! Seamless rasters of wavelet noise with a weight per band.
+//! Generates seamless rasters of wavelet noise, with a weight per band.
 //!
-//! A raster contains the coefficients of a periodic quadratic B-spline. A band of Cook and DeRose's wavelet noise (see
-//! [`WaveletNoise`](crate::WaveletNoise)) is created at the size where no other band has its frequencies. It is then
-//! doubled to the size of the raster, which changes only the number of coefficients. The result has no seam, bands do
-//! not overlap, and each band can be recovered by halving. Prefer this to making a noise image repeat afterward.
+//! A raster contains the coefficients of a periodic quadratic B-spline. Each band of Cook and DeRose's wavelet noise
+//! (see [`WaveletNoise`](crate::WaveletNoise)) is generated at the size at which its frequencies are the highest. It
+//! is then doubled to the size of the raster, which changes only the number of coefficients. The result has no seam,
+//! bands do not overlap, and each band can be recovered by halving. Prefer this to making a noise image repeat
+//! afterward.
 //!
-//! Every band has separate white noise, and has no shorter period than the raster.
+//! Every band is generated from separate white noise, and its period is never shorter than the raster.
 //!
 //! Reference: Robert L. Cook and Tony DeRose, "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005),
-//! <https://doi.org/10.1145/1073204.1073264>, for the bands; their sum as a raster is our own.
+//! <https://doi.org/10.1145/1073204.1073264>, for the bands; summing them into a raster is an original addition.
 
 use crate::noise::{LineSums, check_weights, white_raster};
 use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
@@ -21,8 +22,8 @@ const PERIODIC: [Border; 2] = [Border::Periodic; 2];
 ///
 /// The pixels are the coefficients of a periodic quadratic spline. Nearly all power of band `b` is between `2^-b / 4`
 /// and `2^-b / 2` cycles per pixel. Its mean is 0, and its mean square over all pixels and seeds is the square of its
-/// weight. Bands are independent, so the mean squares add up. The values are nearly normally distributed and are not
-/// processed further.
+/// weight. Bands are independent, so the mean squares add up. The values are nearly normally distributed, and are not
+/// scaled or clamped.
 ///
 /// [`SplineFilter::analyze`] recovers these bands from the raster. Runs on all cores if the feature `rayon` is
 /// enabled.
@@ -31,9 +32,9 @@ const PERIODIC: [Border; 2] = [Border::Periodic; 2];
 ///
 /// # Errors
 ///
-/// [`WaveletErrorKind::Range`] unless there are 1 to 16 weights from -1e30 to 1e30, [`WaveletErrorKind::NotFinite`] if
-/// one is NaN or infinite, [`WaveletErrorKind::NotDivisible`] if a side is not a multiple of `2^n` for `n` weights,
-/// and [`WaveletErrorKind::Raster`] if there is no pixel or more than 2^31.
+/// [`WaveletErrorKind::Range`] unless there are 1 to 16 weights from -1e30 to 1e30, [`WaveletErrorKind::NotFinite`]
+/// if a weight is NaN or infinite, [`WaveletErrorKind::NotDivisible`] if a side is not a multiple of `2^n` for `n`
+/// weights, and [`WaveletErrorKind::Raster`] if there is no pixel or more than 2^31.
 ///
 /// # Examples
 ///
@@ -81,7 +82,7 @@ fn check_size(size: [u32; 2], levels: u32) -> Result<(), WaveletError> {
     }
 }
 
-/// Adds a band to a raster of its size, which will be doubled `level` more times.
+/// Adds a band to a raster of the same size, which will be doubled `level` more times.
 fn add_band(
     raster: &Raster<f32>,
     weight: f32,

@@ -1,6 +1,6 @@
-//! Filtering of all lines of an array, several in parallel lanes, on all cores.
+//! Filters all lines of an array, several at a time in SIMD lanes and on all cores.
 //!
-//! The lines of an array are contiguous, and the result is transposed: the direction along the lines becomes the
+//! Lines are contiguous in memory. The result is transposed, so that the direction along the lines becomes the
 //! direction across them. Two passes filter a raster along both axes, three passes a volume along its three axes, and
 //! restore the order of the axes. No pass accesses single values with the stride of a row, which would cost more than
 //! the filter.
@@ -13,14 +13,15 @@ use fearless_simd::{Level, f32x8, prelude::*};
 /// Number of lines that are filtered in parallel lanes.
 const LANES: usize = 8;
 
-/// Number of groups of lines that are filtered before they are written to the result; they stay in the cache until
-/// then.
+/// Number of groups of lines that are filtered before they are written to the result. A batch stays in the cache
+/// until it is written.
 const BATCH: usize = 32;
 
 /// Number of rows of the result that are written at a time, so that their sources are read in whole cache lines.
 const ROWS: usize = 8;
 
-/// Filters the lines of an array, and rounds to `f32`. Value `i` of line `l` is at `i * lines + l` of the result.
+/// Filters the lines of an array, rounding the results to `f32`. Value `i` of line `l` is at `i * lines + l` of the
+/// result.
 pub(crate) fn filter_lines(filter: &LineFilter, values: &[f32]) -> Vec<f32> {
     let mut result = vec![0.0; values.len() / filter.source.len * filter.target.len];
     filter_lines_into(simd::level(), filter, values, &mut Vec::new(), &mut result);
@@ -78,7 +79,8 @@ fn filter_group<S: Simd>(
     }
 }
 
-/// Interleaves up to `LANES` lines: in square blocks of values, and the remainder one by one.
+/// Interleaves up to `LANES` lines. Square blocks of values are transposed in registers; remaining values are copied
+/// one by one.
 #[inline(always)]
 fn interleave<S: Simd>(simd: S, lines: &[f32], target: &mut [[f64; LANES]]) {
     let len = target.len();
@@ -96,7 +98,7 @@ fn interleave<S: Simd>(simd: S, lines: &[f32], target: &mut [[f64; LANES]]) {
     }
 }
 
-/// Interleaves the first `LANES` values of `LANES` lines, whose starts are `len` apart.
+/// Interleaves the first `LANES` values of `LANES` lines, whose starts are `len` values apart.
 ///
 /// A perfect shuffle of all 64 values rotates the six bits of their indices by one; three shuffles exchange the three
 /// bits of the line with those of the position.
@@ -121,8 +123,8 @@ fn transpose<S: Simd>(simd: S, lines: &[f32], len: usize, target: &mut [[f64; LA
     }
 }
 
-/// Writes the values of up to `LANES` lines into consecutive columns, starting at `column`, of rows with length
-/// `width`.
+/// Writes the values of up to `LANES` lines into consecutive columns, starting at `column`, of rows that are `width`
+/// values long.
 fn write_columns(values: &[f32], rows: &mut [f32], width: usize, column: usize) {
     let (parts, _) = values.as_chunks::<LANES>();
     for (row, part) in rows.chunks_exact_mut(width).zip(parts) {

@@ -1,4 +1,4 @@
-//! Filters of rasters along rows and columns.
+//! Filters rasters along rows and columns.
 //!
 //! Halving filters rows and then columns; doubling filters columns and then rows. Values are rounded to `f32` in
 //! between. All arithmetic is `f64`.
@@ -15,7 +15,8 @@ use crate::{Border, SplineFilter, WaveletError};
 use dapple_raster::{Raster, simd};
 use fearless_simd::Level;
 
-/// Reusable scratch memory of [`SplineFilter::down_into`]: about 2 bytes per fine pixel of the largest raster.
+/// Reusable scratch memory for [`SplineFilter::down_into`]. It takes about 2 bytes per fine pixel of the largest
+/// raster.
 #[derive(Clone, Debug, Default)]
 pub struct FilterMemory {
     columns: Vec<f32>,
@@ -23,10 +24,10 @@ pub struct FilterMemory {
 }
 
 impl SplineFilter {
-    /// Equations 9 and 12: halves a raster to the nearest raster of half the size.
+    /// Halves a raster to the nearest raster of half the size (equations 9 and 12).
     ///
-    /// Absolute pixel values are at most 14.6 times the largest one of `fine`, or 5.4 times for degrees below the
-    /// cubic. Pixels are finite up to `f32::MAX / 15`; beyond it some may be infinite or NaN.
+    /// Absolute pixel values are at most 14.6 times the largest absolute value in `fine`, or 5.4 times for degrees
+    /// below cubic. Pixels are finite up to `f32::MAX / 15`; beyond that, some may be infinite or NaN.
     ///
     /// # Errors
     ///
@@ -71,7 +72,7 @@ impl SplineFilter {
         Ok(())
     }
 
-    /// Equations 8 and 13: represents the same function with `fine_size` pixels.
+    /// Represents the same function with `fine_size` pixels (equations 8 and 13).
     ///
     /// # Errors
     ///
@@ -121,14 +122,14 @@ impl SplineFilter {
         Doubling::new(*self, coarse as usize, fine as usize, border)
     }
 
-    /// Halves a raster `levels` times along each axis and doubles it `levels` times; zero levels return the raster
-    /// itself.
+    /// Halves a raster `levels` times along each axis and then doubles it `levels` times. Zero levels return the
+    /// raster itself.
     ///
-    /// Each level mirrors its own lines: see [`Border::Mirror`].
+    /// With a mirrored border, each level mirrors its own lines; see [`Border::Mirror`].
     ///
     /// # Errors
     ///
-    /// Same as [`down`](Self::down) at each level. `NotFinite` also occurs if a level has made infinite pixels from
+    /// Same as [`down`](Self::down) at each level. `NotFinite` also occurs if a level produces infinite pixels from
     /// finite ones, which cannot happen up to `f32::MAX / 15^levels`. `Range` for more than 32 levels.
     pub fn project(
         &self,
@@ -151,7 +152,7 @@ impl SplineFilter {
         Ok(raster)
     }
 
-    /// Returns the sizes of a raster that is halved `levels` times, from its own size to the last.
+    /// Returns the sizes of a raster as it is halved `levels` times, from its original size to the last.
     ///
     /// # Errors
     ///

@@ -1,8 +1,10 @@
-//! Halving filter and prefilters: a short sum followed by recursions, over several lines in parallel lanes.
+//! Runs the halving filter and prefilters, which are a short sum followed by recursions, on several lines in SIMD
+//! lanes.
 //!
-//! A recursion depends on the values before the first one. The lines are therefore extended beyond their ends, until a
-//! start with zero influences a result by less than its last bit. This rule covers periodic and mirrored lines of any
-//! length. For a periodic line it equals, up to rounding, the usual start `s / (1 − pⁿ)` from one whole period `s`.
+//! A recursion depends on the values before the first one. The lines are therefore extended beyond their ends, so far
+//! that starting with zero influences a result by less than its last bit. This rule covers periodic and mirrored
+//! lines of any length. For a periodic line it equals, up to rounding, the usual start `s / (1 − pⁿ)` from one whole
+//! period `s`.
 //!
 //! All arithmetic is `f64`, with the same operations in the same order for every lane. The bits of a line do not
 //! depend on the lines in other lanes.
@@ -25,7 +27,7 @@ pub(crate) struct LineFilter {
     reach: usize,
 }
 
-/// Scratch memory for filtering `L` lines in parallel lanes.
+/// Scratch memory for filtering `L` lines in SIMD lanes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Lanes<const L: usize> {
     source: Vec<[f64; L]>,
@@ -33,7 +35,7 @@ pub(crate) struct Lanes<const L: usize> {
 }
 
 impl LineFilter {
-    /// Returns the filter of equation 7, for lines of length `len`.
+    /// Creates the filter of equation 7 for lines of length `len`.
     pub(crate) fn halving(
         filter: SplineFilter,
         len: usize,
@@ -51,7 +53,7 @@ impl LineFilter {
         })
     }
 
-    /// Returns the filter whose target has the length of its source.
+    /// Creates a filter whose target is as long as its source.
     pub(crate) fn in_place(kernel: Kernel, line: Line) -> Self {
         Self {
             start: kernel.first,
@@ -63,7 +65,7 @@ impl LineFilter {
         }
     }
 
-    /// Filters the lines that `load` writes into a slice of the length of the source.
+    /// Filters the lines that `load` writes into a slice, which is as long as the source.
     #[inline(always)]
     pub(crate) fn run<'lanes, const L: usize>(
         &self,
@@ -105,7 +107,7 @@ impl LineFilter {
     }
 }
 
-/// Extends the line that starts at `before` to both ends of the slice.
+/// Extends the line, whose first value is at index `before`, to both ends of the slice.
 #[inline(always)]
 fn go_on<const L: usize>(line: &Line, values: &mut [[f64; L]], before: usize) {
     let after = before + line.len..values.len();

@@ -1,4 +1,4 @@
-//! Interpolating splines through given values, and evaluation of splines.
+//! Finds splines that interpolate given values, and evaluates splines.
 //!
 //! The filters interpret pixels as coefficients. If the pixels are samples of an image, [`SplineFilter::coefficients`]
 //! first computes, by recursion, the spline that has them as its values at pixel centers, and
@@ -16,12 +16,12 @@ use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
 use dapple_raster::Raster;
 
 impl SplineFilter {
-    /// Equation 1: value at `x` of the spline with these coefficients; coefficient `i` is centered on `i`.
+    /// Evaluates the spline with the given coefficients at `x` (equation 1). Coefficient `i` is centered on `i`.
     ///
     /// # Errors
     ///
-    /// `Range` if `x` is not finite or beyond 2^52 in absolute value; `TooShort` without coefficients, and for a
-    /// single mirrored one; `NotFinite`.
+    /// `Range` if `x` is not finite or beyond 2^52 in absolute value; `TooShort` without coefficients, or with a
+    /// single one and a mirrored border; `NotFinite` if a coefficient is NaN or infinite.
     ///
     /// # Examples
     ///
@@ -59,11 +59,12 @@ impl SplineFilter {
         Ok(sum)
     }
 
-    /// Computes the coefficients of the spline with these values at integers.
+    /// Computes the coefficients of the spline that takes the given values at integers.
     ///
     /// # Errors
     ///
-    /// `TooShort` for no values, and for a single mirrored one; `NotFinite`.
+    /// `TooShort` without values, or with a single one and a mirrored border; `NotFinite` if a value is NaN or
+    /// infinite.
     pub fn coefficients_line(
         &self,
         samples: &[f64],
@@ -72,7 +73,7 @@ impl SplineFilter {
         self.filter_samples(Kernel::coefficients(self.degree), samples, border)
     }
 
-    /// Evaluates the spline with these coefficients at integers.
+    /// Evaluates the spline with the given coefficients at all integers.
     ///
     /// # Errors
     ///
@@ -85,7 +86,7 @@ impl SplineFilter {
         self.filter_samples(Kernel::samples(self.degree), coefficients, border)
     }
 
-    /// Computes the coefficients of the spline with these values at pixel centers.
+    /// Computes the coefficients of the spline that takes the given values at pixel centers.
     ///
     /// # Errors
     ///
@@ -98,7 +99,7 @@ impl SplineFilter {
         self.filter_raster(&Kernel::coefficients(self.degree), samples, borders)
     }
 
-    /// Evaluates the spline with these coefficients at pixel centers.
+    /// Evaluates the spline with the given coefficients at all pixel centers.
     ///
     /// # Errors
     ///

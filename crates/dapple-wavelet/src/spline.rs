@@ -1,4 +1,4 @@
-//! B-splines and the options of a filter.
+//! B-splines, and the options of a spline filter.
 //!
 //! The spline of degree `d` is the box function of width 1, convolved `d` times with itself. Its width is `d + 1`. It
 //! is a sum of `d + 2` splines of half the width, weighted by binomial coefficients (equation 4 of the paper).
@@ -25,10 +25,10 @@ dapple_raster::named! {
 }
 
 impl Degree {
-    /// Returns the value at `x` of the B-spline centered on 0: the basis function φ of equations 1 to 4.
+    /// Evaluates the B-spline centered on 0, which is the basis function φ of equations 1 to 4, at `x`.
     ///
-    /// Values are at least 0, and the sum over all integer shifts is 1. The value is 0 at and beyond half of the width
-    /// `degree + 1`. At a discontinuity of the constant spline, it is the limit from the right.
+    /// Values are at least 0, and the sum over all integer shifts is 1. The value is 0 at and beyond a distance of
+    /// half the width `degree + 1`. At a discontinuity of the constant spline, it is the limit from the right.
     ///
     /// # Examples
     ///
@@ -55,8 +55,8 @@ impl Degree {
         }
     }
 
-    /// Returns the derivative of [`value`](Self::value) at `x`. At a kink of the linear spline it is the derivative
-    /// to the right; for the constant spline it is 0.
+    /// Returns the derivative of [`value`](Self::value) at `x`. At a kink of the linear spline, this is the
+    /// derivative from the right; for the constant spline, it is 0.
     #[must_use]
     pub fn derivative(self, x: f64) -> f64 {
         let distance = x.abs();
@@ -148,9 +148,9 @@ dapple_raster::named! {
     }
 }
 
-/// A filter pair: `h` doubles a line and `a` halves it.
+/// A pair of filters: `h` doubles a line and `a` halves it.
 ///
-/// The default is the pair of the paper: quadratic, pixel-centered, least squares of the functions.
+/// The default is the paper's pair: quadratic, pixel-centered, with a least-squares fit of the functions.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/spline-filter.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -161,12 +161,12 @@ pub struct SplineFilter {
     pub degree: Degree,
     /// Position of the coarse coefficients [default: centered].
     pub phase: Phase,
-    /// Distance that halving minimizes [default: between the functions].
+    /// Distance measure that halving minimizes [default: between the functions].
     pub fit: Fit,
 }
 
 impl SplineFilter {
-    /// Returns the index of the first fine coefficient of coarse coefficient 0.
+    /// Returns the index of the first fine coefficient that coarse coefficient 0 is spread over.
     pub(crate) fn first_tap(self) -> i64 {
         let centered = -((self.degree.order() + 1) / 2);
         match self.phase {

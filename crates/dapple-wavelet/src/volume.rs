@@ -1,7 +1,7 @@
-//! Filters of volumes along three axes.
+//! Filters volumes along three axes.
 //!
-//! A volume is a slice of values, x fastest, then y, then z. Halving filters along x, y and z, doubling along z, y and
-//! x; values are rounded to `f32` in between. All arithmetic is `f64`.
+//! A volume is a slice of values in which x varies fastest, then y, then z. Halving filters along x, y and z,
+//! doubling along z, y and x; values are rounded to `f32` in between. All arithmetic is `f64`.
 
 use crate::doubling::Doubling;
 use crate::ends::lengths;
@@ -12,10 +12,10 @@ use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
 use dapple_raster::{parallel, simd};
 
 impl SplineFilter {
-    /// Halves a volume to the nearest volume of half the size; [`coarse_len`](Self::coarse_len) gives the length of
-    /// each axis.
+    /// Halves a volume to the nearest volume of half the size. [`coarse_len`](Self::coarse_len) gives the resulting
+    /// length along each axis.
     ///
-    /// Values are finite up to `f32::MAX / 56`; beyond it some may be infinite or NaN.
+    /// Values are finite up to `f32::MAX / 56`; beyond that, some may be infinite or NaN.
     ///
     /// # Errors
     ///
@@ -35,7 +35,7 @@ impl SplineFilter {
         Ok(filter_lines(&z, &along_y))
     }
 
-    /// Doubles a volume: represents the same function with `fine_size` values.
+    /// Doubles a volume, representing the same function with `fine_size` values.
     ///
     /// # Errors
     ///
@@ -72,12 +72,12 @@ impl SplineFilter {
         Ok(fine)
     }
 
-    /// Halves a volume `levels` times along each axis and doubles it `levels` times; zero levels return the volume
-    /// itself.
+    /// Halves a volume `levels` times along each axis and then doubles it `levels` times. Zero levels return the
+    /// volume itself.
     ///
     /// # Errors
     ///
-    /// Same as [`down_volume`](Self::down_volume) at each level. `NotFinite` also occurs if a level has made infinite
+    /// Same as [`down_volume`](Self::down_volume) at each level. `NotFinite` also occurs if a level produces infinite
     /// values from finite ones, which cannot happen up to `f32::MAX / 56^levels`. `Range` for more than 32 levels.
     pub fn project_volume(
         &self,

@@ -1,20 +1,20 @@
-//! Bands of a noise: scaled and shifted copies of the tile.
+//! Noise bands, which are scaled and shifted copies of the tile.
 
 use super::place::{Period, Place, floor};
 use dapple_hash::{Seed, hash1};
 
-/// A band of a noise.
+/// A band of wavelet noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Band<const N: usize> {
     pub(super) weight: f32,
     /// Number of cells of this band per cell of the first band: a power of two.
     pub(super) frequency: f64,
-    /// Offset of the tile in cells along each axis, below its size. Zero for the first band.
+    /// Offset of the tile along each axis, in cells; from 0 to below the tile's size. Zero for the first band.
     pub(super) offset: [f64; N],
 }
 
 impl<const N: usize> Band<N> {
-    /// Creates the bands whose weight is not zero.
+    /// Creates a band for every weight that is not zero.
     pub(super) fn all(weights: &[f32], size: [u32; N], seed: Seed) -> Vec<Self> {
         let bands = (0_u64..).zip(weights);
         let bands = bands.filter(|(_, weight)| **weight != 0.0);
@@ -36,7 +36,7 @@ impl<const N: usize> Band<N> {
         }
     }
 
-    /// Maps tile coordinates of the noise to this band.
+    /// Converts the noise's tile coordinates to this band's.
     #[inline(always)]
     pub(super) fn places(&self, periods: [Period; N], mut places: [Place; N]) -> [Place; N] {
         for (axis, place) in places.iter_mut().enumerate() {
@@ -45,7 +45,7 @@ impl<const N: usize> Band<N> {
         places
     }
 
-    /// Maps a tile coordinate along one axis, with the given period, to this band.
+    /// Converts a tile coordinate along one axis, with the given period, to this band's.
     #[inline(always)]
     pub(super) fn place(&self, period: Period, place: Place, axis: usize) -> Place {
         // The first band is the noise itself.

@@ -1,4 +1,4 @@
-//! Evaluation of noise: the sum of its bands at a position.
+//! Evaluates noise at a position, as the sum of its bands.
 
 use super::WaveletNoise;
 use super::band::Band;
@@ -15,7 +15,8 @@ impl WaveletNoise<2> {
         self.sum(position.into(), |places| self.tile.value(places))
     }
 
-    /// Returns the value at a position in cells, equal to [`sample`](Self::sample), and its gradient per cell.
+    /// Returns the value at a position in cells, equal to [`sample`](Self::sample), and its gradient in value per
+    /// cell.
     ///
     /// The gradient is the analytic derivative of the spline; it is NaN if a coordinate is not finite.
     #[must_use]
@@ -53,7 +54,8 @@ impl WaveletNoise<3> {
         self.sum(position.into(), |places| self.tile.value(places))
     }
 
-    /// Returns the value at a position in cells, equal to [`sample`](Self::sample), and its gradient per cell.
+    /// Returns the value at a position in cells, equal to [`sample`](Self::sample), and its gradient in value per
+    /// cell.
     ///
     /// The gradient is the analytic derivative of the spline; it is NaN if a coordinate is not finite.
     #[must_use]
@@ -66,7 +68,7 @@ impl WaveletNoise<3> {
     }
 }
 
-/// Positions are in cells. Rendering a window first computes the whole slice of the tile for each band, which is
+/// Positions are in cells. Rendering a window first computes a whole 2-D slice of the tile for each band, which is
 /// inefficient for windows much smaller than a slice.
 impl Field<3> for WaveletNoise<3> {
     #[inline]

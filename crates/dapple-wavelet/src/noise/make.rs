@@ -1,4 +1,4 @@
-//! Generation of noise tiles: white noise minus its projection.
+//! Generates noise tiles as white noise minus its projection.
 
 use super::band::Band;
 use super::place::Period;
@@ -10,31 +10,32 @@ use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::Raster;
 
-/// Maximum number of cells of a tile: half a gigabyte.
+/// Maximum number of cells in a tile, which take half a gigabyte.
 const MOST_CELLS: u32 = 1 << 27;
 
 /// Minimum number of cells along an axis that can be halved and doubled.
 const FEWEST_CELLS: u32 = 4;
 
 impl WaveletNoise2 {
-    /// Creates noise of the plane with a period of `size` cells along both axes: one band of weight 1.
+    /// Creates 2-D noise with a period of `size` cells along both axes and one band of weight 1.
     ///
     /// The tile takes `4 (size + 2)²` bytes, and several times as much while it is created.
     ///
     /// # Errors
     ///
-    /// [`WaveletErrorKind::Range`] below 4 and above 11584, [`WaveletErrorKind::NotDivisible`] if `size` is odd.
+    /// [`WaveletErrorKind::Range`] if `size` is below 4 or above 11584, [`WaveletErrorKind::NotDivisible`] if `size`
+    /// is odd.
     pub fn new(size: u32, seed: Seed) -> Result<Self, WaveletError> {
         Self::of_size([size; 2], seed)
     }
 
-    /// Creates noise of the plane with a period of `size` cells along each axis: one band of weight 1.
+    /// Creates 2-D noise with a period of `size[0]` by `size[1]` cells and one band of weight 1.
     ///
     /// For equal sizes, the result equals [`new`](Self::new). The variance is 1 for any size.
     ///
     /// # Errors
     ///
-    /// [`WaveletErrorKind::Range`] below 4 cells along an axis and above 2^27 in total,
+    /// [`WaveletErrorKind::Range`] for fewer than 4 cells along an axis or more than 2^27 cells in total,
     /// [`WaveletErrorKind::NotDivisible`] if a size is odd.
     ///
     /// # Examples
@@ -56,24 +57,25 @@ impl WaveletNoise2 {
 }
 
 impl WaveletNoise3 {
-    /// Creates noise of space with a period of `size` cells along each axis: one band of weight 1.
+    /// Creates 3-D noise with a period of `size` cells along each axis and one band of weight 1.
     ///
     /// The tile takes `4 (size + 2)³` bytes, and several times as much while it is created.
     ///
     /// # Errors
     ///
-    /// [`WaveletErrorKind::Range`] below 4 and above 512, [`WaveletErrorKind::NotDivisible`] if `size` is odd.
+    /// [`WaveletErrorKind::Range`] if `size` is below 4 or above 512, [`WaveletErrorKind::NotDivisible`] if `size` is
+    /// odd.
     pub fn new(size: u32, seed: Seed) -> Result<Self, WaveletError> {
         Self::of_size([size; 3], seed)
     }
 
-    /// Creates noise of space with a period of `size` cells along each axis: one band of weight 1.
+    /// Creates 3-D noise with a period of `size` cells along each axis and one band of weight 1.
     ///
     /// For equal sizes, the result equals [`new`](Self::new). The variance is 1 for any size.
     ///
     /// # Errors
     ///
-    /// [`WaveletErrorKind::Range`] below 4 cells along an axis and above 2^27 in total,
+    /// [`WaveletErrorKind::Range`] for fewer than 4 cells along an axis or more than 2^27 cells in total,
     /// [`WaveletErrorKind::NotDivisible`] if a size is odd.
     pub fn of_size(size: [u32; 3], seed: Seed) -> Result<Self, WaveletError> {
         check_size(size)?;
@@ -92,7 +94,7 @@ impl WaveletNoise3 {
 }
 
 impl<const N: usize> WaveletNoise<N> {
-    /// Creates one band of weight 1 from the difference of white noise and its projection.
+    /// Creates noise with one band of weight 1 from the difference between white noise and its projection.
     fn from_white(
         size: [u32; N],
         seed: Seed,
@@ -119,8 +121,8 @@ impl<const N: usize> WaveletNoise<N> {
     }
 }
 
-/// Checks that sides are even and long enough for halving and doubling, and that the number of cells is within the
-/// limit.
+/// Checks that all sides are even and long enough for halving and doubling, and that the number of cells is within
+/// the limit.
 fn check_size<const N: usize>(size: [u32; N]) -> Result<(), WaveletError> {
     let range = |what, value, range| {
         let kind = WaveletErrorKind::Range { what, value, range };
@@ -146,7 +148,7 @@ fn check_size<const N: usize>(size: [u32; N]) -> Result<(), WaveletError> {
     }
 }
 
-/// Returns the seed of the white noise.
+/// Derives the seed for the white noise.
 fn white_words(seed: Seed) -> Seed {
     seed.child("wavelet noise", 0)
 }

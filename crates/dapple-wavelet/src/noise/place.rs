@@ -1,4 +1,4 @@
-//! Coordinates on a periodic tile: a cell, and a fraction of it.
+//! Coordinates on a periodic tile, given by a cell and a fraction within it.
 //!
 //! All steps are exact, so that positions one period apart have the same tile coordinate, at any distance from the
 //! origin.
@@ -20,9 +20,10 @@ pub(super) struct Period {
 /// A coordinate on the tile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Place {
-    /// Integer from 0 to the period, exclusive.
+    /// Cell number: an integer from 0 (included) to the period (excluded).
     pub(super) cell: f64,
-    /// From 0 to 1; exactly 1 only for a coordinate just below an integer, where no closer fraction is representable.
+    /// Position within the cell, from 0 to 1. It is exactly 1 only for a coordinate just below an integer, where no
+    /// closer fraction is representable.
     pub(super) fraction: f64,
 }
 
@@ -35,7 +36,7 @@ impl Period {
         }
     }
 
-    /// Returns the tile coordinates of a position, one per period; `None` if the position is not finite.
+    /// Converts a position to tile coordinates, using one period per axis; `None` if the position is not finite.
     #[inline(always)]
     pub(super) fn places<const N: usize>(
         periods: [Self; N],
@@ -55,7 +56,7 @@ impl Period {
         Some(places)
     }
 
-    /// Returns the tile coordinate of a coordinate; `None` if it is not finite.
+    /// Converts a coordinate to a tile coordinate; `None` if it is not finite.
     pub(super) fn place_of(self, coordinate: f64) -> Option<Place> {
         Self::places([self], [coordinate]).map(|[place]| place)
     }
@@ -69,7 +70,7 @@ impl Period {
         }
     }
 
-    /// Reduces a number to the range from 0 to the period.
+    /// Wraps a cell number into the range from 0 to the period.
     #[inline(always)]
     pub(super) fn wrap(self, cell: f64) -> f64 {
         let rest = cell - round(cell * self.inverse) * self.cells;
@@ -89,15 +90,14 @@ impl Place {
         fraction: 0.0,
     };
 
-    /// Returns the cell as an index.
+    /// Returns the cell number as an index.
     #[inline(always)]
     pub(super) fn index(self) -> usize {
         // The low bits of the sum contain the integer.
         (self.cell + (1_u64 << 52) as f64).to_bits() as u32 as usize
     }
 
-    /// Returns the weights of the coefficients of the previous cell, this cell and the next cell: a quadratic
-    /// B-spline.
+    /// Returns the quadratic B-spline weights for the coefficients of the previous cell, this cell and the next cell.
     #[inline(always)]
     pub(super) fn weights(self) -> [f32; 3] {
         let after = self.fraction as f32;
@@ -109,7 +109,7 @@ impl Place {
         ]
     }
 
-    /// Returns the derivatives of the weights.
+    /// Returns the derivatives of [`weights`](Self::weights) with respect to the position in cells.
     #[inline(always)]
     pub(super) fn slopes(self) -> [f32; 3] {
         let after = self.fraction as f32;
@@ -118,8 +118,8 @@ impl Place {
     }
 }
 
-/// Returns the largest integer not above `x`. (`f64::floor` is a function call unless the target processor has an
-/// instruction for it.)
+/// Returns the largest integer not above `x`. `f64::floor` would be a function call on targets without an instruction
+/// for it.
 #[inline(always)]
 pub(super) fn floor(x: f64) -> f64 {
     let near = round(x);

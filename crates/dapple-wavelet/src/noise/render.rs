@@ -1,4 +1,4 @@
-//! Rendering of noise windows: terms shared by the pixels of a column or row are computed once.
+//! Renders noise windows, computing the terms that the pixels of a column or row share only once.
 //!
 //! All pixels of a row have the same y. The three rows of coefficients around it are blended into one, so that each
 //! pixel needs three values instead of nine. The sums have the same order as for a single position.
@@ -11,7 +11,7 @@ use dapple_raster::{RasterError, RasterViewMut, Window};
 /// Number of pixel rows in a band, the unit of parallel work.
 const ROWS: u32 = 16;
 
-/// Renders a window with the weighted sum of bands, each with its tile, on all cores if the feature `rayon` is
+/// Renders the weighted sum of bands (each with its own tile) in a window, on all cores if the feature `rayon` is
 /// enabled.
 pub(super) fn render<const N: usize>(
     bands: &[(&Band<N>, &Tile<2>)],
@@ -29,20 +29,20 @@ pub(super) fn render<const N: usize>(
     Ok(())
 }
 
-/// A window of noise, with the data that its columns share.
+/// A window of noise, with the data for its columns that all rows share.
 struct Picture<'a, const N: usize> {
     periods: [Period; 2],
     window: &'a Window,
     sheets: Vec<Sheet<'a, N>>,
-    /// Columns whose coordinate is not finite.
+    /// Indices of blind columns, whose coordinate is not finite.
     blind: Vec<usize>,
 }
 
-/// A band in a window.
+/// A band, with its data for a window.
 struct Sheet<'a, const N: usize> {
     band: &'a Band<N>,
     tile: &'a Tile<2>,
-    /// Positions of the columns; arbitrary for blind columns.
+    /// Tile coordinates of the columns along x; arbitrary for blind columns.
     columns: Vec<Place>,
 }
 
@@ -86,7 +86,7 @@ impl<'a, const N: usize> Picture<'a, N> {
 }
 
 impl<const N: usize> Sheet<'_, N> {
-    /// Adds the weighted values of a row of pixels.
+    /// Adds the band's weighted values to a row of pixels.
     fn add_row(&self, y: Place, values: &mut [f32]) {
         let (tile, weight) = (self.tile, self.band.weight);
         // Blending a row of the tile is worthwhile only if enough pixels read it.

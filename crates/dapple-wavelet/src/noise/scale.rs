@@ -1,9 +1,10 @@
-//! Normalization of noise: its exact mean square over all seeds, for tiles of any size.
+//! Computes the exact mean square of noise over all seeds, for tiles of any size, in order to normalize it.
 //!
 //! The noise is `(I − P) R`, where `R` is white and `P` is the projection along every axis. Its mean square, in a
 //! metric `M` that is a product of one metric per axis, is `tr((I − P)ᵀ M (I − P))` divided by the number of
-//! coefficients. This equals `Π whole − 2 Π cross + Π low` over the axes, with three sums per axis. An impulse
-//! suffices to compute them: shifting it by two cells gives the same sums, and by one cell their mirror images.
+//! coefficients. This equals `Π whole − 2 Π cross + Π low` over the axes, with three sums per axis. A single impulse
+//! suffices to compute them, because shifting it by two cells gives the same sums and shifting it by one cell gives
+//! their mirror images.
 
 use crate::kernel::gram;
 use crate::{Border, Degree, SplineFilter, WaveletError};
@@ -20,7 +21,7 @@ pub(crate) struct LineSums {
 }
 
 impl LineSums {
-    /// Returns the sums for the values of a periodic spline with `length` coefficients, over all positions.
+    /// Computes the sums for the values of a periodic spline with `length` coefficients, averaged over all positions.
     pub(crate) fn of_values(length: usize) -> Result<Self, WaveletError> {
         let [impulse, low] = impulses(length)?;
         Ok(Self {
@@ -30,7 +31,7 @@ impl LineSums {
         })
     }
 
-    /// Returns the sums for coefficients after doubling them `levels` times, over all of them.
+    /// Computes the sums for the coefficients after doubling them `levels` times, averaged over all of them.
     pub(crate) fn of_coefficients(length: usize, levels: u32) -> Result<Self, WaveletError> {
         let [mut impulse, mut low] = impulses(length)?;
         for _ in 0..levels {
@@ -50,7 +51,7 @@ impl LineSums {
         })
     }
 
-    /// Returns the factor that normalizes noise along these axes to a mean square of 1.
+    /// Returns the factor that normalizes noise with these sums to a mean square of 1.
     pub(crate) fn factor<const N: usize>(axes: [Self; N]) -> f64 {
         let product = |part: fn(&Self) -> f64| axes.iter().map(part).product::<f64>();
         let mean_square = product(|sums| sums.whole) - 2.0 * product(|sums| sums.cross)

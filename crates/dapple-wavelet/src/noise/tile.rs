@@ -2,8 +2,8 @@
 
 use super::place::Place;
 
-/// Coefficients with a margin of one cell on each side along each axis. Three cells are read around a position, so
-/// that readers need not wrap.
+/// Coefficients with a margin of one cell on each side along each axis. Evaluating a position reads three cells per
+/// axis, so with the margin no index needs wrapping.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tile<const N: usize> {
     /// Number of cells along each axis, including the margins.
@@ -11,11 +11,11 @@ pub(super) struct Tile<const N: usize> {
     coefficients: Vec<f32>,
 }
 
-/// Number of margin cells along each axis.
+/// Total number of margin cells along each axis.
 const MORE: usize = 2;
 
 impl<const N: usize> Tile<N> {
-    /// Creates a tile of `size` cells from its coefficients, first axis fastest.
+    /// Creates a tile of `size` cells from its coefficients, in which the first axis varies fastest.
     pub(super) fn new(size: [usize; N], coefficients: &[f32]) -> Self {
         let sides = size.map(|cells| cells + MORE);
         let n_rows: usize = sides[1..].iter().product();
@@ -43,7 +43,7 @@ impl<const N: usize> Tile<N> {
         magnitudes.fold(0.0, f32::max)
     }
 
-    /// Returns the coefficient of a cell.
+    /// Returns the coefficient of `cell`.
     #[cfg(test)]
     pub(super) fn coefficient(&self, cell: [usize; N]) -> f32 {
         let axes = cell.iter().zip(&self.sides).rev();
@@ -65,7 +65,7 @@ impl Tile<2> {
         across(x.weights(), down(y.weights(), self.rows([x, y])))
     }
 
-    /// Returns the value at a position, and its gradient per cell.
+    /// Returns the value at a position, and its gradient in value per cell.
     #[inline(always)]
     pub(super) fn value_with_gradient(&self, [x, y]: [Place; 2]) -> (f32, [f32; 2]) {
         let rows = self.rows([x, y]);
@@ -75,13 +75,13 @@ impl Tile<2> {
         (across(x.weights(), row), gradient)
     }
 
-    /// Weighted sum of the rows around a position, with the length of a row in memory.
+    /// Blends the rows around `y` into `row`, which is as long as a row in memory.
     pub(super) fn blend_row(&self, y: Place, row: &mut [f32]) {
         let rows = &self.coefficients[y.index() * self.sides[0]..][..3 * self.sides[0]];
         blend(y.weights(), rows, row);
     }
 
-    /// Returns the length of a row in memory, in cells.
+    /// Returns the length of a row in memory, in cells, including the margins.
     pub(super) fn row_len(&self) -> usize {
         self.sides[0]
     }
@@ -105,7 +105,7 @@ impl Tile<3> {
         across(x.weights(), down(y.weights(), rows))
     }
 
-    /// Returns the value at a position, and its gradient per cell.
+    /// Returns the value at a position, and its gradient in value per cell.
     #[inline(always)]
     pub(super) fn value_with_gradient(&self, [x, y, z]: [Place; 3]) -> (f32, [f32; 3]) {
         let rows = self.rows(z.weights(), [x, y, z]);
@@ -123,7 +123,7 @@ impl Tile<3> {
         (across(x.weights(), row), gradient)
     }
 
-    /// Returns the two-dimensional tile at a depth. Its values equal those of this tile, bit for bit.
+    /// Returns the two-dimensional tile at depth `z`. Its values equal those of this tile, bit for bit.
     pub(super) fn slice(&self, z: Place) -> Tile<2> {
         let [width, height, _] = self.sides;
         let area = width * height;
@@ -161,7 +161,7 @@ impl Tile<3> {
     }
 }
 
-/// Weighted sum of three consecutive rows or slices.
+/// Computes the weighted sum of three consecutive rows or slices.
 fn blend(weights: [f32; 3], three: &[f32], sum: &mut [f32]) {
     let (first, others) = three.split_at(sum.len());
     let (second, third) = others.split_at(sum.len());
@@ -181,7 +181,7 @@ fn down(weights: [f32; 3], [first, second, third]: [[f32; 3]; 3]) -> [f32; 3] {
     ]
 }
 
-/// Returns the weighted sum of a row segment.
+/// Returns the weighted sum of the three values in a row segment.
 #[inline(always)]
 pub(super) fn across(weights: [f32; 3], row: [f32; 3]) -> f32 {
     (weights[0] * row[0] + weights[1] * row[1]) + weights[2] * row[2]

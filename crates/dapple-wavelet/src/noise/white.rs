@@ -1,4 +1,4 @@
-//! White noise by cell, from which the bands are made.
+//! White noise per cell, from which the bands are generated.
 //!
 //! A value is the sum of the four 16-bit words of a hash, shifted and scaled to a mean of 0 and a variance of 1. It is
 //! nearly normally distributed (its kurtosis is 2.7 instead of 3), at most 3.47 in absolute value, and computed
@@ -16,7 +16,7 @@ pub(crate) fn white_raster(size: [u32; 2], words: Seed) -> Result<Raster<f32>, W
     })?)
 }
 
-/// Returns the value of a cell, from the hash of its row and its column.
+/// Returns the white noise value of a cell, from the hash of its row and its column.
 #[inline]
 pub(crate) fn white(row: CellHash, column: u32) -> f32 {
     let bits = row.axis(column.into()).at(0);
