@@ -38,8 +38,8 @@ mod tests {
     use crate::LinearRgb;
     use proptest::prelude::*;
 
-    /// Oracle: the definition through CIE XYZ with D65, with the matrices of the paper. The matrices from sRGB to XYZ
-    /// are from IEC 61966-2-1.
+    /// Oracle: computes Oklab by its definition through CIE XYZ with D65, with the paper's matrices. The matrices
+    /// from sRGB to XYZ are from IEC 61966-2-1.
     fn by_definition([r, g, b]: [f64; 3]) -> [f64; 3] {
         let rows = |matrix: [[f64; 3]; 3], [x, y, z]: [f64; 3]| {
             matrix.map(|row| row[0] * x + row[1] * y + row[2] * z)

@@ -40,7 +40,7 @@ dapple_raster::error! {
             /// Number of points.
             n_points: usize,
         } => "point {} is named, but there are {n_points} points", point.0;
-        /// A position is outside of the domain.
+        /// A position is outside the domain.
         Outside {
             /// The position.
             position: DVec2,

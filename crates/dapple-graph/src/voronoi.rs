@@ -197,8 +197,8 @@ impl Voronoi {
     ///
     /// # Errors
     ///
-    /// [`GraphErrorKind::Outside`] for a position that is not finite or is outside of the domain along an axis that
-    /// does not wrap; [`GraphErrorKind::NotThere`] if the site `hint` does not exist.
+    /// [`GraphErrorKind::Outside`] for a position that is not finite or is outside the domain along an axis that does
+    /// not wrap; [`GraphErrorKind::NotThere`] if the site `hint` does not exist.
     pub fn locate(
         &self,
         position: impl Into<[f64; 2]>,

@@ -97,7 +97,7 @@ pub fn lattice_part_pairs<S: Simd, const C: usize>(
         words[i] = [low ^ keys[0], low ^ keys[1]];
         far |= high + (low >> 31);
     }
-    // Hash the upper halves only if a coordinate is outside of 32 bits.
+    // Hash the upper halves only if a coordinate is outside 32 bits.
     if !far.simd_eq(0).all_true() {
         for i in 0..C {
             let [low, high] = coordinates[i];

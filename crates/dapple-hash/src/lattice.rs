@@ -77,7 +77,7 @@ mod tests {
     use super::LatticeHash;
     use crate::Seed;
 
-    /// Hash of a corner of the three-dimensional lattice.
+    /// Returns the hash of a corner of the three-dimensional lattice.
     fn hash(seed: u64, [x, y, z]: [i64; 3]) -> u32 {
         let hash = LatticeHash::<3>::new(Seed(seed));
         LatticeHash::<3>::bits(hash.part(0, x) ^ hash.part(1, y) ^ hash.part(2, z))

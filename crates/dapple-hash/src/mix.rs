@@ -4,7 +4,7 @@
 //! SplitMix64. [`absorb`] and [`finish`] work on two 32-bit words, with multiplications that keep only the low half:
 //! eight of them run in parallel in an AVX2 register, and shading languages support them too.
 
-/// The increment of SplitMix64: the golden ratio as a 64-bit fraction, made odd.
+/// The increment of SplitMix64: the golden ratio as a 64-bit fraction, with its lowest bit set to make it odd.
 pub(crate) const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 
 // Odd multipliers with about half of their bits set; the avalanche test verifies their quality.

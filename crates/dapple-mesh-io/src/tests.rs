@@ -62,7 +62,7 @@ fn normals_of_corners_go_through_every_format() {
     }
 }
 
-/// Returns one valid file of each format.
+/// Returns one valid file in each format.
 fn files() -> Vec<Vec<u8>> {
     let mut files = Vec::new();
     files.push(obj::write(&model()).expect("it is valid"));

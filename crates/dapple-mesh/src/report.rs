@@ -44,7 +44,7 @@ pub struct MeshReport {
 }
 
 impl Mesh {
-    /// Counts the defects that algorithms may not handle.
+    /// Counts the mesh's elements and the defects that algorithms may not handle.
     ///
     /// # Examples
     ///
@@ -128,7 +128,7 @@ impl Mesh {
         faces.chunk_by(|a, b| a.0 == b.0).map(others).sum()
     }
 
-    /// For each vertex, the first vertex at the same position.
+    /// Returns, for each vertex, the first vertex at the same position.
     pub(crate) fn first_at_position(&self) -> Vec<u32> {
         let positions = self.positions();
         let order = |&a: &u32, &b: &u32| {

@@ -5,7 +5,8 @@
 //!
 //! All quantities are computed from differences of positions. Needles and flat triangles down to the limit of
 //! [`MeshReport::degenerate_faces`](crate::MeshReport::degenerate_faces) therefore have orthonormal axes, and
-//! rotations that are accurate to a few roundings. Positions are accurate to a few roundings of their longest edge.
+//! rotations that are accurate to a few roundings. Positions are accurate to a few rounding errors of their longest
+//! edge.
 //!
 //! Original method; Greg Turk, SIGGRAPH 1991, doi 10.1145/127719.122749, moves points by unfolding across edges.
 

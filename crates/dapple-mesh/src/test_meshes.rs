@@ -4,13 +4,13 @@ use crate::{Mesh, Surface};
 use glam::DVec3;
 use proptest::prelude::*;
 
-/// Returns the mesh with corners given as arrays.
+/// Creates a mesh from corners given as arrays.
 pub(crate) fn mesh(corners: &[[f64; 3]], faces: &[[u32; 3]]) -> Mesh {
     let positions = corners.iter().map(|&corner| DVec3::from_array(corner));
     Mesh::new(positions.collect(), faces).expect("the mesh is valid")
 }
 
-/// Returns the surface of a mesh without defects.
+/// Creates the surface of a mesh that has no defects.
 pub(crate) fn surface(mesh: Mesh) -> Surface {
     Surface::new(mesh).expect("the mesh has no defects")
 }
@@ -46,7 +46,7 @@ pub(crate) fn cube() -> Mesh {
     mesh(&corners, &faces)
 }
 
-/// Returns the sheet of `columns` × `rows` squares of two triangles each, at the positions of the grid points.
+/// Returns a sheet of `columns` × `rows` squares of two triangles each, at the positions of the grid points.
 pub(crate) fn sheet(columns: u32, rows: u32, position: impl Fn(u32, u32) -> DVec3) -> Mesh {
     let points = (0..=rows).flat_map(|row| (0..=columns).map(move |column| (column, row)));
     let positions = points.map(|(column, row)| position(column, row)).collect();
@@ -61,16 +61,15 @@ pub(crate) fn sheet(columns: u32, rows: u32, position: impl Fn(u32, u32) -> DVec
     Mesh::new(positions, &faces).expect("the mesh is valid")
 }
 
-/// Returns the plane from the origin to `columns` and `rows`, with normals along z.
+/// Returns a sheet in the plane z = 0, from the origin to `columns` and `rows`, with normals along z.
 pub(crate) fn plane(columns: u32, rows: u32) -> Mesh {
     sheet(columns, rows, |column, row| {
         DVec3::new(column.into(), row.into(), 0.0)
     })
 }
 
-/// Returns the strip of `n` unit squares around the z axis. The last square is joined to the first, with half a twist
-/// if
-/// `twisted`.
+/// Returns a strip of `n` unit squares around the z axis. The last square is joined to the first, with half a twist
+/// if `twisted` is true.
 ///
 /// Without a twist it is a prism whose normals point outward.
 pub(crate) fn ring(n: u32, twisted: bool) -> Mesh {
@@ -96,8 +95,8 @@ pub(crate) fn ring(n: u32, twisted: bool) -> Mesh {
     mesh(&corners, &faces)
 }
 
-/// Returns a random soups of up to 24 triangles on up to 9 vertices, many of which coincide or are collinear, exactly
-/// or nearly.
+/// Returns random triangle soups of up to 24 triangles on up to 9 vertices, many of which coincide or are collinear,
+/// exactly or nearly.
 pub(crate) fn soup() -> impl Strategy<Value = Mesh> {
     let part = prop_oneof![
         4 => (0_i8..3).prop_map(f64::from),

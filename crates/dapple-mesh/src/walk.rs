@@ -124,7 +124,7 @@ impl Surface {
         for edge in 0..3_u8 {
             let [a, b] = [edge, (edge + 1) % 3].map(|corner| corners[usize::from(corner)]);
             let along = b - a;
-            // Clamp a start point that rounding moved outside of the edge.
+            // Clamp a start point that rounding moved outside the edge.
             let side = along.perp_dot(from - a).max(0.0);
             let rate = -along.perp_dot(walk.direction);
             // Compare products first; divide only for edges that are near enough.

@@ -306,7 +306,7 @@ impl<const N: usize> GradientNoise<N> {
         (1..N).fold(0, |row, axis| row ^ self.part(axis, at[axis]))
     }
 
-    /// Hash part of a coordinate of a corner, reduced by the period.
+    /// Returns the hash part of a corner's coordinate along `axis`, wrapped by the period.
     pub(crate) fn part(&self, axis: usize, coordinate: i64) -> u32 {
         let coordinate = match self.period[axis] {
             0 => coordinate,

@@ -51,14 +51,14 @@
 //! # Limits
 //!
 //! * One octave is 0 at all whole positions, for every seed. Sample between them, for example by multiplying block
-//!   numbers by 0.1. The octaves of `fractal` have offsets of their own, and are not 0 there.
+//!   numbers by 0.1. The octaves of `fractal` have separate offsets, and are not 0 there.
 //! * Values are within `BOUND`: 1 in 2-D, 1.0364 in 3-D and 1.5366 in 4-D. `VARIANCE` is the variance. Nothing is
 //!   normalized.
 //! * A fractal sum has 1 to 32 octaves, a gain from -1 to 1 and a lacunarity from 1 to 16. With a period, the
 //!   lacunarity is a whole number.
 //! * Periods are whole numbers of cells. Without a period the noise does not repeat.
 //! * At a position that is not finite the value is NaN.
-//! * There is no simplex noise and no value noise.
+//! * Simplex noise and value noise are not included.
 //! * The bits are the same on every platform, for every SIMD level and any number of threads.
 //!
 //! # Without std

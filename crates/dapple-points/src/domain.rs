@@ -111,7 +111,7 @@ impl Domain {
 
     /// Wraps a position into the domain along the wrapped axes.
     ///
-    /// A position inside of the domain is returned unchanged, bit for bit.
+    /// A position inside the domain is returned unchanged, bit for bit.
     #[must_use]
     #[inline]
     pub fn wrap(&self, position: DVec2) -> DVec2 {
@@ -138,7 +138,7 @@ impl Domain {
 
     /// Returns the shortest vector from `from` to `to`, which goes across wrapped sides where that is shorter.
     ///
-    /// Both positions must be inside of the domain.
+    /// Both positions must be inside the domain.
     #[must_use]
     #[inline]
     pub fn delta(&self, from: DVec2, to: DVec2) -> DVec2 {

@@ -93,7 +93,7 @@ impl EndlessPoissonDisk {
     ///
     /// # Errors
     ///
-    /// [`PointsErrorKind::OutOfRange`] for a radius outside of 1e-270 to 1e270.
+    /// [`PointsErrorKind::OutOfRange`] for a radius outside 1e-270 to 1e270.
     pub fn new(radius: f64, seed: Seed) -> Result<Self, PointsError> {
         let seed = seed.child("endless poisson disk", 0);
         let plane = Plane::new([radius; 2], seed)?;
@@ -173,8 +173,8 @@ impl<F: Fn([f64; 2]) -> f64> EndlessVariablePoissonDisk<F> {
     ///
     /// # Errors
     ///
-    /// [`PointsErrorKind::OutOfRange`] for a bound outside of 1e-270 to 1e270, and for a second bound below the first one
-    /// or above 16 times the first one.
+    /// [`PointsErrorKind::OutOfRange`] for a bound outside 1e-270 to 1e270, and for a second bound below the first
+    /// one or above 16 times the first one.
     pub fn new(bounds: [f64; 2], radius: F, seed: Seed) -> Result<Self, PointsError> {
         let seed = seed.child("endless variable poisson disk", 0);
         let plane = Plane::new(bounds, seed)?;

@@ -16,7 +16,7 @@ dapple_raster::error! {
         } =>
             "the domain from {} has size {}, but both sides must be above 0 and at most 1e300, and the origin between -1e300 \
              and 1e300, and near enough that adding a side moves it", domain.origin, domain.size;
-        /// A position is not finite, or is outside of the domain along an axis that does not wrap.
+        /// A position is not finite, or is outside the domain along an axis that does not wrap.
         Outside {
             /// Index of the point.
             point: PointIdx,
@@ -41,7 +41,7 @@ dapple_raster::error! {
         Radius {
             /// The position where the radius was read.
             position: DVec2,
-            /// The radius at that position.
+            /// Radius at the position.
             radius: f64,
         } => "the radius at {position} is {radius}, but it must be above 0 and finite";
         /// The slope of a radius that varies in space is 1 or more.
@@ -78,7 +78,7 @@ dapple_raster::error! {
             /// Previous radius.
             before: f64,
         } => "radius {level} is {radius}, but it must not be larger than the one before, {before}";
-        /// A number is outside of its range.
+        /// A number is outside its range.
         OutOfRange {
             /// The name of the number.
             what: &'static str,

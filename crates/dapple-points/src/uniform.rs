@@ -54,7 +54,7 @@ pub fn white_noise(domain: Domain, n_points: u32, seed: Seed) -> Result<PointSet
 /// # Errors
 ///
 /// [`PointsErrorKind::Domain`] for a domain without area, [`PointsErrorKind::TooMany`] for more than 2^31 points,
-/// [`PointsErrorKind::OutOfRange`] for a jitter outside of `0..=1`.
+/// [`PointsErrorKind::OutOfRange`] for a jitter outside `0..=1`.
 ///
 /// # Examples
 ///

@@ -59,7 +59,7 @@ fn halving_taps(filter: SplineFilter) -> impl Fn(i64) -> f64 {
     move |k| taps[k.rem_euclid(64) as usize]
 }
 
-/// `h_k`, zero outside of its range.
+/// Returns the doubling filter's taps `h_k`, which are zero outside their range.
 fn doubling_taps(filter: SplineFilter) -> impl Fn(i64) -> f64 {
     let h = binomials(filter.degree);
     let (first, _) = spread(filter);

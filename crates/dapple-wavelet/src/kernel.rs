@@ -4,8 +4,8 @@
 //! with its own integer shifts (a B-spline of degree `2d + 1` at integers). The coarse coefficients `c` of the fine
 //! ones `g` solve `b * c = ↓2(q ⋆ g)` with `q = ½ h * b`. For least squares of the coefficients instead of the
 //! functions, `q` is `h`, and `b` is the autocorrelation of `h` at even distances. In both cases `b` is symmetric.
-//! Its inverse is a chain of first-order recursions, one pair for each pole inside of the unit circle. The sum of `b`
-//! is 1, so the gain of the chain is the product of all `(1 − pole)²`.
+//! Its inverse is a chain of first-order recursions, one pair for each pole inside the unit circle. The sum of `b` is
+//! 1, so the gain of the chain is the product of all `(1 − pole)²`.
 //!
 //! Reference: Michael Unser, Akram Aldroubi and Murray Eden, "B-Spline Signal Processing: Part I, Theory", IEEE
 //! Transactions on Signal Processing 41(2), 1993, for inverses by recursion.

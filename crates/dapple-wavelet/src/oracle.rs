@@ -85,7 +85,7 @@ fn kept(filter: SplineFilter, len: usize, border: Border) -> Vec<i64> {
     (-4..len as i64 + 4).filter(inside).collect()
 }
 
-/// Halves a line by least squares, of the functions or of the coefficients, over its extension.
+/// Halves a line over its extension by a least-squares fit of the functions or of the coefficients.
 pub(crate) fn down(filter: SplineFilter, fine: &[f64], border: Border) -> Vec<f64> {
     let line = extended(filter, fine, border);
     let (period, coarse_period) = (line.len(), line.len() / 2);
@@ -156,7 +156,7 @@ pub(crate) fn up(
     fine
 }
 
-/// `2^-d C(d + 1, k)`, by Pascal's triangle.
+/// Returns the weights `2^-d C(d + 1, k)` by Pascal's triangle.
 pub(crate) fn binomials(degree: Degree) -> Vec<f64> {
     let d = DEGREES
         .iter()

@@ -101,7 +101,7 @@ fn interleave<S: Simd>(simd: S, lines: &[f32], target: &mut [[f64; LANES]]) {
 /// Interleaves the first `LANES` values of `LANES` lines, whose starts are `len` values apart.
 ///
 /// A perfect shuffle of all 64 values rotates the six bits of their indices by one; three shuffles exchange the three
-/// bits of the line with those of the position.
+/// bits of the line index with the three bits of the position.
 #[inline(always)]
 fn transpose<S: Simd>(simd: S, lines: &[f32], len: usize, target: &mut [[f64; LANES]]) {
     let mut square = [f32x8::splat(simd, 0.0); LANES];

@@ -11,7 +11,7 @@ fn options() -> CurvatureOptions {
     CurvatureOptions::default()
 }
 
-/// Renders a function over the unit square as heights, and computes their curvature with a radius.
+/// Renders a function over the unit square as heights, and computes their curvature with the given radius.
 fn curvature_of(side: u32, radius: f64, height: impl Fn(DVec2) -> f64 + Sync) -> Raster<f32> {
     let height = Raster::from_window(&Window::unit([side, side]).unwrap(), |at| height(at) as f32);
     let options = CurvatureOptions {
@@ -24,7 +24,7 @@ fn curvature_of(side: u32, radius: f64, height: impl Fn(DVec2) -> f64 + Sync) ->
     curvature(&height.unwrap(), &options).unwrap()
 }
 
-/// Returns the height of a ball of radius 0.4 over the center of the unit square.
+/// Returns the height field of a ball of radius 0.4 over the center of the unit square.
 fn ball(at: DVec2) -> f64 {
     (0.16 - (at - 0.5).length_squared()).max(0.0).sqrt()
 }
@@ -157,7 +157,7 @@ fn curvature_does_not_change_with_resolution() {
             let mean = around.map(|(x, y)| fine.row(4 * row + y)[4 * column + x] * 0.25);
             let mean: f32 = mean.iter().sum();
             let here = coarse.row(row)[column];
-            // The four pixels lie 1/2048 from the center, over which curvatures of up to 20 change slightly.
+            // The four pixels are 1/2048 from the center, over which curvatures of up to 20 change slightly.
             assert!(
                 (here - mean).abs() < 0.02,
                 "{here} and {mean} at {column}, {row}"

@@ -7,7 +7,7 @@ use dapple_raster::glam::DVec2;
 use dapple_raster::{Raster, Window, Wrap};
 use proptest::prelude::*;
 
-/// Returns the smooth periodic height over the unit square: a product of parabolas, so that no sine is needed.
+/// Returns a smooth periodic height field over the unit square. It is a product of parabolas, so no sine is needed.
 fn hill(position: DVec2) -> f32 {
     let bump = |t: f64| 16.0 * (t * (1.0 - t)) * (t * (1.0 - t));
     (bump(position.x) * bump(position.y)) as f32

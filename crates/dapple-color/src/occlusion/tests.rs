@@ -18,7 +18,7 @@ fn options() -> OcclusionOptions {
     OcclusionOptions::default()
 }
 
-/// Returns the options for pixels of 1 × 1 without repetition, so that lengths are in pixels.
+/// Returns options for pixels of size 1 × 1 without repetition, so that lengths are in pixels.
 fn in_pixels(size: [u32; 2], radius: f64) -> OcclusionOptions {
     OcclusionOptions {
         radius,
@@ -31,7 +31,7 @@ fn in_pixels(size: [u32; 2], radius: f64) -> OcclusionOptions {
     }
 }
 
-/// Returns the irregular heights, multiples of 1/64 below 1.
+/// Returns irregular heights, which are multiples of 1/64 below 1.
 fn rubble(size: [u32; 2]) -> Raster<f32> {
     let height = |x: u32, y: u32| {
         let mixed =

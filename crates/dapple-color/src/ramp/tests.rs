@@ -10,7 +10,7 @@ fn stop(position: f32, gray: f32) -> ColorStop {
     ColorStop { position, color }
 }
 
-/// Returns the linear-light grays 0, 1 and 5 at the positions 1, 2 and 4.
+/// Returns a ramp with the linear-light grays 0, 1 and 5 at the positions 1, 2 and 4.
 fn ramp() -> ColorRamp {
     let ramp = ColorRamp::new([stop(1.0, 0.0), stop(2.0, 1.0), stop(4.0, 5.0)]).unwrap();
     ramp.with_space(RampSpace::Linear)
@@ -124,7 +124,7 @@ fn every_space_mixes_as_it_is_defined() {
     assert_eq!(middle(RampSpace::Linear), 0.5);
 }
 
-/// Returns the ramp from black to white.
+/// Returns a ramp from black to white.
 fn of_space_of_gray(space: RampSpace) -> ColorRamp {
     let ramp = ColorRamp::even(&[LinearRgb::BLACK, LinearRgb::WHITE]).unwrap();
     ramp.with_space(space)

@@ -1,8 +1,8 @@
 //! A Delaunay graph whose points can be inserted, moved and removed individually.
 //!
 //! An edit changes the axes of the edited point, and of the points that it is or was connected to. The points near
-//! the edit are triangulated again, like a tile of [`delaunay`], in a square that grows until no image outside of it
-//! can affect one of these stars. If there are few points, or at the hull of points that do not wrap, all points are
+//! the edit are triangulated again, like a tile of [`delaunay`], in a square that grows until no image outside it can
+//! affect one of these stars. If there are few points, or at the hull of points that do not wrap, all points are
 //! triangulated.
 //!
 //! The triangulation is not stored. On a torus it would contain several images of points at its border, all of which
@@ -181,7 +181,7 @@ impl EditableDelaunay {
     ///
     /// # Errors
     ///
-    /// [`Outside`](GraphErrorKind::Outside) for a position outside of the domain,
+    /// [`Outside`](GraphErrorKind::Outside) for a position outside the domain,
     /// [`Coincident`](GraphErrorKind::Coincident) if another point is at this position,
     /// [`Thin`](GraphErrorKind::Thin) as for [`delaunay`]. The graph is unchanged after an error.
     pub fn insert(&mut self, position: DVec2) -> Result<Vec<Star>, GraphError> {

@@ -142,8 +142,8 @@ impl<'g, 'a> Missing<'g, 'a> {
         }
     }
 
-    /// For each circumcircle of the star at `center`, adds the missing image inside of it that is nearest to its
-    /// center, if there is one. Returns whether the star will change.
+    /// For each circumcircle of the star at `center`, adds the missing image inside it that is nearest to its center,
+    /// if there is one. Returns whether the star will change.
     pub(super) fn search(&mut self, row: u32, center: DVec2, star: &Star) -> bool {
         self.row = row;
         self.changes = false;
@@ -193,7 +193,7 @@ impl<'g, 'a> Missing<'g, 'a> {
         }
     }
 
-    /// Adds images around the domain that close all stars inside of it.
+    /// Adds images around the domain that close all stars inside it.
     fn scaffold(&mut self) {
         self.changes = true;
         if core::mem::replace(&mut self.scaffolded, true) {

@@ -2,7 +2,7 @@
 //! resolutions.
 //!
 //! A plane has the pixels of the display window, as the "Technical Introduction to OpenEXR" defines. Pixels of the
-//! data window outside of it are cropped, and pixels without data are 0.
+//! data window outside it are cropped, and pixels without data are 0.
 //!
 //! Deep data and subsampled channels are errors. The sizes of all parts are checked against the limits before memory
 //! for the pixels is allocated. The codec has assertions that damaged bytes can reach; where a program unwinds on panic

@@ -34,7 +34,7 @@ pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError>
     limits.check_bytes(length as u64)?;
     let mut samples = vec![0; length];
     reader.next_frame(&mut samples).map_err(refuse)?;
-    // Read to the end of the file: an error in later chunks makes the whole file damaged.
+    // Read to the end of the file, because an error in a later chunk makes the whole file count as damaged.
     reader.finish().map_err(refuse)?;
     image_of(&reader, size, &samples)
 }

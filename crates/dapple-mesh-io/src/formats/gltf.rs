@@ -7,7 +7,7 @@
 //! triangles, and point primitives become vertices without faces; lines and animations are omitted. Skins and morph
 //! targets are applied in the pose without animation. Primitives of one node with the same attributes share their
 //! vertices. If only some primitives have colors or texture coordinates, the others become white and zero; normals
-//! are kept only if all primitives have them. The material is the first one used by a primitive.
+//! are retained only if all primitives have them. The material is the first one used by a primitive.
 //!
 //! Textures are copied unchanged if they are PNG or JPEG and use the same texture coordinates as the base color,
 //! whose `KHR_texture_transform` is applied to the corners. Everything else in a file that a

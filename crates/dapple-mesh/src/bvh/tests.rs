@@ -4,8 +4,8 @@ use super::{Bvh, NearestPoint, Probe, Ray, RayHit};
 use crate::{FaceIdx, Mesh};
 use glam::DVec3;
 
-/// Random numbers from 0 to 1: the high bits of a multiplicative congruential generator by L'Ecuyer, Mathematics of
-/// Computation 68, 1999.
+/// Generator of random numbers from 0 to 1, which are the high bits of a multiplicative congruential generator by
+/// L'Ecuyer, Mathematics of Computation 68, 1999.
 struct Numbers(u64);
 
 impl Numbers {
@@ -24,7 +24,7 @@ fn bvh(positions: Vec<DVec3>, faces: &[[u32; 3]]) -> Bvh {
     Bvh::new(&Mesh::new(positions, faces).unwrap())
 }
 
-/// Returns the small random triangles. Every seventh is duplicated, and every ninth has no area.
+/// Returns small random triangles. Every seventh is duplicated, and every ninth has no area.
 fn soup(count: u32) -> Bvh {
     let mut numbers = Numbers(12_345);
     let mut positions = Vec::new();
@@ -43,7 +43,7 @@ fn soup(count: u32) -> Bvh {
     bvh(positions, &triangles)
 }
 
-/// Returns a square of `side × side` squares in the plane `y = 0`, from the origin.
+/// Returns a sheet of `side × side` squares in the plane `y = 0`, from the origin.
 fn flat_grid(side: u32) -> Bvh {
     let at = |i: u32, j: u32| j * (side + 1) + i;
     let positions: Vec<DVec3> = (0..=side)
@@ -59,7 +59,7 @@ fn flat_grid(side: u32) -> Bvh {
     bvh(positions, &triangles)
 }
 
-/// Oracle: the nearest hit among all triangles; the one with the lowest index on a tie.
+/// Returns the nearest hit among all triangles by brute force; on a tie, the one with the lowest index.
 fn first_of_all(bvh: &Bvh, ray: &Ray, limit: f64) -> Option<RayHit> {
     let (ray, shift) = bvh.near_ray(ray);
     let probe = Probe::new(&ray);
@@ -97,7 +97,7 @@ fn bvh_finds_what_a_search_through_all_triangles_finds() {
     let bvh = soup(1200);
     let mut numbers = Numbers(777);
     let rays = (0..4000).map(|index| {
-        // Origins inside of the mesh, around it, and far away.
+        // Origins inside the mesh, around it, and far away.
         let origin = numbers.point() * [0.9, 3.0, 1e4][index % 3];
         let direction = (numbers.point() - origin).normalize();
         Ray { origin, direction }
@@ -186,7 +186,7 @@ fn closed_mesh_lets_no_ray_through_its_edges_and_vertices() {
     }
 }
 
-/// Oracle: the nearest point of all faces.
+/// Returns the nearest point over all faces by brute force.
 fn nearest_of_all(bvh: &Bvh, position: DVec3) -> Option<NearestPoint> {
     let points = (0..bvh.corners.len() as u32).map(|slot| bvh.nearest_of(slot, position));
     points.min_by(|a, b| {
@@ -228,7 +228,7 @@ fn nearest_point_of_a_face_is_not_farther_than_any_other() {
             for step_c in 0..=12 - step_b {
                 let [b, c] = [step_b, step_c].map(|step| f64::from(step) / 12.0);
                 let other = corners[0] * (1.0 - b - c) + corners[1] * b + corners[2] * c;
-                // Tolerance: a few roundings of numbers of size 1.
+                // Tolerance: a few rounding errors of numbers of size 1.
                 assert!(
                     point.distance_sq < other.distance_squared(position) + 1e-13,
                     "{corners:?}"

@@ -173,7 +173,7 @@ struct Slabs {
 
 impl Slabs {
     fn new(ray: &Ray, start: f64) -> Self {
-        // A ray parallel to a slab gets a finite inverse, so that no product is NaN. The triangles are inside of the
+        // A ray parallel to a slab gets a finite inverse, so that no product is NaN. The triangles are inside the
         // slab by the margin, so a ray on its boundary may count as outside.
         let inverse = |part: f64| if part == 0.0 { f64::MAX } else { 1.0 / part };
         Self {

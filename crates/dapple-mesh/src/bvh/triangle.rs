@@ -3,8 +3,8 @@
 //! Reference: Sven Woop, Carsten Benthin and Ingo Wald, "Watertight Ray/Triangle Intersection", Journal of Computer
 //! Graphics Techniques 2(1), 2013. Space is sheared so that the ray becomes an axis. The signs of three areas in the
 //! plane across it decide whether the ray hits the triangle. Two triangles compute the area of a shared edge from the
-//! same numbers, so no ray passes between them. The distance is a weighted mean of the distances of the corners. It is
-//! therefore outside of the bounds of the triangle only by rounding.
+//! same numbers, so no ray passes between them. The distance is a weighted mean of the distances of the corners. It
+//! is therefore outside the bounds of the triangle only by rounding.
 
 use super::Ray;
 use glam::DVec3;

@@ -42,7 +42,7 @@ impl Draft {
     /// Drops faces that contain a vertex twice, and duplicates.
     ///
     /// Two thin duplicates cancel each other, so that the faces around them become neighbors. Of other duplicates,
-    /// one is kept, since both may be all that is left of a sheet.
+    /// one is retained, since both may be all that is left of a sheet.
     fn drop_useless(&mut self) {
         let faces = self.mesh.faces.iter();
         let mut keep: Vec<bool> = faces.map(|&corners| !names_twice(corners)).collect();

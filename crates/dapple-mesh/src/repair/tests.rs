@@ -22,7 +22,7 @@ fn union(meshes: &[Mesh]) -> Mesh {
     Mesh::new(positions, &faces).expect("the meshes are valid")
 }
 
-/// Returns the mesh with some faces flipped.
+/// Returns the mesh with the given faces flipped.
 fn turned(mesh: &Mesh, which: impl Fn(usize) -> bool) -> Mesh {
     let over = |(face, [a, b, c]): (usize, &[VertexIdx; 3])| {
         if which(face) {
@@ -288,7 +288,7 @@ fn repair_welds_a_needle_and_leaves_no_crack() {
     let (after, repair) = mesh(&corners, &faces).repair();
     assert_eq!((repair.before.degenerate_faces, repair.after.faces), (2, 4));
     assert_eq!((repair.after.boundary_edges, repair.after.vertices), (4, 5));
-    // Tolerance: a few roundings of the area.
+    // Tolerance: a few rounding errors of the area.
     assert!((area(&after) - 4.0).abs() < 1e-14, "the square");
 }
 

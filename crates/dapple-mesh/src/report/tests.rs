@@ -24,7 +24,7 @@ fn faces_at(mesh: &Mesh, [a, b]: [VertexIdx; 2]) -> Vec<(usize, bool)> {
     mesh.faces().iter().enumerate().filter_map(at).collect()
 }
 
-/// Returns the number of connected components of items.
+/// Returns the number of connected components among items.
 fn count_sets(items: &[usize], joined: impl Fn(usize, usize) -> bool) -> usize {
     let mut left = items.to_vec();
     let mut count = 0;
@@ -41,7 +41,7 @@ fn count_sets(items: &[usize], joined: impl Fn(usize, usize) -> bool) -> usize {
     count
 }
 
-/// Naive report that compares all pairs.
+/// Counts defects naively, by comparing all pairs.
 fn naive_report(mesh: &Mesh) -> MeshReport {
     let (positions, faces) = (mesh.positions(), mesh.faces());
     let vertices: Vec<VertexIdx> = (0..positions.len() as u32).map(VertexIdx).collect();

@@ -18,7 +18,7 @@ fn check_tables(surface: &Surface) {
             flat.y.length_squared(),
             1.0 + flat.x.dot(flat.y),
         ];
-        // Tolerance: a few roundings of unit vectors.
+        // Tolerance: a few rounding errors of unit vectors.
         assert!(
             axes.iter().all(|part| (part - 1.0).abs() < 1e-15),
             "axes {axes:?}"
@@ -29,7 +29,7 @@ fn check_tables(surface: &Surface) {
         );
         for (corner, place) in corners.iter().zip(flat.corners()) {
             let position = surface.position(SurfacePoint { face, flat: place });
-            // Tolerance: a few roundings of the size of the face.
+            // Tolerance: a few rounding errors of the size of the face.
             assert!(
                 (position - corner).length() <= 1e-15 * size,
                 "corner {corner} of {flat:?}"
@@ -47,7 +47,7 @@ fn check_tables(surface: &Surface) {
             let other = usize::from(fold.to.edge);
             for (from, to) in [(edge, (other + 1) % 3), ((edge + 1) % 3, other)] {
                 let moved = fold.turn.rotate(flat.corners()[from]) + fold.shift;
-                // Tolerance: a few roundings of the sizes of the two faces.
+                // Tolerance: a few rounding errors of the sizes of the two faces.
                 assert!(
                     (moved - there.corners()[to]).length() <= 2e-15 * reach,
                     "edge {edge} of {flat:?}"
@@ -253,7 +253,7 @@ proptest! {
         let surface = surface(tetrahedron());
         let point = surface.point(FaceIdx(face), [1.0 - b - c, b, c]);
         let [a_back, b_back, c_back] = surface.weights(point);
-        // Tolerance: a few roundings of numbers near 1; the edges have length 2.8.
+        // Tolerance: a few rounding errors of numbers near 1; the edges have length 2.8.
         prop_assert!((a_back - (1.0 - b - c)).abs().max((b_back - b).abs()).max((c_back - c).abs()) < 1e-14);
         let position = surface.position(point);
         prop_assert!((surface.project(FaceIdx(face), position).flat - point.flat).length() < 1e-14);

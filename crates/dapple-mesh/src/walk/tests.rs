@@ -10,7 +10,7 @@ use glam::DVec3;
 /// Error bound of 16 faces for position and direction, relative to the distance and the size of a face: 2^-46.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Returns the point of a face below a position, and a direction along a vector.
+/// Returns the point on a face below `position`, and the direction in its plane along a vector.
 fn start(
     surface: &Surface,
     face: u32,
@@ -25,7 +25,7 @@ fn start(
     )
 }
 
-/// Returns whether the end of a walk is inside of its face, up to rounding.
+/// Returns whether the end of a walk is inside its face, up to rounding.
 fn is_inside(surface: &Surface, point: SurfacePoint) -> bool {
     let corners = surface.flat(point.face).corners();
     (0..3).all(|edge| {

@@ -97,7 +97,7 @@ impl Grid {
         cell.row as usize * self.stride() + cell.column as usize
     }
 
-    /// Hash of a cell of the domain.
+    /// Returns the hash of a domain cell.
     #[inline(always)]
     pub(crate) fn hash(&self, seed: Seed, cell: Cell) -> CellHash {
         // There are less than 2^32 cells, so one word identifies a cell, which is half the work of two.

@@ -19,7 +19,8 @@ const BOXES: usize = 16;
 /// Number of cells that a disc reaches along an axis: its cell and two on each side.
 pub(crate) const REACH: usize = 2 * HALO as usize + 1;
 
-/// For each box of offsets, the masks of open subcells in the 5 × 5 cells around a point, row by row.
+/// Table of coverage masks. For each box of offsets, it holds the masks of the subcells that stay open in the 5 × 5
+/// cells around a point, row by row.
 #[derive(Clone, Debug)]
 pub(crate) struct Coverage {
     kept: Vec<[[u64; REACH]; REACH]>,
@@ -46,7 +47,7 @@ impl Coverage {
     }
 }
 
-/// For each box of offsets, the squared maximum distance along one axis from the box to each subcell.
+/// Returns, for each box of offsets, the squared maximum distance along one axis from the box to each subcell.
 fn farthest(scale: f32) -> [[f32; REACH * SIDE]; BOXES] {
     core::array::from_fn(|offset| {
         core::array::from_fn(|subcell| {

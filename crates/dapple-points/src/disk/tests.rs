@@ -17,7 +17,7 @@ use dapple_raster::{Ramp, Varying, parallel};
 use fearless_simd::Level;
 use glam::DVec2;
 
-/// Maximum relative excess of the radius of an empty circle, as documented.
+/// Maximum relative amount by which an empty circle's radius may exceed the set's radius, as documented.
 const GAP_TOLERANCE: f64 = 1e-6;
 
 /// Domains with every kind of wrapping: square, thin, far from the origin; none narrower than two radii of 0.1.
@@ -141,8 +141,8 @@ fn spectrum_is_isotropic_and_that_of_darts() {
     );
 }
 
-/// Returns the sequential dart throwing, except that no darts are thrown at squares of a fine grid that a single disc
-/// covers. It ends after `misses` rejected darts in a row.
+/// Throws darts sequentially, but none at squares of a fine grid that a single disc covers. It ends after `misses`
+/// rejected darts in a row.
 fn throw_darts(domain: Domain, radius: f64, misses: u32, seed: Seed) -> PointSet {
     const SIDE: u32 = 100;
     let square = domain.size / f64::from(SIDE);

@@ -28,7 +28,7 @@ fn is_inside(position: DVec2, min: DVec2, max: DVec2) -> bool {
     position.cmpge(min).all() && position.cmplt(max).all()
 }
 
-/// Returns the brute-force construction: throws the darts of the cells from `-first` to `first` in order, and
+/// Constructs the points by brute force: throws the darts of the cells from `-first` to `first` in order, and
 /// compares each with all earlier points. The minimum radius is 1.
 fn naive(
     seed: Seed,
@@ -76,7 +76,7 @@ fn naive(
     points
 }
 
-/// Returns the element `i` of the first two dimensions of Sobol's sequence: bit reversal, and the matrix of binomials
+/// Returns element `i` of the first two dimensions of Sobol's sequence: bit reversal, and the matrix of binomials
 /// modulo 2.
 fn sobol(i: u32) -> [u32; 2] {
     let odd_binomial = |n: u32, k: u32| n & k == k;

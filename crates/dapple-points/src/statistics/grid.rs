@@ -6,7 +6,7 @@ use glam::DVec2;
 /// Mean number of points per cell: few enough to skip most distant points, enough to visit few empty cells.
 const POINTS_PER_CELL: f64 = 2.0;
 
-/// Upper bound of the fraction of a cell by which rounding may assign a point to the wrong cell.
+/// Upper bound on how far, as a fraction of a cell, rounding may move a point into a neighboring cell.
 const ROUNDING: f64 = 1e-6;
 
 /// How a search visits the cells of a wrapping domain.

@@ -10,7 +10,7 @@
 //! are computed by a forward and a backward sweep over the lattice: Gunilla Borgefors, "Distance transformations in
 //! digital images", Computer Vision, Graphics, and Image Processing 34(3), 1986,
 //! <https://doi.org/10.1016/S0734-189X(86)80047-0>. With wrapped axes, the sweeps are repeated until nothing changes.
-//! Units are those of the domain.
+//! Lengths are in units of the domain.
 
 use super::density::{RSA_DENSITY, radius_for_count};
 use crate::{Domain, PointsError, PointsErrorKind};
@@ -181,7 +181,7 @@ impl<'a> Lattice<'a> {
     }
 }
 
-/// Returns the index `step` away on an axis; `None` if there is none.
+/// Returns the index `step` away on an axis; `None` if it is beyond the end of an axis that does not wrap.
 fn neighbor(place: usize, step: i64, length: usize, wraps: bool) -> Option<usize> {
     let beside = place as i64 + step;
     if wraps {

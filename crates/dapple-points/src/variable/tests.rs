@@ -18,7 +18,7 @@ fn domain(wrap: [bool; 2]) -> Domain {
     }
 }
 
-/// Returns the geometric ramp from `start` on the left to `end` on the right of [`domain`].
+/// Returns a geometric ramp from `start` on the left to `end` on the right of [`domain`].
 fn ramp(start: f64, end: f64) -> Varying {
     let from = DVec2::new(-3.0, 10.0);
     let to = DVec2::new(-1.0, 10.0);

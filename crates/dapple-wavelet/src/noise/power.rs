@@ -1,4 +1,4 @@
-//! Test of the power of a band inside and outside of its octave, by a Fourier transform of its samples.
+//! Test of the power of a band inside and outside its octave, by a Fourier transform of its samples.
 
 use super::WaveletNoise2;
 use dapple_hash::Seed;

@@ -10,7 +10,7 @@ fn png(name: &str) -> Vec<u8> {
     [PNG, name.as_bytes()].concat()
 }
 
-/// Returns the OBJ text with a triangle in each of the unit squares, v up.
+/// Returns an OBJ text with a triangle in each of the given unit squares, with v pointing up.
 fn text(squares: &[[f64; 2]]) -> String {
     let mut text = "mtllib a.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\n".to_owned();
     for (at, [u, v]) in squares.iter().enumerate() {

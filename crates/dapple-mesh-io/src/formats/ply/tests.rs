@@ -7,7 +7,7 @@ use dapple_color::LinearRgb;
 use dapple_mesh::VertexIdx;
 use proptest::prelude::*;
 
-/// A quad with elements and properties of other programs.
+/// A quad with elements and properties that other programs write.
 const QUAD: &str = "ply\r\nformat ascii 1.0\r\ncomment by hand\r\nobj_info none\r\nelement camera 1\r\nproperty list uchar float view\r\nelement vertex 4\r\n\
 property double x\r\nproperty float confidence\r\nproperty float y\r\nproperty float z\r\nproperty uchar red\r\nproperty uchar green\r\nproperty uchar blue\r\n\
 element face 3\r\nproperty uchar flags\r\nproperty list uchar int vertex_index\r\nend_header\r\n\
@@ -40,7 +40,7 @@ fn quad_as_text_becomes_two_triangles_with_linear_colors() {
     assert_eq!((model.normals, model.uvs), (None, None));
 }
 
-/// Header of a text file with five vertices on the plane z = 0.
+/// Header of a text file whose body has five vertices in the plane z = 0.
 const FIVE: &str = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n";
 
 #[test]

@@ -14,7 +14,7 @@ fn why(bytes: &[u8]) -> String {
     }
 }
 
-/// Returns a binary file with the square of the text.
+/// Returns a binary file with the same square as the text file.
 fn square(head: &[u8], attributes: u8) -> Vec<u8> {
     let mut bytes = head.to_vec();
     bytes.resize(80, 0);

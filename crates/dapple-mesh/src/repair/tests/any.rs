@@ -152,7 +152,7 @@ proptest! {
             let counts = [repair.after.boundary_edges, repair.after.non_manifold_edges, repair.after.components];
             prop_assert_eq!(counts, [0, 0, 1]);
             let [before, after] = [closed, after].map(|mesh| Surface::new(mesh).expect("no defects").area());
-            // Tolerance: vertices move by a few roundings of numbers near 1.
+            // Tolerance: vertices move by a few rounding errors of numbers near 1.
             prop_assert!((before - after).abs() < 1e-12);
         }
     }

@@ -211,8 +211,8 @@ proptest! {
                 let walk = surface.walk(from, DVec2::new(x, y), distance);
                 prop_assert!(walk.left * distance >= 0.0 && walk.left.abs() <= distance.abs());
                 prop_assert!(walk.point.flat.is_finite() && walk.direction.is_finite());
-                // Near the tip of a spike a path may cross the maximum of 65,536 edges, with a few roundings of the
-                // largest coordinate at each.
+                // Near the tip of a spike a path may cross the maximum of 65,536 edges, with a few rounding errors of
+                // the largest coordinate at each.
                 let largest = surface.mesh().positions().iter().map(|at| at.abs().max_element()).fold(1.0, f64::max);
                 let corners = surface.flat(walk.point.face).corners();
                 for edge in 0..3 {

@@ -80,7 +80,7 @@ fn spectrum_equals_the_formula() {
     }
 }
 
-/// Returns the sets of white noise.
+/// Returns sets of white noise.
 fn white(n_sets: u64, n_points: i64) -> Vec<PointSet> {
     let set = |index| {
         let unit = |point, axis| unit_f64(hash1(Seed(1).child("white", index), [point], axis));

@@ -239,7 +239,7 @@ fn numbers_keep_their_own_methods_beside_the_trait() {
     assert_eq!(field.period(), [Some(2.0), Some(3.0)]);
 }
 
-/// A field of space with the periods 1, 2 and 3.
+/// A 3-D field with the periods 1, 2 and 3.
 #[derive(Clone, Copy, Debug)]
 struct Solid;
 

@@ -59,7 +59,7 @@ fn document() -> (Value, Vec<u8>) {
     (document, bytes)
 }
 
-/// Returns the document of a GLB file without the parts that may differ, and its images.
+/// Returns a GLB file's document without the parts that may differ, and its images.
 fn parts(bytes: &[u8]) -> (Value, Vec<Vec<u8>>) {
     let file = ::gltf::Gltf::from_slice(bytes).expect("it is valid");
     let blob = file.blob.as_deref().unwrap_or_default();
