@@ -80,7 +80,7 @@ impl HeightPlane {
         })
     }
 
-    /// Returns the width and height of a pixel of a raster of `size` pixels.
+    /// Returns the width and height of a pixel, in units of the plane, for a raster of `size` pixels.
     pub(crate) fn pixel(&self, size: [u32; 2]) -> DVec2 {
         self.extent / DVec2::new(size[0].max(1).into(), size[1].max(1).into())
     }

@@ -47,7 +47,7 @@ const NONE: u32 = u32::MAX;
 pub struct Voronoi {
     graph: Graph,
     vertices: Vec<VoronoiVertex>,
-    /// Sites around each vertex, vertex by vertex. The next field has the index of each vertex's first site.
+    /// Sites around each vertex, vertex by vertex. `first_sites` has the index of each vertex's first site.
     vertex_sites: Vec<PointIdx>,
     first_sites: Vec<u32>,
     /// For each axis, the vertex on its left, or [`NONE`], relative to the start point of the axis.

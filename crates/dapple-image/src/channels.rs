@@ -16,9 +16,9 @@ pub enum Channels {
     Rgb,
     /// Red, green, blue and alpha: read with [`Image::color_alpha`].
     Rgba,
-    /// Components X, Y and Z of vectors: read with [`Image::normals`].
+    /// The components X, Y and Z of vectors: read with [`Image::normals`].
     Vectors,
-    /// Planes of an OpenEXR file with other names: read with [`ExrImage::plane`].
+    /// OpenEXR planes with other names: read with [`ExrImage::plane`].
     Planes,
 }
 

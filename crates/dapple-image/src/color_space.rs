@@ -251,7 +251,7 @@ impl fmt::Display for ColorSpace {
     }
 }
 
-/// Converter of codes to linear light: a lookup table per channel, then a matrix.
+/// Converts codes to linear light by a lookup table per channel, followed by a matrix.
 pub(crate) struct Converter {
     matrix: Matrix,
     tables: [Vec<f64>; 3],

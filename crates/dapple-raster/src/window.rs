@@ -151,8 +151,9 @@ impl<const N: usize> Window<N> {
         })
     }
 
-    /// Multiplies all positions by `factor`, to render a field at another frequency; the products are exactly those
-    /// of single positions. Returns `None` if the product of the scales would be rounded.
+    /// Multiplies all positions by `factor`, to render a field at another frequency. Every position of the result is
+    /// exactly the `f64` product of the old position and `factor`. Returns `None` if the product of the scales would
+    /// be rounded.
     ///
     /// # Examples
     ///

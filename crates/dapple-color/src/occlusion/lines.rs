@@ -8,8 +8,8 @@ use super::sky::COLUMNS;
 use crate::{ColorError, plane};
 use dapple_raster::{Raster, Wrap};
 
-/// The heights, extended by columns on both sides according to the wrap, so that whole registers can be read around
-/// every pixel.
+/// Heights, extended by columns on both sides according to the wrap, so that whole registers can be read around every
+/// pixel.
 pub(super) struct Heights {
     padded: Raster<f32>,
     wrap_y: Wrap,

@@ -193,7 +193,7 @@ impl<'g, 'a> Missing<'g, 'a> {
         }
     }
 
-    /// Adds images around the domain that close all stars inside it.
+    /// Adds images around the domain that leave no gap in the star of any point inside it.
     fn scaffold(&mut self) {
         self.changes = true;
         if core::mem::replace(&mut self.scaffolded, true) {

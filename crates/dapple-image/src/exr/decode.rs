@@ -37,7 +37,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// [`ImageErrorKind::UnknownFormat`] if the bytes lack the OpenEXR signature, [`ImageErrorKind::Damaged`] if they
 /// violate the format's rules or end too soon, [`ImageErrorKind::Unsupported`] for deep data and subsampled channels,
 /// [`ImageErrorKind::Windows`] if the data and display windows have no pixel in common,
-/// [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`] past a limit.
+/// [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`] beyond a limit.
 pub fn decode_exr(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError> {
     guarded(bytes, || decode(bytes, limits))
 }
@@ -47,7 +47,7 @@ pub fn decode_exr(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError>
 ///
 /// # Errors
 ///
-/// Same as [`decode_exr`], plus [`ImageErrorKind::Outside`] if the part extends beyond the image.
+/// Same as [`decode_exr`], plus [`ImageErrorKind::Outside`] if the region extends beyond the image.
 pub fn decode_exr_region(
     bytes: &[u8],
     first: [u32; 2],

@@ -44,7 +44,7 @@ pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError>
 ///
 /// # Errors
 ///
-/// Same as [`decode_png`], plus [`ImageErrorKind::Outside`] if the part extends beyond the image;
+/// Same as [`decode_png`], plus [`ImageErrorKind::Outside`] if the region extends beyond the image;
 /// [`ImageErrorKind::Unsupported`] for an interlaced file, whose rows are not stored in order.
 pub fn decode_png_region(
     bytes: &[u8],

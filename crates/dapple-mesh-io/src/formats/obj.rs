@@ -78,8 +78,8 @@ struct Draft {
     skipped: BTreeSet<&'static str>,
     /// Name of the current material, and whether a face uses it.
     material: Option<(String, bool)>,
-    /// Whether the current material differs from the first material used, and whether any face uses such a different
-    /// material.
+    /// Whether the current material differs from the first material used, followed by whether any face uses such a
+    /// different material.
     others: [bool; 2],
 }
 

@@ -195,7 +195,7 @@ fn text(mesh: &Mesh) -> String {
     text + "endsolid dapple\n"
 }
 
-/// Appends a line with a vector.
+/// Appends a line with `keyword` and a vector.
 fn add(text: &mut String, keyword: &str, vector: DVec3) {
     text.push_str(keyword);
     for part in vector.to_array() {

@@ -25,7 +25,7 @@ pub(crate) struct FaceFrame {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EdgeTransition {
     pub(crate) to: FaceEdge,
-    /// Rotation from this plane to the neighbor's, as cosine and sine. A shift follows it.
+    /// Rotation from this plane to the neighbor's, as cosine and sine. The rotation is followed by a shift, `shift`.
     pub(crate) turn: DVec2,
     pub(crate) shift: DVec2,
 }

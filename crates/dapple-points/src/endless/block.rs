@@ -332,7 +332,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         Ok(Some(Dart { at, radius }))
     }
 
-    /// Returns the position of the current dart of a cell, in the caller's units.
+    /// Returns the position of a cell's current dart, in the caller's units.
     fn position(&self, index: usize) -> DVec2 {
         let strips = self.strips(index);
         let first = [self.columns[0].absolute, self.rows[0].absolute];

@@ -65,8 +65,8 @@ pub struct SpectrumRing {
     pub n_frequencies: u32,
     /// Mean power of the frequencies: 1 for white noise.
     pub power: f64,
-    /// Variance of the power relative to an isotropic process: 1 for an isotropic set. It is 1 for a ring with a
-    /// single frequency or without power.
+    /// Variance of the power within the ring, relative to an isotropic process: about 1 for an isotropic set. It is
+    /// exactly 1 for a ring with a single frequency or without power.
     pub anisotropy: f64,
 }
 

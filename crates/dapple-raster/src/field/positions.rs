@@ -4,21 +4,21 @@ use super::common_period;
 use super::values::by_bands;
 use crate::{Field, RasterError, RasterViewMut, Window};
 
-/// A field with scaled positions: see [`FieldExt::frequency`](super::FieldExt::frequency).
+/// A field with scaled positions; see [`FieldExt::frequency`](super::FieldExt::frequency).
 #[derive(Clone, Copy, Debug)]
 pub struct Scaled<F, const N: usize = 2> {
     pub(super) field: F,
     pub(super) frequency: [f64; N],
 }
 
-/// A field with translated positions: see [`FieldExt::offset`](super::FieldExt::offset).
+/// A field with translated positions; see [`FieldExt::offset`](super::FieldExt::offset).
 #[derive(Clone, Copy, Debug)]
 pub struct Translated<F, const N: usize = 2> {
     pub(super) field: F,
     pub(super) offset: [f64; N],
 }
 
-/// A field rotated about the origin: see [`FieldExt::rotate`](super::FieldExt::rotate).
+/// A field rotated about the origin; see [`FieldExt::rotate`](super::FieldExt::rotate).
 #[derive(Clone, Copy, Debug)]
 pub struct Rotated<F> {
     pub(super) field: F,
@@ -26,7 +26,7 @@ pub struct Rotated<F> {
     pub(super) direction: [f64; 2],
 }
 
-/// A field with displaced positions: see [`FieldExt::warp`](super::FieldExt::warp).
+/// A field with displaced positions; see [`FieldExt::warp`](super::FieldExt::warp).
 #[derive(Clone, Copy, Debug)]
 pub struct Warped<F, D> {
     pub(super) field: F,

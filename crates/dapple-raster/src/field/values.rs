@@ -7,7 +7,7 @@ use core::fmt;
 /// Number of values that are computed at a time, chosen so that two bands fit a core's cache.
 const BAND: usize = 1 << 17;
 
-/// A field with a function applied to its values: see [`FieldExt::map`](super::FieldExt::map).
+/// A field with a function applied to its values; see [`FieldExt::map`](super::FieldExt::map).
 #[derive(Clone, Copy)]
 pub struct Mapped<F, M> {
     pub(super) field: F,
@@ -41,7 +41,7 @@ impl Change for Linear {
     }
 }
 
-/// Two fields combined value by value: see [`FieldExt::add`](super::FieldExt::add) and related methods.
+/// Two fields combined value by value; see [`FieldExt::add`](super::FieldExt::add) and related methods.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair<A, B> {
     pub(super) first: A,
@@ -67,7 +67,7 @@ crate::named! {
     }
 }
 
-/// Linear interpolation between two fields: see [`FieldExt::mix`](super::FieldExt::mix).
+/// Linear interpolation between two fields; see [`FieldExt::mix`](super::FieldExt::mix).
 #[derive(Clone, Copy, Debug)]
 pub struct Mixed<A, B, T> {
     pub(super) from: A,

@@ -76,7 +76,7 @@ pub(super) struct NodeExtensions {
     pub(super) instancing: Option<Instancing>,
 }
 
-/// Accessors with a transform for each copy of the mesh of a node.
+/// Accessors that hold a transform for each copy of a node's mesh.
 #[derive(Deserialize)]
 pub(super) struct Instancing {
     pub(super) attributes: BTreeMap<String, usize>,

@@ -41,7 +41,8 @@ struct Draft<'a> {
     material: Option<usize>,
     /// Materials of the faces.
     materials: BTreeSet<Option<usize>>,
-    /// Whether the scene has lines. The next field tells whether it has texture coordinate sets that no texture uses.
+    /// Whether the scene has lines. `has_further_uvs` tells whether it has texture coordinate sets that no texture
+    /// uses.
     has_lines: bool,
     has_further_uvs: bool,
 }
