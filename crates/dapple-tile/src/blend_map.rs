@@ -26,9 +26,9 @@
 //! stones, so a growing texture extends from the cracks inward. With blurs half as wide, the centers would fall back to
 //! ½.
 //!
-//! The map is `½ + ½ x / sqrt(1 + x²)` with `x = contrast · (I - median I)`. It is ½ at the median, and between 0 and
-//! 1. [`rank_equalize`](crate::rank_equalize) turns it into a mask that covers exactly its share. A mask without
-//! features can be computed from any noise in the same way.
+//! The map is `½ + ½ x / sqrt(1 + x²)` with `x = contrast · (I - median I)`. It is ½ at the median, and from 0
+//! to 1 elsewhere. [`rank_equalize`](crate::rank_equalize) turns it into a mask that covers exactly its share. A mask
+//! without features can be computed from any noise in the same way.
 //!
 //! Reference: Hardy and Mc Roberts, as above, for the idea; the formula is our own.
 
