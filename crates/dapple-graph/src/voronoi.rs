@@ -78,8 +78,7 @@ pub struct VoronoiSide {
     /// Vertices at both ends, counterclockwise (from the x axis toward the y axis) around the cell; `None` where the
     /// side is an unbounded ray.
     pub vertices: [Option<u32>; 2],
-    /// Positions of both ends relative to the cell's site, counterclockwise; `None` where the side is an unbounded
-    /// ray.
+    /// Positions of both ends relative to the cell's site, counterclockwise; `None` for an end at infinity.
     pub ends: [Option<DVec2>; 2],
 }
 

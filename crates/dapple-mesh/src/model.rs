@@ -39,7 +39,7 @@ pub struct Model {
     /// Linear color of each vertex; `None` if the model has no vertex colors.
     pub colors: Option<Vec<LinearRgba>>,
     /// Texture coordinates of each corner of each face, with v pointing down; the range 0 to 1 covers the texture
-    /// once. `None` if the model is not textured.
+    /// once. `None` if the model has no texture coordinates.
     pub uvs: Option<Vec<[DVec2; 3]>>,
     /// Normal of each vertex, zero if undefined; `None` if the model has no vertex normals.
     pub normals: Option<Vec<DVec3>>,

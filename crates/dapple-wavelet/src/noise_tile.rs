@@ -1,10 +1,10 @@
 //! Generates seamless rasters of wavelet noise, with a weight per band.
 //!
 //! A raster contains the coefficients of a periodic quadratic B-spline. Each band of Cook and DeRose's wavelet noise
-//! (see [`WaveletNoise`](crate::WaveletNoise)) is generated at the size at which its frequencies are the highest. It
-//! is then doubled to the size of the raster, which changes only the number of coefficients. The result has no seam,
-//! bands do not overlap, and each band can be recovered by halving. Prefer this to making a noise image repeat
-//! afterward.
+//! (see [`WaveletNoise`](crate::WaveletNoise)) is generated at the size at which it occupies the highest octave,
+//! which no other band shares at that size. It is then doubled to the size of the raster, which changes only the
+//! number of coefficients. The result has no seam, bands do not overlap, and each band can be recovered by halving.
+//! Prefer this to making a noise image repeat afterward.
 //!
 //! Every band is generated from separate white noise, and its period is never shorter than the raster.
 //!
