@@ -5,7 +5,7 @@
 //! [`RampSpace`]. The colors of the stops are converted to this space when the ramp is created, so mixing in Oklab
 //! computes no cube root per color.
 //!
-//! Original implementation; see `oklab.rs` for the reference on Oklab.
+//! Reference: our own; for Oklab see `oklab.rs`.
 
 use crate::oklab::{linear_from_oklab, oklab_from_linear};
 use crate::srgb::{linear_from_srgb, srgb_from_linear};

@@ -8,7 +8,7 @@
 //! rotations that are accurate to a few roundings. Positions are accurate to a few rounding errors of their longest
 //! edge.
 //!
-//! Original method; Greg Turk, SIGGRAPH 1991, doi 10.1145/127719.122749, moves points by unfolding across edges.
+//! Reference: our own; Greg Turk, SIGGRAPH 1991, doi 10.1145/127719.122749, moves points by unfolding across edges.
 
 mod flat;
 

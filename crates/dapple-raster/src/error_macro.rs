@@ -9,13 +9,13 @@
 ///
 /// ```
 /// dapple_raster::error! {
-/// Error of baking a cake.
+///     /// Error of baking a cake.
 ///     CakeError,
-/// The limit that was violated.
+///     /// The limit that was violated.
 ///     CakeErrorKind with Range {
 ///         /// There are too many layers.
 ///         Layers {
-/// Number of layers.
+///             /// Number of layers.
 ///             count: u32,
 ///         } => "there are {count} layers, but the limit is 7";
 ///     }

@@ -1,7 +1,7 @@
 //! Exact nearest-neighbor search: finds the row (a vector of `f32`) nearest to a query, with the same result as
 //! comparing with every row.
 //!
-//! Method: rows are centered and rotated to their principal components, as in Hertzmann, Jacobs, Oliver, Curless and
+//! Reference: rows are centered and rotated to their principal components, as in Hertzmann, Jacobs, Oliver, Curless and
 //! Salesin, "Image Analogies", SIGGRAPH 2001, who search approximately in the first components. The first components
 //! are stored as 16-bit integers, in the leaves of a k-d tree. There a few components give a lower bound of a distance,
 //! which rejects most rows: whole leaves by their bounding boxes, and sixteen rows at a time after every eighth

@@ -4,7 +4,7 @@
 //! is clipped by the bisectors to surrounding points, starting with the nearest ring of the grid, until no farther
 //! point can affect it. Corners are relative to the point of the cell, so that a distant origin costs no precision.
 //!
-//! Original method.
+//! Reference: our own.
 
 use super::grid::{Grid, Images};
 use crate::PointSet;
