@@ -23,7 +23,7 @@ impl Recipe {
     ///
     /// [`Text`](RecipeErrorKind::Text) if the text is not valid TOML, or contains a key or value that recipes do not
     /// have, with the line and the nearest valid word; [`Schema`](RecipeErrorKind::Schema) if the schema version
-    /// differs from [`SCHEMA`](crate::SCHEMA); [`Count`](RecipeErrorKind::Count) if the text has more than [`MAX_TEXT`]
+    /// differs from [`SCHEMA`]; [`Count`](RecipeErrorKind::Count) if the text has more than [`MAX_TEXT`]
     /// bytes.
     pub fn from_toml(text: &str) -> Result<Self, RecipeError> {
         let text = decoded(text)?;
