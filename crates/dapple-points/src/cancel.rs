@@ -1,6 +1,5 @@
 //! Cancellation callbacks.
 
-#[cfg(feature = "poisson-disk")]
 use crate::{PointsError, PointsErrorKind};
 use core::fmt;
 use std::sync::Arc;
@@ -34,13 +33,11 @@ impl fmt::Debug for Cancel {
 }
 
 /// Fails if the callback reports a cancellation.
-#[cfg(feature = "poisson-disk")]
 pub(crate) fn check(is_cancelled: &IsCancelled) -> Result<(), PointsError> {
     cancelled(is_cancelled())
 }
 
 /// Fails if the operation is canceled.
-#[cfg(feature = "poisson-disk")]
 pub(crate) fn cancelled(is_cancelled: bool) -> Result<(), PointsError> {
     match is_cancelled {
         true => Err(PointsError::new(PointsErrorKind::Cancelled)),

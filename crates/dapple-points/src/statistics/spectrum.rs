@@ -17,6 +17,7 @@
 
 mod periodogram;
 
+use crate::cancel::check;
 use crate::{IsCancelled, PointSet, PointsError, PointsErrorKind};
 use periodogram::Periodogram;
 
@@ -176,9 +177,7 @@ pub fn spectrum_cancellable(
     let mut power = Periodogram::new(counts.map(|count| count as u32));
     for set in sets {
         power.add(set, is_cancelled);
-        if is_cancelled() {
-            return Err(PointsError::new(PointsErrorKind::Cancelled));
-        }
+        check(is_cancelled)?;
     }
     let mut sums = vec![RingSums::default(); n_rings as usize];
     power.for_each(|[x, y], value| {
