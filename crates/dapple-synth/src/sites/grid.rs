@@ -93,12 +93,8 @@ impl SiteGrid {
     /// The order depends only on the positions and the side: by brick, then by cell in the brick (x fastest and z
     /// slowest for both), then by site index in the cell.
     #[inline]
-    pub fn visit(&self, center: DVec3, radius: f64, mut visit: impl FnMut(SiteIdx)) {
-        self.visit_rows(center, radius, |row| {
-            for &site in &self.members[row] {
-                visit(site);
-            }
-        });
+    pub fn visit(&self, center: DVec3, radius: f64, visit: impl FnMut(SiteIdx)) {
+        self.visit_rows(center, radius, self.sites_of(visit));
     }
 
     /// Calls `visit` with the ranges of [`members`](Self::members) whose sites [`visit`](Self::visit) visits.
@@ -132,12 +128,18 @@ impl SiteGrid {
     }
 
     /// Calls `visit` with every site in the cells of `block`, in the order of [`visit`](Self::visit).
-    pub(crate) fn visit_block(&self, block: Block, mut visit: impl FnMut(SiteIdx)) {
-        self.visit_between(block.low, block.high, |row| {
+    pub(crate) fn visit_block(&self, block: Block, visit: impl FnMut(SiteIdx)) {
+        self.visit_between(block.low, block.high, self.sites_of(visit));
+    }
+
+    /// Returns a visitor of ranges of [`members`](Self::members) that calls `visit` with each of their sites.
+    #[inline]
+    fn sites_of(&self, mut visit: impl FnMut(SiteIdx)) -> impl FnMut(Range<usize>) {
+        move |row| {
             for &site in &self.members[row] {
                 visit(site);
             }
-        });
+        }
     }
 
     /// Visits the sites of the cells from `low` to `high` along each axis, row by row.
