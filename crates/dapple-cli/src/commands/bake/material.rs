@@ -40,9 +40,9 @@ impl Setting {
     /// Same as [`Recipe::set`], reported as wrong usage.
     pub(in crate::commands) fn apply(&self, recipe: &mut Recipe) -> Result<()> {
         recipe.set(&self.path, &self.value).map_err(|error| {
-            let nearest = error.nearest().map(str::to_owned);
             let refused = usage(format!("--set {self}: {error}"));
-            match nearest {
+            // The message already names the nearest word, if there is one.
+            match error.nearest() {
                 Some(_) => refused,
                 None => refused.hint("`dapple recipe --reference` lists the options of all nodes"),
             }
