@@ -119,7 +119,7 @@ pub struct Plan {
     channels: Channels,
     material: Material,
     limits: PlanLimits,
-    memory: Option<PlanCache>,
+    cache: Option<PlanCache>,
     watch: Watch,
     /// Whether a node changes with time.
     moves: bool,
@@ -209,7 +209,7 @@ impl Plan {
         Self::make(recipe, images, time, limits, None, Watch::default())
     }
 
-    /// Builds all nodes of the recipe, and reuses parts of earlier plans from the cache `memory`. This is for programs
+    /// Builds all nodes of the recipe, and reuses parts of earlier plans from `cache`. This is for programs
     /// that redraw a recipe as it changes. Bakes and node images use the cache, too.
     ///
     /// # Errors
@@ -221,13 +221,13 @@ impl Plan {
     /// ```
     /// use dapple_recipe::{Images, PlanCache, Plan, PlanLimits, Recipe};
     ///
-    /// let (images, limits, memory) = (Images::new(), PlanLimits::default(), PlanCache::new(1 << 26));
+    /// let (images, limits, cache) = (Images::new(), PlanLimits::default(), PlanCache::new(1 << 26));
     /// let mut recipe = Recipe::builtin("flagstone")?;
-    /// let plan = Plan::new_with_cache(&recipe, &images, 0.0, &limits, &memory)?;
+    /// let plan = Plan::new_with_cache(&recipe, &images, 0.0, &limits, &cache)?;
     /// let grain = plan.node_picture("grain", [64, 64], None)?;
     ///
     /// recipe.material.relief = 0.5;
-    /// let plan = Plan::new_with_cache(&recipe, &images, 0.0, &limits, &memory)?;
+    /// let plan = Plan::new_with_cache(&recipe, &images, 0.0, &limits, &cache)?;
     /// assert_eq!(plan.node_picture("grain", [64, 64], None)?, grain);
     /// # Ok::<(), dapple_recipe::RecipeError>(())
     /// ```
@@ -236,9 +236,9 @@ impl Plan {
         images: &Images,
         time: f64,
         limits: &PlanLimits,
-        memory: &PlanCache,
+        cache: &PlanCache,
     ) -> Result<Self, RecipeError> {
-        Self::make(recipe, images, time, limits, Some(memory), Watch::default())
+        Self::make(recipe, images, time, limits, Some(cache), Watch::default())
     }
 
     /// Builds all nodes of the recipe and reports to the callback `progress`, which can stop the work with
@@ -279,10 +279,10 @@ impl Plan {
         images: &Images,
         time: f64,
         limits: &PlanLimits,
-        memory: Option<&PlanCache>,
+        cache: Option<&PlanCache>,
         progress: impl Fn(Progress) -> ControlFlow<()> + Send + Sync + 'static,
     ) -> Result<Self, RecipeError> {
-        Self::make(recipe, images, time, limits, memory, Watch::by(progress))
+        Self::make(recipe, images, time, limits, cache, Watch::by(progress))
     }
 
     /// Builds all nodes of the recipe, with an optional cache and callback.
@@ -291,19 +291,19 @@ impl Plan {
         images: &Images,
         time: f64,
         limits: &PlanLimits,
-        memory: Option<&PlanCache>,
+        cache: Option<&PlanCache>,
         watch: Watch,
     ) -> Result<Self, RecipeError> {
         RecipeError::check_in(TIME, "time", time)?;
         for side in recipe.extent {
             RecipeError::check_in(EXTENT, "extent", side)?;
         }
-        if let Some(memory) = memory {
-            memory.begin();
+        if let Some(cache) = cache {
+            cache.begin();
         }
         // Build the step of each node after its inputs.
         watch.begin(Pass::Nodes, OF_NODE * recipe.nodes.len());
-        let mut builder = Builder::new(recipe, images, time, limits, memory, &watch);
+        let mut builder = Builder::new(recipe, images, time, limits, cache, &watch);
         for (index, name) in order(recipe)?.into_iter().enumerate() {
             watch.reach(OF_NODE * index);
             watch.check()?;
@@ -320,7 +320,7 @@ impl Plan {
             channels,
             material: recipe.material.clone(),
             limits: *limits,
-            memory: memory.cloned(),
+            cache: cache.cloned(),
             watch: watch.clone(),
             moves: builder.moves,
             ids: builder.ids.into(),
@@ -480,16 +480,16 @@ impl Plan {
         wanted: &[usize],
         known: &Known,
     ) -> Result<Vec<Values>, RecipeError> {
-        match &self.memory {
+        match &self.cache {
             None => evaluate::window(&self.steps, whole, window, wanted, known),
-            Some(memory) => self.values_with(memory, whole, window, wanted, known),
+            Some(cache) => self.values_with(cache, whole, window, wanted, known),
         }
     }
 
     /// Computes the values of steps through the cache: reads stored values, and stores new ones.
     fn values_with(
         &self,
-        memory: &PlanCache,
+        cache: &PlanCache,
         whole: &Whole,
         window: &Window,
         wanted: &[usize],
@@ -508,7 +508,7 @@ impl Plan {
         let order = step::needed(&self.steps, wanted, |index| {
             let is_known = known.iter().any(|(known, _)| *known == index);
             let values = (!is_known && is_kept(index))
-                .then(|| memory.values(self.ids[index], window))
+                .then(|| cache.values(self.ids[index], window))
                 .flatten();
             let is_found = values.is_some();
             found
@@ -521,13 +521,13 @@ impl Plan {
         let is_new =
             |index: &usize| is_kept(*index) && !known.iter().any(|(known, _)| known == index);
         let fresh: Vec<_> = order.into_iter().filter(is_new).collect();
-        if !memory.has_room(fresh.len(), window) {
+        if !cache.has_room(fresh.len(), window) {
             return evaluate::window(&self.steps, whole, window, wanted, &known);
         }
         let all = [wanted, &fresh].concat();
         let mut values = evaluate::window(&self.steps, whole, window, &all, &known)?;
         for (&index, values) in fresh.iter().zip(values.drain(wanted.len()..)) {
-            memory.keep(self.ids[index], window, Arc::new(values));
+            cache.keep(self.ids[index], window, Arc::new(values));
         }
         Ok(values)
     }

@@ -101,7 +101,7 @@ pub trait RenderHost {
 /// Renders jobs and caches values for the next ones.
 #[derive(Debug)]
 pub struct Renderer {
-    pub(crate) memory: PlanCache,
+    pub(crate) cache: PlanCache,
     planned: Option<Planned>,
     /// The longer side of the next draft, in pixels.
     draft_side: u32,
@@ -115,9 +115,9 @@ const MEMORY: usize = 1 << 29;
 impl Renderer {
     /// Creates a renderer with a cache, which other renderers may share.
     #[must_use]
-    pub fn new(memory: &PlanCache) -> Self {
+    pub fn new(cache: &PlanCache) -> Self {
         Self {
-            memory: memory.clone(),
+            cache: cache.clone(),
             planned: None,
             // The first draft should appear soon, and the cost of the recipe is not known yet.
             draft_side: DRAFT_SIDES[0] / 2,
@@ -127,14 +127,14 @@ impl Renderer {
 
     /// Creates an empty cache for one or more renderers.
     #[must_use]
-    pub fn memory() -> PlanCache {
+    pub fn cache() -> PlanCache {
         PlanCache::new(MEMORY)
     }
 }
 
 impl Default for Renderer {
     fn default() -> Self {
-        Self::new(&Self::memory())
+        Self::new(&Self::cache())
     }
 }
 
@@ -252,7 +252,7 @@ impl Renderer {
             &images,
             time,
             &LIMITS,
-            &self.memory,
+            &self.cache,
         )?);
         let document = job.document.clone();
         self.planned = Some(Planned {

@@ -106,7 +106,7 @@ struct Shared {
     folder: Folder,
     exports: Exports,
     /// Cache of node values, shared by the renderers of all pages.
-    memory: PlanCache,
+    cache: PlanCache,
     /// Cache of recipe thumbnails.
     gallery: Gallery,
     /// Permits that limit the number of open pages.
@@ -181,7 +181,7 @@ async fn run(
         host,
         guard,
         exports: Exports::default(),
-        memory: Renderer::memory(),
+        cache: Renderer::cache(),
         gallery: Gallery::default(),
         folder,
         pages: Arc::new(Semaphore::new(MOST_PAGES)),

@@ -51,7 +51,7 @@ impl Renderer {
         let Some(node) = &variant.node else {
             return sample::lit(recipe, &images, side);
         };
-        let plan = Plan::new_with_cache(recipe, &images, variant.time, &LIMITS, &self.memory)?;
+        let plan = Plan::new_with_cache(recipe, &images, variant.time, &LIMITS, &self.cache)?;
         let size = size_of(recipe.extent, side);
         let (pixels, _) = of_values(&plan.node_picture(node, size, None)?);
         Ok((size, pixels))

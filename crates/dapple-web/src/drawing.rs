@@ -53,7 +53,7 @@ pub(crate) struct Drawing {
     job: Job,
     start: f64,
     next: Next,
-    told: ReportedProgress,
+    reported: ReportedProgress,
     /// Parts of maps that have not been sent yet.
     pending: RefCell<Vec<Picture>>,
 }
@@ -92,7 +92,7 @@ impl Drawing {
             } else {
                 Next::Rows(0)
             },
-            told: ReportedProgress::default(),
+            reported: ReportedProgress::default(),
             pending: RefCell::default(),
             job,
             start,
@@ -138,7 +138,7 @@ impl Drawing {
         let place = Place {
             drawing: self,
             now,
-            told: RefCell::new(self.told),
+            reported: RefCell::new(self.reported),
             put: RefCell::new(put),
         };
         let start = now();
@@ -146,14 +146,14 @@ impl Drawing {
         if let Next::Rows(_) = self.next {
             pace.follow(now() - start);
         }
-        self.told = place.told.into_inner();
+        self.reported = place.reported.into_inner();
         let is_last = match self.next {
-            Next::Draft => !self.told.draft,
+            Next::Draft => !self.reported.draft,
             Next::Rows(_) => false,
             Next::Rest => true,
         };
         self.next = after;
-        !is_last && !self.told.refused
+        !is_last && !self.reported.refused
     }
 }
 
@@ -166,7 +166,7 @@ fn area_of(view: &View) -> Area {
 struct Place<'a> {
     drawing: &'a Drawing,
     now: fn() -> f64,
-    told: RefCell<ReportedProgress>,
+    reported: RefCell<ReportedProgress>,
     put: RefCell<&'a mut dyn FnMut(Output)>,
 }
 
@@ -181,7 +181,7 @@ impl RenderHost for Place<'_> {
 
     fn is_wanted(&self, _: u32) -> bool {
         // Stop after the draft, which is a separate step.
-        !(self.drawing.next == Next::Draft && self.told.borrow().draft)
+        !(self.drawing.next == Next::Draft && self.reported.borrow().draft)
     }
 
     fn put(&self, output: Output) {
@@ -199,21 +199,21 @@ impl Place<'_> {
     /// Converts a message of a step to a message of the whole job. Returns `None` for messages that concern only the
     /// step.
     fn reply(&self, mut reply: Reply) -> Option<Reply> {
-        let mut told = self.told.borrow_mut();
+        let mut reported = self.reported.borrow_mut();
         let is_rows = matches!(self.drawing.next, Next::Rows(_));
         match &mut reply {
             Reply::Began { region, draft, .. } => {
                 (*region, *draft) = (self.drawing.job.view.region, self.drawing.job.view.draft);
-                return (!core::mem::replace(&mut told.began, true)).then_some(reply);
+                return (!core::mem::replace(&mut reported.began, true)).then_some(reply);
             }
             Reply::Graph { .. } => {
-                return (!core::mem::replace(&mut told.graph, true)).then_some(reply);
+                return (!core::mem::replace(&mut reported.graph, true)).then_some(reply);
             }
-            Reply::Rendered { draft: true, .. } => told.draft = true,
+            Reply::Rendered { draft: true, .. } => reported.draft = true,
             Reply::Rendered { .. } if is_rows => return None,
             Reply::Rendered { ms, .. } => *ms = (self.now)() - self.drawing.start,
-            Reply::Refused { .. } => told.refused = true,
-            Reply::Diagnostics { items, .. } => told.refused |= !items.is_empty(),
+            Reply::Refused { .. } => reported.refused = true,
+            Reply::Diagnostics { items, .. } => reported.refused |= !items.is_empty(),
             _ => {}
         }
         Some(reply)

@@ -227,7 +227,7 @@ struct Made {
     /// The recipe's images; `None` until a frame needs them.
     images: Option<Images>,
     /// The cache of node values; `None` for a single frame.
-    memory: Option<PlanCache>,
+    cache: Option<PlanCache>,
 }
 
 /// Size of the cache for node values that the frames of a looping animation share, in bytes.
@@ -265,7 +265,7 @@ impl Work {
     ) -> Result<()> {
         let mut made = Made {
             images: None,
-            memory: args.frames.map(|_| PlanCache::new(MEMORY)),
+            cache: args.frames.map(|_| PlanCache::new(MEMORY)),
         };
         for args in args.pictures() {
             let job = Job::new(context, "bake", files);
@@ -295,9 +295,9 @@ impl Work {
             images => images.insert(read_images(recipe, &self.folder, args.material.finite)?),
         };
         progress.check()?;
-        let (limits, memory) = (PlanLimits::default(), made.memory.as_ref());
+        let (limits, cache) = (PlanLimits::default(), made.cache.as_ref());
         let listen = progress.listener();
-        let plan = Plan::new_with_progress(recipe, images, time, &limits, memory, listen);
+        let plan = Plan::new_with_progress(recipe, images, time, &limits, cache, listen);
         // Report a stop as such, before an error of the plan is attributed to an option.
         progress.check()?;
         let plan = plan.map_err(|error| args.material.blame(error))?;

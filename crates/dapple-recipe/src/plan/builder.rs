@@ -23,7 +23,7 @@ pub(crate) struct Builder<'a> {
     /// The name of the current node.
     node: &'a str,
     work: WorkSum<'a>,
-    memory: Option<&'a PlanCache>,
+    cache: Option<&'a PlanCache>,
     watch: &'a Watch,
     /// Reusable parts of steps, from this plan and, if there is a cache, from earlier plans.
     shared_parts: Parts,
@@ -46,7 +46,7 @@ impl<'a> Builder<'a> {
         images: &'a Images,
         time: f64,
         limits: &'a PlanLimits,
-        memory: Option<&'a PlanCache>,
+        cache: Option<&'a PlanCache>,
         watch: &'a Watch,
     ) -> Self {
         Self {
@@ -55,9 +55,9 @@ impl<'a> Builder<'a> {
             time,
             node: "",
             work: WorkSum::new(limits),
-            memory,
+            cache,
             watch,
-            shared_parts: memory.map_or_else(Parts::keeping, |memory| memory.parts().clone()),
+            shared_parts: cache.map_or_else(Parts::keeping, |cache| cache.parts().clone()),
             asks_time: Cell::new(false),
             moves: false,
             steps: Vec::new(),
@@ -70,8 +70,8 @@ impl<'a> Builder<'a> {
     pub(super) fn add(&mut self, name: &'a str, node: &Node) -> Result<(), RecipeError> {
         self.enter(name, node)?;
         // Take the step from the cache, or build it and see whether it reads the time.
-        let before = self.memory.and_then(|memory| self.id_in(memory, node));
-        let known = before.and_then(|(id, _)| self.memory?.source(id));
+        let before = self.cache.and_then(|cache| self.id_in(cache, node));
+        let known = before.and_then(|(id, _)| self.cache?.source(id));
         self.asks_time.set(false);
         let is_known = known.is_some();
         let step = match known {
@@ -79,14 +79,14 @@ impl<'a> Builder<'a> {
             None => node.kind().build(self)?,
         };
         // Choose the id under which the step is cached. The id of a step that reads the time includes the time.
-        let id = self.memory.map(|memory| match before {
-            None => memory.new_id(),
-            Some((id, false)) if self.asks_time.get() => memory.at_time(id, self.time),
+        let id = self.cache.map(|cache| match before {
+            None => cache.new_id(),
+            Some((id, false)) if self.asks_time.get() => cache.at_time(id, self.time),
             Some((id, _)) => id,
         });
         self.moves |= self.asks_time.get() || before.is_some_and(|(_, is_timed)| is_timed);
-        if let (Some(memory), Some(id), false) = (self.memory, id, is_known) {
-            memory.keep_source(id, &step);
+        if let (Some(cache), Some(id), false) = (self.cache, id, is_known) {
+            cache.keep_source(id, &step);
         }
         self.names.insert(name.to_owned(), self.steps.len());
         self.push(step, id);
@@ -100,7 +100,7 @@ impl<'a> Builder<'a> {
 
     /// Returns the id of a node's key in the cache, and whether the key includes the time; `None` if the node has no
     /// key.
-    fn id_in(&self, memory: &PlanCache, node: &Node) -> Option<(StepId, bool)> {
+    fn id_in(&self, cache: &PlanCache, node: &Node) -> Option<(StepId, bool)> {
         // Options that cannot be written as data, such as functions, cannot be compared; such a node has no key.
         if !is_data(node) {
             return None;
@@ -116,12 +116,12 @@ impl<'a> Builder<'a> {
         }
         for source in node.image_sources() {
             let picture = source.picture(self.images)?;
-            write!(text, "image {} ", memory.picture_id(picture)).ok()?;
+            write!(text, "image {} ", cache.picture_id(picture)).ok()?;
         }
         write!(text, "{node:?}").ok()?;
-        let id = memory.id(text);
-        Some(match memory.is_timed(id) {
-            true => (memory.at_time(id, self.time), true),
+        let id = cache.id(text);
+        Some(match cache.is_timed(id) {
+            true => (cache.at_time(id, self.time), true),
             false => (id, false),
         })
     }
@@ -140,7 +140,7 @@ impl<'a> Builder<'a> {
 
     /// Returns the store of reusable parts of steps from earlier plans. Without a cache, it stores nothing.
     pub(crate) fn parts(&self) -> Parts {
-        let parts = self.memory.map(|memory| memory.parts().clone());
+        let parts = self.cache.map(|cache| cache.parts().clone());
         parts.unwrap_or_default()
     }
 
@@ -230,7 +230,7 @@ impl<'a> Builder<'a> {
                 return known.ok_or_else(|| order::unknown(self.recipe, name));
             }
         };
-        let id = self.memory.map(|memory| memory.id(format!("{step:?}")));
+        let id = self.cache.map(|cache| cache.id(format!("{step:?}")));
         self.push(step, id);
         Ok(self.steps.len() - 1)
     }

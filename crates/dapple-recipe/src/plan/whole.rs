@@ -153,14 +153,14 @@ impl Plan {
         index: usize,
         step: &Global,
     ) -> Result<Picture, RecipeError> {
-        let Some(memory) = &self.memory else {
+        let Some(cache) = &self.cache else {
             return self.picture(whole, window, step)?.picture(window.size);
         };
-        let values = match memory.values(self.ids[index], window) {
+        let values = match cache.values(self.ids[index], window) {
             Some(values) => values,
             None => {
                 let values = Arc::new(self.picture(whole, window, step)?);
-                memory.keep(self.ids[index], window, values.clone());
+                cache.keep(self.ids[index], window, values.clone());
                 values
             }
         };

@@ -180,7 +180,7 @@ impl Inside {
     }
 
     fn run(&self) {
-        let mut renderer = Renderer::new(&self.shared.memory);
+        let mut renderer = Renderer::new(&self.shared.cache);
         while let Some(next) = self.next() {
             let what = match &next {
                 Next::Draw(_) => "view",
@@ -195,7 +195,7 @@ impl Inside {
                 Next::Sample(sample) => self.show(&sample),
             });
             if !is_done {
-                renderer = Renderer::new(&self.shared.memory);
+                renderer = Renderer::new(&self.shared.cache);
             }
         }
     }
