@@ -74,7 +74,6 @@
 
 mod error;
 mod options;
-mod range;
 mod weight;
 
 mod net;
@@ -118,12 +117,12 @@ pub use dapple_hash as hash;
 pub use dapple_points as points;
 pub use dapple_points::{Cancel, IsCancelled};
 pub use dapple_raster as raster;
+pub(crate) use dapple_raster::{Range, range};
 pub use editable::{Changed, EditablePups};
 pub use error::{PupsError, PupsErrorKind};
 pub use glam;
 pub use options::{Orientation, PupsOptions};
 pub use pups::Pups;
-pub use range::Range;
 pub use recipes::{
     Cells, CellsOptions, CellularNoiseOptions, ColorNoiseOptions, ControlNet, ControlPoint,
     ControlPoints, CowOptions, CowProgressionOptions, Folding, GiraffeProgressionOptions,

@@ -1,8 +1,6 @@
 //! JSON schemas for options that have several serialized forms, and for types of other crates.
 
-use crate::{Range, Spacing};
-use core::ops::Bound;
-use schemars::transform::Transform;
+use crate::Spacing;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 
@@ -99,30 +97,5 @@ impl JsonSchema for Spacing {
                 table("count", &count),
             ]
         })
-    }
-}
-
-impl Transform for Range {
-    /// Adds the range to the schema of a number, or of a list of numbers.
-    fn transform(&mut self, schema: &mut Schema) {
-        if let Some(items) = schema
-            .get_mut("items")
-            .and_then(|items| items.try_into().ok())
-        {
-            return self.transform(items);
-        }
-        for (bound, included, excluded) in [
-            (self.least, "minimum", "exclusiveMinimum"),
-            (self.most, "maximum", "exclusiveMaximum"),
-        ] {
-            match bound {
-                Bound::Included(number) => schema.insert(included.to_owned(), number.into()),
-                Bound::Excluded(number) => schema.insert(excluded.to_owned(), number.into()),
-                Bound::Unbounded => None,
-            };
-        }
-        if let (Bound::Excluded(_), Some(_)) = (self.least, schema.get("minimum")) {
-            schema.remove("minimum");
-        }
     }
 }

@@ -72,8 +72,11 @@ mod error_macro;
 mod field;
 mod named;
 mod parts;
+mod range;
 mod raster;
 mod resample;
+#[cfg(feature = "schema")]
+mod schema;
 mod statistics;
 mod varying;
 mod view;
@@ -103,8 +106,16 @@ pub use named::Named;
 pub use named::read_named;
 #[doc(hidden)]
 pub use parts::Parts;
+#[doc(hidden)]
+pub use range::Range;
 pub use raster::Raster;
 pub use resample::Texel;
+#[cfg(feature = "schema")]
+#[doc(hidden)]
+pub use schema::named_schema;
+#[cfg(feature = "schema")]
+#[doc(hidden)]
+pub use schemars;
 #[cfg(feature = "serde")]
 #[doc(hidden)]
 pub use serde;

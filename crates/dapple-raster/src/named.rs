@@ -25,8 +25,8 @@ pub trait Named: Copy + PartialEq + 'static {
     }
 }
 
-/// Defines an enum whose values have names. It implements [`Named`], `Display`, and serde if the feature `serde` of
-/// this crate is enabled.
+/// Defines an enum whose values have names. It implements [`Named`], `Display`, serde if the feature `serde` of this
+/// crate is enabled, and `JsonSchema` if `schema` is.
 ///
 /// The name follows each value, and aliases follow the name after a bar. Each value is documented, and the first
 /// sentence of its documentation is the help text on the command line.
@@ -105,7 +105,34 @@ macro_rules! named {
         }
 
         $crate::named_serde! { $kind }
+        $crate::named_schema! { $kind }
     };
+}
+
+/// Implements `JsonSchema` for a named enum.
+#[cfg(feature = "schema")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! named_schema {
+    ($kind:ident) => {
+        impl $crate::schemars::JsonSchema for $kind {
+            fn schema_name() -> ::std::borrow::Cow<'static, str> {
+                stringify!($kind).into()
+            }
+
+            fn json_schema(_: &mut $crate::schemars::SchemaGenerator) -> $crate::schemars::Schema {
+                $crate::named_schema::<Self>()
+            }
+        }
+    };
+}
+
+/// Without the feature `schema`, implements nothing.
+#[cfg(not(feature = "schema"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! named_schema {
+    ($kind:ident) => {};
 }
 
 /// Implements serde for a named enum: a value is serialized as its name.

@@ -3,8 +3,8 @@
 use crate::words::similar_words;
 use core::fmt;
 use dapple_color::ColorError;
-use dapple_pups::{PupsError, Range};
-use dapple_raster::RasterError;
+use dapple_pups::PupsError;
+use dapple_raster::{Range, RasterError};
 use dapple_synth::SynthError;
 use dapple_tile::TileError;
 use dapple_wavelet::WaveletError;

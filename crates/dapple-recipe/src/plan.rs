@@ -32,7 +32,7 @@ pub(crate) use work::Work;
 use crate::{ImageAlpha, Input, Material, Node, Recipe, RecipeError, RecipeErrorKind, Values};
 use core::ops::ControlFlow;
 use dapple_color::LinearRgb;
-use dapple_pups::{Range, range};
+use dapple_raster::{Range, range};
 use dapple_raster::{Raster, Window};
 use dapple_synth::Progress;
 use glam::DVec2;

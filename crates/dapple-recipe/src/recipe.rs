@@ -101,10 +101,6 @@ pub struct Material {
     /// The metalness, from 0, no metal, to 1, all metal; 0 by default.
     pub metallic: Input,
     /// The direction of the green channel of normals; up, as in OpenGL, by default.
-    #[cfg_attr(
-        feature = "schema",
-        schemars(schema_with = "crate::schema::traced::<NormalY>")
-    )]
     pub normal_y: NormalY,
     /// The radius of ambient occlusion, in units of the plane; a twentieth of the tile's shorter side by default.
     pub occlusion_radius: Option<f64>,

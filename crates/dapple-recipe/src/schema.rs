@@ -4,9 +4,6 @@
 //! their ranges and their defaults agree with the parser. The descriptions are the doc comments of these types.
 
 mod reference;
-mod traced;
-
-pub(crate) use traced::traced;
 
 use crate::nodes::{ColorOf, Frequency, ImageAlpha, NodeSeed, WorleyValue};
 use crate::plan::FREQUENCY;

@@ -77,6 +77,7 @@ pub struct Blend {
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Mixing {
     /// Weighted mean. It stays in the range of the layers' values.
     #[default]

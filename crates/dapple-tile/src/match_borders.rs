@@ -60,6 +60,7 @@ dapple_raster::named! {
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MatchBorders {
     /// Distance from a border within which a tile changes, in pixels. It is from 1 to half of a side, rounded down, and
     /// one pixel less for [`BorderSource::Middle`]. The default is 16.

@@ -23,6 +23,7 @@ use dapple_wavelet::{Bands, Border, SplineFilter};
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Pyramid {
     /// Number of bands, at most 30. The default is 4. With 0, the result is the plain mean.
     pub levels: u32,

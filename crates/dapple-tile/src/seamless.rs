@@ -23,6 +23,7 @@ pub use spline_project::{Basis, Pixels, SplineProject};
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub enum Method {
     /// The periodic part of the image (Moisan 2011).

@@ -30,6 +30,7 @@ use dapple_raster::Raster;
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Weighting {
     /// Each weight divided by the sum of all weights.
     #[default]

@@ -15,7 +15,7 @@ use crate::render::{Output, Picture, render_stack};
 use crate::sink::{Tone, Values};
 use crate::{Cellular, Dimensions, Plane, Space, Vector, Worley, WorleyError};
 use dapple_hash::Seed;
-use dapple_raster::{Field, Gradient, RasterError, RasterViewMut, Window};
+use dapple_raster::{Field, Gradient, Range, RasterError, RasterViewMut, Window, range};
 
 /// Options for a fractal sum: the number of octaves, their frequency and amplitude ratios, and their seeds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,25 +24,33 @@ use dapple_raster::{Field, Gradient, RasterError, RasterViewMut, Window};
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Octaves {
     /// Number of octaves, from 1 to 32. The default is 6.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-count.md"))]
+    #[cfg_attr(feature = "schema", schemars(transform = { COUNT }))]
     pub count: u32,
     /// Frequency ratio of successive octaves, from 1 to 16. The default is 2.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-lacunarity.md"))]
+    #[cfg_attr(feature = "schema", schemars(transform = { LACUNARITY }))]
     pub lacunarity: f64,
     /// Amplitude ratio of successive octaves, from -1 to 1. The default is ½.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-gain.md"))]
     #[cfg_attr(feature = "serde", serde(alias = "persistence"))]
+    #[cfg_attr(feature = "schema", schemars(transform = { GAIN }))]
     pub gain: f64,
     /// Seeds of the octaves. By default, each octave has its own.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octave-seeds.md"))]
     pub seeds: OctaveSeeds,
 }
+
+const COUNT: Range = range!(from 1 to 32);
+const LACUNARITY: Range = range!(from 1 to 16);
+const GAIN: Range = range!(from -1 to 1);
 
 /// Whether the octaves of a fractal sum share a seed.
 ///
@@ -53,6 +61,7 @@ pub struct Octaves {
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum OctaveSeeds {
     /// All octaves are the same field, as in the paper, scaled around the origin.
     Same,
@@ -136,21 +145,10 @@ where
             seeds,
         } = octaves;
         let has_period = self.worley.lattice.period.iter().any(|&period| period > 0);
-        let check = WorleyError::check;
-        check(
-            (1..=32).contains(&count),
-            "number of octaves",
-            f64::from(count),
-            "from 1 to 32",
-        )?;
-        check(
-            (1.0..=16.0).contains(&lacunarity),
-            "lacunarity",
-            lacunarity,
-            "from 1 to 16",
-        )?;
-        check((-1.0..=1.0).contains(&gain), "gain", gain, "from -1 to 1")?;
-        check(
+        WorleyError::check_in(COUNT, "number of octaves", count.into())?;
+        WorleyError::check_in(LACUNARITY, "lacunarity", lacunarity)?;
+        WorleyError::check_in(GAIN, "gain", gain)?;
+        WorleyError::check(
             !has_period || lacunarity.fract() == 0.0,
             "lacunarity",
             lacunarity,
@@ -168,7 +166,7 @@ where
             };
             for period in &mut worley.lattice.period {
                 let cells = f64::from(*period) * frequency;
-                check(
+                WorleyError::check(
                     cells <= f64::from(u32::MAX),
                     "period of an octave",
                     cells,

@@ -7,7 +7,8 @@
 //!
 //! Terms are accumulated from the last axis to the first, in the same order everywhere, so that the bits agree.
 
-use crate::{WorleyError, WorleyErrorKind};
+use crate::WorleyError;
+use dapple_raster::{Range, range};
 use fearless_simd::{f32x16, prelude::*};
 
 /// A metric, which defines the distance between two positions.
@@ -19,6 +20,7 @@ use fearless_simd::{f32x16, prelude::*};
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub enum Metric {
     /// The Euclidean distance: `sqrt(dx² + dy² + …)`.
@@ -29,11 +31,11 @@ pub enum Metric {
     /// The largest of `|dx|`, `|dy|`, ….
     Chebyshev,
     /// `(|dx|^p + |dy|^p + …)^(1/p)`, with `p` from 1 to 10. It equals Manhattan at 1 and Euclidean at 2.
-    Minkowski(f32),
+    Minkowski(#[cfg_attr(feature = "schema", schemars(transform = { EXPONENT }))] f32),
 }
 
-/// Maximum exponent. Above it, the powers of a step and of 16 cells do not both fit into `f32`.
-const LARGEST_EXPONENT: f32 = 10.0;
+/// Range of the exponent. Above 10, the powers of a step and of 16 cells do not both fit into `f32`.
+const EXPONENT: Range = range!(from 1 to 10);
 
 impl Metric {
     /// The metrics without a parameter, with their names in recipes and on the command line.
@@ -45,12 +47,10 @@ impl Metric {
 
     pub(crate) fn check(self) -> Result<Self, WorleyError> {
         match self {
-            Self::Minkowski(p) if !(1.0..=LARGEST_EXPONENT).contains(&p) => {
-                Err(WorleyError::new(WorleyErrorKind::Range {
-                    what: "exponent of the Minkowski metric",
-                    value: f64::from(p),
-                    range: "from 1 to 10",
-                }))
+            Self::Minkowski(exponent) => {
+                let what = "exponent of the Minkowski metric";
+                WorleyError::check_in(EXPONENT, what, exponent.into())?;
+                Ok(self)
             }
             metric => Ok(metric),
         }

@@ -30,6 +30,7 @@ use crate::{WorleyError, WorleyErrorKind};
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub enum Profile {
     /// A dome: height 1 at the value 0, falling to height 0 at the value `radius`, by `(1 − (value / radius)²)²`. With

@@ -1,8 +1,9 @@
 //! Scatter, the distribution of feature points over the cells.
 
 use crate::{WorleyError, WorleyErrorKind};
-use core::ops::RangeInclusive;
+use core::ops::{Bound, RangeInclusive};
 use dapple_hash::PoissonCounts;
+use dapple_raster::{Range, range};
 
 /// The distribution of the number of feature points per cell, and of their positions in it.
 ///
@@ -21,6 +22,7 @@ use dapple_hash::PoissonCounts;
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub enum Scatter {
     /// Worley's scatter: a Poisson-distributed number of points with uniform positions. The number is clamped to 1 to
@@ -29,6 +31,7 @@ pub enum Scatter {
     #[cfg_attr(doc, doc = include_str!("../docs/scatter-poisson.md"))]
     Poisson {
         /// Mean number of feature points per cell before clamping: from 1/64 to 64.
+        #[cfg_attr(feature = "schema", schemars(transform = { DENSITY_RANGE }))]
         density: f64,
     },
     /// A Poisson-distributed number of points without clamping. A cell may be empty, and the grid is not visible.
@@ -36,6 +39,7 @@ pub enum Scatter {
     #[cfg_attr(doc, doc = include_str!("../docs/scatter-unclamped.md"))]
     Unclamped {
         /// Mean number of feature points per cell: from 1/64 to 64.
+        #[cfg_attr(feature = "schema", schemars(transform = { DENSITY_RANGE }))]
         density: f64,
     },
     /// One point in each cell, as in most other libraries. The grid is visible.
@@ -44,6 +48,7 @@ pub enum Scatter {
     Jittered {
         /// Maximum offset of the point from the center of its cell. At 0, points form a regular grid; at 1, a point may
         /// be anywhere in its cell. Rounded to a multiple of 1/1024.
+        #[cfg_attr(feature = "schema", schemars(transform = { JITTER_RANGE }))]
         jitter: f64,
     },
 }
@@ -51,8 +56,18 @@ pub enum Scatter {
 /// Range of the number of points per cell to which the paper clamps it.
 const CLAMPED: RangeInclusive<u32> = 1..=9;
 
-/// Range of the density, in points per cell.
+/// Minimum and maximum density, in points per cell.
 pub(crate) const DENSITIES: RangeInclusive<f64> = 1.0 / 64.0..=64.0;
+
+/// Range of the density, in points per cell.
+const DENSITY_RANGE: Range = Range {
+    least: Bound::Included(*DENSITIES.start()),
+    most: Bound::Included(*DENSITIES.end()),
+    text: "from 1/64 to 64",
+};
+
+/// Range of the jitter, as a fraction of the cell.
+const JITTER_RANGE: Range = range!(from 0 to 1);
 
 /// Resolution of the jitter, as the number of steps from 0 to 1.
 pub(crate) const JITTER_PARTS: u32 = 1024;
@@ -93,26 +108,18 @@ impl Scatter {
             Self::Poisson { density } => (density, CLAMPED),
             Self::Unclamped { density } => (density, 0..=u32::MAX),
             Self::Jittered { jitter } => {
-                WorleyError::check(
-                    (0.0..=1.0).contains(&jitter),
-                    "jitter",
-                    jitter,
-                    "from 0 to 1",
-                )?;
+                WorleyError::check_in(JITTER_RANGE, "jitter", jitter)?;
                 (1.0, 1..=1)
             }
         };
-        let refused = || {
+        WorleyError::check_in(DENSITY_RANGE, "density", density)?;
+        PoissonCounts::new(density, range).map_err(|_| {
             WorleyError::new(WorleyErrorKind::Range {
                 what: "density",
                 value: density,
-                range: "from 1/64 to 64",
+                range: DENSITY_RANGE.text,
             })
-        };
-        if !DENSITIES.contains(&density) {
-            return Err(refused());
-        }
-        PoissonCounts::new(density, range).map_err(|_| refused())
+        })
     }
 
     /// Returns the jitter, in units of 1/[`JITTER_PARTS`].

@@ -15,17 +15,9 @@ pub struct Blended {
     pub layers: Vec<BlendedLayer>,
     /// The rule that turns weights into shares; as given by default.
     #[serde(default)]
-    #[cfg_attr(
-        feature = "schema",
-        schemars(schema_with = "crate::schema::traced::<Weighting>")
-    )]
     pub weighting: Weighting,
     /// The rule by which layers are mixed; linear by default. The other rules depend on the whole tile.
     #[serde(default)]
-    #[cfg_attr(
-        feature = "schema",
-        schemars(schema_with = "crate::schema::traced::<Mixing>")
-    )]
     pub mixing: Mixing,
     /// The blend tile of `weighting = { mask = … }`, from 0 to 1: a number.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -3,8 +3,8 @@
 use super::NodeKind;
 use crate::RecipeError;
 use crate::plan::{Builder, Step};
-use dapple_pups::{Range, range};
 use dapple_raster::field_fn;
+use dapple_raster::{Range, range};
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 

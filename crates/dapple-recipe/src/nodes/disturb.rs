@@ -3,7 +3,7 @@
 use super::{NodeKind, NodeSeed};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
-use dapple_pups::{Range, range};
+use dapple_raster::{Range, range};
 use dapple_tile::Disturbance;
 use serde::{Deserialize, Serialize};
 

@@ -3,7 +3,7 @@
 use super::NodeKind;
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError};
-use dapple_pups::{Range, range};
+use dapple_raster::{Range, range};
 use serde::{Deserialize, Serialize};
 
 /// A range mapped to another, which turns most textures into heights.

@@ -19,10 +19,6 @@ pub struct Framed {
     /// The width within which the texture changes, and the part of the other one that becomes the border, as in
     /// [`MatchBorders`]. Lengths are in pixels of the bake.
     #[serde(default)]
-    #[cfg_attr(
-        feature = "schema",
-        schemars(schema_with = "crate::schema::traced::<MatchBorders>")
-    )]
     pub options: MatchBorders,
 }
 

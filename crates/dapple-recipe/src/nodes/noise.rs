@@ -4,8 +4,9 @@ use super::{NodeKind, NodeSeed, wavelet};
 use crate::RecipeError;
 use crate::plan::{Builder, FREQUENCY, Step, Work};
 use dapple_noise::GradientNoise2;
-use dapple_pups::{NetOptions, OctavesOptions, PupsRecipe as _, Range, Spacing, octaves, range};
+use dapple_pups::{NetOptions, OctavesOptions, PupsRecipe as _, Spacing, octaves};
 use dapple_raster::{FieldExt, FractalShape};
+use dapple_raster::{Range, range};
 use serde::{Deserialize, Serialize};
 
 /// Octaves of noise with values from 0 to 1.

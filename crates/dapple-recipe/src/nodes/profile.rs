@@ -14,10 +14,6 @@ pub struct ProfileOf {
     /// The number; 0 is in the middle of the bump.
     pub input: Input,
     /// The cross-section, such as `{ channels = { width = 0.1 } }` or `{ spots = { radius = 0.3 } }`.
-    #[cfg_attr(
-        feature = "schema",
-        schemars(schema_with = "crate::schema::traced::<Profile>")
-    )]
     pub shape: Profile,
 }
 

@@ -15,10 +15,6 @@ pub struct Ramped {
     pub input: Input,
     /// A palette; not beside `colors`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(
-        feature = "schema",
-        schemars(schema_with = "crate::schema::traced::<Palette>")
-    )]
     pub palette: Option<Palette>,
     /// Colors in sRGB, such as `["#204060", "#ffffff"]`; not beside `palette`.
     #[serde(default, skip_serializing_if = "Vec::is_empty", with = "colors")]
@@ -29,24 +25,12 @@ pub struct Ramped {
     pub positions: Vec<f32>,
     /// The space in which two colors are mixed; Oklab by default.
     #[serde(default)]
-    #[cfg_attr(
-        feature = "schema",
-        schemars(schema_with = "crate::schema::traced::<RampSpace>")
-    )]
     pub space: RampSpace,
     /// The interpolation between two stops; linear by default.
     #[serde(default)]
-    #[cfg_attr(
-        feature = "schema",
-        schemars(schema_with = "crate::schema::traced::<Interpolation>")
-    )]
     pub interpolation: Interpolation,
     /// The continuation past the ends of the ramp; the color at the end by default.
     #[serde(default)]
-    #[cfg_attr(
-        feature = "schema",
-        schemars(schema_with = "crate::schema::traced::<Outside>")
-    )]
     pub outside: Outside,
 }
 

@@ -4,7 +4,7 @@ use super::{ImageAlpha, NodeKind, NodeSeed};
 use crate::RecipeError;
 use crate::plan::{Builder, OF_NODE, Picture, Step, StretchedImage, Watch, Work};
 use core::ops::ControlFlow;
-use dapple_pups::{Range, range};
+use dapple_raster::{Range, range};
 use dapple_synth::{Edges, Endless, EndlessOptions, Exemplar, PlaneTexture};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -33,10 +33,6 @@ pub struct SynthNode {
     pub levels: Option<u32>,
     /// What lies past the edges of the example; nothing by default.
     #[serde(default)]
-    #[cfg_attr(
-        feature = "schema",
-        schemars(schema_with = "crate::schema::traced::<Edges>")
-    )]
     pub edges: Edges,
     /// The use of the alpha of the images; by default a partly transparent image is an error.
     #[serde(default, skip_serializing_if = "Option::is_none")]

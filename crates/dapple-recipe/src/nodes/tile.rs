@@ -15,10 +15,6 @@ pub struct Tiled {
     pub input: Input,
     /// The method; the periodic part by default. Lengths in it are in pixels of the bake.
     #[serde(default)]
-    #[cfg_attr(
-        feature = "schema",
-        schemars(schema_with = "crate::schema::traced::<Method>")
-    )]
     pub method: Method,
     /// The axes along which the result repeats; both by default.
     #[serde(default = "both")]

@@ -3,7 +3,7 @@
 use super::NodeKind;
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError};
-use dapple_pups::{Range, range};
+use dapple_raster::{Range, range};
 use serde::{Deserialize, Serialize};
 
 /// Another node at positions displaced by `amount · (x, y)`.

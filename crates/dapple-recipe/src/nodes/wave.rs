@@ -3,7 +3,7 @@
 use super::NodeKind;
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError};
-use dapple_pups::{Range, range};
+use dapple_raster::{Range, range};
 use serde::{Deserialize, Serialize};
 
 /// A wave of a number, from 0 to 1: veins of a sum of coordinates and noise, rings of a distance.

@@ -4,8 +4,8 @@ use super::{NodeKind, NodeSeed};
 use crate::plan::{Builder, Step};
 use crate::{RecipeError, RecipeErrorKind};
 use core::fmt;
-use dapple_pups::{Range, range};
 use dapple_raster::{Field, FieldExt};
+use dapple_raster::{Range, range};
 use dapple_worley::{
     Combination, Dimensions, Metric, Octaves, Scatter, Space, Worley, Worley2, Worley4,
 };
@@ -27,23 +27,11 @@ pub struct WorleyNode {
     /// The value at a position; F1 by default.
     pub value: WorleyValue,
     /// The metric of distances; Euclidean by default.
-    #[cfg_attr(
-        feature = "schema",
-        schemars(schema_with = "crate::schema::traced::<Metric>")
-    )]
     pub metric: Metric,
     /// The distribution of feature points; Poisson by default.
-    #[cfg_attr(
-        feature = "schema",
-        schemars(schema_with = "crate::schema::traced::<Scatter>")
-    )]
     pub scatter: Scatter,
     /// The octaves of a fractal sum, for a sum instead of a single texture. The first octave has the frequency.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(
-        feature = "schema",
-        schemars(schema_with = "crate::schema::traced::<Octaves>")
-    )]
     pub octaves: Option<Octaves>,
     /// The range of values that is mapped to 0 to 1; none by default, so that values are distances.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -9,8 +9,8 @@ use crate::{Input, Node, NodeSeed, Recipe, RecipeError, RecipeErrorKind, Values}
 use dapple_color::LinearRgb;
 use dapple_hash::Seed;
 use dapple_points::Domain;
-use dapple_pups::{Range, range};
 use dapple_raster::{Parts, Wrap};
+use dapple_raster::{Range, range};
 use indexmap::IndexMap;
 use std::cell::Cell;
 use std::fmt::Write as _;

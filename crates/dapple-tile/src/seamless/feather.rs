@@ -23,6 +23,7 @@ use dapple_raster::Raster;
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Feather {
     /// A crossfade with the image rolled by half of its size, up to the middle. The size does not change. A side must
     /// be at least 4 pixels long.

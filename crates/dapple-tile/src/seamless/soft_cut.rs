@@ -28,6 +28,7 @@ use dapple_raster::Raster;
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SoftCut {
     /// Width of the overlap of the two sides, in pixels, from 1 to half of the side. The default is 32.
     pub margin: u32,

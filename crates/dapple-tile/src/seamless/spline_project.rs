@@ -26,6 +26,7 @@ use dapple_wavelet::{Border, Degree, Fit, Phase, SplineFilter};
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Basis {
     /// B-splines.
     Spline(Degree),
@@ -53,6 +54,7 @@ dapple_raster::named! {
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SplineProject {
     /// Number of times that the image is halved. The default is 1.
     pub levels: u32,
