@@ -100,12 +100,12 @@ pub(crate) trait NodeKind {
 /// Defines the enum of all kinds, their names in recipes, and access to a node as a [`NodeKind`].
 macro_rules! nodes {
     ($($(#[$doc:meta])* $name:literal $variant:ident($options:ident) in $group:literal as $start:literal,)*) => {
-        /// A node of a recipe: a table with one entry, whose name is the kind.
+        /// Node of a recipe: a table with a single entry, whose key is the kind of node.
         ///
-        /// Most nodes make a number at every position. Those that make a color are `ramp`, `color`, `image` and `synth` of a
-        /// color image, and `pups = { color_noise = … }`; `add`, `multiply`, `mix`, `tile`, `disturb`, `match_borders`,
-        /// `corner_tiles`, `warp` and `blend` make a color where they are given one, and take a number beside it as a
-        /// gray.
+        /// Most nodes compute a number at every position. `ramp`, `color`, `image` and `synth` with a color image, and
+        /// `pups = { color_noise = … }` compute a color. `add`, `multiply`, `mix`, `tile`, `disturb`, `match_borders`,
+        /// `corner_tiles`, `warp` and `blend` compute a color if an input is a color; numbers among their inputs are
+        /// then grays.
         #[derive(Clone, Debug, Serialize, Deserialize)]
         #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
         #[non_exhaustive]
@@ -113,7 +113,7 @@ macro_rules! nodes {
             $($(#[$doc])* #[serde(rename = $name)] $variant($options),)*
         }
 
-        /// The names of the kinds, as recipes write them.
+        /// Names of the node kinds in recipes.
         pub const KINDS: [&str; [$($name),*].len()] = [$($name),*];
 
         /// For each of [`KINDS`], its group, such as `shape`, and the initial options of a new node, as JSON.
@@ -130,61 +130,61 @@ macro_rules! nodes {
 }
 
 nodes! {
-    /// Worley's cellular basis.
+    /// Worley's cellular basis: distances to scattered feature points.
     "worley" Worley(WorleyNode) in "cells and noise" as "{}",
-    /// A partition-of-unity texture.
+    /// Partition-of-unity texture, such as cells, noise or an animal coat.
     "pups" Pups(PupsNode) in "cells and noise" as r#"{"cells":{}}"#,
-    /// Wavelet noise.
+    /// Band-limited wavelet noise.
     "wavelet" Wavelet(WaveletNode) in "cells and noise" as "{}",
-    /// Octaves of noise from 0 to 1, of PUPs, gradients or wavelets.
+    /// Fractal noise from 0 to 1: octaves of PUPs, gradient noise or wavelet noise.
     "noise" Noise(FractalNode) in "cells and noise" as "{}",
-    /// The coordinate of a position along a direction.
+    /// Coordinate of a position along a direction.
     "coordinate" Coordinate(Coordinate) in "position" as r#"{"along":[1.0,0.0]}"#,
-    /// The distance of a position from a center.
+    /// Distance of a position from a center.
     "distance" Distance(Distance) in "position" as r#"{"center":[0.5,0.5]}"#,
-    /// An image file, laid over the tile.
+    /// Image file, stretched over the tile.
     "image" Image(ImageNode) in "color and images" as r#"{"file":"image.png"}"#,
-    /// A texture grown from an image of it.
+    /// Texture synthesized from an example image.
     "synth" Synth(SynthNode) in "color and images" as r#"{"file":"image.png"}"#,
-    /// One color at every position.
+    /// Constant color.
     "color" Color(ColorOf) in "color and images" as r##""#c08040""##,
-    /// The sum of all inputs.
+    /// Sum of all inputs.
     "add" Add(Add) in "arithmetic" as "[0.0,0.0]",
-    /// The first input minus the second.
+    /// First input minus the second.
     "subtract" Subtract(Subtract) in "arithmetic" as "[0.0,0.0]",
-    /// The product of all inputs.
+    /// Product of all inputs.
     "multiply" Multiply(Multiply) in "arithmetic" as "[1.0,1.0]",
-    /// The first input divided by the second; 0 where the second is 0.
+    /// First input divided by the second; 0 where the second is 0.
     "divide" Divide(Divide) in "arithmetic" as "[1.0,1.0]",
-    /// The smallest of all inputs.
+    /// Minimum of all inputs.
     "minimum" Minimum(Minimum) in "arithmetic" as "[0.0,1.0]",
-    /// The largest of all inputs.
+    /// Maximum of all inputs.
     "maximum" Maximum(Maximum) in "arithmetic" as "[0.0,1.0]",
-    /// The absolute value of a number.
+    /// Absolute value of a number.
     "absolute" Absolute(Absolute) in "arithmetic" as "0.0",
-    /// A number raised to a power.
+    /// Number raised to a power.
     "power" Power(Power) in "arithmetic" as r#"{"input":0.5,"exponent":2.0}"#,
-    /// A wave of a number.
+    /// Periodic wave of a number, such as a sine or a sawtooth.
     "wave" Wave(Wave) in "shape" as r#"{"input":0.5}"#,
-    /// A range of numbers stretched to another.
+    /// Number mapped from one range to another.
     "levels" Levels(Levels) in "shape" as r#"{"input":0.5}"#,
-    /// The cross-section of a bump, such as spots or channels.
+    /// Cross-section of a bump, such as a spot or a channel, as a function of a number.
     "profile" Profile(ProfileOf) in "shape" as r#"{"input":0.5,"shape":{"spots":{"radius":0.5}}}"#,
-    /// The interpolation from one input to another.
+    /// Interpolation between two inputs.
     "mix" Mix(Mix) in "shape" as r#"{"from":0.0,"to":1.0,"by":0.5}"#,
-    /// Another node at displaced positions.
+    /// Another node, sampled at displaced positions.
     "warp" Warp(Warp) in "shape" as r#"{"input":0.5,"x":0.0,"y":0.0}"#,
-    /// A color for each number, by a color ramp.
+    /// Color for each number, from a color ramp.
     "ramp" Ramp(Ramped) in "color and images" as r##"{"input":0.5,"colors":["#202020","#f0f0f0"]}"##,
-    /// A texture made to repeat.
+    /// Texture made to repeat seamlessly.
     "tile" Tile(Tiled) in "whole tile" as r#"{"input":0.5}"#,
-    /// Copies of a texture that differ inside.
+    /// Copies of a tile with equal borders and different interiors.
     "disturb" Disturb(Disturbed) in "whole tile" as r#"{"input":0.5}"#,
-    /// A texture with the borders of another one.
+    /// Texture with the borders of another texture.
     "match_borders" MatchBorders(Framed) in "whole tile" as r#"{"input":0.5,"border":0.5}"#,
-    /// Pieces of several textures, in random order.
+    /// Pieces of several textures in random order, joined by corner tiles.
     "corner_tiles" CornerTiles(CornerTilesOf) in "whole tile" as r#"{"inputs":[0.25,0.75]}"#,
-    /// A map of the places where another texture shows first.
+    /// Blend map of a texture: low in cracks, where another texture shows first.
     "blend_map" BlendMap(BlendMapOf) in "whole tile" as r#"{"input":0.5,"feature_size":0.5}"#,
     /// Layers blended by weights.
     "blend" Blend(Blended) in "whole tile" as r#"{"layers":[{"input":0.5}]}"#,

@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 /// The schema version that this crate reads and writes.
 pub const SCHEMA: u32 = 1;
 
-/// A texture as data: named nodes, and the material that is made of them.
+/// A texture recipe: named nodes, and the material whose maps they compute.
 ///
-/// Lengths are in units of the plane: the tile is [`extent`](Self::extent) units wide and high, from the origin. Nodes are
-/// in any order. Every node that needs chance takes it from the recipe's seed and its own name, so that moving or adding
-/// nodes changes no other.
+/// Lengths are in units of the plane: the tile starts at the origin and is [`extent`](Self::extent) units wide and
+/// high. Nodes may be in any order. The random numbers of a node depend on the recipe's seed and the node's name only,
+/// so adding or moving nodes changes no other node.
 ///
 /// # Examples
 ///
@@ -44,34 +44,38 @@ pub const SCHEMA: u32 = 1;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Recipe {
-    /// The version of the schema: [`SCHEMA`].
+    /// Schema version of the recipe.
+    ///
+    /// Always [`SCHEMA`].
     #[cfg_attr(feature = "schema", schemars(extend("const" = SCHEMA)))]
     pub dapple: u32,
-    /// The name, which the baked files have.
+    /// Name of the recipe, used in the names of baked files.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub name: String,
-    /// A sentence about the recipe.
+    /// Description of the recipe, in one sentence.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub about: String,
-    /// The seed of all random numbers; 0 by default.
+    /// Seed for the random numbers of all nodes.
+    ///
+    /// A node whose seed is a number does not depend on this seed.
     #[serde(default)]
     #[cfg_attr(feature = "schema", schemars(with = "u64"))]
     pub seed: Seed,
-    /// The width and height of the tile, in units of the plane; 1 × 1 by default.
+    /// Width and height of the tile, in units of the plane.
     #[serde(default = "default_extent")]
     #[cfg_attr(feature = "schema", schemars(transform = { crate::plan::EXTENT }))]
     pub extent: [f64; 2],
-    /// The axes along which the tile repeats, x first; both by default.
+    /// Whether the tile repeats along each axis, x first.
     #[serde(default = "default_wrap")]
     pub wrap: [bool; 2],
-    /// The nodes by name.
+    /// Nodes of the recipe, by name.
     #[serde(default)]
     #[cfg_attr(
         feature = "schema",
         schemars(with = "std::collections::BTreeMap<String, Node>")
     )]
     pub nodes: IndexMap<String, Node>,
-    /// The inputs of the maps.
+    /// Inputs of the material's maps.
     pub material: Material,
 }
 
@@ -83,28 +87,30 @@ fn default_wrap() -> [bool; 2] {
     [true; 2]
 }
 
-/// The inputs of the maps of a recipe.
+/// Inputs of a recipe's maps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Material {
-    /// The height, from 0 to 1; ½ by default. Files with whole numbers clamp it to this range.
+    /// Height, from 0 to 1.
+    ///
+    /// Integer file formats clamp heights to this range.
     pub height: Input,
-    /// The relief: the height in units of the plane of a value of 1, from -1e6 to 1e6; 0.1 by default.
+    /// Relief: the height of a value of 1, in units of the plane, from -1e6 to 1e6.
     #[cfg_attr(feature = "schema", schemars(transform = { crate::plan::RELIEF }))]
     pub relief: f64,
-    /// The color; the height as a gray by default.
+    /// Base color [default: the height as a gray].
     #[serde(alias = "basecolor", alias = "base_color")]
     pub albedo: Option<Input>,
-    /// The roughness, from 0, a mirror, to 1, chalk; 0.8 by default.
+    /// Roughness, from 0 (a mirror) to 1 (chalk).
     pub roughness: Input,
-    /// The metalness, from 0, no metal, to 1, all metal; 0 by default.
+    /// Metalness, from 0 (no metal) to 1 (pure metal).
     pub metallic: Input,
-    /// The direction of the green channel of normals; up, as in OpenGL, by default.
+    /// Direction of the green channel of normal maps: up, as in OpenGL, or down, as in DirectX.
     pub normal_y: NormalY,
-    /// The radius of ambient occlusion, in units of the plane; a twentieth of the tile's shorter side by default.
+    /// Radius of ambient occlusion, in units of the plane [default: 1/20 of the tile's shorter side].
     pub occlusion_radius: Option<f64>,
-    /// The radius of curvature maps, in units of the plane; a hundredth of the tile's shorter side by default.
+    /// Radius of curvature maps, in units of the plane [default: 1/100 of the tile's shorter side].
     pub curvature_radius: Option<f64>,
 }
 

@@ -7,37 +7,37 @@ use dapple_color::LinearRgb;
 use dapple_raster::PairOperation;
 use serde::{Deserialize, Serialize};
 
-/// The sum of all inputs, numbers or colors; at least one.
+/// Sum of all inputs: numbers or colors, at least one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Add(pub Vec<Input>);
 
-/// The first number minus the second.
+/// First number minus the second.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Subtract(pub [Input; 2]);
 
-/// The product of all inputs, numbers or colors (by component); at least one.
+/// Product of all inputs: numbers or colors (by component), at least one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Multiply(pub Vec<Input>);
 
-/// The first number divided by the second; 0 where the second is 0.
+/// First number divided by the second; 0 where the second is 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Divide(pub [Input; 2]);
 
-/// The smallest of all numbers; at least one.
+/// Minimum of all inputs: numbers, at least one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Minimum(pub Vec<Input>);
 
-/// The largest of all numbers; at least one.
+/// Maximum of all inputs: numbers, at least one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Maximum(pub Vec<Input>);
 
-/// The absolute value of a number.
+/// Absolute value of a number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Absolute(pub Input);

@@ -11,30 +11,32 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Blended {
-    /// The layers, at least one.
+    /// Layers, at least one.
     pub layers: Vec<BlendedLayer>,
-    /// The rule that turns weights into shares; as given by default.
+    /// Rule that converts the weights of layers to shares of the result.
     #[serde(default)]
     pub weighting: Weighting,
-    /// The rule by which layers are mixed; linear by default. The other rules depend on the whole tile.
+    /// Rule that combines the layers by their shares.
+    ///
+    /// All rules except `linear` depend on the whole tile.
     #[serde(default)]
     pub mixing: Mixing,
-    /// The blend tile of `weighting = { mask = … }`, from 0 to 1: a number.
+    /// Blend tile for `weighting = { mask = … }`: a number from 0 to 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mask: Option<Input>,
 }
 
-/// A layer of a blend.
+/// Layer of a blend.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct BlendedLayer {
-    /// The layer's texture: a number or a color.
+    /// Texture of the layer: a number or a color.
     pub input: Input,
-    /// The weight of the layer, at least 0, relative to the other layers: a number; 1 by default.
+    /// Weight of the layer relative to the other layers: a number, at least 0.
     #[serde(default = "full")]
     pub weight: Input,
-    /// The height of the layer for `weighting = { height = … }`: a number.
+    /// Height of the layer for `weighting = { height = … }`: a number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub height: Option<Input>,
 }

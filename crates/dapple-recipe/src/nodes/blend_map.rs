@@ -6,17 +6,18 @@ use crate::{Input, RecipeError, Values};
 use dapple_tile::{BlendMap, rank_equalize};
 use serde::{Deserialize, Serialize};
 
-/// A map from 0 to 1, with all values equally frequent, that is low in the cracks of a texture, where another one shows
-/// first. It depends on the whole tile.
+/// Blend map: a number from 0 to 1 that is low in the cracks of a texture, where another texture shows first.
+///
+/// All values are equally frequent. The map depends on the whole tile.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct BlendMapOf {
-    /// A number, or a color, whose luminance is used.
+    /// Texture: a number, or a color, of which the luminance is used.
     pub input: Input,
-    /// The size of the features, such as the diameter of stones, in units of the plane.
+    /// Size of the features, such as the diameter of stones, in units of the plane.
     pub feature_size: f64,
-    /// The steepness before all values become equally frequent, above 0; 1 by default.
+    /// Steepness of the map before its values are equalized, above 0.
     #[serde(default = "one")]
     pub contrast: f64,
 }

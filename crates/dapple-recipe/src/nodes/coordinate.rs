@@ -7,14 +7,14 @@ use dapple_raster::field_fn;
 use dapple_raster::{Range, range};
 use serde::{Deserialize, Serialize};
 
-/// The coordinate of a position along a direction: `(position − center) · along`.
+/// Coordinate of a position along a direction: `(position − center) · along`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Coordinate {
-    /// The position where the coordinate is 0, in units of the plane; the origin by default.
+    /// Position where the coordinate is 0, in units of the plane.
     pub center: [f64; 2],
-    /// The direction, times the growth of the coordinate per unit; `[1, 0]` by default.
+    /// Direction of the coordinate; the length of the vector is the increase per unit of the plane.
     pub along: [f64; 2],
 }
 

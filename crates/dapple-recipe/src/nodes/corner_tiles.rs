@@ -7,24 +7,28 @@ use crate::{Input, RecipeError, RecipeErrorKind, Values};
 use dapple_tile::CornerTiles;
 use serde::{Deserialize, Serialize};
 
-/// The tile as a board of pieces of several textures, chosen by random colors at their corners: see [`CornerTiles`]. It
-/// depends on the whole tile.
+/// Grid of pieces of several textures, chosen by random colors at the corners of the pieces: see [`CornerTiles`]. The
+/// result depends on the whole tile.
 ///
 /// [`CornerTiles`]: dapple_tile::CornerTiles
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct CornerTilesOf {
-    /// Two to four numbers or colors that repeat: each piece shows a whole tile of them, scaled down.
+    /// Textures that repeat, two to four: numbers or colors.
+    ///
+    /// Each piece shows a whole tile of a texture, scaled down.
     pub inputs: Vec<Input>,
-    /// The number of pieces along each axis, x first; `[4, 4]` by default. They have a whole number of pixels.
+    /// Number of pieces along each axis, x first.
+    ///
+    /// Each piece has a whole number of pixels along each side.
     #[serde(default = "four")]
     #[cfg_attr(feature = "schema", schemars(transform = { super::disturb::COPIES }))]
     pub copies: [u32; 2],
-    /// The share of the side of a piece that cuts may take, above 0 and at most 1; ½ by default.
+    /// Share of a piece's side in which cuts may run, above 0 and at most 1.
     #[serde(default = "half")]
     pub width: f64,
-    /// The name or the seed for its random numbers; its own name by default.
+    /// Seed, or the name of the node whose random numbers are used [default: this node's name].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<NodeSeed>,
 }

@@ -8,13 +8,14 @@ use dapple_raster::{Range, range};
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-/// The distance of a position from a center, in units of the plane; from the nearest of its repeats if the recipe
-/// repeats.
+/// Distance of a position from a center, in units of the plane.
+///
+/// Along axes on which the recipe repeats, distances are to the nearest repeat of the center.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Distance {
-    /// The center, in units of the plane.
+    /// Position of the center, in units of the plane.
     pub center: [f64; 2],
 }
 

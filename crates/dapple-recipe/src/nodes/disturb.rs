@@ -7,28 +7,32 @@ use dapple_raster::{Range, range};
 use dapple_tile::Disturbance;
 use serde::{Deserialize, Serialize};
 
-/// The tile as copies of a texture, each with another piece of it inside of its border: see [`Disturbance`]. It depends
-/// on the whole tile.
+/// Copies of a tile with equal borders and different interiors: see [`Disturbance`]. The result depends on the whole
+/// tile.
 ///
 /// [`Disturbance`]: dapple_tile::Disturbance
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Disturbed {
-    /// A number or a color that repeats: each copy shows a whole tile of it, scaled down.
+    /// Texture that repeats: a number or a color.
+    ///
+    /// Each copy shows a whole tile of the texture, scaled down.
     pub input: Input,
-    /// The number of copies along each axis, x first; `[4, 4]` by default. They have a whole number of pixels.
+    /// Number of copies along each axis, x first.
+    ///
+    /// Each copy has a whole number of pixels along each side.
     #[serde(default = "four")]
     #[cfg_attr(feature = "schema", schemars(transform = { COPIES }))]
     pub copies: [u32; 2],
-    /// The number of unchanged pixels along each border of a copy; 4 by default.
+    /// Width of the unchanged strip along each border of a copy, in pixels.
     #[serde(default = "frozen")]
     pub frozen: u32,
-    /// The number of further pixels in which the cut may lie; 24 by default. Together with the frozen ones at most half
-    /// of a copy.
+    /// Width of the strip next to the unchanged one in which the cut may run, in pixels. Together, `frozen` and
+    /// `margin` are at most half of a copy's side.
     #[serde(default = "margin")]
     pub margin: u32,
-    /// The name or the seed for its random numbers; its own name by default.
+    /// Seed, or the name of the node whose random numbers are used [default: this node's name].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<NodeSeed>,
 }

@@ -5,19 +5,21 @@ use crate::RecipeError;
 use crate::plan::{Builder, Step, StretchedImage};
 use serde::{Deserialize, Serialize};
 
-/// An image, laid over the tile and interpolated between its pixels, or averaged over each pixel of a smaller bake; past its
-/// edges it repeats or is clamped, as the recipe is.
+/// Image, stretched over the tile and interpolated between its pixels.
+///
+/// In a smaller bake, the image is averaged over each pixel. Past its edges, the image repeats or is clamped, depending
+/// on whether the recipe repeats.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ImageNode {
-    /// The image file; the command reads it from the folder of the recipe.
+    /// Name of the image file, relative to the folder of the recipe.
     pub file: String,
-    /// The use of its alpha; by default a partly transparent image is an error.
+    /// Conversion of an image with alpha to an opaque one [default: a partly transparent image is an error].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub alpha: Option<ImageAlpha>,
-    /// The layer of an OpenEXR file with several, such as `ViewLayer.DiffCol`; by default the one without a name,
-    /// `Combined`, `rgba` or `beauty`.
+    /// Layer of an OpenEXR file with several layers, such as `ViewLayer.DiffCol` [default: the unnamed layer,
+    /// `Combined`, `rgba` or `beauty`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layer: Option<String>,
 }

@@ -6,20 +6,20 @@ use crate::{Input, RecipeError};
 use dapple_raster::{Range, range};
 use serde::{Deserialize, Serialize};
 
-/// A range mapped to another, which turns most textures into heights.
+/// Number mapped from one range to another, for example to convert a texture to a height.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Levels {
-    /// The number.
+    /// Number to map.
     pub input: Input,
-    /// The range that is mapped; 0 to 1 by default. It may be descending, but its ends must differ.
+    /// Range of the input that is mapped to `to`; it may be descending, but the ends must differ.
     #[serde(default = "unit")]
     pub from: [f32; 2],
-    /// The results at the ends of `from`; 0 to 1 by default.
+    /// Results at the two ends of `from`.
     #[serde(default = "unit")]
     pub to: [f32; 2],
-    /// The curve between the ends; a line by default.
+    /// Curve between the ends of the range.
     #[serde(default)]
     pub curve: LevelsCurve,
 }
@@ -30,18 +30,20 @@ fn unit() -> [f32; 2] {
 
 const END: Range = range!(finite);
 
-/// The curve between the ends of a range. All but the first are constant outside of it.
+/// Curve between the ends of a range.
+///
+/// All curves except `unclamped` are constant outside of the range.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum LevelsCurve {
-    /// A line that continues past the ends.
+    /// Straight line that continues past the ends.
     Unclamped,
-    /// A line.
+    /// Straight line between the ends.
     #[default]
     Linear,
-    /// `3t² − 2t³`, which is flat at its ends.
+    /// Smoothstep curve `3t² − 2t³`, whose slope is 0 at both ends.
     Smooth,
 }
 

@@ -6,18 +6,19 @@ use crate::{Input, RecipeError, Values};
 use dapple_tile::MatchBorders;
 use serde::{Deserialize, Serialize};
 
-/// A texture with the borders of another one, so that both fit beside each other: see [`MatchBorders`]. It depends on
-/// the whole tile.
+/// Texture with the borders of another texture, so that both fit next to each other: see [`MatchBorders`]. The result
+/// depends on the whole tile.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Framed {
-    /// A number or a color.
+    /// Texture whose borders are replaced: a number or a color.
     pub input: Input,
-    /// The texture that provides the borders: a number or a color.
+    /// Texture that provides the borders: a number or a color.
     pub border: Input,
-    /// The width within which the texture changes, and the part of the other one that becomes the border, as in
-    /// [`MatchBorders`]. Lengths are in pixels of the bake.
+    /// Width of the strip that changes, in pixels, and the part of the other texture that becomes the border.
+    ///
+    /// The options are those of [`MatchBorders`]. One pixel is a pixel of the bake.
     #[serde(default)]
     pub options: MatchBorders,
 }

@@ -5,16 +5,16 @@ use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use serde::{Deserialize, Serialize};
 
-/// The interpolation from one input to another.
+/// Interpolation between two inputs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Mix {
-    /// The number or color at 0.
+    /// Number or color where `by` is 0.
     pub from: Input,
-    /// The number or color at 1.
+    /// Number or color where `by` is 1.
     pub to: Input,
-    /// The fraction of the way: a number, clamped to 0 to 1.
+    /// Interpolation weight: a number, clamped to 0 to 1.
     pub by: Input,
 }
 

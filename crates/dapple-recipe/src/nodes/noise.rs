@@ -9,25 +9,27 @@ use dapple_raster::{FieldExt, FractalShape};
 use dapple_raster::{Range, range};
 use serde::{Deserialize, Serialize};
 
-/// Octaves of noise with values from 0 to 1.
+/// Fractal noise with values from 0 to 1.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct FractalNode {
-    /// The noise of an octave; PUPs by default.
+    /// Noise of each octave.
     pub basis: FractalBasis,
-    /// The approximate number of bumps per unit of the plane in the first octave; 8 by default. For gradients and
-    /// wavelets, these are their cells.
+    /// Frequency of the first octave, in bumps or cells per unit of the plane.
+    ///
+    /// For PUPs, the frequency is the approximate number of bumps. For gradient and wavelet noise, it is the number of
+    /// cells.
     #[cfg_attr(feature = "schema", schemars(transform = { FREQUENCY }))]
     pub frequency: f64,
-    /// The number of octaves, 1 to 16, each twice as fine as the one before; 4 by default.
+    /// Number of octaves, from 1 to 16; each octave has twice the frequency of the previous one.
     #[cfg_attr(feature = "schema", schemars(transform = { OCTAVES }))]
     pub octaves: u32,
-    /// The amplitude of an octave as a multiple of the one before, above 0 and at most 1; ½ by default.
+    /// Amplitude ratio of successive octaves, above 0 and at most 1.
     #[serde(alias = "persistence")]
     #[cfg_attr(feature = "schema", schemars(transform = { GAIN }))]
     pub gain: f64,
-    /// The name or the seed for its random numbers; its own name by default.
+    /// Seed, or the name of the node whose random numbers are used [default: this node's name].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<NodeSeed>,
 }
@@ -44,19 +46,20 @@ impl Default for FractalNode {
     }
 }
 
-/// The noise of an octave.
+/// Noise of an octave.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum FractalBasis {
-    /// Random values at Poisson-disk points, interpolated; the sum over its largest possible value.
+    /// Interpolated random values at Poisson-disk points; the sum is divided by its largest possible value.
     #[default]
     Pups,
-    /// Perlin's gradient noise; the sum is `½ + sum / 6σ`, with `σ` its standard deviation, cut off at 0 and 1.
+    /// Perlin's gradient noise; the result is `½ + sum / 6σ`, clamped to 0 to 1, with the standard deviation `σ` of the
+    /// sum.
     #[serde(alias = "perlin")]
     Gradient,
-    /// Wavelet noise; the sum is `½ + sum / 6σ`, with `σ` its standard deviation, cut off at 0 and 1.
+    /// Wavelet noise; the result is `½ + sum / 6σ`, clamped to 0 to 1, with the standard deviation `σ` of the sum.
     Wavelet,
 }
 

@@ -6,14 +6,14 @@ use crate::{Input, RecipeError};
 use dapple_raster::{Range, range};
 use serde::{Deserialize, Serialize};
 
-/// A number raised to a power.
+/// Number raised to a power.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Power {
-    /// The number; below 0 it counts as 0.
+    /// Base of the power: a number; negative values count as 0.
     pub input: Input,
-    /// The exponent, above 0.
+    /// Exponent of the power, above 0.
     #[cfg_attr(feature = "schema", schemars(transform = { EXPONENT }))]
     pub exponent: f32,
 }

@@ -6,14 +6,14 @@ use crate::{Input, RecipeError};
 use dapple_worley::Profile;
 use serde::{Deserialize, Serialize};
 
-/// A cross-section of bumps: the height as a function of a number.
+/// Cross-section of a bump: the height as a function of a number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ProfileOf {
-    /// The number; 0 is in the middle of the bump.
+    /// Number that is converted to a height; 0 is the middle of the bump.
     pub input: Input,
-    /// The cross-section, such as `{ channels = { width = 0.1 } }` or `{ spots = { radius = 0.3 } }`.
+    /// Cross-section, such as `{ channels = { width = 0.1 } }` or `{ spots = { radius = 0.3 } }`.
     pub shape: Profile,
 }
 

@@ -7,7 +7,9 @@ use dapple_points::Domain;
 use dapple_pups::{ControlNet, ControlPoints, PupsField, PupsRecipe, ReferenceImage};
 use serde::{Deserialize, Serialize};
 
-/// A texture guided by an image, which covers the tile. The luminance of a color image is used.
+/// Texture guided by an image that covers the tile.
+///
+/// Only the luminance of a color image is used.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[cfg_attr(
     feature = "schema",
@@ -19,12 +21,12 @@ use serde::{Deserialize, Serialize};
     bound(deserialize = "T: Default + Deserialize<'de>")
 )]
 pub struct Referenced<T> {
-    /// The image file.
+    /// Name of the image file, relative to the folder of the recipe.
     pub file: String,
-    /// The use of its alpha; by default a partly transparent image is an error.
+    /// Conversion of an image with alpha to an opaque one [default: a partly transparent image is an error].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub alpha: Option<ImageAlpha>,
-    /// The options of the texture.
+    /// Options of the texture.
     #[serde(default)]
     pub options: T,
 }
@@ -120,9 +122,9 @@ fn check_domain<T: PupsRecipe<Image>, Image>(options: &T) -> Result<(), RecipeEr
 /// Defines the enum of the textures in the table of `dapple-pups`.
 macro_rules! node {
     ($(#[doc = $about:literal] $name:literal $variant:ident($options:ty),)*) => {
-        /// A partition-of-unity texture: one of the recipes of `dapple-pups`.
+        /// Partition-of-unity texture: one of the recipes of `dapple-pups`.
         ///
-        /// Its domain is the tile of the recipe and is not to be given.
+        /// The domain of the texture is the recipe's tile and must not be set.
         #[derive(Clone, Debug, Serialize, Deserialize)]
         #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
         #[non_exhaustive]

@@ -6,30 +6,30 @@ use crate::{Input, RecipeError, RecipeErrorKind, Values};
 use dapple_color::{ColorRamp, ColorStop, Interpolation, LinearRgb, Outside, Palette, RampSpace};
 use serde::{Deserialize, Serialize};
 
-/// A color for each number: a palette, or a list of colors.
+/// Color ramp: a color for each number, from a palette or a list of colors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Ramped {
-    /// The number.
+    /// Number that the ramp maps to a color.
     pub input: Input,
-    /// A palette; not beside `colors`.
+    /// Named palette; cannot be combined with `colors`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub palette: Option<Palette>,
-    /// Colors in sRGB, such as `["#204060", "#ffffff"]`; not beside `palette`.
+    /// Colors in sRGB, such as `["#204060", "#ffffff"]`; cannot be combined with `palette`.
     #[serde(default, skip_serializing_if = "Vec::is_empty", with = "colors")]
     #[cfg_attr(feature = "schema", schemars(with = "Vec<crate::ColorOf>"))]
     pub colors: Vec<LinearRgb>,
-    /// The position of each color on the ramp; at equal distances from 0 to 1 by default.
+    /// Position of each color on the ramp [default: evenly spaced from 0 to 1].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub positions: Vec<f32>,
-    /// The space in which two colors are mixed; Oklab by default.
+    /// Color space in which neighboring colors are mixed.
     #[serde(default)]
     pub space: RampSpace,
-    /// The interpolation between two stops; linear by default.
+    /// Interpolation between neighboring colors.
     #[serde(default)]
     pub interpolation: Interpolation,
-    /// The continuation past the ends of the ramp; the color at the end by default.
+    /// Colors past the ends of the ramp.
     #[serde(default)]
     pub outside: Outside,
 }

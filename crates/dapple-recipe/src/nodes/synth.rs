@@ -9,35 +9,40 @@ use dapple_synth::{Edges, Endless, EndlessOptions, Exemplar, PlaneTexture};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A texture without repetitions, grown from an image of it, laid over the tile and interpolated between its pixels, or
-/// averaged over each pixel of a smaller bake. Along axes on which the recipe repeats, it does.
+/// Texture without repetitions, synthesized from an example image and stretched over the tile.
+///
+/// The texture is interpolated between its pixels, or averaged over each pixel of a smaller bake. Along axes on which
+/// the recipe repeats, the texture repeats with the tile.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SynthNode {
-    /// The image file whose pixels the texture shows.
+    /// Name of the image file whose pixels the texture shows, relative to the folder of the recipe.
     pub file: String,
-    /// The image file of the example that is looked at; `file` by default. So maps of one example follow it: `file` has its
-    /// size, or is a whole number of times as large, and size, levels, edges and seed are those of the other nodes.
+    /// Name of the image file in which neighborhoods are compared [default: `file`].
+    ///
+    /// Nodes with the same example synthesize matching maps of one material. The size of `file` must be that of the
+    /// example or a whole multiple of it, and the size, levels, edges and seed of these nodes must be equal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub example: Option<String>,
-    /// The numbers of pixels of the example across the tile, x first; `[512, 512]` by default. Along axes on which the
-    /// recipe repeats, multiples of 2 to the number of levels.
+    /// Size of the texture across the tile, in pixels of the example, x first. Along axes on which the recipe repeats,
+    /// the size must be a multiple of 2 to the power of `levels`.
     #[serde(default = "size")]
     #[cfg_attr(feature = "schema", schemars(transform = { SIZE }))]
     pub size: [u32; 2],
-    /// The number of levels: the more, the larger are the things that look as they do in the example; by default as many
-    /// as it has room for, such as 7 of 256 pixels.
+    /// Number of pyramid levels, from 1 to 16 [default: as many as the example has room for, such as 7 for 256 pixels].
+    ///
+    /// More levels preserve larger features of the example.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(transform = { LEVELS }))]
     pub levels: Option<u32>,
-    /// What lies past the edges of the example; nothing by default.
+    /// Content past the edges of the example: nothing, or the image again, as for a tile.
     #[serde(default)]
     pub edges: Edges,
-    /// The use of the alpha of the images; by default a partly transparent image is an error.
+    /// Conversion of images with alpha to opaque ones [default: a partly transparent image is an error].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub alpha: Option<ImageAlpha>,
-    /// The name or the seed for its random numbers; its own name by default.
+    /// Seed, or the name of the node whose random numbers are used [default: this node's name].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<NodeSeed>,
 }

@@ -6,17 +6,18 @@ use crate::{Input, RecipeError, RecipeErrorKind, Values};
 use dapple_tile::{Method, Seamless};
 use serde::{Deserialize, Serialize};
 
-/// A texture made to repeat, for inputs that do not repeat, such as a photograph. It depends on the whole tile.
+/// Texture made to repeat seamlessly, for inputs that do not repeat, such as photographs. The result depends on the
+/// whole tile.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Tiled {
-    /// A number or a color.
+    /// Texture to convert: a number or a color.
     pub input: Input,
-    /// The method; the periodic part by default. Lengths in it are in pixels of the bake.
+    /// Method that makes the texture repeat; lengths are in pixels of the bake.
     #[serde(default)]
     pub method: Method,
-    /// The axes along which the result repeats; both by default.
+    /// Whether the result repeats along each axis, x first.
     #[serde(default = "both")]
     pub axes: [bool; 2],
 }

@@ -6,19 +6,21 @@ use crate::{Input, RecipeError};
 use dapple_raster::{Range, range};
 use serde::{Deserialize, Serialize};
 
-/// Another node at positions displaced by `amount · (x, y)`.
+/// Another node, sampled at positions displaced by `amount · (x, y)`.
 #[doc(alias = "domain warping")]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Warp {
-    /// The node that is sampled at the displaced positions. A node that depends on the whole tile is interpolated between its pixels.
+    /// Node that is sampled at the displaced positions.
+    ///
+    /// A node that depends on the whole tile is interpolated between its pixels.
     pub input: Input,
-    /// The displacement to the right, as a multiple of the amount: a number.
+    /// Displacement to the right, as a multiple of `amount`: a number.
     pub x: Input,
-    /// The displacement down, as a multiple of the amount: a number.
+    /// Displacement down, as a multiple of `amount`: a number.
     pub y: Input,
-    /// The displacement of a value of 1, in units of the plane; 1 by default.
+    /// Displacement for a value of 1, in units of the plane.
     #[serde(default = "one")]
     pub amount: f64,
 }

@@ -6,21 +6,23 @@ use crate::{Input, RecipeError};
 use dapple_raster::{Range, range};
 use serde::{Deserialize, Serialize};
 
-/// A wave of a number, from 0 to 1: veins of a sum of coordinates and noise, rings of a distance.
+/// Periodic wave of a number, with values from 0 to 1.
+///
+/// Examples are veins from a sum of coordinates and noise, and rings from a distance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Wave {
-    /// The number.
+    /// Argument of the wave: a number.
     pub input: Input,
-    /// Waves per unit of the number; 1 by default. For a coordinate along which the recipe repeats, the tile must hold
-    /// a whole number of them.
+    /// Frequency, in waves per unit of the input. For a coordinate along which the recipe repeats, the tile must hold a
+    /// whole number of waves.
     #[serde(default = "one")]
     pub frequency: f64,
-    /// The phase at 0, in waves; 0 by default.
+    /// Phase at an input of 0, in waves.
     #[serde(default)]
     pub phase: f64,
-    /// The waveform; a sine by default.
+    /// Shape of the wave.
     #[serde(default)]
     pub form: Waveform,
 }
@@ -31,20 +33,20 @@ fn one() -> f64 {
 
 const FINITE: Range = range!(finite);
 
-/// The form of a wave.
+/// Shape of a wave.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Waveform {
-    /// `½ + ½ sin 2πt`.
+    /// Sine wave `½ + ½ sin 2πt`.
     #[default]
     Sine,
-    /// Up from 0 to 1 and down again, in straight lines.
+    /// Triangle wave: linear from 0 to 1 and back to 0.
     Triangle,
-    /// Up from 0 to 1, then a jump to 0.
+    /// Sawtooth wave: linear from 0 to 1, then a jump to 0.
     Sawtooth,
-    /// 0 in the first half, 1 in the second.
+    /// Square wave: 0 in the first half of a period, 1 in the second.
     Square,
 }
 

@@ -8,18 +8,18 @@ use dapple_raster::FieldExt;
 use dapple_wavelet::WaveletNoise2;
 use serde::{Deserialize, Serialize};
 
-/// Wavelet noise: nearly normal values with mean 0 and, for a single band, variance 1.
+/// Wavelet noise: nearly normally distributed values with mean 0 and, for a single band, variance 1.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct WaveletNode {
-    /// Cells per unit of the plane, in the coarsest band; 8 by default. Along an axis on which the recipe repeats, the tile
-    /// must be an even whole number of cells, from 4 on.
+    /// Frequency of the coarsest band, in cells per unit of the plane. Along an axis on which the recipe repeats, the
+    /// tile must have an even number of cells, at least 4.
     #[cfg_attr(feature = "schema", schemars(transform = { crate::plan::FREQUENCY }))]
     pub frequency: f64,
-    /// The weight of each band, coarsest first, each twice as fine as the one before; a single 1 by default.
+    /// Weight of each band, coarsest first; each band has twice the frequency of the previous one.
     pub weights: Vec<f32>,
-    /// The name or the seed for its random numbers; its own name by default.
+    /// Seed, or the name of the node whose random numbers are used [default: this node's name].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<NodeSeed>,
 }

@@ -17,41 +17,45 @@ use std::sync::Arc;
 
 /// Worley's cellular basis in the plane.
 ///
-/// Distances are in cells. Along an axis on which the recipe repeats, the tile must be a whole number of cells.
+/// Distances are in cells. Along an axis on which the recipe repeats, the tile must have a whole number of cells.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct WorleyNode {
-    /// Cells per unit of the plane, one number or one for each axis; 1 by default.
+    /// Frequency, in cells per unit of the plane: one number, or one for each axis.
     pub frequency: Frequency,
-    /// The value at a position; F1 by default.
+    /// Value at a position, computed from the distances to the nearest feature points.
     pub value: WorleyValue,
-    /// The metric of distances; Euclidean by default.
+    /// Distance metric.
     pub metric: Metric,
-    /// The distribution of feature points; Poisson by default.
+    /// Distribution of feature points over the cells.
     pub scatter: Scatter,
-    /// The octaves of a fractal sum, for a sum instead of a single texture. The first octave has the frequency.
+    /// Octaves of a fractal sum [default: none, a single texture].
+    ///
+    /// The first octave has the node's frequency.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub octaves: Option<Octaves>,
-    /// The range of values that is mapped to 0 to 1; none by default, so that values are distances.
+    /// Range of values that is mapped to 0 to 1 [default: none, values are distances].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub range: Option<[f32; 2]>,
-    /// The motion over time; none by default.
+    /// Looping motion over time [default: none].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
-    /// The name or the seed for its random numbers; its own name by default.
+    /// Seed, or the name of the node whose random numbers are used [default: this node's name].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<NodeSeed>,
 }
 
-/// A slice of the basis in four dimensions, whose fourth axis is time: the first and last pictures of a loop join.
+/// Looping motion: a plane slice through a 4-D basis, whose fourth axis is time.
+///
+/// The last frame of a loop continues to the first.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Motion {
-    /// The number of cells along the fourth axis in a loop, at least 1.
+    /// Number of cells along the time axis in one loop, at least 1.
     pub cells: u32,
-    /// The position of the slice along the third axis, in cells; 0 by default.
+    /// Position of the slice along the third axis, in cells.
     #[serde(default)]
     pub z: f64,
 }
