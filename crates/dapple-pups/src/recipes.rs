@@ -114,33 +114,33 @@ impl core::fmt::Debug for PupsField {
 macro_rules! recipes {
     ($table:ident) => {
         $table! {
-            /// Random values, interpolated, from 0 to 1.
+            /// Interpolated random values, from 0 to 1.
             "noise" Noise($crate::NoiseOptions),
             /// Octaves of noise, from 0 to 1.
             "octaves" Octaves($crate::OctavesOptions),
-            /// Octaves of folded noise, from 0 to 1.
+            /// Turbulence: octaves of folded noise, from 0 to 1.
             "turbulence" Turbulence($crate::TurbulenceOptions),
-            /// Cells with a random value each, from 0 to 1.
+            /// Cells, each with a random value from 0 to 1.
             "cells" Cells($crate::CellsOptions),
-            /// Layers of cells, from 0 to 1.
+            /// Layers of cells with random values, from 0 to 1.
             "cellular_noise" CellularNoise($crate::CellularNoiseOptions),
-            /// Random colors, interpolated.
+            /// Interpolated random colors from a palette.
             "color_noise" ColorNoise($crate::ColorNoiseOptions),
-            /// The patches of a cow, 0 or 1.
+            /// Patches of a cow, 0 or 1.
             "cow" Cow($crate::CowOptions),
-            /// The spots of a giraffe (0) on its ground (1).
+            /// Spots of a giraffe (0) on a background (1).
             "space_giraffe" SpaceGiraffe($crate::SpaceGiraffeOptions),
-            /// A cow whose patches get smaller to the right.
+            /// Patches of a cow that get smaller to the right, 0 or 1.
             "cow_progression" CowProgression($crate::CowProgressionOptions),
-            /// A giraffe whose spots get smaller to the right.
+            /// Spots of a giraffe that get smaller to the right.
             "giraffe_progression" GiraffeProgression($crate::GiraffeProgressionOptions),
-            /// Black cells on the left, white ones on the right.
+            /// Black cells on the left, white cells on the right.
             "label_ramp" LabelRamp($crate::LabelRampOptions),
-            /// Black and white cells after an image.
+            /// Black and white cells that follow an image.
             "reference" Reference(Referenced<$crate::ReferenceOptions>),
-            /// The last of several rounds of black and white cells, the first after an image: edges like a coast.
+            /// Black and white cells that follow an image, refined in iterations to edges like a coast.
             "iterated_reference" IteratedReference(Referenced<$crate::IteratedOptions>),
-            /// Control points that are given one by one.
+            /// Texture of control points that are given one by one.
             "points" Points($crate::ControlPoints),
         }
     };

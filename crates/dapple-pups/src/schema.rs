@@ -40,18 +40,18 @@ impl JsonSchema for Direction {
     }
 }
 
-/// A ramp of a number, as data.
+/// Ramp of a number between two positions.
 #[derive(JsonSchema)]
 #[schemars(rename = "Ramp", deny_unknown_fields)]
 #[expect(dead_code, reason = "only its schema is wanted")]
 struct RampTable {
-    /// Where the ramp starts, in units of the plane.
+    /// Start position of the ramp, in units of the plane.
     from: [f64; 2],
-    /// Where it ends.
+    /// End position of the ramp, in units of the plane.
     to: [f64; 2],
-    /// The number at the start and before it.
+    /// Number at the start of the ramp and before the start.
     start: f64,
-    /// The number at the end and past it.
+    /// Number at the end of the ramp and past the end.
     end: f64,
 }
 

@@ -15,7 +15,7 @@
 
 use core::ops::{Add, Mul, Sub};
 
-/// How the weight of a control point falls off along one of its axes.
+/// Falloff of a control point's weight along one of its axes.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/axial-weight.md"))]
 ///
@@ -36,19 +36,22 @@ use core::ops::{Add, Mul, Sub};
 )]
 #[non_exhaustive]
 pub enum AxialWeight {
-    /// Equation 1, `(1 − p)² (1 + 2p)`: the texture has a continuous gradient.
+    /// Cubic falloff `(1 − p)² (1 + 2p)` (equation 1): the texture has a continuous gradient.
     #[default]
     Cubic,
-    /// `(1 − p)³ (1 + 3p + 6p²)`: curvature is continuous as well.
+    /// Quintic falloff `(1 − p)³ (1 + 3p + 6p²)`: the texture has continuous curvature as well.
     Quintic,
-    /// The cubic with dips, for the finer features that the paper's discussion hopes for: `A(p) · (1 − d · (1 − T²)²)`
-    /// with the Chebyshev polynomial `T = T_n(1 − 2p)`, which swings between −1 and 1.
+    /// Cubic falloff with dips, for finer features: `A(p) · (1 − d · (1 − T²)²)`.
+    ///
+    /// `A` is the cubic falloff. The Chebyshev polynomial `T = T_n(1 − 2p)` oscillates between −1 and 1. The paper's
+    /// discussion hopes for such finer features.
     Oscillating {
-        /// The number `n` of dips along an axis, 1 to 16.
+        /// Number `n` of dips along an axis, from 1 to 16.
         #[cfg_attr(feature = "schema", schemars(transform = { crate::options::DIPS }))]
         dips: u32,
-        /// Their depth `d`, from 0 (the cubic) to below 1 (at 1 the weight would vanish inside of the support, and
-        /// with it, possibly, the denominator). At most 0.99.
+        /// Depth `d` of the dips, from 0 (the cubic falloff) to 0.99.
+        ///
+        /// At 1, the weight would vanish inside of the support, and the denominator might vanish with it.
         depth: f32,
     },
 }

@@ -73,7 +73,7 @@ pub fn field_orientations(points: &PointSet, field: impl Fn(DVec2) -> DVec3) -> 
     points.positions().iter().map(|&at| field(at)).collect()
 }
 
-/// How the recipes orient their control points.
+/// Orientations of a recipe's control points.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/orientations.md"))]
 ///
@@ -95,18 +95,26 @@ pub fn field_orientations(points: &PointSet, field: impl Fn(DVec2) -> DVec3) -> 
 )]
 #[non_exhaustive]
 pub enum Orientations {
-    /// None: the weights of equation 2.
+    /// No orientations: the weights of equation 2.
     #[default]
     None,
-    /// Independent random ones: [`random_orientations`].
+    /// Independent random orientation for each point.
+    ///
+    /// See [`random_orientations`].
     Random,
-    /// One orientation for all points.
+    /// Same orientation for all points.
     Same(#[cfg_attr(feature = "schema", schemars(with = "[f64; 3]"))] DVec3),
-    /// Away from a center, in units of the domain: [`outward_orientations`].
+    /// Orientations away from a center, in units of the plane.
+    ///
+    /// See [`outward_orientations`].
     AwayFrom(#[cfg_attr(feature = "schema", schemars(with = "[f64; 2]"))] DVec2),
-    /// In the plane, at an angle in radians: [`angle_orientations`].
+    /// Orientations in the plane at an angle, in radians.
+    ///
+    /// See [`angle_orientations`].
     Angle(#[cfg_attr(feature = "schema", schemars(with = "crate::schema::Variable"))] Varying),
-    /// Any function of the position: [`field_orientations`].
+    /// Orientations as a function of the position.
+    ///
+    /// See [`field_orientations`].
     #[cfg_attr(feature = "serde", serde(skip))]
     Field(Arc<dyn Fn(DVec2) -> DVec3 + Send + Sync>),
 }

@@ -7,7 +7,7 @@ use crate::{
 use dapple_hash::Seed;
 use dapple_points::Domain;
 
-/// Options of [`cells`].
+/// Options for [`cells`].
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -16,15 +16,17 @@ use dapple_points::Domain;
     serde(default, deny_unknown_fields)
 )]
 pub struct CellsOptions {
-    /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    /// Domain of the control points, in which the texture repeats [default: the paper's torus `[-1, 1]²`].
     #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
-    /// How far apart the control points are; at least 0.1 by default, in units of the domain.
+    /// Spacing of the control points: minimum distance in units of the plane, density, or number of points.
     pub spacing: Spacing,
-    /// How many control points a cell has, from the least to the most, 1 to 16; `[1, 1]` by default, as in figure 9a.
+    /// Minimum and maximum number of control points per cell, from 1 to 16.
+    ///
+    /// Figure 9a has one point per cell.
     #[cfg_attr(feature = "schema", schemars(transform = { crate::assign::POINTS_PER_CELL }))]
     pub points_per_cell: [u32; 2],
-    /// How the control points are weighted; with random orientations by default.
+    /// Weighting of the control points.
     pub net: NetOptions,
 }
 

@@ -12,7 +12,7 @@ use crate::{
 use dapple_hash::Seed;
 use dapple_points::Domain;
 
-/// Options of [`cellular_noise`].
+/// Options for [`cellular_noise`].
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -21,25 +21,26 @@ use dapple_points::Domain;
     serde(default, deny_unknown_fields)
 )]
 pub struct CellularNoiseOptions {
-    /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    /// Domain of the control points, in which the texture repeats [default: the paper's torus `[-1, 1]²`].
     #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
-    /// How far apart the control points of the first layer are; at least 0.4 by default, in units of the domain.
+    /// Spacing of the first layer's control points: minimum distance in units of the plane, density, or number of
+    /// points.
     pub spacing: Spacing,
-    /// How many layers there are, 1 to 16; 4 by default.
+    /// Number of layers, from 1 to 16.
     #[cfg_attr(feature = "schema", schemars(transform = { super::octaves::COUNT }))]
     pub layers: u32,
-    /// By how much the spacing is divided from layer to layer, above 1 and at most 16; 2 by default.
+    /// Frequency ratio of successive layers, above 1 and at most 16.
     #[cfg_attr(feature = "schema", schemars(transform = { super::octaves::LACUNARITY }))]
     pub lacunarity: f64,
-    /// The amplitude of a layer as a multiple of the one before, above 0 and at most 1; ½ by default.
+    /// Amplitude ratio of successive layers, above 0 and at most 1.
     #[cfg_attr(feature = "serde", serde(alias = "persistence"))]
     #[cfg_attr(feature = "schema", schemars(transform = { super::octaves::GAIN }))]
     pub gain: f64,
-    /// How many control points a cell has, from the least to the most, 1 to 16; `[1, 1]` by default.
+    /// Minimum and maximum number of control points per cell, from 1 to 16.
     #[cfg_attr(feature = "schema", schemars(transform = { crate::assign::POINTS_PER_CELL }))]
     pub points_per_cell: [u32; 2],
-    /// How the control points are weighted; with random orientations by default.
+    /// Weighting of the control points.
     pub net: NetOptions,
 }
 

@@ -10,7 +10,7 @@ use crate::{
 use dapple_hash::Seed;
 use dapple_points::Domain;
 
-/// Options of [`color_noise`].
+/// Options for [`color_noise`].
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -19,15 +19,16 @@ use dapple_points::Domain;
     serde(default, deny_unknown_fields)
 )]
 pub struct ColorNoiseOptions {
-    /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    /// Domain of the control points, in which the texture repeats [default: the paper's torus `[-1, 1]²`].
     #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
-    /// How far apart the control points are; at least 0.1 by default, in units of the domain.
+    /// Spacing of the control points: minimum distance in units of the plane, density, or number of points.
     pub spacing: Spacing,
-    /// The colors, each with the same chance, in linear RGB from 0 to 1; an orange, a cream, a teal and a dark blue by
-    /// default.
+    /// Equally probable colors of the control points, in linear RGB from 0 to 1.
+    ///
+    /// The default is an orange, a cream, a teal and a dark blue.
     pub palette: Vec<[f32; 3]>,
-    /// How the control points are weighted.
+    /// Weighting of the control points.
     pub net: NetOptions,
 }
 

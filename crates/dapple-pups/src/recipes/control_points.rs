@@ -9,7 +9,7 @@ use dapple_points::{Domain, PointSet};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
-/// Control points that are given one by one.
+/// Texture of control points that are given one by one.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -18,31 +18,32 @@ use std::sync::Arc;
     serde(deny_unknown_fields)
 )]
 pub struct ControlPoints {
-    /// Where the points lie, and after which distances the texture repeats.
+    /// Domain of the points, which sets the periods of the texture.
     #[cfg_attr(feature = "serde", serde(skip, default = "Domain::paper_torus"))]
     pub domain: Domain,
-    /// The points, in units of the plane.
+    /// Control points, in units of the plane.
     pub points: Vec<ControlPoint>,
-    /// The values of labels, from label 0 on; none by default.
+    /// Values of the labels, from label 0 on.
     #[cfg_attr(
         feature = "serde",
         serde(default, skip_serializing_if = "Vec::is_empty")
     )]
     pub values: Vec<f32>,
-    /// How they are weighted; where points have an orientation, `orientations` is not to be given.
+    /// Weighting of the control points. `orientations` must not be set if points have orientations of their own.
     #[cfg_attr(feature = "serde", serde(default))]
     pub net: NetOptions,
-    /// Whether the value of the strongest point counts alone; all count by default.
+    /// Combination of the values: the weighted mean, or the value of the point with the largest weight.
     #[cfg_attr(feature = "serde", serde(default))]
     pub cells: Cells,
-    /// Along which axes the texture repeats, x first, of those along which its domain does; both by default.
+    /// Whether the texture repeats along each axis, x first.
+    ///
+    /// The texture repeats only along axes along which the domain wraps, too.
     #[cfg_attr(
         feature = "serde",
         serde(default = "both_wrap", skip_serializing_if = "is_both_wrap")
     )]
     pub wrap: [bool; 2],
-    /// How far outside of the domain points may lie, along x and y where the texture does not repeat, in units of the
-    /// plane; nowhere by default.
+    /// Permitted distance of points outside of the tile, along each axis that does not repeat, in units of the plane.
     #[cfg_attr(
         feature = "serde",
         serde(default, skip_serializing_if = "is_no_margin")
@@ -69,7 +70,7 @@ fn is_no_margin(margin: &[f64; 2]) -> bool {
     *margin == [0.0; 2]
 }
 
-/// Whether a texture of control points mixes their values.
+/// Combination of the values of control points at a position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -78,14 +79,14 @@ fn is_no_margin(margin: &[f64; 2]) -> bool {
     serde(rename_all = "snake_case")
 )]
 pub enum Cells {
-    /// The weighted mean of the values.
+    /// Weighted mean of the values.
     #[default]
     Mixed,
-    /// The value of the control point with the largest weight.
+    /// Value of the control point with the largest weight.
     Hard,
 }
 
-/// A control point. It has a value of its own or a label, which stands for a value that points share.
+/// Control point with a value of its own, or with a label for a value that points share.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -94,11 +95,11 @@ pub enum Cells {
     serde(deny_unknown_fields)
 )]
 pub struct ControlPoint {
-    /// To the right, in units of the plane.
+    /// X coordinate, to the right, in units of the plane.
     pub x: f64,
-    /// Down, in units of the plane.
+    /// Y coordinate, down, in units of the plane.
     pub y: f64,
-    /// The value of the texture there; not given beside a label.
+    /// Value of the texture at the point; cannot be combined with `label`.
     #[cfg_attr(
         feature = "serde",
         serde(
@@ -108,14 +109,16 @@ pub struct ControlPoint {
         )
     )]
     pub value: Option<f32>,
-    /// The place of its value in the `values` of labels, from 0.
+    /// Index of the point's value in the `values` of labels, from 0.
     #[cfg_attr(
         feature = "serde",
         serde(default, skip_serializing_if = "Option::is_none")
     )]
     pub label: Option<u32>,
-    /// Where it is strong: a vector of any length, as `[x, y]` or, with a part that takes strength away without a
-    /// direction, as `[x, y, z]`. All points have one, or none has.
+    /// Direction in which the point is strong: a vector `[x, y]` or `[x, y, z]` of any length. All points have an
+    /// orientation, or none has.
+    ///
+    /// The z component reduces the strength without adding a direction.
     #[cfg_attr(
         feature = "serde",
         serde(default, skip_serializing_if = "Option::is_none", with = "orientation")

@@ -7,7 +7,7 @@ use dapple_hash::Seed;
 use dapple_points::Domain;
 use dapple_raster::Varying;
 
-/// Options of [`cow`].
+/// Options for [`cow`].
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -16,17 +16,19 @@ use dapple_raster::Varying;
     serde(default, deny_unknown_fields)
 )]
 pub struct CowOptions {
-    /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    /// Domain of the control points, in which the texture repeats [default: the paper's torus `[-1, 1]²`].
     #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
-    /// How far apart the control points are; at least 0.1 by default, in units of the domain.
+    /// Spacing of the control points: minimum distance in units of the plane, density, or number of points.
     pub spacing: Spacing,
-    /// How probable it is that a control point gets label 1, between 0 and 1; ½ by default.
+    /// Probability that a control point gets label 1, from 0 to 1.
     #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Variable"))]
     pub probability: Varying,
-    /// The values of the labels 0 and 1; black (0) and white (1) by default.
+    /// Values of labels 0 and 1.
+    ///
+    /// The defaults are black (0) and white (1).
     pub values: [f32; 2],
-    /// How the control points are weighted.
+    /// Weighting of the control points.
     pub net: NetOptions,
 }
 

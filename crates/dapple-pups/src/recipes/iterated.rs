@@ -18,7 +18,7 @@ use core::f64::consts::SQRT_2;
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointSet, nested_poisson_disk_cancellable};
 
-/// Options of [`iterated_reference`].
+/// Options for [`iterated_reference`].
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -27,21 +27,22 @@ use dapple_points::{Domain, PointSet, nested_poisson_disk_cancellable};
     serde(default, deny_unknown_fields)
 )]
 pub struct IteratedOptions {
-    /// Where the control points lie, which the image covers; the paper's torus `[-1, 1]²` by default.
+    /// Domain of the control points, which the image covers [default: the paper's torus `[-1, 1]²`].
     #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
-    /// How far apart the control points of the first iteration are; at least 0.1 by default, in units of the domain.
+    /// Spacing of the first iteration's control points: minimum distance in units of the plane, density, or number of
+    /// points.
     pub spacing: Spacing,
-    /// How many iterations there are, 1 to 16; 4 by default.
+    /// Number of iterations, from 1 to 16.
     #[cfg_attr(feature = "schema", schemars(transform = { COUNT }))]
     pub iterations: u32,
-    /// Whether an iteration's points contain the last's; they do not by default.
+    /// Whether the points of an iteration contain those of the previous one.
     pub points: IterationPoints,
-    /// How the control points are weighted.
+    /// Weighting of the control points.
     pub net: NetOptions,
 }
 
-/// Whether the points of an iteration contain those of the last.
+/// Whether the points of an iteration contain those of the previous one.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/iteration-points.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,7 +56,8 @@ pub enum IterationPoints {
     /// Each iteration has points of its own.
     #[default]
     Fresh,
-    /// Each iteration has the last's points, and as many again between them. Needs the same spacing everywhere.
+    /// Each iteration contains the previous iteration's points, and as many again between them. The spacing must be
+    /// constant.
     Nested,
 }
 

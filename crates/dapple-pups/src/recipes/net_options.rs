@@ -13,7 +13,9 @@ use dapple_points::{Cancel, Domain, PointSet};
 use dapple_raster::Parts;
 use std::sync::Arc;
 
-/// How a recipe connects and weights its control points: [`PupsOptions`] before the points are known.
+/// Connection and weighting of a recipe's control points.
+///
+/// These are [`PupsOptions`] before the points are known.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -22,40 +24,43 @@ use std::sync::Arc;
     serde(default, deny_unknown_fields)
 )]
 pub struct NetOptions {
-    /// The length of every axis as a multiple of its edge: above ½, at most 16; 1 by default.
+    /// Length of every axis as a multiple of its edge, above ½ and at most 16.
     ///
     #[cfg_attr(doc, doc = include_str!("../../docs/axis-scale.md"))]
     #[cfg_attr(feature = "schema", schemars(transform = { AXIS_SCALE }))]
     pub axis_scale: f64,
-    /// How the weight falls off along an axis; equation 1 by default.
+    /// Falloff of the weight along an axis.
     pub weight: AxialWeight,
-    /// The orientations of the control points; none by default.
+    /// Orientations of the control points.
     pub orientations: Orientations,
-    /// ε of equation 4, how strongly orientations shift weights, in `[0, 1)`; 0.5 by default.
+    /// Strength of the orientations (ε of equation 4), at least 0 and below 1.
     ///
     #[cfg_attr(doc, doc = include_str!("../../docs/strength.md"))]
     #[cfg_attr(feature = "schema", schemars(transform = { STRENGTH }))]
     pub strength: f64,
-    /// How short the border that an axis leaves on the Voronoi cell of its control point is beside its edge when the axis
-    /// begins to fade, from 0 to 1; 0 by default, which is never. With [`motion`](Self::motion) it is at least 0.25.
+    /// Ratio of border length to edge length below which an axis fades, from 0 (no fading) to 1.
     ///
-    /// Without it, a texture jumps where points that move change their edges: see [`PupsOptions::fade`].
+    /// The border of an axis is the side of its control point's Voronoi cell that crosses the axis. With
+    /// [`motion`](Self::motion), the ratio is at least 0.25.
+    ///
+    /// Without fading, a texture jumps where moving points change their edges; see [`PupsOptions::fade`].
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "is_never"))]
     #[cfg_attr(feature = "schema", schemars(transform = { FADE }))]
     pub fade: f64,
-    /// How the control points move in a loop in time; they do not by default.
+    /// Looping motion of the control points [default: none].
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub motion: Option<Orbits>,
-    /// The part of the loop that has passed, for points that move: at 1 the texture is that at 0, bit for bit. Recipes of
-    /// materials set it.
+    /// Time as a fraction of the loop, for moving points. The texture at time 1 equals that at time 0, bit for bit.
+    /// Material recipes set the time themselves.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub time: f64,
-    /// Points, graphs and nets of textures made before. A texture takes over those that it would make itself, bit for bit;
-    /// by default there are none.
+    /// Cached points, graphs and nets of earlier textures [default: none]. A texture uses those that it would compute
+    /// itself, bit for bit.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub parts: Parts,
-    /// A callback that is asked, on any thread and once for some milliseconds of work, whether the texture is no longer
-    /// needed; then making it fails with [`Cancelled`](crate::PupsErrorKind::Cancelled). By default there is none.
+    /// Callback that returns whether the texture is no longer needed [default: none]. It is called on any thread, once
+    /// per few milliseconds of work. If it returns true, building the texture fails with
+    /// [`Cancelled`](crate::PupsErrorKind::Cancelled).
     #[cfg_attr(feature = "serde", serde(skip))]
     pub cancel: Cancel,
 }

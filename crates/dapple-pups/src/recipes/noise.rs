@@ -4,7 +4,7 @@ use crate::{NetOptions, PupsError, PupsField, PupsRecipe, Spacing, Texture, rand
 use dapple_hash::Seed;
 use dapple_points::Domain;
 
-/// Options of [`noise`].
+/// Options for [`noise`].
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -13,12 +13,12 @@ use dapple_points::Domain;
     serde(default, deny_unknown_fields)
 )]
 pub struct NoiseOptions {
-    /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    /// Domain of the control points, in which the texture repeats [default: the paper's torus `[-1, 1]²`].
     #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
-    /// How far apart the control points are; at least 0.1 by default, in units of the domain.
+    /// Spacing of the control points: minimum distance in units of the plane, density, or number of points.
     pub spacing: Spacing,
-    /// How the control points are weighted.
+    /// Weighting of the control points.
     pub net: NetOptions,
 }
 

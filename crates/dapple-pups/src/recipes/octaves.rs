@@ -15,7 +15,7 @@ use crate::{
 use dapple_hash::Seed;
 use dapple_points::Domain;
 
-/// Options of [`octaves`] and [`turbulence`].
+/// Options for [`octaves`] and [`turbulence`].
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -24,29 +24,31 @@ use dapple_points::Domain;
     serde(default, deny_unknown_fields)
 )]
 pub struct OctavesOptions {
-    /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    /// Domain of the control points, in which the texture repeats [default: the paper's torus `[-1, 1]²`].
     #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
-    /// How far apart the control points of the first octave are; at least 0.1 by default, in units of the domain.
+    /// Spacing of the first octave's control points: minimum distance in units of the plane, density, or number of
+    /// points.
     pub spacing: Spacing,
-    /// How many octaves there are, 1 to 16; 4 by default.
+    /// Number of octaves, from 1 to 16.
     #[cfg_attr(feature = "schema", schemars(transform = { COUNT }))]
     pub octaves: u32,
-    /// By how much the spacing is divided from octave to octave, above 1 and at most 16; 2 by default. A power of two if
-    /// octaves are rescaled.
+    /// Frequency ratio of successive octaves, above 1 and at most 16. Rescaled octaves require a power of two.
     #[cfg_attr(feature = "schema", schemars(transform = { LACUNARITY }))]
     pub lacunarity: f64,
-    /// The amplitude of an octave as a multiple of the one before, above 0 and at most 1; ½ by default.
+    /// Amplitude ratio of successive octaves, above 0 and at most 1.
     #[cfg_attr(feature = "serde", serde(alias = "persistence"))]
     #[cfg_attr(feature = "schema", schemars(transform = { GAIN }))]
     pub gain: f64,
-    /// Where the octaves come from; separate points by default, as in the paper.
+    /// Source of the octaves: separate control points, or one rescaled tile.
+    ///
+    /// The paper has separate control points.
     pub source: OctaveSource,
-    /// How the control points are weighted.
+    /// Weighting of the control points.
     pub net: NetOptions,
 }
 
-/// Options of [`turbulence`], which are those of [`octaves`].
+/// Options for [`turbulence`], the same as for [`octaves`].
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -56,7 +58,7 @@ pub struct OctavesOptions {
 )]
 pub struct TurbulenceOptions(pub OctavesOptions);
 
-/// Where octaves come from.
+/// Source of the octaves.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/octave-source.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -67,11 +69,12 @@ pub struct TurbulenceOptions(pub OctavesOptions);
     serde(rename_all = "snake_case")
 )]
 pub enum OctaveSource {
-    /// Each octave has control points of its own: the paper's choice.
+    /// Separate control points for each octave, as in the paper.
     #[default]
     Separate,
-    /// All octaves are one tile, rescaled about the origin of the plane. The domain has to wrap along both axes. It
-    /// takes less memory, and the octaves are correlated: all of them are alike at the origin.
+    /// One tile for all octaves, rescaled about the origin of the plane. The domain must wrap along both axes.
+    ///
+    /// This takes less memory, but the octaves are correlated: all of them are alike at the origin.
     Rescaled,
 }
 

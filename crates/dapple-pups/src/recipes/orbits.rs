@@ -17,7 +17,9 @@ use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_points::{PointIdx, PointSet};
 use glam::DVec2;
 
-/// Motion of control points on circles: each point goes once around its own circle in a loop, one way or the other.
+/// Looping motion of control points on circles.
+///
+/// Each point goes once around its own circle in a loop, clockwise or counterclockwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -26,8 +28,9 @@ use glam::DVec2;
     serde(deny_unknown_fields)
 )]
 pub struct Orbits {
-    /// The radius of the largest circles, as a part of the mean distance of a point to those that it is connected to: above
-    /// 0 and at most 1. The smallest circles are half as large; up to 0.3, points of a Poisson-disk set stay apart.
+    /// Radius of the largest circles, as a fraction of a point's mean edge length, above 0 and at most 1.
+    ///
+    /// The smallest circles are half as large. Up to a radius of 0.3, the points of a Poisson-disk set stay apart.
     #[cfg_attr(feature = "schema", schemars(transform = { RADIUS }))]
     pub radius: f64,
 }

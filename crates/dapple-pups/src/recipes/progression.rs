@@ -15,7 +15,7 @@ use dapple_points::Domain;
 use dapple_raster::{Ramp, Varying};
 use glam::DVec2;
 
-/// Options of [`cow_progression`] and [`giraffe_progression`].
+/// Options for [`cow_progression`] and [`giraffe_progression`].
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -24,17 +24,18 @@ use glam::DVec2;
     serde(default, deny_unknown_fields)
 )]
 pub struct ProgressionOptions {
-    /// Where the control points lie; the square `[-1, 1]²`, which wraps along y only, by default.
+    /// Domain of the control points [default: the square `[-1, 1]²`, which wraps along y only].
     #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
-    /// How far apart points are at the left and at the right, in units of the domain, with equal ratios over equal
-    /// lengths in between; `[0.2, 0.025]` by default.
+    /// Minimum distances of points at the left and at the right, in units of the plane.
+    ///
+    /// Between the two sides, distances have equal ratios over equal lengths.
     pub distances: [f64; 2],
-    /// How the control points are weighted.
+    /// Weighting of the control points.
     pub net: NetOptions,
 }
 
-/// Options of [`cow_progression`].
+/// Options for [`cow_progression`].
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -44,7 +45,7 @@ pub struct ProgressionOptions {
 )]
 pub struct CowProgressionOptions(pub ProgressionOptions);
 
-/// Options of [`giraffe_progression`].
+/// Options for [`giraffe_progression`].
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -54,7 +55,7 @@ pub struct CowProgressionOptions(pub ProgressionOptions);
 )]
 pub struct GiraffeProgressionOptions(pub ProgressionOptions);
 
-/// Options of [`label_ramp`].
+/// Options for [`label_ramp`].
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -63,14 +64,14 @@ pub struct GiraffeProgressionOptions(pub ProgressionOptions);
     serde(default, deny_unknown_fields)
 )]
 pub struct LabelRampOptions {
-    /// Where the control points lie; the square `[-1, 1]²`, which wraps along y only, by default.
+    /// Domain of the control points [default: the square `[-1, 1]²`, which wraps along y only].
     #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
-    /// How far apart the control points are; at least 0.05 by default, in units of the domain.
+    /// Spacing of the control points: minimum distance in units of the plane, density, or number of points.
     pub spacing: Spacing,
-    /// How probable white is at the left and at the right, linear in between; `[0, 1]` by default.
+    /// Probabilities of white at the left and at the right, from 0 to 1, interpolated linearly.
     pub probabilities: [f64; 2],
-    /// How the control points are weighted.
+    /// Weighting of the control points.
     pub net: NetOptions,
 }
 

@@ -7,7 +7,7 @@ use crate::{
 use dapple_hash::Seed;
 use dapple_points::Domain;
 
-/// Options of [`reference_texture`].
+/// Options for [`reference_texture`].
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -16,14 +16,14 @@ use dapple_points::Domain;
     serde(default, deny_unknown_fields)
 )]
 pub struct ReferenceOptions {
-    /// Where the control points lie, which the image covers; the paper's torus `[-1, 1]²` by default.
+    /// Domain of the control points, which the image covers [default: the paper's torus `[-1, 1]²`].
     #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
-    /// How far apart the control points are; at least 0.05 by default, in units of the domain.
+    /// Spacing of the control points: minimum distance in units of the plane, density, or number of points.
     pub spacing: Spacing,
-    /// The values of the black and the white group; 0 and 1 by default.
+    /// Values of the black and the white group.
     pub values: [f32; 2],
-    /// How the control points are weighted.
+    /// Weighting of the control points.
     pub net: NetOptions,
 }
 

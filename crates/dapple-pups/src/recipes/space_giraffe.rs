@@ -43,7 +43,7 @@ use glam::DVec2;
 use spot::Spot;
 use std::sync::Arc;
 
-/// Options of [`space_giraffe`].
+/// Options for [`space_giraffe`].
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -52,25 +52,27 @@ use std::sync::Arc;
     serde(default, deny_unknown_fields)
 )]
 pub struct SpaceGiraffeOptions {
-    /// Where the spot centers lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    /// Domain of the spot centers, in which the texture repeats [default: the paper's torus `[-1, 1]²`].
     #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
-    /// How far apart the centers are; at least 0.2 by default, in units of the domain.
+    /// Spacing of the spot centers: minimum distance in units of the plane, density, or number of points.
     pub spacing: Spacing,
-    /// How many pairs of points stand around a center, from the least to the most, 3 to 256; `[10, 20]` by default.
+    /// Minimum and maximum number of point pairs around a spot center, from 3 to 256.
     #[cfg_attr(feature = "schema", schemars(transform = { PAIRS }))]
     pub pairs: [u32; 2],
-    /// How the radii around a spot are drawn; one whole spot about each center by default.
+    /// Distribution of the radii around a spot center.
     pub spots: Spots,
-    /// The values of the background (label 0) and the spots (label 1); white (1) and black (0) by default.
+    /// Values of the background (label 0) and the spots (label 1).
+    ///
+    /// The defaults are white (1) and black (0).
     pub values: [f32; 2],
-    /// How the control points are weighted.
+    /// Weighting of the control points.
     pub net: NetOptions,
 }
 
 const PAIRS: Range = range!(from 3 to 256);
 
-/// How the radii around a spot are drawn.
+/// Distribution of the radii around a spot center.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/spots.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -82,10 +84,10 @@ const PAIRS: Range = range!(from 3 to 256);
 )]
 #[non_exhaustive]
 pub enum Spots {
-    /// Radii that vary smoothly around a spot: it is in one piece, and no two spots ever merge.
+    /// Radii that vary smoothly around a spot: each spot is in one piece, and no two spots merge.
     #[default]
     Separated,
-    /// The paper's recipe as it is, each radius on its own: most spots are in pieces or have holes, and a few merge.
+    /// Independent radii, as in the paper: most spots are in pieces or have holes, and a few merge.
     Literal,
 }
 
