@@ -29,7 +29,7 @@ pub struct Normal {
 }
 
 dapple_raster::named! {
-    /// The direction of the second component of a normal, the green channel of its color.
+    /// Direction of a normal's second component, the green channel of its color.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     pub enum NormalY {
         /// Up, as in OpenGL, glTF, Blender, Unity and Godot.

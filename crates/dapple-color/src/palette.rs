@@ -6,7 +6,7 @@
 use crate::{ColorRamp, LinearRgb};
 
 dapple_raster::named! {
-    /// A named list of colors.
+    /// Named list of colors.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/palette.md"))]
     ///
@@ -25,11 +25,12 @@ dapple_raster::named! {
         ///
         #[cfg_attr(doc, doc = include_str!("../docs/palette-gray.md"))]
         Gray = "gray",
-        /// Deep blue through teal and green to pale yellow; lighter all the way, so that it reads as a height.
+        /// Deep blue through teal and green to pale yellow. Lightness increases throughout, so the palette reads as
+        /// height.
         ///
         #[cfg_attr(doc, doc = include_str!("../docs/palette-lagoon.md"))]
         Lagoon = "lagoon",
-        /// Black through dark red and orange to pale yellow; lighter all the way.
+        /// Black through dark red and orange to pale yellow. Lightness increases throughout.
         ///
         #[cfg_attr(doc, doc = include_str!("../docs/palette-ember.md"))]
         Ember = "ember",
@@ -37,15 +38,15 @@ dapple_raster::named! {
         ///
         #[cfg_attr(doc, doc = include_str!("../docs/palette-terrain.md"))]
         Terrain = "terrain",
-        /// The white and the black of a cow.
+        /// White and black, as on a cow.
         ///
         #[cfg_attr(doc, doc = include_str!("../docs/palette-cow.md"))]
         Cow = "cow",
-        /// The cream between the spots of a giraffe, and their browns.
+        /// Cream and browns, as between and on the spots of a giraffe.
         ///
         #[cfg_attr(doc, doc = include_str!("../docs/palette-giraffe.md"))]
         Giraffe = "giraffe",
-        /// Eight colors that are easy to tell apart, for labels.
+        /// Eight easily distinguished colors, for labels.
         ///
         #[cfg_attr(doc, doc = include_str!("../docs/palette-labels.md"))]
         Labels = "labels",

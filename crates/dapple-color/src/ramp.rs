@@ -23,49 +23,52 @@ pub struct ColorStop {
 }
 
 dapple_raster::named! {
-    /// The interpolation between two stops of a color ramp.
+    /// Interpolation between two stops of a color ramp.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/interpolation.md"))]
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     #[non_exhaustive]
     pub enum Interpolation {
-        /// A straight line from color to color.
+        /// Linear interpolation between two colors.
         #[default]
         Linear = "linear",
-        /// The color of the stop before; see [`ColorRamp::bands`] for bands of equal width.
+        /// Color of the previous stop, without interpolation. See [`ColorRamp::bands`] for bands of equal width.
         Stepped = "stepped",
-        /// From color to color by `3t² - 2t³`, which has no kink at a stop.
+        /// Smoothstep interpolation `3t² - 2t³`, without a kink at the stops.
         Smooth = "smooth",
     }
 }
 
 dapple_raster::named! {
-    /// The space in which a color ramp mixes the colors of two stops.
+    /// Color space in which a ramp mixes the colors of two stops.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     #[non_exhaustive]
     pub enum RampSpace {
-        /// Oklab (Ottosson 2020): equal steps look about equal, and the middle of two colors is halfway in lightness
-        /// and hue. Between two strong colors a component may be a little below 0 or above 1, which files clamp.
+        /// Oklab (Ottosson 2020), in which equal steps look about equal. The midpoint of two colors is halfway in
+        /// lightness and hue. Between two strong colors, a component may be a little below 0 or above 1, which files
+        /// clamp.
         #[default]
         Oklab = "oklab",
-        /// The codes of sRGB, as most drawing programs mix. Parts below 0 are mixed as those above, with their sign.
+        /// sRGB codes, as in most drawing programs. Negative components are converted like positive ones and keep their
+        /// sign.
         Srgb = "srgb",
-        /// Linear light, as lamps mix; for numbers that are no colors, and where black to white has to be a straight line.
+        /// Linear light, in which the light of lamps mixes. Use it for numbers that are not colors, or if black to
+        /// white must be a straight line.
         Linear = "linear",
     }
 }
 
 dapple_raster::named! {
-    /// The colors before the first stop and after the last.
+    /// Colors before the first stop and after the last stop.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/outside.md"))]
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     #[non_exhaustive]
     pub enum Outside {
-        /// The color of the nearest stop.
+        /// Color of the nearest stop.
         #[default]
         Clamp = "clamp",
-        /// The ramp again and again; the first color holds where one ends and the next begins.
+        /// The ramp repeats. The first color is used where one repeat ends and the next begins.
         Repeat = "repeat",
     }
 }

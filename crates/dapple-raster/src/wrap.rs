@@ -1,15 +1,15 @@
 //! Wrap modes, which map indices beyond the edge to pixels.
 
 crate::named! {
-    /// How an index past the end of an axis is brought back, for each axis on its own.
+    /// Mapping of indices past the end of an axis, applied to each axis separately.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     pub enum Wrap {
-        /// The picture repeats.
+        /// Periodic: the image repeats.
         #[default]
         Repeat = "repeat",
-        /// The last pixel goes on forever.
+        /// Clamped: the edge pixel continues.
         Clamp = "clamp",
-        /// The picture repeats, every second time mirrored, with the edge pixel twice.
+        /// Mirrored: the image repeats, mirrored every second time, with the edge pixel doubled.
         Mirror = "mirror",
     }
 }

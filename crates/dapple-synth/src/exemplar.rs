@@ -28,14 +28,14 @@ pub(crate) const MAX_LEVELS: usize = 16;
 const MAX_VALUE: f32 = 1e12;
 
 dapple_raster::named! {
-    /// What lies past the edges of an exemplar, or of a texture in the plane.
+    /// Content past the edges of an exemplar, or of a texture in the plane.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     #[non_exhaustive]
     pub enum Edges {
-        /// Empty space: neighborhoods of an exemplar that reach past an edge are not compared.
+        /// Nothing: neighborhoods of an exemplar that reach past an edge are not compared.
         #[default]
         Cut = "cut",
-        /// The image again: it is a tile.
+        /// The image again, which is a tile.
         Wrap = "wrap",
     }
 }

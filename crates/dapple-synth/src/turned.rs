@@ -3,18 +3,18 @@
 use dapple_color::Normal;
 
 dapple_raster::named! {
-    /// The ways in which each image lies in a [layout](crate::SideBySide): a texture of it has what the image shows in as many
-    /// directions.
+    /// Orientations of each image in a [layout](crate::SideBySide). A texture from the layout has the content of the
+    /// images in all of these orientations.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub enum Turned {
-        /// As it is.
+        /// Unchanged image only.
         #[default]
         None = "none",
-        /// As it is and mirrored, left for right.
+        /// Unchanged image, and its left-right mirror image.
         Mirror = "mirror",
-        /// As it is, and turned by one, two and three quarters.
+        /// Unchanged image, and rotations by one, two and three quarter turns.
         Quarters = "quarters",
-        /// Turned by quarters and mirrored: eight ways.
+        /// Rotations by quarter turns, and their mirror images: eight orientations.
         All = "all",
     }
 }

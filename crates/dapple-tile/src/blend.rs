@@ -62,9 +62,13 @@ pub struct Layer<'a> {
     serde(default, deny_unknown_fields)
 )]
 pub struct Blend {
-    /// Rule that converts weights to shares. The default is [`Weighting::Given`].
+    /// Rule that converts weights to shares.
+    ///
+    /// The default is [`Weighting::Given`].
     pub weighting: Weighting,
-    /// Rule that combines layers by their shares. The default is linear.
+    /// Rule that combines layers by their shares.
+    ///
+    /// The default is linear.
     pub mixing: Mixing,
 }
 

@@ -15,16 +15,16 @@ use crate::TileError;
 use dapple_raster::Raster;
 
 dapple_raster::named! {
-    /// How two sides are mixed where they lie over each other.
+    /// Weights for mixing two sides where they overlap.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/crossfade.md"))]
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub enum Crossfade {
-        /// By weights that keep the variance, with the mean of each plane put aside. Where both sides are far from the mean,
-        /// the mix can be further from it than either.
+        /// Variance-preserving weights, applied to the differences from the mean of each plane. Where both sides are
+        /// far from the mean, the mix can be further from it than either.
         #[default]
         KeepVariance = "keep_variance",
-        /// By weights whose sum is one, which flattens what is mixed.
+        /// Weights that sum to 1, which flatten the mix.
         Linear = "linear",
     }
 }

@@ -44,12 +44,18 @@ use dapple_raster::Raster;
     serde(default, deny_unknown_fields)
 )]
 pub struct Disturbance {
-    /// Number of unchanged pixels along each border. The default is 4.
+    /// Width of the unchanged strip along each border, in pixels.
+    ///
+    /// The default is 4.
     pub frozen: u32,
-    /// Number of pixels, next to the frozen ones, in which the tile and the shifted tile overlap and the cut may run.
-    /// The default is 24. Together with the frozen pixels, it is at most half of a side.
+    /// Width, in pixels, of the strip next to the frozen one, where the tile and the shifted tile overlap and the cut
+    /// may run.
+    ///
+    /// Together with the frozen pixels, it is at most half of a side. The default is 24.
     pub margin: u32,
-    /// Seed of the shifts. The default is `Seed(0)`.
+    /// Seed of the shifts.
+    ///
+    /// The default is `Seed(0)`.
     pub seed: Seed,
 }
 

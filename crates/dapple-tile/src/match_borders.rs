@@ -27,14 +27,15 @@ use dapple_hash::{CellHash, Seed};
 use dapple_raster::Raster;
 
 dapple_raster::named! {
-    /// Which part of the first tile becomes the border of all.
+    /// Part of the first tile that becomes the border of all tiles.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub enum BorderSource {
-        /// Its border. The first tile has to repeat by itself, and stays as it is.
+        /// Border of the first tile, which must repeat by itself and is not changed.
         #[default]
         Border = "border",
-        /// The row and the column through its middle, whether it repeats or not. The first tile changes as all others
-        /// do. The width is less than half of a side, so that the seam of the first tile stays out of view.
+        /// Row and column through the middle of the first tile, whether the tile repeats or not. The first tile changes
+        /// as all others do. The width must be less than half of a side, so that the seam of the first tile is not
+        /// visible.
         Middle = "middle",
     }
 }
@@ -62,10 +63,13 @@ dapple_raster::named! {
 )]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MatchBorders {
-    /// Distance from a border within which a tile changes, in pixels. It is from 1 to half of a side, rounded down, and
-    /// one pixel less for [`BorderSource::Middle`]. The default is 16.
+    /// Distance from a border within which a tile changes, in pixels, from 1 to half of a side, rounded down.
+    ///
+    /// With [`BorderSource::Middle`], the maximum is one pixel less. The default is 16.
     pub width: u32,
-    /// Source of the pixels of all borders. The default is the first tile's own border.
+    /// Source of the pixels of all borders.
+    ///
+    /// The default is the first tile's own border.
     pub source: BorderSource,
 }
 

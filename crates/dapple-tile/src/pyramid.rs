@@ -25,13 +25,19 @@ use dapple_wavelet::{Bands, Border, SplineFilter};
 )]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Pyramid {
-    /// Number of bands, at most 30. The default is 4. With 0, the result is the plain mean.
+    /// Number of bands, at most 30.
+    ///
+    /// With 0, the result is the plain mean. The default is 4.
     pub levels: u32,
-    /// Sharpness of the transition in the finest band, at least 0. The default is 8. The shares of this band are raised
-    /// to the power `1 + sharpness`. At 0 the result is nearly the plain mean.
+    /// Sharpness of the transition in the finest band, at least 0.
+    ///
+    /// The shares of this band are raised to the power `1 + sharpness`. At 0 the result is nearly the plain mean. The
+    /// default is 8.
     pub sharpness: f64,
-    /// Extension beyond the edges, along x and y. The default is mirrored, which requires sides longer than 2^(levels -
-    /// 1) pixels. Use periodic borders for tiles whose weights also repeat, with sides that are multiples of 2^levels.
+    /// Extension beyond the edges, along x and y.
+    ///
+    /// The default is mirrored, which requires sides longer than 2^(levels - 1) pixels. Use periodic borders for tiles
+    /// whose weights also repeat, with sides that are multiples of 2^levels.
     pub borders: [Border; 2],
 }
 

@@ -78,9 +78,13 @@ pub enum Method {
     serde(default, deny_unknown_fields)
 )]
 pub struct Seamless {
-    /// Method; the default is [`Method::Periodic`].
+    /// Method that makes the image repeat.
+    ///
+    /// The default is [`Method::Periodic`].
     pub method: Method,
-    /// Axes along which the tile repeats, x first; the default is both.
+    /// Axes along which the tile repeats, x first.
+    ///
+    /// The default is both.
     pub axes: [bool; 2],
 }
 

@@ -7,19 +7,19 @@
 //! Reference: Carl de Boor, "A Practical Guide to Splines", Springer 1978.
 
 dapple_raster::named! {
-    /// The degree of a B-spline.
+    /// Degree of a B-spline.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/degree.md"))]
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     pub enum Degree {
-        /// Steps: the Haar wavelet's own function.
+        /// Piecewise constant: the function of the Haar wavelet.
         Constant = "constant",
-        /// Tents.
+        /// Piecewise linear: tent functions.
         Linear = "linear",
-        /// The paper's choice, and Cook and DeRose's.
+        /// Piecewise quadratic: the choice of the paper, and of Cook and DeRose.
         #[default]
         Quadratic = "quadratic",
-        /// The smoothest of the four.
+        /// Piecewise cubic: the smoothest of the four.
         Cubic = "cubic",
     }
 }
@@ -83,7 +83,7 @@ impl Degree {
 }
 
 dapple_raster::named! {
-    /// Where the coarse coefficients lie over the fine ones.
+    /// Position of the coarse coefficients relative to the fine ones.
     ///
     /// Coefficient `j` of the coarse line is spread over the fine coefficients `2j + first ..= 2j + last`:
     ///
@@ -95,55 +95,56 @@ dapple_raster::named! {
     /// | cubic | −2 ..= 2 | −3 ..= 1 |
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     pub enum Phase {
-        /// For even degrees, a coarse pixel covers exactly the fine pixels `2j` and `2j + 1`, so pictures do not move; for odd
-        /// degrees it lies on pixel `2j`.
+        /// Centered on the fine pixels. For even degrees, a coarse pixel covers exactly fine pixels `2j` and `2j + 1`,
+        /// so images are not shifted. For odd degrees, a coarse pixel is centered on pixel `2j`.
         #[default]
         Centered = "centered",
-        /// One fine pixel earlier, as in the listing of Cook and DeRose (2005): a half-size picture is shifted by one fine pixel.
+        /// One fine pixel earlier than centered, as in the listing of Cook and DeRose (2005). A half-size image is
+        /// shifted by one fine pixel.
         CookDeRose = "cook_de_rose",
     }
 }
 
 dapple_raster::named! {
-    /// How a line continues past its ends.
+    /// Extension of a line past its ends.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     pub enum Border {
-        /// The line repeats. To be halved, its length must be even.
+        /// Periodic extension: the line repeats. To be halved, a line must have an even length.
         #[default]
         Periodic = "periodic",
-        /// The line is mirrored: with the end pixel twice for even degrees, once for odd ones.
+        /// Mirrored extension: the end pixel occurs twice for even degrees, and once for odd degrees.
         ///
-        /// The halved line of a mirrored one is mirrored too, and of what would repeat, one copy is kept. A line of `n` has, once
-        /// halved, a length of
+        /// Halving a mirrored line gives a mirrored line. Only one copy of the values that repeat is stored. The number
+        /// of values that remain of a line of `n` is:
         ///
         /// | degree | [`Centered`](Phase::Centered) | [`CookDeRose`](Phase::CookDeRose) |
         /// |---|---|---|
         /// | even | ⌈n/2⌉ | ⌊n/2⌋ + 1 |
         /// | odd | ⌈n/2⌉ | ⌊n/2⌋ |
         ///
-        /// Any length from 2 on can be halved; in the phase of Cook and DeRose, for even degrees, any from 3 on, since 2 would
-        /// stay 2.
+        /// Lines of at least 2 values can be halved. In the Cook–DeRose phase, even degrees need at least 3, since a
+        /// line of 2 would stay at 2.
         ///
-        /// Coefficient `j` of the result is coefficient `j` of the table of [`Phase`], but `j + 1` for an odd degree in the phase
-        /// of Cook and DeRose.
+        /// Coefficient `j` of the result is coefficient `j` in the table of [`Phase`], except for an odd degree in the
+        /// Cook–DeRose phase, where it is coefficient `j + 1`.
         ///
         /// Each level mirrors its own line anew, by the rule above. One level equals that of the infinitely mirrored
         /// fine line. So do several levels if the phase is centered and every line that is halved, except the last, has
         /// an even length for an even degree, or an odd one for an odd degree. Otherwise the mirrors of the fine line
-        /// lie elsewhere in a coarse line than this rule assumes, and near the ends the result differs; for steps, not
-        /// always.
+        /// are elsewhere in a coarse line than this rule assumes, and the result differs near the ends (for constant
+        /// splines, not always).
         Mirror = "mirror",
     }
 }
 
 dapple_raster::named! {
-    /// The distance that is least when a line is halved.
+    /// Distance that is minimized when a line is halved.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     pub enum Fit {
-        /// The least integral of the squared difference of the two functions: the paper's sense.
+        /// Integral of the squared difference of the two functions, as in the paper.
         #[default]
         Function = "function",
-        /// The least sum of the squared differences of the coefficients (`(HᵀH)⁻¹Hᵀ`).
+        /// Sum of the squared differences of the coefficients, minimized by `(HᵀH)⁻¹Hᵀ`.
         Coefficients = "coefficients",
     }
 }
@@ -157,11 +158,17 @@ dapple_raster::named! {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct SplineFilter {
-    /// Degree of the spline [default: quadratic].
+    /// Degree of the spline.
+    ///
+    /// The default is quadratic.
     pub degree: Degree,
-    /// Position of the coarse coefficients [default: centered].
+    /// Position of the coarse coefficients.
+    ///
+    /// The default is centered.
     pub phase: Phase,
-    /// Distance measure that halving minimizes [default: between the functions].
+    /// Distance measure that halving minimizes.
+    ///
+    /// The default is between the functions.
     pub fit: Fit,
 }
 

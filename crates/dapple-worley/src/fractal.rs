@@ -26,23 +26,31 @@ use dapple_raster::{Field, Gradient, Range, RasterError, RasterViewMut, Window, 
 )]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Octaves {
-    /// Number of octaves, from 1 to 32. The default is 6.
+    /// Number of octaves, from 1 to 32.
+    ///
+    /// The default is 6.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-count.md"))]
     #[cfg_attr(feature = "schema", schemars(transform = { COUNT }))]
     pub count: u32,
-    /// Frequency ratio of successive octaves, from 1 to 16. The default is 2.
+    /// Frequency ratio of successive octaves, from 1 to 16.
+    ///
+    /// The default is 2.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-lacunarity.md"))]
     #[cfg_attr(feature = "schema", schemars(transform = { LACUNARITY }))]
     pub lacunarity: f64,
-    /// Amplitude ratio of successive octaves, from -1 to 1. The default is ½.
+    /// Amplitude ratio of successive octaves, from -1 to 1.
+    ///
+    /// The default is ½.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-gain.md"))]
     #[cfg_attr(feature = "serde", serde(alias = "persistence"))]
     #[cfg_attr(feature = "schema", schemars(transform = { GAIN }))]
     pub gain: f64,
-    /// Seeds of the octaves. By default, each octave has its own.
+    /// Seeds of the octaves.
+    ///
+    /// By default, each octave has its own.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octave-seeds.md"))]
     pub seeds: OctaveSeeds,
@@ -63,9 +71,9 @@ const GAIN: Range = range!(from -1 to 1);
 )]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum OctaveSeeds {
-    /// All octaves are the same field, as in the paper, scaled around the origin.
+    /// Same seed for all octaves, as in the paper: the octaves are one field, scaled around the origin.
     Same,
-    /// Every octave has its own feature points.
+    /// Separate seed for each octave, with its own feature points.
     #[default]
     Own,
 }

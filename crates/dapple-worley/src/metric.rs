@@ -11,7 +11,7 @@ use crate::WorleyError;
 use dapple_raster::{Range, range};
 use fearless_simd::{f32x16, prelude::*};
 
-/// A metric, which defines the distance between two positions.
+/// Metric, which defines the distance between two positions.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/metric.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,14 +23,16 @@ use fearless_simd::{f32x16, prelude::*};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub enum Metric {
-    /// The Euclidean distance: `sqrt(dx² + dy² + …)`.
+    /// Euclidean distance: `sqrt(dx² + dy² + …)`.
     #[default]
     Euclidean,
-    /// The sum along the axes: `|dx| + |dy| + …`. Regions are rigid rectangles.
+    /// Sum along the axes: `|dx| + |dy| + …`. Regions are rigid rectangles.
     Manhattan,
-    /// The largest of `|dx|`, `|dy|`, ….
+    /// Maximum along the axes: the largest of `|dx|`, `|dy|`, ….
     Chebyshev,
-    /// `(|dx|^p + |dy|^p + …)^(1/p)`, with `p` from 1 to 10. It equals Manhattan at 1 and Euclidean at 2.
+    /// Minkowski distance of order `p`, from 1 to 10: `(|dx|^p + |dy|^p + …)^(1/p)`.
+    ///
+    /// The order 1 equals Manhattan, and 2 equals Euclidean.
     Minkowski(#[cfg_attr(feature = "schema", schemars(transform = { EXPONENT }))] f32),
 }
 

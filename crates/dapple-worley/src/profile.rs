@@ -33,20 +33,22 @@ use crate::{WorleyError, WorleyErrorKind};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub enum Profile {
-    /// A dome: height 1 at the value 0, falling to height 0 at the value `radius`, by `(1 − (value / radius)²)²`. With
-    /// F1, this gives a raised spot around every feature point.
+    /// Dome: height 1 at the value 0, falling to height 0 at `radius`, by `(1 − (value / radius)²)²`.
+    ///
+    /// With F1, this gives a raised spot around every feature point.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/profile-spots.md"))]
     Spots {
-        /// Radius of a spot, in units of the value; above 0.
+        /// Radius of a spot, in units of the value, above 0.
         radius: f32,
     },
-    /// A channel: height 0 at the value 0, rising to height 1 at the value `width`, by `3 t² − 2 t³` with
-    /// `t = value / width`. With F2 − F1, this gives channels between raised stones; with F1, round pits.
+    /// Channel: height 0 at the value 0, rising to height 1 at `width`, by `3 t² − 2 t³` with `t = value / width`.
+    ///
+    /// With F2 − F1, this gives channels between raised stones; with F1, round pits.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/profile-channels.md"))]
     Channels {
-        /// Half-width of a channel, in units of the value; above 0.
+        /// Half-width of a channel, in units of the value, above 0.
         width: f32,
     },
 }

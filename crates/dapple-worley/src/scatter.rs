@@ -5,7 +5,7 @@ use core::ops::{Bound, RangeInclusive};
 use dapple_hash::PoissonCounts;
 use dapple_raster::{Range, range};
 
-/// The distribution of the number of feature points per cell, and of their positions in it.
+/// Distribution of the number of feature points per cell, and of their positions in the cell.
 ///
 /// # Examples
 ///
@@ -25,29 +25,36 @@ use dapple_raster::{Range, range};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub enum Scatter {
-    /// Worley's scatter: a Poisson-distributed number of points with uniform positions. The number is clamped to 1 to
-    /// 9, as in the paper. Clamping changes the mean; see [`Scatter::mean`].
+    /// Worley's scatter: a Poisson-distributed number of points, clamped to 1 to 9, with uniform positions.
+    ///
+    /// Clamping, which is that of the paper, changes the mean; see [`Scatter::mean`].
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/scatter-poisson.md"))]
     Poisson {
-        /// Mean number of feature points per cell before clamping: from 1/64 to 64.
+        /// Mean number of feature points per cell before clamping, from 1/64 to 64.
         #[cfg_attr(feature = "schema", schemars(transform = { DENSITY_RANGE }))]
         density: f64,
     },
-    /// A Poisson-distributed number of points without clamping. A cell may be empty, and the grid is not visible.
+    /// Poisson-distributed number of points without clamping.
+    ///
+    /// A cell may be empty, and the grid is not visible.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/scatter-unclamped.md"))]
     Unclamped {
-        /// Mean number of feature points per cell: from 1/64 to 64.
+        /// Mean number of feature points per cell, from 1/64 to 64.
         #[cfg_attr(feature = "schema", schemars(transform = { DENSITY_RANGE }))]
         density: f64,
     },
-    /// One point in each cell, as in most other libraries. The grid is visible.
+    /// One point in each cell, as in most other libraries.
+    ///
+    /// The grid is visible.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/scatter-jittered.md"))]
     Jittered {
-        /// Maximum offset of the point from the center of its cell. At 0, points form a regular grid; at 1, a point may
-        /// be anywhere in its cell. Rounded to a multiple of 1/1024.
+        /// Maximum offset of the point from the center of its cell, from 0 to 1.
+        ///
+        /// At 0, points form a regular grid; at 1, a point may be anywhere in its cell. Rounded to a multiple of
+        /// 1/1024.
         #[cfg_attr(feature = "schema", schemars(transform = { JITTER_RANGE }))]
         jitter: f64,
     },

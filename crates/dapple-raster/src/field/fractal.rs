@@ -43,19 +43,19 @@ struct Octave<F> {
 }
 
 crate::named! {
-    /// The function that the values of each octave pass through before they are summed; made for values about 0.
+    /// Function applied to the values of each octave before they are summed, for values centered at 0.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     #[non_exhaustive]
     pub enum FractalShape {
-        /// The values as they are: fractional Brownian motion. Octaves from `-b` to `b` have sums from `-w·b` to `w·b`, where
+        /// Unchanged values: fractional Brownian motion. Octaves from `-b` to `b` have sums from `-w·b` to `w·b`, where
         /// `w` is [`Fractal::weight`].
         #[default]
         Sum = "sum",
-        /// `1 - |value|`: ridges where values go through 0. Octaves from `-b` to `b` have sums from `w·(1 - b)` to `w`, for
-        /// a gain that is not negative.
+        /// Ridges where values pass through 0: `1 - |value|`. Octaves from `-b` to `b` have sums from `w·(1 - b)` to
+        /// `w` for a gain of at least 0.
         Ridged = "ridged",
-        /// `|value|`: creases where values go through 0, and round hills between them; Perlin called it turbulence. Octaves
-        /// from `-b` to `b` have sums from 0 to `w·b`, for a gain that is not negative.
+        /// Creases where values pass through 0, with round hills between them: `|value|`, which Perlin called
+        /// turbulence. Octaves from `-b` to `b` have sums from 0 to `w·b` for a gain of at least 0.
         Billow = "billow",
     }
 }

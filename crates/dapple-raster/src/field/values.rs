@@ -50,19 +50,19 @@ pub struct Pair<A, B> {
 }
 
 crate::named! {
-    /// The operation that combines two values.
+    /// Operation that combines two values.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
     #[non_exhaustive]
     pub enum PairOperation {
-        /// Their sum.
+        /// Sum of the values.
         Add = "add",
-        /// The first less the second.
+        /// First value minus the second.
         Subtract = "subtract",
-        /// Their product.
+        /// Product of the values.
         Multiply = "multiply",
-        /// The smaller; the first, where one is not a number.
+        /// Minimum of the values; the first value if either is NaN.
         Minimum = "minimum",
-        /// The larger; the first, where one is not a number.
+        /// Maximum of the values; the first value if either is NaN.
         Maximum = "maximum",
     }
 }

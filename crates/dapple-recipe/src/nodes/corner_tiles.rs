@@ -19,9 +19,7 @@ pub struct CornerTilesOf {
     ///
     /// Each piece shows a whole tile of a texture, scaled down.
     pub inputs: Vec<Input>,
-    /// Number of pieces along each axis, x first.
-    ///
-    /// Each piece has a whole number of pixels along each side.
+    /// Number of pieces along each axis, x first. The size of a bake must be a multiple of this number.
     #[serde(default = "four")]
     #[cfg_attr(feature = "schema", schemars(transform = { super::disturb::COPIES }))]
     pub copies: [u32; 2],

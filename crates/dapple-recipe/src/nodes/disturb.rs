@@ -19,9 +19,7 @@ pub struct Disturbed {
     ///
     /// Each copy shows a whole tile of the texture, scaled down.
     pub input: Input,
-    /// Number of copies along each axis, x first.
-    ///
-    /// Each copy has a whole number of pixels along each side.
+    /// Number of copies along each axis, x first. The size of a bake must be a multiple of this number.
     #[serde(default = "four")]
     #[cfg_attr(feature = "schema", schemars(transform = { COPIES }))]
     pub copies: [u32; 2],

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 pub struct Levels {
     /// Number to map.
     pub input: Input,
-    /// Range of the input that is mapped to `to`; it may be descending, but the ends must differ.
+    /// Range of the input that is mapped to `to`. The range may be descending, but its ends must differ.
     #[serde(default = "unit")]
     pub from: [f32; 2],
     /// Results at the two ends of `from`.

@@ -6,14 +6,14 @@ use dapple_raster::{Window, named};
 use glam::DVec2;
 
 named! {
-    /// The positions of the samples of a picture.
+    /// Positions of the samples of an image.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub enum Samples {
-        /// The centers of pixels: textures.
+        /// Centers of pixels, for textures.
         #[default]
         Centers = "centers",
-        /// The corners of a grid: the first and the last sample of an axis lie on the sides of the tile, and are equal along
-        /// axes that repeat. Heights of terrains.
+        /// Corners of a grid, for heights of terrains. The first and the last sample of an axis are on the sides of the
+        /// tile, and are equal along axes that repeat.
         Corners = "corners",
     }
 }

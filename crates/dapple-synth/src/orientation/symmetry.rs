@@ -6,15 +6,15 @@ use core::ops::Neg;
 use glam::{DVec2, DVec3};
 
 dapple_raster::named! {
-    /// How many directions at a place are as good as each other for a texture.
+    /// Number of equally good directions of a texture at a position.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     pub enum Symmetry {
-        /// One: down is down.
+        /// One direction, for textures with a distinct down direction.
         #[default]
         One = "1",
-        /// Two, up and down: for textures that look alike upside down, such as bricks.
+        /// Two directions, up and down, for textures that look alike upside down, such as bricks.
         Two = "2",
-        /// Four, a quarter turn from each other: for those that look alike lying on their side, such as a checker.
+        /// Four directions, a quarter turn apart, for textures that also look alike on their side, such as a checker.
         Four = "4",
     }
 }

@@ -33,7 +33,9 @@ pub enum Feather {
     Margin {
         /// Width of the crossfade, in pixels, from 1 to half of the side.
         margin: u32,
-        /// Weights of the blend. The default is variance-preserving.
+        /// Weights of the crossfade.
+        ///
+        /// The default is variance-preserving.
         #[cfg_attr(feature = "serde", serde(default))]
         crossfade: Crossfade,
     },

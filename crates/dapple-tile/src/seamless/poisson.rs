@@ -17,13 +17,14 @@ use crate::TileError;
 use dapple_raster::Raster;
 
 dapple_raster::named! {
-    /// The target gradient across the wrap, where the source has none.
+    /// Target gradient across the wrap, where the source has none.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub enum WrapGradient {
-        /// None: the last pixel continues to the first. The same image as [`Method::Periodic`](crate::Method::Periodic).
+        /// Zero: the last pixel continues to the first. The result is the same image as
+        /// [`Method::Periodic`](crate::Method::Periodic).
         #[default]
         Zero = "zero",
-        /// The mean of the gradients just inside of the two borders.
+        /// Mean of the gradients just inside of the two borders.
         Extrapolate = "extrapolate",
     }
 }

@@ -30,11 +30,17 @@ use dapple_raster::Raster;
 )]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SoftCut {
-    /// Width of the overlap of the two sides, in pixels, from 1 to half of the side. The default is 32.
+    /// Width of the overlap of the two sides, in pixels, from 1 to half of the side.
+    ///
+    /// The default is 32.
     pub margin: u32,
-    /// Half-width of the ramp across the cut, in pixels, from 0 (a hard cut) to half of the margin. The default is 4.
+    /// Half-width of the ramp across the cut, in pixels, from 0 (a hard cut) to half of the margin.
+    ///
+    /// The default is 4.
     pub half_width: f32,
-    /// Weights of the blend along the cut. The default is variance-preserving.
+    /// Weights of the blend along the cut.
+    ///
+    /// The default is variance-preserving.
     pub crossfade: Crossfade,
 }
 

@@ -36,13 +36,14 @@ pub enum Basis {
 }
 
 dapple_raster::named! {
-    /// The relation of the pixels of the image to the spline.
+    /// Relation of the pixels of the image to the spline.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub enum Pixels {
-        /// They are its coefficients, as in the paper.
+        /// Pixels are the coefficients of the spline, as in the paper.
         #[default]
         Coefficients = "coefficients",
-        /// They are its values at the pixel centers; coefficients come from a prefilter. To sines, pixels are always this.
+        /// Pixels are the values of the spline at the pixel centers. A prefilter computes the coefficients. With sines,
+        /// pixels are always values.
         Samples = "samples",
     }
 }
@@ -56,13 +57,21 @@ dapple_raster::named! {
 )]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SplineProject {
-    /// Number of times that the image is halved. The default is 1.
+    /// Number of times that the image is halved.
+    ///
+    /// The default is 1.
     pub levels: u32,
-    /// Position of the coarse coefficients. The default is centered.
+    /// Position of the coarse coefficients.
+    ///
+    /// The default is centered.
     pub phase: Phase,
-    /// Basis functions. The default is quadratic B-splines.
+    /// Basis functions of the tile.
+    ///
+    /// The default is quadratic B-splines.
     pub basis: Basis,
-    /// Relation of pixels to the spline. By default, pixels are coefficients.
+    /// Relation of the pixels to the spline.
+    ///
+    /// By default, pixels are coefficients.
     pub pixels: Pixels,
 }
 
