@@ -5,16 +5,17 @@ use dapple_color::LinearRgb;
 use serde::de::{Deserialize, Deserializer, Error, Unexpected, Visitor};
 use serde::ser::{Serialize, Serializer};
 
-/// An input to a node, or to a map of the material.
+/// Input to a node, or to a map of the material.
 ///
-/// In a recipe file, it is written as a number, a color such as `"#c08040"`, or the name of a node such as `"stones"`.
+/// In a recipe file, an input is written as a number, a color such as `"#c08040"`, or the name of a node such as
+/// `"stones"`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Input {
-    /// A constant number.
+    /// Constant number.
     Number(f64),
-    /// A constant color.
+    /// Constant color.
     Color(LinearRgb),
-    /// The values of the node that has this name.
+    /// Values of the node that has this name.
     Node(String),
 }
 

@@ -62,15 +62,21 @@ use dapple_raster::{Raster, Wrap};
     serde(default, deny_unknown_fields)
 )]
 pub struct BlendMap {
-    /// Size of the features, such as the diameter of the stones, in pixels, from 1 to 4096. The default is 32.
+    /// Size of the features, such as the diameter of the stones, in pixels, from 1 to 4096.
+    ///
+    /// The default is 32.
     ///
     /// If the value is half of the real size, cracks are still found, but the centers of large stones fall to ½. If it
     /// is twice the real size, thin cracks are lost.
     pub feature_size: f64,
-    /// Steepness of the map around its median, at least 0. The default is 1. At 0 the map is ½ everywhere, at 1 it
-    /// increases by ½ per standard deviation of the surroundings, and at 100 it is almost black and white.
+    /// Steepness of the map around its median, at least 0.
+    ///
+    /// At 0 the map is ½ everywhere, at 1 it increases by ½ per standard deviation of the surroundings, and at 100 it
+    /// is almost black and white. The default is 1.
     pub contrast: f64,
-    /// Wrapping beyond the edges, along x and y. By default the texture repeats, and so does its map.
+    /// Wrapping beyond the edges, along x and y.
+    ///
+    /// By default the texture repeats, and so does its map.
     pub wrap: [Wrap; 2],
 }
 

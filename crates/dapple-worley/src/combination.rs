@@ -3,7 +3,7 @@
 //! Worley finds that differences of two or more of the distances have more character than F1 to F4 alone ("A Cellular
 //! Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>).
 
-/// A linear combination of the distances F1 to F4: `C1·F1 + C2·F2 + C3·F3 + C4·F4`.
+/// Linear combination of the distances F1 to F4: `C1·F1 + C2·F2 + C3·F3 + C4·F4`.
 ///
 /// # Examples
 ///

@@ -8,7 +8,7 @@
 
 use crate::{WorleyError, WorleyErrorKind};
 
-/// A cross-section of bumps. It maps the value of a texture to a height.
+/// Cross-section of bumps, which maps the value of a texture to a height.
 ///
 /// # Examples
 ///

@@ -27,7 +27,7 @@ use dapple_raster::{Range, range};
 pub enum Scatter {
     /// Worley's scatter: a Poisson-distributed number of points, clamped to 1 to 9, with uniform positions.
     ///
-    /// Clamping, which is that of the paper, changes the mean; see [`Scatter::mean`].
+    /// Clamping, as in the paper, changes the mean; see [`Scatter::mean`].
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/scatter-poisson.md"))]
     Poisson {

@@ -29,7 +29,7 @@ pub struct ControlPoints {
         serde(default, skip_serializing_if = "Vec::is_empty")
     )]
     pub values: Vec<f32>,
-    /// Weighting of the control points. `orientations` must not be set if points have orientations of their own.
+    /// Weighting of the control points. `orientations` must not be set if the points have orientations.
     #[cfg_attr(feature = "serde", serde(default))]
     pub net: NetOptions,
     /// Combination of the values: the weighted mean, or the value of the point with the largest weight.
@@ -86,7 +86,7 @@ pub enum Cells {
     Hard,
 }
 
-/// Control point with a value of its own, or with a label for a value that points share.
+/// Control point with a value, or with a label that stands for a shared value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(

@@ -36,13 +36,13 @@ pub struct IteratedOptions {
     /// Number of iterations, from 1 to 16.
     #[cfg_attr(feature = "schema", schemars(transform = { COUNT }))]
     pub iterations: u32,
-    /// Whether the points of an iteration contain those of the previous one.
+    /// Whether the points of an iteration contain the points of the previous iteration.
     pub points: IterationPoints,
     /// Weighting of the control points.
     pub net: NetOptions,
 }
 
-/// Whether the points of an iteration contain those of the previous one.
+/// Whether the points of an iteration contain the points of the previous iteration.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/iteration-points.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,7 +53,7 @@ pub struct IteratedOptions {
     serde(rename_all = "snake_case")
 )]
 pub enum IterationPoints {
-    /// Each iteration has points of its own.
+    /// Each iteration has separate points.
     #[default]
     Fresh,
     /// Each iteration contains the previous iteration's points, and as many again between them. The spacing must be

@@ -74,7 +74,7 @@ pub enum OctaveSource {
     Separate,
     /// One tile for all octaves, rescaled about the origin of the plane. The domain must wrap along both axes.
     ///
-    /// This takes less memory, but the octaves are correlated: all of them are alike at the origin.
+    /// This takes less memory, but the octaves are correlated: all of them are equal at the origin.
     Rescaled,
 }
 

@@ -5,13 +5,14 @@ use dapple_color::LinearRgb;
 use serde::de::{Deserialize, Deserializer, Error, Unexpected};
 use serde::ser::{Serialize, Serializer};
 
-/// How to convert an image with alpha to an opaque one. In a recipe file, it is written as `"drop"` or
-/// `"over:#rrggbb"`.
+/// Conversion of an image with alpha to an opaque one.
+///
+/// In a recipe file, the conversion is written as `"drop"` or `"over:#rrggbb"`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ImageAlpha {
-    /// Use the colors without alpha.
+    /// Uses the colors and drops alpha.
     Drop,
-    /// Composite the image over this color, in linear light.
+    /// Composites the image over this color, in linear light.
     Over(LinearRgb),
 }
 

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct BlendMapOf {
-    /// Texture: a number, or a color, of which the luminance is used.
+    /// Texture: a number, or a color, whose luminance is used.
     pub input: Input,
     /// Size of the features, such as the diameter of stones, in units of the plane.
     pub feature_size: f64,

@@ -8,7 +8,9 @@ use dapple_color::LinearRgb;
 use serde::de::{Deserialize, Deserializer, Error};
 use serde::ser::{Serialize, Serializer};
 
-/// The same color at every position. In a recipe file, it is written in hexadecimal sRGB, such as `"#c08040"`.
+/// Constant color at every position.
+///
+/// In a recipe file, the color is written in hexadecimal sRGB, such as `"#c08040"`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColorOf(pub LinearRgb);
 

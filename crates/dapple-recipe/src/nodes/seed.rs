@@ -9,9 +9,9 @@ use serde::ser::{Serialize, Serializer};
 /// numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NodeSeed {
-    /// A seed that does not depend on the recipe's seed.
+    /// Seed that does not depend on the recipe's seed.
     Seed(Seed),
-    /// A name from which to derive the seed, such as another node's name.
+    /// Name from which to derive the seed, such as another node's name.
     Name(String),
 }
 

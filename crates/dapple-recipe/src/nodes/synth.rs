@@ -21,8 +21,8 @@ pub struct SynthNode {
     pub file: String,
     /// Name of the image file in which neighborhoods are compared [default: `file`].
     ///
-    /// Nodes with the same example synthesize matching maps of one material. The size of `file` must be that of the
-    /// example or a whole multiple of it, and the size, levels, edges and seed of these nodes must be equal.
+    /// Nodes with the same example synthesize matching maps of one material. `file` must be the same size as the
+    /// example, or a whole number of times as large. The size, levels, edges and seed of these nodes must be equal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub example: Option<String>,
     /// Size of the texture across the tile, in pixels of the example, x first. Along axes on which the recipe repeats,
@@ -30,7 +30,8 @@ pub struct SynthNode {
     #[serde(default = "size")]
     #[cfg_attr(feature = "schema", schemars(transform = { SIZE }))]
     pub size: [u32; 2],
-    /// Number of pyramid levels, from 1 to 16 [default: as many as the example has room for, such as 7 for 256 pixels].
+    /// Number of pyramid levels, from 1 to 16 [default: the maximum for the size of the example, such as 7 for 256
+    /// pixels].
     ///
     /// More levels preserve larger features of the example.
     #[serde(default, skip_serializing_if = "Option::is_none")]

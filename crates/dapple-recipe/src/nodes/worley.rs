@@ -60,7 +60,7 @@ pub struct Motion {
     pub z: f64,
 }
 
-/// A frequency along each axis, in cells per unit of the plane.
+/// Frequency along each axis, in cells per unit of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frequency(pub [f64; 2]);
 
@@ -70,19 +70,20 @@ impl Default for Frequency {
     }
 }
 
-/// The value at a position, computed from its nearest feature points.
+/// Value at a position, computed from the nearest feature points.
 ///
-/// In a recipe file, it is written as `"f1"`, `"f2_minus_f1"` and so on, `"cell_value"`, `"edge_distance"`, or the four
-/// coefficients of F1 to F4.
+/// In a recipe file, the value is written as `"f1"`, `"f2_minus_f1"` and so on, `"cell_value"`, `"edge_distance"`, or
+/// the four coefficients of F1 to F4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum WorleyValue {
-    /// A linear combination of the distances F1 to F4.
+    /// Linear combination of the distances F1 to F4.
     Combination(Combination),
-    /// A random number from 0 to 1 for each Voronoi cell.
+    /// Random number from 0 to 1 for each Voronoi cell.
     CellValue,
-    /// The Euclidean distance to the nearest border between Voronoi cells, in cells. It gives joints of uniform width,
-    /// and is several times slower than F2 − F1.
+    /// Euclidean distance to the nearest border between Voronoi cells, in cells.
+    ///
+    /// This value gives joints of uniform width, and is several times slower than F2 − F1.
     EdgeDistance,
 }
 
