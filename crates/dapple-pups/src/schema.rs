@@ -17,7 +17,7 @@ impl JsonSchema for Tile {
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({
-            "description": "Not to be given: in a recipe it is the tile.",
+            "description": "Set by the recipe: the domain is the tile.",
             "type": "object",
             "deprecated": true,
         })
@@ -34,7 +34,7 @@ impl JsonSchema for Direction {
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({
-            "description": "A vector of any length: x and y, and z, if it has one.",
+            "description": "Vector of any length: x, y and, optionally, z.",
             "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 3,
         })
     }
@@ -72,8 +72,8 @@ impl JsonSchema for Variable {
         let number = json_schema!({ "type": "number" });
         let ramp = generator.subschema_for::<RampTable>();
         json_schema!({
-            "description": "A number that is the same everywhere, or one that changes along a line: linearly, or by \
-                equal ratios over equal lengths.",
+            "description": "Number that is constant, or that changes along a line: linearly, or by equal ratios over equal \
+                lengths.",
             "anyOf": [number, table("constant", &number), table("ramp", &ramp), table("geometric_ramp", &ramp)],
         })
     }

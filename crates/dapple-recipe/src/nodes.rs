@@ -6,11 +6,13 @@ mod alpha;
 mod arithmetic;
 mod blend;
 mod blend_map;
+mod clamp;
 mod color;
 mod coordinate;
 mod corner_tiles;
 mod distance;
 mod disturb;
+mod fractal;
 mod image;
 mod levels;
 mod match_borders;
@@ -23,6 +25,7 @@ mod ramp;
 mod seed;
 mod synth;
 mod tile;
+mod transform;
 mod warp;
 mod wave;
 mod wavelet;
@@ -32,12 +35,14 @@ pub use alpha::ImageAlpha;
 pub use arithmetic::{Absolute, Add, Divide, Maximum, Minimum, Multiply, Subtract};
 pub use blend::{Blended, BlendedLayer};
 pub use blend_map::BlendMapOf;
+pub use clamp::Clamp;
 pub use color::ColorOf;
 pub use coordinate::Coordinate;
 pub use corner_tiles::CornerTilesOf;
 pub use dapple_pups::{Cells, ControlPoint, ControlPoints};
 pub use distance::Distance;
 pub use disturb::Disturbed;
+pub use fractal::FractalOf;
 pub use image::ImageNode;
 pub use levels::{Levels, LevelsCurve};
 pub use match_borders::Framed;
@@ -50,6 +55,7 @@ pub use ramp::Ramped;
 pub use seed::NodeSeed;
 pub use synth::SynthNode;
 pub use tile::Tiled;
+pub use transform::Transform;
 pub use warp::Warp;
 pub use wave::{Wave, Waveform};
 pub use wavelet::WaveletNode;
@@ -172,8 +178,14 @@ nodes! {
     "profile" Profile(ProfileOf) in "shape" as r#"{"input":0.5,"shape":{"spots":{"radius":0.5}}}"#,
     /// Interpolation between two inputs.
     "mix" Mix(Mix) in "shape" as r#"{"from":0.0,"to":1.0,"by":0.5}"#,
+    /// Number clamped to a range.
+    "clamp" Clamp(Clamp) in "shape" as r#"{"input":0.5}"#,
     /// Another node, sampled at displaced positions.
     "warp" Warp(Warp) in "shape" as r#"{"input":0.5,"x":0.0,"y":0.0}"#,
+    /// Another node, rotated, repeated more often and shifted.
+    "transform" Transform(Transform) in "shape" as r#"{"input":0.5}"#,
+    /// Fractal sum of a node at several scales.
+    "fractal" Fractal(FractalOf) in "shape" as r#"{"input":0.5}"#,
     /// Color for each number, from a color ramp.
     "ramp" Ramp(Ramped) in "color and images" as r##"{"input":0.5,"colors":["#202020","#f0f0f0"]}"##,
     /// Texture made to repeat seamlessly.

@@ -23,7 +23,7 @@ pub use field::{NodeColors, NodeField};
 pub(crate) use order::order;
 pub use samples::Samples;
 pub(crate) use samples::TileSamples;
-pub(crate) use step::{Step, StretchedImage};
+pub(crate) use step::{LinearMap, Moved, Positions, Step, StretchedImage};
 pub(crate) use watch::{OF_NODE, Pass, Watch};
 pub use whole::Whole;
 pub use work::PlanLimits;

@@ -66,7 +66,7 @@ fn deprecated(mut option: Value, name: &str) -> Value {
         option.remove("default");
         option.insert(
             "description".to_owned(),
-            json!(format!("Another name of `{name}`.")),
+            json!(format!("Alias of `{name}`.")),
         );
         option.insert("deprecated".to_owned(), json!(true));
     }
@@ -114,7 +114,7 @@ const HEX: &str = "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$";
 
 schemas! {
     Input => json_schema!({
-        "description": "A number, a color in sRGB such as `\"#c08040\"`, or the name of a node.",
+        "description": "Number, color in sRGB such as `\"#c08040\"`, or the name of a node.",
         "anyOf": [
             { "type": "number" },
             { "type": "string", "pattern": HEX },
@@ -122,7 +122,7 @@ schemas! {
         ],
     });
     ColorOf => json_schema!({
-        "description": "A color in sRGB, such as `\"#c08040\"`.",
+        "description": "Color in sRGB, such as `\"#c08040\"`.",
         "type": "string",
         "pattern": HEX,
     });
@@ -132,11 +132,11 @@ schemas! {
         "pattern": "^(drop|over:#([0-9a-fA-F]{3}|[0-9a-fA-F]{6}))$",
     });
     NodeSeed => json_schema!({
-        "description": "The name to draw by, such as that of another node, or a seed.",
+        "description": "Seed, or the name of a node whose random numbers are used.",
         "anyOf": [{ "type": "string" }, { "type": "integer", "minimum": 0 }],
     });
     WorleyValue => json_schema!({
-        "description": "The name of a value, or the four coefficients of F1 to F4.",
+        "description": "Name of a value, or the four coefficients of F1 to F4.",
         "anyOf": [
             { "enum": Self::names() },
             { "type": "array", "items": { "type": "number" }, "minItems": 4, "maxItems": 4 },
@@ -146,7 +146,7 @@ schemas! {
         let mut number = json_schema!({ "type": "number" });
         FREQUENCY.clone().transform(&mut number);
         json_schema!({
-            "description": "Per unit of the plane: one number, or one for each axis.",
+            "description": "Frequency per unit of the plane: one number, or one for each axis.",
             "anyOf": [
                 number,
                 { "type": "array", "items": number, "minItems": 2, "maxItems": 2 },

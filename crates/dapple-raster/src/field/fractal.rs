@@ -61,8 +61,11 @@ crate::named! {
 }
 
 impl FractalShape {
+    /// Applies the function to an octave's value.
+    #[doc(hidden)]
     #[inline]
-    pub(super) fn of(self, value: f32) -> f32 {
+    #[must_use]
+    pub fn of(self, value: f32) -> f32 {
         match self {
             Self::Sum => value,
             Self::Ridged => 1.0 - value.abs(),

@@ -1,7 +1,7 @@
 //! Domain warping: evaluates a node at displaced positions.
 
 use super::NodeKind;
-use crate::plan::{Builder, Step};
+use crate::plan::{Builder, Moved, Positions, Step};
 use crate::{Input, RecipeError};
 use dapple_raster::{Range, range};
 use serde::{Deserialize, Serialize};
@@ -39,11 +39,13 @@ impl NodeKind for Warp {
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         RecipeError::check_in(AMOUNT, "amount", self.amount)?;
         let input = plan.any(&self.input)?;
-        Ok(Step::Warp {
+        Ok(Step::Moved(Moved {
             input,
-            by: [plan.number(&self.x)?, plan.number(&self.y)?],
-            amount: self.amount,
             color: plan.is_color(input),
-        })
+            positions: Positions::Displaced {
+                by: [plan.number(&self.x)?, plan.number(&self.y)?],
+                amount: self.amount,
+            },
+        }))
     }
 }

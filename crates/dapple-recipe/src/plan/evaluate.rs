@@ -1,6 +1,6 @@
 //! Evaluates steps at many positions.
 
-use super::step::{Step, StretchedImage, needed};
+use super::step::{LinearMap, Moved, Positions, Step, StretchedImage, needed};
 use super::{Picture, Values, Whole};
 use crate::{RecipeError, RecipeErrorKind};
 use dapple_color::LinearRgb;
@@ -125,7 +125,7 @@ fn last_uses(steps: &[Step], order: &[usize], wanted: &[usize]) -> Vec<usize> {
 /// Maximum and minimum number of pixels that a thread evaluates at a time.
 const CHUNK_PIXELS: [u32; 2] = [1 << 16, 1 << 11];
 
-/// Number of positions that a warp evaluates at a time. Their values fit in the processor's cache.
+/// Number of positions that are evaluated at a time. Their values fit in the processor's cache.
 const CHUNK_POSITIONS: usize = 1 << 12;
 
 /// Computes the values of the steps `wanted` at the pixels of a window, on all cores if the feature `rayon` is on.
@@ -230,25 +230,7 @@ fn step(
             let inputs: Vec<_> = local.inputs.iter().map(made).collect();
             (local.apply)(&inputs)
         }
-        Step::Warp {
-            input, by, amount, ..
-        } => {
-            let [x, y] = [made(&by[0]), made(&by[1])];
-            let shifted = shifted(places.positions(), x, y, *amount);
-            let values = |positions| {
-                let places = Places {
-                    at: At::Positions(positions),
-                    ..places
-                };
-                evaluate(steps, whole, places, &[*input], &[])
-            };
-            // Evaluate in chunks. The first one may be empty, so that the result has a value kind even without
-            // positions.
-            let (first, rest) = shifted.split_at(CHUNK_POSITIONS.min(count));
-            let rest = rest.chunks(CHUNK_POSITIONS).map(values);
-            let chunks: Result<Vec<_>, _> = core::iter::once(values(first)).chain(rest).collect();
-            Ok(join(chunks?).swap_remove(0))
-        }
+        Step::Moved(moved) => self::moved(steps, whole, places, moved, values),
         Step::Global(_) => match whole {
             Some(whole) => whole.at(index, places),
             None => Err(RecipeError::new(RecipeErrorKind::Global {
@@ -256,6 +238,81 @@ fn step(
             })),
         },
     }
+}
+
+/// Computes the values of a step that evaluates its input at other positions.
+fn moved(
+    steps: &[Step],
+    whole: Option<&Whole>,
+    places: Places<'_>,
+    moved: &Moved,
+    values: &[Option<Arc<Values>>],
+) -> Result<Values, RecipeError> {
+    let input = moved.input;
+    match &moved.positions {
+        Positions::Displaced { by, amount } => {
+            let [x, y] = by.map(|by| values[by].as_deref().expect("inputs come before"));
+            let shifted = shifted(places.positions(), x, y, *amount);
+            at_positions(steps, whole, input, &shifted, places.area)
+        }
+        Positions::Linear(map) => mapped(steps, whole, places, input, map),
+        Positions::Octaves { octaves, shape } => {
+            let mut sum = vec![0.0; places.count()];
+            for &(frequency, weight) in octaves {
+                let map = LinearMap::scale([frequency; 2]);
+                let octave = mapped(steps, whole, places, input, &map)?;
+                for (sum, &value) in sum.iter_mut().zip(octave.numbers()) {
+                    *sum += weight * shape.of(value);
+                }
+            }
+            Ok(Values::Numbers(sum))
+        }
+    }
+}
+
+/// Evaluates a step at positions after a linear map.
+fn mapped(
+    steps: &[Step],
+    whole: Option<&Whole>,
+    places: Places<'_>,
+    input: usize,
+    map: &LinearMap,
+) -> Result<Values, RecipeError> {
+    let area = DVec2::from(map.area(places.area.into()));
+    // A scaled window is a window, in which fields render faster than at single positions.
+    if let At::Window(window) = places.at
+        && map.is_scale()
+        && let Some(scaled) = window.scaled(map.frequency)
+    {
+        let at = At::Window(&scaled);
+        let values = evaluate(steps, whole, Places { at, area }, &[input], &[])?;
+        let values = values.into_iter().next().expect("one step is wanted");
+        return Ok(Arc::unwrap_or_clone(values));
+    }
+    let mut positions = places.positions();
+    for position in &mut positions {
+        *position = map.position((*position).into()).into();
+    }
+    at_positions(steps, whole, input, &positions, area)
+}
+
+/// Evaluates a step at a list of positions, a chunk at a time.
+fn at_positions(
+    steps: &[Step],
+    whole: Option<&Whole>,
+    input: usize,
+    positions: &[DVec2],
+    area: DVec2,
+) -> Result<Values, RecipeError> {
+    let values = |positions| {
+        let at = At::Positions(positions);
+        evaluate(steps, whole, Places { at, area }, &[input], &[])
+    };
+    // The first chunk may be empty, so that the result has a value kind even without positions.
+    let (first, rest) = positions.split_at(CHUNK_POSITIONS.min(positions.len()));
+    let rest = rest.chunks(CHUNK_POSITIONS).map(values);
+    let chunks: Result<Vec<_>, _> = core::iter::once(values(first)).chain(rest).collect();
+    Ok(join(chunks?).swap_remove(0))
 }
 
 /// Displaces `positions` by `amount` times the vectors (x, y).

@@ -4,7 +4,7 @@ use super::{Picture, Watch};
 use crate::{RecipeError, Values};
 use dapple_color::LinearRgb;
 use dapple_pups::VectorTexture;
-use dapple_raster::{Field, Window, Wrap};
+use dapple_raster::{Field, FractalShape, Window, Wrap};
 use dapple_tile::Map;
 use glam::DVec2;
 use std::fmt;
@@ -18,13 +18,75 @@ pub(crate) enum Step {
     Colors(Arc<VectorTexture<3>>),
     Image(StretchedImage),
     Local(Local),
-    Warp {
-        input: usize,
-        by: [usize; 2],
-        amount: f64,
-        color: bool,
-    },
+    Moved(Moved),
     Global(Global),
+}
+
+/// A step that evaluates its input at other positions than its own.
+pub(crate) struct Moved {
+    pub(crate) input: usize,
+    pub(crate) color: bool,
+    pub(crate) positions: Positions,
+}
+
+/// The positions at which a [`Moved`] step evaluates its input.
+pub(crate) enum Positions {
+    /// Positions displaced by `amount` times the numbers of two steps.
+    Displaced { by: [usize; 2], amount: f64 },
+    /// Positions after a linear map.
+    Linear(LinearMap),
+    /// Positions times the frequency of each octave, whose values are summed.
+    Octaves {
+        /// Frequency and weight of each octave.
+        octaves: Vec<(f64, f32)>,
+        shape: FractalShape,
+    },
+}
+
+/// A linear map of positions: a rotation about the origin, then a scale for each axis, then an offset.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LinearMap {
+    /// Cosine and sine of the angle of rotation.
+    pub(crate) direction: [f64; 2],
+    pub(crate) frequency: [f64; 2],
+    pub(crate) offset: [f64; 2],
+}
+
+impl LinearMap {
+    /// Creates a map that scales positions along each axis.
+    pub(crate) fn scale(frequency: [f64; 2]) -> Self {
+        Self {
+            direction: [1.0, 0.0],
+            frequency,
+            offset: [0.0; 2],
+        }
+    }
+
+    /// Maps a vector; offsets do not apply.
+    pub(crate) fn vector(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [cos, sin] = self.direction;
+        let rotated = [x * cos + y * sin, y * cos - x * sin];
+        [0, 1].map(|axis| rotated[axis] * self.frequency[axis])
+    }
+
+    /// Maps a position.
+    pub(crate) fn position(&self, position: [f64; 2]) -> [f64; 2] {
+        let scaled = self.vector(position);
+        [0, 1].map(|axis| scaled[axis] + self.offset[axis])
+    }
+
+    /// Returns whether the map only scales.
+    pub(crate) fn is_scale(&self) -> bool {
+        self.direction == [1.0, 0.0] && self.offset == [0.0; 2]
+    }
+
+    /// Maps the width and height of the area around a position. The area of a pixel changes only by the scale.
+    pub(crate) fn area(&self, [width, height]: [f64; 2]) -> [f64; 2] {
+        let [cos, sin] = self.direction;
+        let side = |a: f64, b: f64| (a * cos * (a * cos) + b * sin * (b * sin)).sqrt();
+        let rotated = [side(width, height), side(height, width)];
+        [0, 1].map(|axis| rotated[axis] * self.frequency[axis].abs())
+    }
 }
 
 /// A step that computes each value from the values of the inputs at the same position.
@@ -68,6 +130,24 @@ pub(crate) struct StretchedImage {
     pub(crate) wrap: [Wrap; 2],
 }
 
+impl Moved {
+    /// Returns the steps that are evaluated at the positions of this step.
+    fn at_same_positions(&self) -> Vec<usize> {
+        match self.positions {
+            Positions::Displaced { by, .. } => by.to_vec(),
+            Positions::Linear(_) | Positions::Octaves { .. } => Vec::new(),
+        }
+    }
+
+    /// Returns how often the input is evaluated for a position.
+    pub(super) fn times(&self) -> usize {
+        match &self.positions {
+            Positions::Displaced { .. } | Positions::Linear(_) => 1,
+            Positions::Octaves { octaves, .. } => octaves.len(),
+        }
+    }
+}
+
 impl Tile<'_> {
     /// Returns a function that tells whether the caller's callback asks to stop.
     pub(crate) fn is_cancelled(&self) -> impl Fn() -> bool + Sync {
@@ -89,7 +169,7 @@ impl fmt::Debug for Step {
             Self::Colors(_) => "Colors",
             Self::Image(_) => "Image",
             Self::Local(_) => "Local",
-            Self::Warp { .. } => "Warp",
+            Self::Moved(_) => "Moved",
             Self::Global(_) => "Global",
         };
         f.debug_tuple(name).field(&self.inputs()).finish()
@@ -126,7 +206,7 @@ impl Step {
             Self::Color(_) | Self::Colors(_) => true,
             Self::Image(laid) => matches!(laid.picture, Picture::Colors(_)),
             Self::Local(Local { color, .. })
-            | Self::Warp { color, .. }
+            | Self::Moved(Moved { color, .. })
             | Self::Global(Global { color, .. }) => *color,
         }
     }
@@ -137,7 +217,11 @@ impl Step {
             Self::Local(Local { inputs, .. }) | Self::Global(Global { inputs, .. }) => {
                 inputs.clone()
             }
-            Self::Warp { input, by, .. } => vec![*input, by[0], by[1]],
+            Self::Moved(moved) => {
+                let mut inputs = vec![moved.input];
+                inputs.extend(moved.at_same_positions());
+                inputs
+            }
             _ => Vec::new(),
         }
     }
@@ -145,7 +229,7 @@ impl Step {
 
 /// Returns the steps to evaluate at the positions of `wanted`, in order.
 ///
-/// Three kinds of inputs are excluded: the displaced inputs of warps, which are evaluated at other positions; the
+/// Three kinds of inputs are excluded: the inputs of moved steps, which are evaluated at other positions; the
 /// inputs of steps that depend on the whole tile, which are evaluated beforehand; and the inputs of known steps.
 pub(super) fn needed(
     steps: &[Step],
@@ -154,7 +238,7 @@ pub(super) fn needed(
 ) -> Vec<usize> {
     reached(steps, wanted, |index| match &steps[index] {
         _ if is_known(index) => Vec::new(),
-        Step::Warp { by, .. } => by.to_vec(),
+        Step::Moved(moved) => moved.at_same_positions(),
         Step::Global(_) => Vec::new(),
         step => step.inputs(),
     })

@@ -226,7 +226,10 @@ impl Whole {
             return Err(RecipeError::new(RecipeErrorKind::Global { during: "yet" }));
         };
         match places.at {
-            At::Window(window) if window.origin == tile.origin && window.pixel == tile.pixel => {
+            At::Window(window)
+                if (window.origin, window.pixel, window.scale)
+                    == (tile.origin, tile.pixel, tile.scale) =>
+            {
                 Ok(match picture {
                     Picture::Numbers(raster) => Values::Numbers(self.pixels(raster, window)),
                     Picture::Colors(raster) => Values::Colors(self.pixels(raster, window)),

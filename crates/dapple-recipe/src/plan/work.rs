@@ -1,7 +1,7 @@
 //! Estimates the work for a recipe, and checks it against limits before any work is done.
 //!
-//! A few lines of a recipe can demand any number of control points, wavelet noise of any size, and nested warps. Each
-//! level of warps evaluates all its inputs once more.
+//! A few lines of a recipe can demand any number of control points, wavelet noise of any size, and nested warps and
+//! fractal sums. Each level of them evaluates all its inputs once more.
 
 use super::step::{Global, Step, needed};
 use crate::{RecipeError, RecipeErrorKind};
@@ -33,10 +33,11 @@ pub struct PlanLimits {
     /// 4096 × 4096 pixels.
     pub synthesized_pixels: u64,
     /// Maximum number of values computed for each pixel; 4096 by default. Each node counts as one value, and so does
-    /// each number or color that is an input. Inputs of a warp, or of a node that depends on the whole tile, count once
-    /// more for each such node, together with all that they depend on.
+    /// each number or color that is an input. Inputs of a node that evaluates them at other positions, or that depends
+    /// on the whole tile, count once more for each such node and octave, together with all that they depend on.
     pub values: u64,
-    /// Maximum depth of nested warps; 32 by default.
+    /// Maximum depth of nested nodes that evaluate their input at other positions (`warp`, `transform`, `fractal`); 32 by
+    /// default.
     pub warps: u64,
     /// Maximum total number of pixels in the images stored for nodes that depend on the whole tile, at the size of a
     /// bake; 2^29 by default.
@@ -125,7 +126,7 @@ impl<'a> WorkSum<'a> {
 struct Values {
     /// For each step, the number of values recomputed for it, in addition to its own value.
     under: Vec<f64>,
-    /// For each step, the depth of nested warps that ends at it; 0 unless the step is a warp.
+    /// For each step, the depth of nested moved steps that ends at it; 0 unless the step is one.
     warps: Vec<u64>,
 }
 
@@ -145,7 +146,12 @@ pub(super) fn check_steps(steps: &[Step], limits: &PlanLimits) -> Result<(), (us
         sum += 1.0 + values.under[index];
         check(what, sum, limits.values).map_err(|error| (index, error))?;
         let warps = values.warps[index] as f64;
-        check("warps one under another", warps, limits.warps).map_err(|error| (index, error))?;
+        check(
+            "nested warps, transforms and fractal sums",
+            warps,
+            limits.warps,
+        )
+        .map_err(|error| (index, error))?;
     }
     Ok(())
 }
@@ -155,19 +161,23 @@ impl Values {
     fn add(&mut self, before: &[Step], step: &Step) {
         // Find the steps that are evaluated separately for this one.
         let apart = match step {
-            Step::Warp { input, .. } => vec![*input],
+            Step::Moved(moved) => vec![moved.input],
             Step::Global(Global { inputs, .. }) => inputs.clone(),
             _ => Vec::new(),
         };
         let under = needed(before, &apart, |_| false);
-        self.under
-            .push(under.iter().map(|&index| 1.0 + self.under[index]).sum());
+        let times = match step {
+            Step::Moved(moved) => moved.times() as f64,
+            _ => 1.0,
+        };
+        let values: f64 = under.iter().map(|&index| 1.0 + self.under[index]).sum();
+        self.under.push(times * values);
         let warps = under
             .iter()
             .map(|&index| self.warps[index])
             .max()
             .unwrap_or(0);
-        let is_warp = u64::from(matches!(step, Step::Warp { .. }));
-        self.warps.push(is_warp * (warps + 1));
+        let is_moved = u64::from(matches!(step, Step::Moved(_)));
+        self.warps.push(is_moved * (warps + 1));
     }
 }

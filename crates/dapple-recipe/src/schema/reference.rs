@@ -6,9 +6,9 @@ use serde_json::{Map, Value};
 const HEAD: &str = "\
 # Options of recipes
 
-Every option of a recipe, with its kind, its range and its default. This page is made of the same types that recipes are
-read into, by `dapple recipe --reference`; `dapple recipe --schema` gives the same as JSON Schema, for editors. What nodes are
-for is in the [README](../README.md).
+Every option of a recipe, with its form, range and default. This page is generated from the types that recipes are read
+into, by `dapple recipe --reference`; `dapple recipe --schema` writes the same as JSON Schema, for editors. The
+[README](../README.md) describes what nodes are for.
 ";
 
 /// Renders the reference of a schema of recipes.
@@ -45,18 +45,18 @@ impl Reference<'_> {
             if table["properties"].is_object() {
                 self.options(page, table);
             } else {
-                let _ = write!(page, "\nIt is {}.\n", self.form(inner));
+                let _ = write!(page, "\nForm: {}.\n", self.form(inner));
             }
         }
     }
 
     /// Appends a table of a type's options.
     fn options(&self, page: &mut String, table: &Value) {
-        page.push_str("\n| option | what it is | form | default |\n|---|---|---|---|\n");
+        page.push_str("\n| option | meaning | form | default |\n|---|---|---|---|\n");
         for (name, option) in self.written(table) {
             let needed = list(&table["required"]).any(|needed| needed == name);
             let default = match &option["default"] {
-                _ if needed => "needed".to_owned(),
+                _ if needed => "required".to_owned(),
                 Value::Null => String::new(),
                 default => format!("`{}`", in_toml(default)),
             };
@@ -74,7 +74,7 @@ impl Reference<'_> {
             if form["properties"].is_object() {
                 self.options(page, form);
             } else {
-                let _ = write!(page, "\nIt is {}.\n", self.form(form));
+                let _ = write!(page, "\nForm: {}.\n", self.form(form));
             }
         }
     }

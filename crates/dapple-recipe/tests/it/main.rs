@@ -4,6 +4,7 @@ mod bakes;
 mod copies;
 mod corners;
 mod memory;
+mod moved;
 mod pictures;
 mod points;
 mod program;

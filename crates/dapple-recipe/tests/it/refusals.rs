@@ -320,7 +320,13 @@ fn warps_of_warps_are_refused_before_they_take_forever() {
     assert_eq!(what, "values for each pixel", "{node:?}");
     let deep = chain(33, |_| "0".to_owned());
     let found = too_much(&deep, &limits);
-    assert_eq!(found, ("warps one under another", Some("n33".to_owned())));
+    assert_eq!(
+        found,
+        (
+            "nested warps, transforms and fractal sums",
+            Some("n33".to_owned())
+        )
+    );
     let many = format!("[nodes]\na = {{ add = {:?} }}\n", vec![1; 5000]);
     assert_eq!(too_much(&many, &limits).0, "values for each pixel");
 }

@@ -1,0 +1,48 @@
+//! Clamps numbers to a range.
+
+use super::NodeKind;
+use crate::plan::{Builder, Step};
+use crate::{Input, RecipeError};
+use dapple_raster::{Range, range};
+use serde::{Deserialize, Serialize};
+
+/// Number clamped to a range.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Clamp {
+    /// Number to clamp.
+    pub input: Input,
+    /// Lower bound.
+    #[serde(default)]
+    pub low: f32,
+    /// Upper bound, at least the lower bound.
+    #[serde(default = "one")]
+    pub high: f32,
+}
+
+fn one() -> f32 {
+    1.0
+}
+
+const BOUND: Range = range!(finite);
+
+impl NodeKind for Clamp {
+    fn inputs(&self) -> Vec<&Input> {
+        vec![&self.input]
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        let (low, high) = (self.low, self.high);
+        for bound in [low, high] {
+            RecipeError::check_in(BOUND, "bound", bound.into())?;
+        }
+        RecipeError::check(
+            low <= high,
+            "upper bound",
+            high.into(),
+            "at least the lower bound",
+        )?;
+        plan.each(&self.input, move |value| value.clamp(low, high))
+    }
+}

@@ -1,0 +1,83 @@
+//! Sums a node at several scales.
+
+use super::NodeKind;
+use crate::plan::{Builder, Moved, Positions, Step};
+use crate::{Input, RecipeError, RecipeErrorKind};
+use dapple_raster::{FractalShape, Range, range};
+use serde::{Deserialize, Serialize};
+
+/// Fractal sum of a node: the node plus weaker copies of it at higher frequencies.
+///
+/// For noise with separate octaves, use the octaves of `noise` or `worley`. The copies of one node coincide at the
+/// origin.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct FractalOf {
+    /// Number that is summed. A node that depends on the whole tile is interpolated between its pixels.
+    pub input: Input,
+    /// Number of octaves.
+    #[serde(default = "octaves")]
+    #[cfg_attr(feature = "schema", schemars(transform = { OCTAVES }))]
+    pub octaves: u32,
+    /// Amplitude of an octave relative to the previous one.
+    #[serde(default = "gain", alias = "persistence")]
+    #[cfg_attr(feature = "schema", schemars(transform = { GAIN }))]
+    pub gain: f64,
+    /// Frequency of an octave relative to the previous one; a whole number where the recipe repeats.
+    #[serde(default = "lacunarity")]
+    #[cfg_attr(feature = "schema", schemars(transform = { LACUNARITY }))]
+    pub lacunarity: f64,
+    /// Function applied to the values of each octave, for values centered at 0.
+    #[serde(default)]
+    pub shape: FractalShape,
+}
+
+fn octaves() -> u32 {
+    4
+}
+
+fn gain() -> f64 {
+    0.5
+}
+
+fn lacunarity() -> f64 {
+    2.0
+}
+
+const OCTAVES: Range = range!(from 1 to 32);
+const GAIN: Range = range!(from -1 to 1);
+const LACUNARITY: Range = range!(from 1 to 16);
+
+impl NodeKind for FractalOf {
+    fn inputs(&self) -> Vec<&Input> {
+        vec![&self.input]
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        RecipeError::check_in(OCTAVES, "number of octaves", self.octaves.into())?;
+        RecipeError::check_in(GAIN, "gain", self.gain)?;
+        RecipeError::check_in(LACUNARITY, "lacunarity", self.lacunarity)?;
+        if plan.domain().wrap.contains(&true) && self.lacunarity.fract() != 0.0 {
+            return Err(RecipeError::new(RecipeErrorKind::Conflict {
+                rule: "where the recipe repeats, the `lacunarity` of `fractal` must be a whole number",
+            }));
+        }
+        let (mut frequency, mut weight) = (1.0, 1.0);
+        let octaves = (0..self.octaves).map(|_| {
+            let octave = (frequency, weight as f32);
+            frequency *= self.lacunarity;
+            weight *= self.gain;
+            octave
+        });
+        let octaves = octaves.collect();
+        Ok(Step::Moved(Moved {
+            input: plan.number(&self.input)?,
+            color: false,
+            positions: Positions::Octaves {
+                octaves,
+                shape: self.shape,
+            },
+        }))
+    }
+}
