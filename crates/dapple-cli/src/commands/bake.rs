@@ -8,6 +8,7 @@ mod maps;
 mod material;
 mod presets;
 mod recipes;
+mod seeds;
 
 use crate::args::{Frame, OutputArgs, Region, Shard, Size};
 use crate::baking::{STILL, advise, advise_shard, read_images, read_recipe, report};
@@ -18,14 +19,16 @@ use crate::job::{Context, Job};
 use crate::preview::{self, Thing};
 use crate::progress::Progress;
 use crate::shards::{List, Wanted};
-use crate::words::NamedValueParser;
+use crate::words::{NamedValueParser, unknown};
 use anyhow::Result;
 use batch::Batch;
 use claim::claim;
 use dapple::recipe::{
-    Bake, BakeMemory, BakeOptions, Images, MapKind, Plan, PlanCache, PlanLimits, Recipe, Samples,
+    Bake, BakeMemory, BakeOptions, Images, Input, MapKind, Material, Plan, PlanCache, PlanLimits,
+    Recipe, Samples,
 };
 use dapple::tile::Map;
+use maps::Maps;
 pub(super) use material::{MaterialArgs, Setting};
 use presets::Preset;
 use serde::Serialize;
@@ -44,6 +47,8 @@ Examples:
   dapple bake craters --maps height --size 4096x256 --banded -o wide.exr
   dapple bake rock ice marble -o all/ --size 256 --preview
   dapple bake flagstone --set joint.seed=5 --set material.relief=0.6 -o deep/
+  dapple bake rock --seed 1-20 --size 256 --maps albedo -o variants/
+  dapple bake flagstone --node stones -o stones.png
   dapple bake 'my-*.toml' --keep-going --maps albedo --sheet -o mine/
   dapple bake rock --preset unity -o Assets/Rock/
   dapple bake rock -o rock.glb
@@ -77,6 +82,10 @@ pub(crate) struct Args {
     /// Write the files that a program expects: names, channel packing, bit depth and normal direction.
     #[arg(long, value_name = "PROGRAM", value_parser = Preset::parser(), conflicts_with_all = ["maps", "format"])]
     preset: Option<&'static Preset>,
+
+    /// Bake this node alone, as a height or, if it has colors, as an albedo map.
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["preset", "maps", "shard", "preview"])]
+    node: Option<String>,
 
     /// Bake only this region, in pixels: bit for bit a crop of the whole.
     #[arg(long, value_name = "X,Y,W,H")]
@@ -127,8 +136,10 @@ pub(crate) struct Args {
     files: OutputArgs,
 }
 
-/// A recipe to bake, with the directory of its images and, for a shard, its list.
+/// A recipe to bake, with its options, the directory of its images and, for a shard, its list.
 struct Work {
+    /// The options, with a single seed.
+    args: Args,
     recipe: Recipe,
     folder: PathBuf,
     /// The list of the recipe's shards; `None` unless a shard is baked.
@@ -144,22 +155,35 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.check_document()?;
     args.check_samples()?;
     let names = recipes::expanded(&args.recipes)?;
-    let files = args.files_for(names.len())?;
-    let mut batch = Batch::new(names.len(), args.keep_going, context);
+    let variants = args.material.variants();
+    let n_works = names.len() * variants.len();
+    let files = args.files_for(n_works)?;
+    let mut batch = Batch::new(n_works, args.keep_going, context);
     let mut works = Vec::new();
-    for name in &names {
+    for (name, (seed, material)) in names
+        .iter()
+        .flat_map(|name| variants.iter().map(move |variant| (name, variant)))
+    {
+        let args = Args {
+            material: material.clone(),
+            ..args.clone()
+        };
+        let title = match seed {
+            Some(seed) => format!("{name} with seed {seed}"),
+            None => name.clone(),
+        };
         // Read all recipes, and check that all files can be claimed, before the work begins.
-        let work = Work::read(name, args).and_then(|work| {
-            for args in args.pictures() {
+        let work = Work::read(name, args, seed.as_deref()).and_then(|work| {
+            for args in work.args.pictures() {
                 claim(&args, &files, &work, &mut Job::new(context, "bake", &files))?;
             }
-            Ok((name, work))
+            Ok(work)
         });
-        works.extend(batch.checked(name, work)?);
+        works.extend(batch.checked(&title, work)?.map(|work| (title, work)));
     }
     // Refuse recipes whose files would have the same names.
     for (index, (name, work)) in works.iter().enumerate() {
-        let is_same = |(_, other): &(&String, Work)| other.recipe.name == work.recipe.name;
+        let is_same = |(_, other): &(String, Work)| other.recipe.name == work.recipe.name;
         if works[..index].iter().any(is_same) {
             let message = format!(
                 "{name} and another recipe are both called {}",
@@ -172,7 +196,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let rows = u64::from(args.n_rows()?) * u64::from(args.frames.unwrap_or(1));
     let progress = Progress::bar("baking", rows * works.len() as u64, context);
     for (index, (name, work)) in (0..).zip(&works) {
-        let baked = work.bake(args, &files, context, &progress);
+        let baked = work.bake(&files, context, &progress);
         batch.checked(name, baked)?;
         progress.set(rows * (index + 1));
     }
@@ -201,17 +225,19 @@ pub(super) fn bake_with(
     let args = <Args as clap::FromArgMatches>::from_arg_matches(&matches)?;
     args.check_document()?;
     args.check_samples()?;
+    args.material.check_single()?;
     let mut recipe = recipe.clone();
     args.change(&mut recipe)?;
     let (folder, list) = (folder.to_owned(), None);
+    let files = args.files_for(1)?;
+    let progress = Progress::bar("baking", args.n_rows()?.into(), context).until(stop);
     let work = Work {
+        args,
         recipe,
         folder,
         list,
     };
-    let files = args.files_for(1)?;
-    let progress = Progress::bar("baking", args.n_rows()?.into(), context).until(stop);
-    work.bake(&args, &files, context, &progress)
+    work.bake(&files, context, &progress)
 }
 
 /// Returns the names of the presets, with a sentence about each.
@@ -234,9 +260,16 @@ struct Made {
 const MEMORY: usize = 1 << 28;
 
 impl Work {
-    fn read(name: &str, args: &Args) -> Result<Self> {
+    /// Reads a recipe and applies the options. `seed` is the label of the seed if there are several.
+    fn read(name: &str, mut args: Args, seed: Option<&str>) -> Result<Self> {
         let (mut recipe, folder) = read_recipe(name)?;
         args.change(&mut recipe)?;
+        if let Some(node) = args.node.clone() {
+            args.material.maps = Some(Maps(vec![args.show_node(&node, &mut recipe, folder)?]));
+        }
+        if let Some(seed) = seed {
+            recipe.name = format!("{}_{seed}", recipe.name);
+        }
         let wanted = args.shard.map(|shard| Wanted {
             size: args.material.size,
             samples: args.material.samples,
@@ -251,23 +284,18 @@ impl Work {
             list: list.transpose()?,
             folder: folder.to_owned(),
             recipe,
+            args,
         })
     }
 
     /// Bakes all frames of a looping animation, or a single image. Nodes that do not change with time are evaluated
     /// once.
-    fn bake(
-        &self,
-        args: &Args,
-        files: &OutputArgs,
-        context: &Context,
-        progress: &Progress,
-    ) -> Result<()> {
+    fn bake(&self, files: &OutputArgs, context: &Context, progress: &Progress) -> Result<()> {
         let mut made = Made {
             images: None,
-            cache: args.frames.map(|_| PlanCache::new(MEMORY)),
+            cache: self.args.frames.map(|_| PlanCache::new(MEMORY)),
         };
-        for args in args.pictures() {
+        for args in self.args.pictures() {
             let job = Job::new(context, "bake", files);
             self.bake_picture(&args, job, &mut made, progress)?;
         }
@@ -434,7 +462,8 @@ impl Args {
         // Append a slash, so that the output is a directory for the files of each recipe.
         let folder = files.folder(n_recipes).map(|folder| folder.join(""));
         files.output = Some(folder.ok_or_else(|| {
-            usage("several recipes need a folder").hint("let -o end with a slash, as in -o out/")
+            usage("several recipes or seeds need a folder")
+                .hint("let -o end with a slash, as in -o out/")
         })?);
         Ok(files)
     }
@@ -451,6 +480,30 @@ impl Args {
     fn n_rows(&self) -> Result<u32> {
         let size = self.part()?.map_or(self.material.size.0, |part| part.size);
         Ok(if self.sheet { 2 * size[1] } else { size[1] })
+    }
+
+    /// Replaces the recipe's material by a single node, and returns the map that shows the node.
+    fn show_node(&self, node: &str, recipe: &mut Recipe, folder: &Path) -> Result<MapKind> {
+        let images = read_images(recipe, folder, self.material.finite)?;
+        let plan = Plan::new(recipe, &images, 0.0).map_err(|error| self.material.blame(error))?;
+        if !plan.node_names().any(|name| name == node) {
+            let names: Vec<_> = plan.node_names().collect();
+            return Err(usage(unknown("node", node, &names, "")));
+        }
+        let is_color = plan.is_color(node);
+        recipe.name = format!("{}_{node}", recipe.name);
+        recipe.material = Material {
+            height: match is_color {
+                true => Input::Number(0.5),
+                false => Input::from(node),
+            },
+            albedo: is_color.then(|| Input::from(node)),
+            ..Material::default()
+        };
+        Ok(match is_color {
+            true => MapKind::Albedo,
+            false => MapKind::Height,
+        })
     }
 
     /// Applies the options of the command line to the recipe.

@@ -107,6 +107,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         return Err(error.hint("put it into a file"));
     }
     let (mut recipe, folder) = read_recipe(&args.recipe)?;
+    args.material.check_single()?;
     args.material.change(&mut recipe, None)?;
     let maps = args.material.map_kinds();
     let wanted = Wanted {

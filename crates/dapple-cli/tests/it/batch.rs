@@ -65,6 +65,78 @@ fn several_recipes_and_patterns_are_baked_in_one_call() {
 }
 
 #[test]
+fn a_range_of_seeds_bakes_a_variant_with_each() {
+    let folder = Folder::new("seeds");
+    let bake = ["bake", "rock", "--maps", "height", "--size", "16"];
+    let run = folder.run(&[&bake[..], &["--seed", "9-11", "-o", "all/"]].concat());
+    assert_done(&run, "three seeds");
+    assert_eq!(
+        names(&folder, "all"),
+        [
+            "rock_09_height.png",
+            "rock_10_height.png",
+            "rock_11_height.png"
+        ]
+    );
+    assert_done(
+        &folder.run(&[&bake[..], &["--seed", "10", "-o", "ten.png"]].concat()),
+        "one seed",
+    );
+    let bytes = |name: &str| fs::read(folder.path(name)).unwrap();
+    assert_eq!(bytes("ten.png"), bytes("all/rock_10_height.png"));
+    assert_ne!(bytes("ten.png"), bytes("all/rock_11_height.png"));
+    for (wrong, part) in [
+        (
+            &["bake", "rock", "--seed", "3-1", "-o", "x/"][..],
+            "below 3",
+        ),
+        (
+            &["bake", "rock", "--seed", "1-2", "-o", "x.png"],
+            "need a folder",
+        ),
+        (&["shards", "rock", "--seed", "1-2"], "one seed is needed"),
+    ] {
+        assert_refused(&folder.run(wrong), 2, part, part);
+    }
+}
+
+#[test]
+fn a_node_is_baked_alone_as_heights_or_colors() {
+    let folder = Folder::new("nodes");
+    let text = "dapple = 1\nname = \"two\"\n[nodes]\na = { noise = { octaves = 2 } }\nb = { ramp = { input = \"a\", \
+        palette = \"ember\" } }\n[material]\n";
+    fs::write(folder.path("two.toml"), text).unwrap();
+    for (node, head) in [("a", "height = \"a\""), ("b", "albedo = \"b\"")] {
+        let bake = [
+            "bake", "two.toml", "--size", "24", "-o", "out/", "--node", node,
+        ];
+        assert_done(&folder.run(&bake), node);
+        fs::write(folder.path("whole.toml"), format!("{text}{head}\n")).unwrap();
+        let map = head.split(' ').next().unwrap();
+        let file = format!("{node}.png");
+        let bake = [
+            "bake",
+            "whole.toml",
+            "--size",
+            "24",
+            "--maps",
+            map,
+            "-o",
+            &file,
+        ];
+        assert_done(&folder.run(&bake), map);
+        let bytes = |name: &str| fs::read(folder.path(name)).unwrap();
+        assert_eq!(
+            bytes(&file),
+            bytes(&format!("out/two_{node}.png")),
+            "{node}"
+        );
+    }
+    let wrong = ["bake", "two.toml", "--node", "c", "-o", "x/"];
+    assert_refused(&folder.run(&wrong), 2, "unknown node \"c\"", "no such node");
+}
+
+#[test]
 fn a_batch_keeps_going_if_it_is_told_to() {
     let folder = with_recipes("keep-going");
     fs::write(folder.path("a-bad.toml"), "dapple = 1\nflowers = 3\n").unwrap();

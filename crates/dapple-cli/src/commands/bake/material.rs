@@ -2,7 +2,8 @@
 //! green in normal maps.
 
 use super::maps::Maps;
-use crate::args::{FiniteArgs, SamplesArgs, Size, seed};
+use super::seeds::Seeds;
+use crate::args::{FiniteArgs, SamplesArgs, Size};
 use crate::baking::advise;
 use crate::error::{Hint, usage};
 use crate::words::NamedValueParser;
@@ -95,9 +96,9 @@ pub(in crate::commands) struct MaterialArgs {
     #[arg(long, value_name = "NODE.OPTION=VALUE")]
     set: Vec<Setting>,
 
-    /// Random seed [default: the recipe's].
-    #[arg(long, value_name = "N", value_parser = seed)]
-    seed: Option<u64>,
+    /// Random seed, or a range such as 1-20 for a variant with each seed [default: the recipe's].
+    #[arg(long, value_name = "N[-M]")]
+    seed: Option<Seeds>,
 
     /// Direction of green in normal maps [default: the preset's, the recipe's, or opengl].
     #[arg(long, value_name = "WAY", value_parser = NamedValueParser::<NormalY>::all())]
@@ -118,6 +119,39 @@ impl MaterialArgs {
         self.maps.as_ref().map_or(&USUAL, |maps| &maps.0)
     }
 
+    /// Returns copies of the options with a single seed each, with the labels of the seeds; a single copy without a
+    /// label unless `--seed` is a range.
+    pub(super) fn variants(&self) -> Vec<(Option<String>, Self)> {
+        match self.seed.filter(|seeds| seeds.are_several()) {
+            None => vec![(None, self.clone())],
+            Some(seeds) => {
+                let variant = |seed| {
+                    let one = Self {
+                        seed: Some(Seeds::one(seed)),
+                        ..self.clone()
+                    };
+                    (Some(seeds.label(seed)), one)
+                };
+                seeds.all().map(variant).collect()
+            }
+        }
+    }
+
+    /// Refuses a range of seeds.
+    ///
+    /// # Errors
+    ///
+    /// If `--seed` is a range of several seeds.
+    pub(in crate::commands) fn check_single(&self) -> Result<()> {
+        match self.seed.filter(|seeds| seeds.are_several()) {
+            None => Ok(()),
+            Some(seeds) => Err(usage(format!(
+                "--seed {seeds} is a range, and one seed is needed here"
+            ))
+            .hint("`dapple bake` takes a range, and bakes a variant with each seed")),
+        }
+    }
+
     /// Applies the options to a recipe. `normal_y` is the direction of green in the preset, which `--normal-y`
     /// overrides.
     ///
@@ -132,8 +166,8 @@ impl MaterialArgs {
         for setting in &self.set {
             setting.apply(recipe)?;
         }
-        if let Some(seed) = self.seed {
-            recipe.seed = Seed(seed);
+        if let Some(seeds) = self.seed {
+            recipe.seed = Seed(seeds.first);
         }
         if let Some(relief) = self.relief {
             recipe.material.relief = relief;
