@@ -12,7 +12,7 @@ mod size;
 
 pub(crate) use alpha::{Alpha, AlphaArgs, image_alpha};
 pub(crate) use frame::Frame;
-pub(crate) use numbers::Numbers;
+pub(crate) use numbers::{Numbers, numbers_of};
 pub(crate) use ramp::RampArg;
 pub(crate) use read::{FiniteArgs, NonFinite, ReadArgs};
 pub(crate) use region::Region;

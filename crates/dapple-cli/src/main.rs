@@ -24,6 +24,7 @@ mod finite;
 mod input;
 mod job;
 mod layers;
+mod node;
 mod output;
 mod preview;
 mod progress;

@@ -7,15 +7,33 @@ use std::str::FromStr;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Numbers<T, const N: usize>(pub(crate) [T; N]);
 
+/// Parses comma-separated numbers: `count` of them, or any number.
+///
+/// # Errors
+///
+/// If a part is not a number, or their count is another.
+pub(crate) fn numbers_of<T: FromStr>(text: &str, count: Option<usize>) -> Result<Vec<T>, String> {
+    let numbers: Result<Vec<T>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    match (numbers, count) {
+        (Ok(numbers), None) => Ok(numbers),
+        (Ok(numbers), Some(count)) if numbers.len() == count => Ok(numbers),
+        (_, None) => Err(format!(
+            "{text:?} is not a list of numbers with commas between them"
+        )),
+        (_, Some(count)) => Err(format!(
+            "{text:?} is not {count} numbers with commas between them"
+        )),
+    }
+}
+
 impl<T: FromStr, const N: usize> FromStr for Numbers<T, N> {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let numbers: Result<Vec<T>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-        let numbers: Option<[T; N]> = numbers.ok().and_then(|numbers| numbers.try_into().ok());
-        numbers
-            .map(Self)
-            .ok_or_else(|| format!("{text:?} is not {N} numbers with commas between them"))
+        let numbers: [T; N] = numbers_of(text, Some(N))?
+            .try_into()
+            .map_err(|_| String::new())?;
+        Ok(Self(numbers))
     }
 }
 

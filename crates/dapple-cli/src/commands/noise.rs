@@ -4,6 +4,7 @@ use crate::args::ImageArgs;
 use crate::error::Exit;
 use crate::field::{Field, FieldArgs, check_whole_cells, draw, extent_of};
 use crate::job::{Context, eprintln_if_possible};
+use crate::node::{Flag, NodeArgs, NodeFlags};
 use anyhow::Result;
 use dapple::recipe::{FractalBasis, FractalNode, Images, Node};
 use serde::Serialize;
@@ -33,19 +34,9 @@ pub(crate) struct Args {
     )]
     cells: f64,
 
-    /// Number of octaves, each twice as fine as the previous one, from 1 to 16.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16), help_heading = "Texture")]
-    octaves: u32,
-
-    /// Amplitude of an octave relative to the previous one, above 0 up to 1.
-    #[arg(
-        long,
-        alias = "persistence",
-        value_name = "PART",
-        default_value_t = 0.5,
-        help_heading = "Texture"
-    )]
-    gain: f64,
+    #[command(flatten)]
+    #[serde(flatten)]
+    node: NodeArgs<NoiseFlags>,
 
     #[command(flatten)]
     field: FieldArgs,
@@ -55,24 +46,39 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
+/// The options of the node `noise` of recipes.
+#[derive(Clone, Debug)]
+struct NoiseFlags;
+
+impl NodeFlags for NoiseFlags {
+    const KIND: &'static str = "noise";
+    const FLAGS: &'static [Flag] = &[
+        Flag::new("octaves", "octaves").with_default("1"),
+        Flag::none("basis"),
+        Flag::none("frequency"),
+        Flag::none("seed"),
+    ];
+}
+
 /// Runs the subcommand.
 ///
 /// # Errors
 ///
 /// If options conflict or are out of range, or writing fails.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
-    let node = FractalNode {
-        basis: FractalBasis::Gradient,
-        frequency: 1.0,
-        octaves: args.octaves,
-        gain: args.gain,
-        seed: None,
+    let node = match args.node.node()? {
+        Node::Noise(node) => FractalNode {
+            basis: FractalBasis::Gradient,
+            frequency: 1.0,
+            ..node
+        },
+        _ => FractalNode::default(),
     };
     let spaces = args.field.spaces()?;
     let extent = extent_of(spaces, args.cells);
     check_whole_cells(extent, args.field.wrap.flags(), "--cells")?;
     let pixels = spaces.0.into_iter().min().unwrap_or(1);
-    if let Some(octave) = first_below_a_pixel(args.cells, args.octaves, pixels)
+    if let Some(octave) = first_below_a_pixel(args.cells, node.octaves, pixels)
         && !context.quiet
     {
         eprintln_if_possible(&format!(

@@ -4,6 +4,7 @@ use crate::args::{ImageArgs, Size};
 use crate::error::{Exit, Hint, usage};
 use crate::field::{Field, FieldArgs, draw, extent_of};
 use crate::job::Context;
+use crate::node::{Flag, NodeArgs, NodeFlags};
 use anyhow::Result;
 use dapple::recipe::{Images, Node, WaveletNode};
 use serde::Serialize;
@@ -48,9 +49,9 @@ pub(crate) struct Args {
     )]
     gain: f64,
 
-    /// Weight of each band, coarsest first; replaces --octaves and --gain.
-    #[arg(long, value_name = "W,W,…", value_delimiter = ',', allow_hyphen_values = true, conflicts_with_all = ["octaves", "gain"], help_heading = "Texture")]
-    weights: Vec<f32>,
+    #[command(flatten)]
+    #[serde(flatten)]
+    node: NodeArgs<WaveletFlags>,
 
     #[command(flatten)]
     field: FieldArgs,
@@ -60,13 +61,28 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
+/// The options of the node `wavelet` of recipes.
+#[derive(Clone, Debug)]
+struct WaveletFlags;
+
+impl NodeFlags for WaveletFlags {
+    const KIND: &'static str = "wavelet";
+    const FLAGS: &'static [Flag] = &[
+        Flag::none("frequency"),
+        Flag::none("seed"),
+        Flag::new("weights", "weights")
+            .without_default()
+            .conflicting(&["octaves", "gain"]),
+    ];
+}
+
 /// Runs the subcommand.
 ///
 /// # Errors
 ///
 /// If an option is out of range, or writing fails.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
-    let weights = args.weights();
+    let weights = args.weights()?;
     let variance: f64 = weights
         .iter()
         .map(|&weight| f64::from(weight) * f64::from(weight))
@@ -142,15 +158,15 @@ fn greatest_common_divisor(a: u32, b: u32) -> u32 {
 }
 
 impl Args {
-    fn weights(&self) -> Vec<f32> {
-        if !self.weights.is_empty() {
-            return self.weights.clone();
+    fn weights(&self) -> Result<Vec<f32>> {
+        if let Node::Wavelet(node) = self.node.node()?
+            && self.node.is_given("weights")
+        {
+            return Ok(node.weights);
         }
         let weights = std::iter::successors(Some(1.0), |weight| Some(weight * self.gain));
-        weights
-            .take(self.octaves as usize)
-            .map(|weight| weight as f32)
-            .collect()
+        let weights = weights.take(self.octaves as usize);
+        Ok(weights.map(|weight| weight as f32).collect())
     }
 }
 

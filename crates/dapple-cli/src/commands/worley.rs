@@ -1,14 +1,14 @@
 //! `dapple worley`: renders Worley's cellular basis.
 
-use crate::args::{Extent, ImageArgs, Numbers};
+use crate::args::{Extent, ImageArgs};
 use crate::error::{Exit, Hint};
 use crate::field::{Field, FieldArgs, check_whole_cells, draw, extent_of};
 use crate::job::Context;
-use crate::words::{NamedValueParser, unknown, with_underscores};
+use crate::node::{Flag, NodeArgs, NodeFlags};
 use anyhow::Result;
 use dapple::hash::Seed;
 use dapple::recipe::{Images, Motion, Node, WorleyNode, WorleyValue};
-use dapple::worley::{Combination, Metric, OctaveSeeds, Octaves, Scatter, Worley2};
+use dapple::worley::Worley2;
 use serde::Serialize;
 
 const EXAMPLES: &str = "\
@@ -25,29 +25,13 @@ Examples:
 Values are distances in cells. In PNG the range that 998 of 1000 places have becomes black to
 white, measured over the texture and not over the picture; --range says otherwise.";
 
-/// The help text of `--value`.
-const VALUE: &str = "\
-The value that is drawn: f1, f2, f3, f4, f2_minus_f1, f1_plus_f2, f3_minus_f1, f3_minus_f2, f4_minus_f1, f4_minus_f3, \
-2f3_minus_f2_minus_f1, cell_value (a random gray for each cell), or edge_distance";
-
 /// Draw Worley's cellular basis: distances to the nearest of scattered feature points.
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    // The help is a constant, since names in a doc comment would need markup.
-    #[arg(long, value_name = "VALUE", default_value = "f1",
-        help = VALUE, value_parser = value, help_heading = "Texture")]
-    value: WorleyValue,
-
-    /// Coefficients of F1 to F4, instead of --value.
-    #[arg(
-        long,
-        value_name = "C1,C2,C3,C4",
-        allow_hyphen_values = true,
-        conflicts_with = "value",
-        help_heading = "Texture"
-    )]
-    coefficients: Option<Numbers<f32, 4>>,
+    #[command(flatten)]
+    #[serde(flatten)]
+    node: NodeArgs<WorleyFlags>,
 
     /// Number of cells across the shorter side of the image.
     #[arg(
@@ -63,69 +47,6 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N[xM]", help_heading = "Texture")]
     period: Option<Extent>,
 
-    /// Distance metric.
-    #[arg(long, value_name = "METRIC", default_value = "euclidean", value_parser = NamedValueParser::of(Metric::NAMED), help_heading = "Texture")]
-    metric: Metric,
-
-    /// Exponent of the Minkowski metric, from 1 to 10; replaces --metric.
-    #[arg(
-        long,
-        value_name = "P",
-        conflicts_with = "metric",
-        help_heading = "Texture"
-    )]
-    minkowski: Option<f32>,
-
-    /// Mean number of feature points per cell, from 1/64 to 64.
-    #[arg(long, value_name = "N", default_value_t = Scatter::DENSITY, help_heading = "Texture")]
-    density: f64,
-
-    /// One feature point per cell, jittered from 0 (a grid) to 1 (anywhere); replaces --density.
-    #[arg(
-        long,
-        value_name = "PART",
-        conflicts_with = "density",
-        help_heading = "Texture"
-    )]
-    jitter: Option<f64>,
-
-    /// Number of octaves to sum, from 1 to 32.
-    #[arg(long, value_name = "N", help_heading = "Texture")]
-    octaves: Option<u32>,
-
-    /// Frequency ratio of successive octaves, from 1 to 16; a whole number if the image repeats.
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 2.0,
-        requires = "octaves",
-        help_heading = "Texture"
-    )]
-    lacunarity: f64,
-
-    /// Feature points of octaves: separate, or shared as in Worley's paper.
-    #[arg(
-        long,
-        value_name = "SEEDS",
-        default_value = "own",
-        value_parser = NamedValueParser::of([("own", OctaveSeeds::Own), ("same", OctaveSeeds::Same)]),
-        requires = "octaves",
-        help_heading = "Texture"
-    )]
-    octave_seeds: OctaveSeeds,
-
-    /// Amplitude of an octave relative to the previous one, from -1 to 1.
-    #[arg(
-        long,
-        visible_alias = "persistence",
-        allow_negative_numbers = true,
-        value_name = "PART",
-        default_value_t = 0.5,
-        requires = "octaves",
-        help_heading = "Texture"
-    )]
-    gain: f64,
-
     /// Number of frames of a loop, a moving slice through 4-D cells.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), help_heading = "Loop")]
     frames: Option<u32>,
@@ -140,6 +61,39 @@ pub(crate) struct Args {
     #[command(flatten)]
     #[serde(skip)]
     image: ImageArgs,
+}
+
+/// The options of the node `worley` of recipes.
+#[derive(Clone, Debug)]
+struct WorleyFlags;
+
+impl NodeFlags for WorleyFlags {
+    const KIND: &'static str = "worley";
+    const FLAGS: &'static [Flag] = &[
+        Flag::new("value", "value"),
+        Flag::new("value", "coefficients")
+            .of_numbers()
+            .with_help("Coefficients of F1 to F4; replaces --value")
+            .conflicting(&["value"]),
+        Flag::new("metric", "metric"),
+        Flag::new("metric/minkowski", "minkowski")
+            .with_help("Exponent of the Minkowski metric, from 1 to 10; replaces --metric")
+            .conflicting(&["metric"]),
+        Flag::new("scatter/poisson/density", "density"),
+        Flag::new("scatter/jittered/jitter", "jitter")
+            .with_help(
+                "One feature point per cell, offset from its center by 0 to 1; replaces --density",
+            )
+            .conflicting(&["density"]),
+        Flag::new("octaves/count", "octaves").without_default(),
+        Flag::new("octaves/lacunarity", "lacunarity").requiring("octaves"),
+        Flag::new("octaves/gain", "gain").requiring("octaves"),
+        Flag::new("octaves/seeds", "octave-seeds").requiring("octaves"),
+        Flag::none("frequency"),
+        Flag::none("range"),
+        Flag::none("motion"),
+        Flag::none("seed"),
+    ];
 }
 
 /// Runs the subcommand.
@@ -168,35 +122,15 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 
 impl Args {
     fn node(&self) -> Result<WorleyNode> {
-        let metric = self.minkowski.map_or(self.metric, Metric::Minkowski);
-        let scatter = match self.jitter {
-            Some(jitter) => Scatter::Jittered { jitter },
-            None => Scatter::Poisson {
-                density: self.density,
-            },
-        };
-        let octaves = self.octaves.map(|count| Octaves {
-            count,
-            lacunarity: self.lacunarity,
-            gain: self.gain,
-            seeds: self.octave_seeds,
-        });
-        let value = match self.coefficients {
-            Some(Numbers(coefficients)) => WorleyValue::Combination(Combination::new(coefficients)),
-            None => self.value,
+        let node = match self.node.node()? {
+            Node::Worley(node) => node,
+            _ => WorleyNode::default(),
         };
         let motion = self.frames.map(|_| Motion {
             cells: self.loop_cells,
             z: 0.0,
         });
-        Ok(WorleyNode {
-            value,
-            metric,
-            scatter,
-            octaves,
-            motion,
-            ..WorleyNode::default()
-        })
+        Ok(WorleyNode { motion, ..node })
     }
 
     /// Returns the values that are drawn as black and white. They are measured on a texture with the same options that
@@ -222,9 +156,4 @@ impl Args {
             [range[0], range[0] + 1.0]
         })
     }
-}
-
-fn value(text: &str) -> Result<WorleyValue, String> {
-    WorleyValue::from_name(&with_underscores(text))
-        .ok_or_else(|| unknown("value", text, &WorleyValue::names(), ""))
 }

@@ -1,0 +1,497 @@
+//! Options of subcommands that come from a node of recipes. Their names, help texts, types, ranges and defaults are those
+//! of the node's schema, so that a new option of a node needs no line here.
+//!
+//! A table of [`Flag`]s lists what differs: other names, values inside of tables, and options without a flag.
+
+use crate::args::numbers_of;
+use crate::error::usage;
+use crate::words::{unknown, with_dashes, with_underscores};
+use anyhow::Result;
+use clap::builder::{PossibleValue, RangedI64ValueParser, StringValueParser, TypedValueParser};
+use clap::parser::ValueSource;
+use clap::{Arg, ArgMatches, Command, Error, FromArgMatches};
+use dapple::recipe::{Node, Recipe};
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+use serde_json::{Map, Value, json};
+use std::ffi::OsStr;
+use std::marker::PhantomData;
+use std::sync::OnceLock;
+
+/// A kind of node whose options are those of a subcommand.
+pub(crate) trait NodeFlags: Send + Sync + 'static {
+    /// Name of the kind in recipes.
+    const KIND: &'static str;
+
+    /// Flags that differ from the schema. An option at the top of the node without an entry has a flag of its name.
+    const FLAGS: &'static [Flag];
+}
+
+/// A flag that differs from the option in the schema.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Flag {
+    /// Path of the option in the node, such as `scatter/jittered/jitter`.
+    pub(crate) path: &'static str,
+    /// Name of the flag, without dashes; `None` for an option without a flag.
+    pub(crate) name: Option<&'static str>,
+    pub(crate) default: FlagDefault,
+    /// Help text instead of the schema's description.
+    pub(crate) help: Option<&'static str>,
+    /// Whether the flag takes the numbers of an option that may be a name or a list of numbers.
+    pub(crate) is_list: bool,
+    /// Flags that must not be given together with this one.
+    pub(crate) conflicts: &'static [&'static str],
+    /// Flag that must be given, too.
+    pub(crate) requires: Option<&'static str>,
+}
+
+/// Value of an option whose flag is not given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FlagDefault {
+    /// Default of the schema.
+    Schema,
+    /// No value.
+    None,
+    /// Value of the subcommand, which differs from the node's.
+    Value(&'static str),
+}
+
+impl Flag {
+    /// Creates an entry for an option without a flag.
+    pub(crate) const fn none(path: &'static str) -> Self {
+        Self {
+            path,
+            name: None,
+            default: FlagDefault::Schema,
+            help: None,
+            is_list: false,
+            conflicts: &[],
+            requires: None,
+        }
+    }
+
+    /// Creates an entry for a flag called `name`.
+    pub(crate) const fn new(path: &'static str, name: &'static str) -> Self {
+        Self {
+            name: Some(name),
+            ..Self::none(path)
+        }
+    }
+
+    /// Sets the default value.
+    pub(crate) const fn with_default(self, default: &'static str) -> Self {
+        Self {
+            default: FlagDefault::Value(default),
+            ..self
+        }
+    }
+
+    /// Sets the help text.
+    pub(crate) const fn with_help(self, help: &'static str) -> Self {
+        Self {
+            help: Some(help),
+            ..self
+        }
+    }
+
+    /// Lets the option have no value unless the flag is given.
+    pub(crate) const fn without_default(self) -> Self {
+        Self {
+            default: FlagDefault::None,
+            ..self
+        }
+    }
+
+    /// Lets the flag take a list of numbers.
+    pub(crate) const fn of_numbers(self) -> Self {
+        Self {
+            is_list: true,
+            ..self
+        }
+    }
+
+    /// Sets the flags that must not be given together with this one.
+    pub(crate) const fn conflicting(self, conflicts: &'static [&'static str]) -> Self {
+        Self { conflicts, ..self }
+    }
+
+    /// Sets the flag that must be given, too.
+    pub(crate) const fn requiring(self, flag: &'static str) -> Self {
+        Self {
+            requires: Some(flag),
+            ..self
+        }
+    }
+}
+
+/// Values of a node's options, as given on the command line or by default.
+#[derive(Clone, Debug)]
+pub(crate) struct NodeArgs<K> {
+    values: Vec<NodeValue>,
+    kind: PhantomData<K>,
+}
+
+/// A value of an option.
+#[derive(Clone, Debug)]
+struct NodeValue {
+    path: String,
+    flag: String,
+    value: Value,
+    /// Whether the value replaces that of the node's default.
+    is_set: bool,
+}
+
+impl<K: NodeFlags> NodeArgs<K> {
+    /// Returns whether the flag of this name was given.
+    pub(crate) fn is_given(&self, flag: &str) -> bool {
+        let mut values = self.values.iter();
+        values.any(|value| value.flag == flag && value.is_set)
+    }
+
+    /// Returns the node with the given options.
+    ///
+    /// # Errors
+    ///
+    /// If a number is not finite.
+    pub(crate) fn node(&self) -> Result<Node> {
+        let mut options = json!({});
+        for NodeValue {
+            path, flag, value, ..
+        } in self.values.iter().filter(|value| value.is_set)
+        {
+            // Serde writes NaN and infinite numbers as null.
+            let parts = value
+                .as_array()
+                .map_or(std::slice::from_ref(value), Vec::as_slice);
+            if parts.contains(&Value::Null) {
+                return Err(usage(format!("--{flag} must be finite")));
+            }
+            set(&mut options, path, value.clone());
+        }
+        let mut node = Map::new();
+        node.insert(K::KIND.to_owned(), options);
+        Ok(serde_json::from_value(Value::Object(node))?)
+    }
+}
+
+/// Sets a value inside of a table. A table of another variant is replaced.
+fn set(table: &mut Value, path: &str, value: Value) {
+    let Some((first, rest)) = path.split_once('/') else {
+        table[path] = value;
+        return;
+    };
+    if !table[first].is_object() {
+        table[first] = json!({});
+    }
+    set(&mut table[first], rest, value);
+}
+
+impl<K> Serialize for NodeArgs<K> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.values.len()))?;
+        for value in &self.values {
+            map.serialize_entry(&with_underscores(&value.flag), &value.value)?;
+        }
+        map.end()
+    }
+}
+
+impl<K: NodeFlags> clap::Args for NodeArgs<K> {
+    fn augment_args(command: Command) -> Command {
+        let options = options(K::KIND, K::FLAGS).into_iter();
+        command.args(options.map(|option| option.arg()))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl<K: NodeFlags> FromArgMatches for NodeArgs<K> {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        let value = |option: NodeOption| {
+            let value = matches.get_one::<Value>(&option.flag)?.clone();
+            let is_given = matches.value_source(&option.flag) == Some(ValueSource::CommandLine);
+            Some(NodeValue {
+                is_set: is_given
+                    || matches!(
+                        option.entry,
+                        Flag {
+                            default: FlagDefault::Value(_),
+                            ..
+                        }
+                    ),
+                path: option.path,
+                flag: option.flag,
+                value,
+            })
+        };
+        let options = options(K::KIND, K::FLAGS).into_iter();
+        Ok(Self {
+            values: options.filter_map(value).collect(),
+            kind: PhantomData,
+        })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+/// The schema of recipes.
+fn schema() -> &'static Value {
+    static SCHEMA: OnceLock<Value> = OnceLock::new();
+    SCHEMA.get_or_init(Recipe::schema)
+}
+
+/// An option of a node with a flag.
+struct NodeOption {
+    path: String,
+    /// Name of the flag, without dashes.
+    flag: String,
+    schema: &'static Value,
+    help: &'static str,
+    /// Default of the schema; null if there is none.
+    default: Value,
+    /// Entry of the table; empty for an option without one.
+    entry: Flag,
+}
+
+/// Returns the options of a kind of node that have flags: those of the table in its order, then the other options at the
+/// top of the node.
+fn options(kind: &str, flags: &'static [Flag]) -> Vec<NodeOption> {
+    let kinds = variants(&schema()["$defs"]["Node"]);
+    let mut kinds = kinds.filter_map(|variant| variant["properties"].get(kind));
+    let node = followed(kinds.next().unwrap_or(&Value::Null));
+    let of_table = flags
+        .iter()
+        .filter_map(|entry| NodeOption::new(node, entry));
+    let is_free = |name: &str| {
+        !flags
+            .iter()
+            .any(|flag| flag.path.split('/').next() == Some(name))
+    };
+    let others = node["properties"].as_object().into_iter().flatten();
+    let others = others.filter(|(name, schema)| is_free(name) && schema["deprecated"] != true);
+    let others = others.map(|(name, schema)| NodeOption {
+        path: name.clone(),
+        flag: with_dashes(name),
+        schema,
+        help: description(schema).unwrap_or_default(),
+        default: schema["default"].clone(),
+        entry: Flag::none(""),
+    });
+    of_table.chain(others).collect()
+}
+
+/// Returns the description of a value.
+fn description(schema: &'static Value) -> Option<&'static str> {
+    let own = schema["description"].as_str();
+    own.or_else(|| followed(schema)["description"].as_str())
+}
+
+/// Returns the schema that a reference leads to, or of the value of an option that may be null.
+fn followed(value: &'static Value) -> &'static Value {
+    if let Some(path) = value["$ref"].as_str() {
+        let found = schema().pointer(path.trim_start_matches('#'));
+        return found.map_or(value, followed);
+    }
+    let mut others = variants(value).filter(|variant| variant["type"] != "null");
+    match (others.next(), others.next()) {
+        (Some(only), None) => followed(only),
+        _ => value,
+    }
+}
+
+/// Returns the variants of a value with several forms.
+fn variants(value: &'static Value) -> impl Iterator<Item = &'static Value> {
+    let lists = ["oneOf", "anyOf"]
+        .into_iter()
+        .filter_map(|key| value[key].as_array());
+    lists.flatten()
+}
+
+/// Returns the table with an entry called `name`: the value itself, or one of its variants.
+fn table_of(value: &'static Value, name: &str) -> &'static Value {
+    let value = followed(value);
+    let mut tables = std::iter::once(value).chain(variants(value).map(followed));
+    let found = tables.find(|table| table["properties"].get(name).is_some());
+    found.unwrap_or(&Value::Null)
+}
+
+impl NodeOption {
+    /// Creates the option of an entry; `None` if the entry has no flag.
+    fn new(node: &'static Value, entry: &'static Flag) -> Option<Self> {
+        let flag = entry.name?.to_owned();
+        let (mut schema, mut default, mut help) = (node, &Value::Null, None);
+        for part in entry.path.split('/') {
+            let table = table_of(schema, part);
+            schema = &table["properties"][part];
+            // A value without a description is described by the variant that it belongs to.
+            help = description(schema).or_else(|| table["description"].as_str());
+            // The default is that of the option, or a part of the default of the table around it.
+            let inherited = &default[part];
+            default = match inherited {
+                Value::Null => &schema["default"],
+                inherited => inherited,
+            };
+        }
+        Some(Self {
+            path: entry.path.to_owned(),
+            flag,
+            schema,
+            help: entry.help.or(help).unwrap_or_default(),
+            default: default.clone(),
+            entry: *entry,
+        })
+    }
+
+    /// Defines the flag.
+    fn arg(&self) -> Arg {
+        let parser = self.parser();
+        let mut arg = Arg::new(self.flag.clone())
+            .long(self.flag.clone())
+            .help(self.help.trim_end_matches('.').replace('`', ""))
+            .help_heading("Texture")
+            .value_name(parser.value_name())
+            .allow_hyphen_values(parser.is_list())
+            .allow_negative_numbers(true)
+            .value_parser(parser);
+        if self.path.rsplit('/').next() == Some("gain") {
+            arg = arg.visible_alias("persistence");
+        }
+        let entry = &self.entry;
+        let default = match (entry.default, &self.default) {
+            (FlagDefault::Value(default), _) => Some(default.to_owned()),
+            (FlagDefault::Schema, Value::String(word)) => Some(with_dashes(word)),
+            (FlagDefault::Schema, Value::Number(number)) => {
+                Some(number.as_f64().unwrap_or(0.0).to_string())
+            }
+            _ => None,
+        };
+        if let Some(default) = default.filter(|_| !entry.is_list) {
+            arg = arg.default_value(default);
+        }
+        if let Some(flag) = entry.requires {
+            arg = arg.requires(flag);
+        }
+        arg.conflicts_with_all(entry.conflicts)
+    }
+
+    /// Returns the parser of the option's value.
+    fn parser(&self) -> ValueParser {
+        let schema = followed(self.schema);
+        if self.entry.is_list {
+            let mut lists = variants(schema).filter(|variant| variant["type"] == "array");
+            return ValueParser::Numbers(lists.next().and_then(length));
+        }
+        let names = names(schema);
+        let bound = |key: &str| schema[key].as_f64();
+        match schema["type"].as_str() {
+            _ if !names.is_empty() => ValueParser::Name(names),
+            Some("integer") => {
+                let most = bound("maximum").unwrap_or(f64::from(u32::MAX)) as i64;
+                ValueParser::Integer(bound("minimum").unwrap_or(0.0) as i64, most)
+            }
+            Some("array") => ValueParser::Numbers(length(schema)),
+            _ => ValueParser::Number,
+        }
+    }
+}
+
+/// Returns the number of items of a list; `None` for a list of any length.
+fn length(list: &Value) -> Option<usize> {
+    let count = list["minItems"].as_u64()?;
+    (list["maxItems"].as_u64() == Some(count)).then_some(count as usize)
+}
+
+/// Returns the names that a value may have, with their help texts.
+fn names(value: &'static Value) -> Vec<(&'static str, &'static str)> {
+    let named = |variant: &'static Value| {
+        let name = variant["const"].as_str()?;
+        let about = variant["description"].as_str().unwrap_or_default();
+        let about = about.split_once(". ").map_or(about, |(first, _)| first);
+        Some((name, about.trim_end_matches('.')))
+    };
+    let listed = variants(value)
+        .filter_map(|variant| variant["enum"].as_array())
+        .flatten();
+    let listed = listed.filter_map(Value::as_str).map(|name| (name, ""));
+    variants(value).filter_map(named).chain(listed).collect()
+}
+
+/// Parses a value by its schema.
+#[derive(Clone, Debug)]
+enum ValueParser {
+    /// A name, with its help text.
+    Name(Vec<(&'static str, &'static str)>),
+    /// A whole number in a range.
+    Integer(i64, i64),
+    Number,
+    /// Numbers with commas between them: as many as given, or any number of them.
+    Numbers(Option<usize>),
+}
+
+impl ValueParser {
+    fn value_name(&self) -> &'static str {
+        match self {
+            Self::Name(_) => "NAME",
+            Self::Integer(..) | Self::Number => "N",
+            Self::Numbers(_) => "N,N,…",
+        }
+    }
+
+    fn is_list(&self) -> bool {
+        matches!(self, Self::Numbers(_))
+    }
+
+    fn parse(&self, text: &str) -> Result<Value, String> {
+        match self {
+            Self::Name(names) => {
+                let word = with_underscores(text);
+                let names: Vec<_> = names.iter().map(|(name, _)| *name).collect();
+                match names.iter().find(|name| **name == word) {
+                    Some(name) => Ok(json!(name)),
+                    None => Err(unknown("value", text, &names, "")),
+                }
+            }
+            Self::Numbers(count) => Ok(json!(numbers_of::<f64>(text, *count)?)),
+            Self::Integer(..) | Self::Number => {
+                let number = text.parse::<f64>();
+                Ok(json!(number.map_err(|error| error.to_string())?))
+            }
+        }
+    }
+}
+
+impl TypedValueParser for ValueParser {
+    type Value = Value;
+
+    fn parse_ref(
+        &self,
+        command: &Command,
+        arg: Option<&Arg>,
+        text: &OsStr,
+    ) -> Result<Value, Error> {
+        if let Self::Integer(least, most) = self {
+            let parser = RangedI64ValueParser::<i64>::new().range(*least..=*most);
+            return Ok(json!(parser.parse_ref(command, arg, text)?));
+        }
+        let parser = self.clone();
+        let parser = StringValueParser::new().try_map(move |text| parser.parse(text.trim()));
+        parser.parse_ref(command, arg, text)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        let Self::Name(names) = self else { return None };
+        let value = |(name, about): &(&'static str, &'static str)| {
+            let value = PossibleValue::new(with_dashes(name)).alias(*name);
+            match about.is_empty() {
+                true => value,
+                false => value.help(about.replace('`', "")),
+            }
+        };
+        Some(Box::new(names.iter().map(value)))
+    }
+}
