@@ -25,6 +25,11 @@ pub(crate) trait NodeFlags: Send + Sync + 'static {
 
     /// Flags that differ from the schema. An option at the top of the node without an entry has a flag of its name.
     const FLAGS: &'static [Flag];
+
+    /// Returns the options that have flags.
+    fn options() -> Vec<NodeOption> {
+        options(Self::KIND, Self::FLAGS)
+    }
 }
 
 /// A flag that differs from the option in the schema.
@@ -133,10 +138,11 @@ pub(crate) struct NodeArgs<K> {
 
 /// A value of an option.
 #[derive(Clone, Debug)]
-struct NodeValue {
-    path: String,
-    flag: String,
-    value: Value,
+pub(crate) struct NodeValue {
+    pub(crate) path: String,
+    /// Name of the flag, without dashes.
+    pub(crate) flag: String,
+    pub(crate) value: Value,
     /// Whether the value replaces that of the node's default.
     is_set: bool,
 }
@@ -144,8 +150,12 @@ struct NodeValue {
 impl<K: NodeFlags> NodeArgs<K> {
     /// Returns whether the flag of this name was given.
     pub(crate) fn is_given(&self, flag: &str) -> bool {
-        let mut values = self.values.iter();
-        values.any(|value| value.flag == flag && value.is_set)
+        self.given().any(|value| value.flag == flag)
+    }
+
+    /// Returns the options that replace the node's defaults.
+    pub(crate) fn given(&self) -> impl Iterator<Item = &NodeValue> {
+        self.values.iter().filter(|value| value.is_set)
     }
 
     /// Returns the node with the given options.
@@ -155,22 +165,30 @@ impl<K: NodeFlags> NodeArgs<K> {
     /// If a number is not finite.
     pub(crate) fn node(&self) -> Result<Node> {
         let mut options = json!({});
-        for NodeValue {
-            path, flag, value, ..
-        } in self.values.iter().filter(|value| value.is_set)
-        {
-            // Serde writes NaN and infinite numbers as null.
-            let parts = value
-                .as_array()
-                .map_or(std::slice::from_ref(value), Vec::as_slice);
-            if parts.contains(&Value::Null) {
-                return Err(usage(format!("--{flag} must be finite")));
-            }
-            set(&mut options, path, value.clone());
+        for value in self.given() {
+            value.check_finite()?;
+            set(&mut options, &value.path, value.value.clone());
         }
         let mut node = Map::new();
         node.insert(K::KIND.to_owned(), options);
         Ok(serde_json::from_value(Value::Object(node))?)
+    }
+}
+
+impl NodeValue {
+    /// Refuses NaN and infinite numbers.
+    ///
+    /// # Errors
+    ///
+    /// If a number is not finite.
+    pub(crate) fn check_finite(&self) -> Result<()> {
+        // Serde writes NaN and infinite numbers as null.
+        let parts = self.value.as_array();
+        let parts = parts.map_or(std::slice::from_ref(&self.value), Vec::as_slice);
+        match parts.contains(&Value::Null) {
+            true => Err(usage(format!("--{} must be finite", self.flag))),
+            false => Ok(()),
+        }
     }
 }
 
@@ -198,7 +216,7 @@ impl<K> Serialize for NodeArgs<K> {
 
 impl<K: NodeFlags> clap::Args for NodeArgs<K> {
     fn augment_args(command: Command) -> Command {
-        let options = options(K::KIND, K::FLAGS).into_iter();
+        let options = K::options().into_iter();
         command.args(options.map(|option| option.arg()))
     }
 
@@ -226,7 +244,7 @@ impl<K: NodeFlags> FromArgMatches for NodeArgs<K> {
                 value,
             })
         };
-        let options = options(K::KIND, K::FLAGS).into_iter();
+        let options = K::options().into_iter();
         Ok(Self {
             values: options.filter_map(value).collect(),
             kind: PhantomData,
@@ -240,22 +258,24 @@ impl<K: NodeFlags> FromArgMatches for NodeArgs<K> {
 }
 
 /// The schema of recipes.
-fn schema() -> &'static Value {
+pub(crate) fn schema() -> &'static Value {
     static SCHEMA: OnceLock<Value> = OnceLock::new();
     SCHEMA.get_or_init(Recipe::schema)
 }
 
 /// An option of a node with a flag.
-struct NodeOption {
+pub(crate) struct NodeOption {
     path: String,
     /// Name of the flag, without dashes.
-    flag: String,
+    pub(crate) flag: String,
     schema: &'static Value,
-    help: &'static str,
+    pub(crate) help: String,
     /// Default of the schema; null if there is none.
     default: Value,
     /// Entry of the table; empty for an option without one.
     entry: Flag,
+    /// Whether a list may have any length.
+    any_length: bool,
 }
 
 /// Returns the options of a kind of node that have flags: those of the table in its order, then the other options at the
@@ -274,25 +294,18 @@ fn options(kind: &str, flags: &'static [Flag]) -> Vec<NodeOption> {
     };
     let others = node["properties"].as_object().into_iter().flatten();
     let others = others.filter(|(name, schema)| is_free(name) && schema["deprecated"] != true);
-    let others = others.map(|(name, schema)| NodeOption {
-        path: name.clone(),
-        flag: with_dashes(name),
-        schema,
-        help: description(schema).unwrap_or_default(),
-        default: schema["default"].clone(),
-        entry: Flag::none(""),
-    });
+    let others = others.map(|(name, schema)| NodeOption::plain(name, schema, Flag::none("")));
     of_table.chain(others).collect()
 }
 
 /// Returns the description of a value.
-fn description(schema: &'static Value) -> Option<&'static str> {
+pub(crate) fn description(schema: &'static Value) -> Option<&'static str> {
     let own = schema["description"].as_str();
     own.or_else(|| followed(schema)["description"].as_str())
 }
 
 /// Returns the schema that a reference leads to, or of the value of an option that may be null.
-fn followed(value: &'static Value) -> &'static Value {
+pub(crate) fn followed(value: &'static Value) -> &'static Value {
     if let Some(path) = value["$ref"].as_str() {
         let found = schema().pointer(path.trim_start_matches('#'));
         return found.map_or(value, followed);
@@ -305,7 +318,7 @@ fn followed(value: &'static Value) -> &'static Value {
 }
 
 /// Returns the variants of a value with several forms.
-fn variants(value: &'static Value) -> impl Iterator<Item = &'static Value> {
+pub(crate) fn variants(value: &'static Value) -> impl Iterator<Item = &'static Value> {
     let lists = ["oneOf", "anyOf"]
         .into_iter()
         .filter_map(|key| value[key].as_array());
@@ -321,6 +334,32 @@ fn table_of(value: &'static Value, name: &str) -> &'static Value {
 }
 
 impl NodeOption {
+    /// Creates an option at the top of a table.
+    pub(crate) fn plain(name: &str, schema: &'static Value, entry: Flag) -> Self {
+        Self {
+            path: name.to_owned(),
+            flag: entry.name.map_or_else(|| with_dashes(name), str::to_owned),
+            schema,
+            help: description(schema).unwrap_or_default().to_owned(),
+            default: schema["default"].clone(),
+            entry,
+            any_length: false,
+        }
+    }
+
+    /// Lets the flag take lists of any length if `other`, which shares it, takes lists of another length.
+    pub(crate) fn widen(&mut self, other: &Self) {
+        if self.parser().list_length() != other.parser().list_length() {
+            self.any_length = true;
+        }
+    }
+
+    /// Returns whether the flag takes values that a command line can express.
+    pub(crate) fn is_simple(&self) -> bool {
+        let schema = followed(self.schema);
+        schema["type"] != "array" || schema["items"]["type"] != "array"
+    }
+
     /// Creates the option of an entry; `None` if the entry has no flag.
     fn new(node: &'static Value, entry: &'static Flag) -> Option<Self> {
         let flag = entry.name?.to_owned();
@@ -341,9 +380,10 @@ impl NodeOption {
             path: entry.path.to_owned(),
             flag,
             schema,
-            help: entry.help.or(help).unwrap_or_default(),
+            help: entry.help.or(help).unwrap_or_default().to_owned(),
             default: default.clone(),
             entry: *entry,
+            any_length: false,
         })
     }
 
@@ -394,6 +434,10 @@ impl NodeOption {
                 let most = bound("maximum").unwrap_or(f64::from(u32::MAX)) as i64;
                 ValueParser::Integer(bound("minimum").unwrap_or(0.0) as i64, most)
             }
+            Some("array") if schema["items"]["type"] == "integer" => {
+                ValueParser::WholeNumbers(length(schema))
+            }
+            Some("array") if self.any_length => ValueParser::Numbers(None),
             Some("array") => ValueParser::Numbers(length(schema)),
             _ => ValueParser::Number,
         }
@@ -431,6 +475,7 @@ enum ValueParser {
     Number,
     /// Numbers with commas between them: as many as given, or any number of them.
     Numbers(Option<usize>),
+    WholeNumbers(Option<usize>),
 }
 
 impl ValueParser {
@@ -438,12 +483,20 @@ impl ValueParser {
         match self {
             Self::Name(_) => "NAME",
             Self::Integer(..) | Self::Number => "N",
-            Self::Numbers(_) => "N,N,…",
+            Self::Numbers(_) | Self::WholeNumbers(_) => "N,N,…",
         }
     }
 
     fn is_list(&self) -> bool {
-        matches!(self, Self::Numbers(_))
+        matches!(self, Self::Numbers(_) | Self::WholeNumbers(_))
+    }
+
+    /// Returns the number of numbers in a list; `None` for any number of them, and for other values.
+    fn list_length(&self) -> Option<usize> {
+        match self {
+            Self::Numbers(count) | Self::WholeNumbers(count) => *count,
+            _ => None,
+        }
     }
 
     fn parse(&self, text: &str) -> Result<Value, String> {
@@ -457,6 +510,7 @@ impl ValueParser {
                 }
             }
             Self::Numbers(count) => Ok(json!(numbers_of::<f64>(text, *count)?)),
+            Self::WholeNumbers(count) => Ok(json!(numbers_of::<u32>(text, *count)?)),
             Self::Integer(..) | Self::Number => {
                 let number = text.parse::<f64>();
                 Ok(json!(number.map_err(|error| error.to_string())?))

@@ -70,16 +70,6 @@ impl<T: Named> NamedValueParser<T> {
 }
 
 impl<T> NamedValueParser<T> {
-    /// Creates a parser of `values`, which are pairs of a name and a value without help text.
-    pub(crate) fn of(values: impl IntoIterator<Item = (&'static str, T)>) -> Self {
-        let values = values.into_iter();
-        Self(
-            values
-                .map(|(name, value)| (PossibleValue::new(name), value))
-                .collect(),
-        )
-    }
-
     /// Creates a parser that accepts no value, to which [`or`](Self::or) adds values.
     pub(crate) fn none() -> Self {
         Self(Vec::new())

@@ -48,7 +48,7 @@ Examples:
   dapple bake rock ice marble -o all/ --size 256 --preview
   dapple bake flagstone --set joint.seed=5 --set material.relief=0.6 -o deep/
   dapple bake rock --seed 1-20 --size 256 --maps albedo -o variants/
-  dapple bake flagstone --node stones -o stones.png
+  dapple bake flagstone --node joint -o joint.png
   dapple bake 'my-*.toml' --keep-going --maps albedo --sheet -o mine/
   dapple bake rock --preset unity -o Assets/Rock/
   dapple bake rock -o rock.glb

@@ -1,23 +1,24 @@
 //! `dapple pups`: renders partition-of-unity textures.
 
+mod flags;
 mod points;
 
-use crate::args::{Extent, ImageArgs, Numbers, ReadArgs, image_alpha};
+use crate::args::{Extent, ImageArgs, ReadArgs, image_alpha};
 use crate::baking::read_picture;
 use crate::error::{Exit, Hint, usage};
 use crate::field::{Field, FieldArgs, draw, extent_of};
 use crate::input::ALPHA_HINT;
 use crate::job::Context;
-use crate::words::{NamedValueParser, with_dashes};
+use crate::node::NodeArgs;
+use crate::words::with_dashes;
 use anyhow::{Error, Result};
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
-use dapple::pups::{AxialWeight, Orientations};
 use dapple::recipe::{ImageAlpha, Images, Node, PupsNode};
+use flags::PupsFlags;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 use std::path::PathBuf;
-use std::slice;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -44,42 +45,13 @@ pub(crate) struct Args {
     #[arg(value_enum, value_name = "KIND")]
     kind: Kind,
 
-    /// Minimum distance of control points in units of the plane [default: the texture's].
-    #[arg(long, value_name = "UNITS", help_heading = "Texture")]
-    spacing: Option<f64>,
-
-    /// Minimum distances at the left and at the right, for the progressions.
-    #[arg(long, value_name = "LEFT,RIGHT", help_heading = "Texture")]
-    spacings: Option<Numbers<f64, 2>>,
-
     /// Width and height of the image in units of the plane.
     #[arg(long, value_name = "W[xH]", alias = "period", help_heading = "Texture")]
     extent: Option<Extent>,
 
-    /// Number of octaves, layers or rounds, for octaves, turbulence, cellular-noise and iterated-reference.
-    #[arg(long, value_name = "N", help_heading = "Texture")]
-    octaves: Option<u32>,
-
-    /// Amplitude of an octave relative to the previous one.
-    #[arg(
-        long,
-        alias = "persistence",
-        value_name = "PART",
-        help_heading = "Texture"
-    )]
-    gain: Option<f64>,
-
-    /// Minimum and maximum number of control points per cell, for cells and cellular-noise.
-    #[arg(long, value_name = "MIN,MAX", help_heading = "Texture")]
-    points_per_cell: Option<Numbers<u32, 2>>,
-
-    /// Probability of white patches, from 0 to 1, for cow.
-    #[arg(long, value_name = "PART", help_heading = "Texture")]
-    probability: Option<f64>,
-
-    /// Choose each radius of a spot independently, as in the paper, for giraffe: spots break into pieces.
-    #[arg(long, help_heading = "Texture")]
-    literal: bool,
+    #[command(flatten)]
+    #[serde(flatten)]
+    textures: NodeArgs<PupsFlags>,
 
     /// Control points as CSV or JSON, for control.
     #[arg(long, value_name = "FILE", help_heading = "Texture")]
@@ -100,22 +72,6 @@ pub(crate) struct Args {
     /// Assign each position the value of its strongest point alone, for control.
     #[arg(long, help_heading = "Texture")]
     hard: bool,
-
-    /// Length of axes relative to their edges, above 0.5 up to 16.
-    #[arg(long, value_name = "N", help_heading = "Weights")]
-    axis_scale: Option<f64>,
-
-    /// Falloff of weights along an axis: the paper's cubic, or a quintic with a continuous second derivative.
-    #[arg(long, value_name = "CURVE", value_parser = NamedValueParser::of([("cubic", AxialWeight::Cubic), ("quintic", AxialWeight::Quintic)]), help_heading = "Weights")]
-    weight: Option<AxialWeight>,
-
-    /// Orientations of control points [default: the texture's].
-    #[arg(long, value_name = "WHICH", value_parser = NamedValueParser::of([("none", Orientations::None), ("random", Orientations::Random)]), help_heading = "Weights")]
-    orientations: Option<Orientations>,
-
-    /// Strength of orientations, from 0 to below 1.
-    #[arg(long, value_name = "PART", help_heading = "Weights")]
-    strength: Option<f64>,
 
     /// Number of frames of a loop in which the control points move on circles.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), help_heading = "Loop")]
@@ -224,35 +180,47 @@ const MOTION: f64 = 0.25;
 /// Default shorter side of the image, in units of the plane. It is the side of the paper's torus.
 const SIDE: f64 = 2.0;
 
-/// An option that was given on the command line, as JSON.
-struct Given {
-    option: &'static str,
-    /// The names that the option may have in a texture's options. A texture has at most one of them.
-    names: &'static [&'static str],
-    value: Value,
-}
-
 impl Args {
     /// Returns the texture with the options of the command line.
     fn node(&self) -> Result<PupsNode> {
         // Set each given option in the default options of the texture.
         let kind = self.kind;
         let mut data = kind.defaults()?;
-        for given in self.given()? {
-            let Some(path) = path(&data, kind, given.names) else {
-                return Err(not_for(&given, kind));
-            };
-            if let Some(option) = data.pointer_mut(&path) {
-                *option = given.value;
-            }
+        for given in self.textures.given() {
+            given.check_finite()?;
+            put(
+                &mut data,
+                kind,
+                &given.flag,
+                &given.path,
+                given.value.clone(),
+            )?;
         }
-        let radius = self.motion.or(self.frames.map(|_| MOTION));
-        let motion = given("--motion", &["net"], radius)?;
-        if let Some(motion) = motion
-            && let Some(path) = path(&data, kind, motion.names)
-            && let Some(net) = data.pointer_mut(&path)
-        {
-            net["motion"] = json!({ "radius": motion.value });
+        if self.hard {
+            put(&mut data, kind, "hard", "cells", json!("hard"))?;
+        }
+        if let Some(points) = &self.points {
+            let points = serde_json::to_value(points::read(points)?)?;
+            put(&mut data, kind, "points", "points", points)?;
+        }
+        if let Some(file) = &self.reference {
+            put(
+                &mut data,
+                kind,
+                "reference",
+                "file",
+                json!(file.to_string_lossy()),
+            )?;
+        }
+        if let Some(radius) = self.motion.or(self.frames.map(|_| MOTION)) {
+            if !radius.is_finite() {
+                return Err(usage("--motion must be finite"));
+            }
+            if let Some(path) = path(&data, kind, "net")
+                && let Some(net) = data.pointer_mut(&path)
+            {
+                net["motion"] = json!({ "radius": radius });
+            }
         }
         if let Some(alpha) = self.alpha {
             data[kind.in_recipes()]["alpha"] = serde_json::to_value(alpha)?;
@@ -261,38 +229,6 @@ impl Args {
             return Err(usage("there are no control points").hint("give them with --points FILE"));
         }
         Ok(PupsNode::from_json(&data)?)
-    }
-
-    /// Returns the texture options that were given on the command line.
-    fn given(&self) -> Result<Vec<Given>> {
-        let points = self.points.as_deref().map(points::read).transpose()?;
-        let spacings = self.spacings.map(|Numbers(distances)| distances);
-        let counts = self.points_per_cell.map(|Numbers(counts)| counts);
-        let literal = self.literal.then_some("literal");
-        let hard = self.hard.then_some("hard");
-        let reference = self.reference.as_ref().map(|file| file.to_string_lossy());
-        let of_series = &["octaves", "layers", "iterations"];
-        let all = [
-            given("--spacing", &["spacing"], self.spacing)?,
-            given("--spacings", &["distances"], spacings)?,
-            given("--octaves", of_series, self.octaves)?,
-            given("--gain", &["gain"], self.gain)?,
-            given("--points-per-cell", &["points_per_cell"], counts)?,
-            given("--probability", &["probability"], self.probability)?,
-            given("--literal", &["spots"], literal)?,
-            given("--points", &["points"], points)?,
-            given("--hard", &["cells"], hard)?,
-            given("--reference", &["file"], reference)?,
-            given("--axis-scale", &["axis_scale"], self.axis_scale)?,
-            given("--weight", &["weight"], self.weight)?,
-            given(
-                "--orientations",
-                &["orientations"],
-                self.orientations.as_ref(),
-            )?,
-            given("--strength", &["strength"], self.strength)?,
-        ];
-        Ok(all.into_iter().flatten().collect())
     }
 
     /// Reads the reference image, if the texture needs one.
@@ -309,50 +245,41 @@ impl Args {
     }
 }
 
-/// Returns the JSON pointer to the option with one of these names in a texture's options; `None` if there is no such
-/// option.
-fn path(data: &Value, kind: Kind, names: &[&str]) -> Option<String> {
+/// Sets the option called `name` of a texture, given by `--flag`. Options of several textures that share a flag have
+/// several names.
+///
+/// # Errors
+///
+/// If the texture does not have the option.
+fn put(data: &mut Value, kind: Kind, flag: &str, name: &str, value: Value) -> Result<()> {
+    let mut paths = flags::names_of(name).into_iter();
+    match paths.find_map(|name| path(data, kind, name)) {
+        Some(path) => {
+            if let Some(option) = data.pointer_mut(&path) {
+                *option = value;
+            }
+            Ok(())
+        }
+        None => Err(not_for(flag, name, kind)),
+    }
+}
+
+/// Returns the JSON pointer to the option called `name` in a texture's options; `None` if there is no such option.
+fn path(data: &Value, kind: Kind, name: &str) -> Option<String> {
     let kind = kind.in_recipes();
     let parts = ["", "/options", "/net", "/options/net"];
-    let mut paths = parts.iter().flat_map(|part| {
-        names
-            .iter()
-            .map(move |name| format!("/{kind}{part}/{name}"))
-    });
+    let mut paths = parts.iter().map(|part| format!("/{kind}{part}/{name}"));
     paths.find(|path| data.pointer(path).is_some())
 }
 
 /// Returns the error for an option that a texture does not have. The hint lists the textures that have it.
-fn not_for(given: &Given, kind: Kind) -> Error {
+fn not_for(flag: &str, name: &str, kind: Kind) -> Error {
     let has_it = |&kind: &Kind| {
+        let names = flags::names_of(name);
         kind.defaults()
-            .is_ok_and(|data| path(&data, kind, given.names).is_some())
+            .is_ok_and(|data| names.iter().any(|name| path(&data, kind, name).is_some()))
     };
     let others: Vec<_> = KINDS.into_iter().filter(has_it).map(Kind::name).collect();
-    usage(format!("{} is not for {}", given.option, kind.name()))
+    usage(format!("--{flag} is not for {}", kind.name()))
         .hint(format!("it is for {}", others.join(", ")))
-}
-
-/// Converts an option to JSON, if it was given. Fails for NaN and infinite numbers.
-fn given(
-    option: &'static str,
-    names: &'static [&'static str],
-    value: Option<impl Serialize>,
-) -> Result<Option<Given>> {
-    let Some(value) = value else {
-        return Ok(None);
-    };
-    let value = serde_json::to_value(value)?;
-    // Serde writes NaN and infinite numbers as null.
-    let parts = value
-        .as_array()
-        .map_or(slice::from_ref(&value), Vec::as_slice);
-    if parts.contains(&Value::Null) {
-        return Err(usage(format!("{option} must be finite")));
-    }
-    Ok(Some(Given {
-        option,
-        names,
-        value,
-    }))
 }

@@ -94,7 +94,10 @@ fn a_range_of_seeds_bakes_a_variant_with_each() {
             &["bake", "rock", "--seed", "1-2", "-o", "x.png"],
             "need a folder",
         ),
-        (&["shards", "rock", "--seed", "1-2"], "one seed is needed"),
+        (
+            &["shards", "rock", "--shard", "8", "--seed", "1-2"],
+            "one seed is needed",
+        ),
     ] {
         assert_refused(&folder.run(wrong), 2, part, part);
     }
@@ -128,7 +131,7 @@ fn a_node_is_baked_alone_as_heights_or_colors() {
         let bytes = |name: &str| fs::read(folder.path(name)).unwrap();
         assert_eq!(
             bytes(&file),
-            bytes(&format!("out/two_{node}.png")),
+            bytes(&format!("out/two_{node}_{map}.png")),
             "{node}"
         );
     }

@@ -1,0 +1,100 @@
+//! The flags of textures of control points, from the schemas of all textures.
+
+use super::{KINDS, Kind};
+use crate::node::{Flag, NodeFlags, NodeOption, followed, schema, variants};
+use serde_json::Value;
+
+/// Options without a flag of their own, which the command sets otherwise.
+const WITHOUT_FLAG: [&str; 9] = [
+    "alpha", "cells", "domain", "file", "motion", "net", "options", "points", "wrap",
+];
+
+/// Options that have the same meaning in different textures and share a flag, as pairs of the flag and the names.
+const SHARED: [(&str, &[&str]); 2] = [
+    ("octaves", &["octaves", "layers", "iterations"]),
+    ("spacings", &["distances"]),
+];
+
+/// Help of the option `spacing`, of which the command takes the form of a distance alone.
+const SPACING: &str =
+    "Minimum distance of control points in units of the plane [default: the texture's]";
+
+/// The options of all textures of the node `pups`.
+#[derive(Clone, Debug)]
+pub(super) struct PupsFlags;
+
+impl NodeFlags for PupsFlags {
+    const KIND: &'static str = "pups";
+    const FLAGS: &'static [Flag] = &[];
+
+    fn options() -> Vec<NodeOption> {
+        let mut options: Vec<(NodeOption, Vec<String>)> = Vec::new();
+        for kind in KINDS {
+            for (name, schema) in tables(kind).into_iter().flat_map(entries) {
+                let flag = SHARED.iter().find(|(_, names)| names.contains(&name));
+                let entry = match flag {
+                    Some((flag, _)) => Flag::new("", flag),
+                    None => Flag::none(""),
+                };
+                // Defaults differ between textures.
+                let mut option = NodeOption::plain(name, schema, entry.without_default());
+                if name == "spacing" {
+                    SPACING.clone_into(&mut option.help);
+                }
+                if WITHOUT_FLAG.contains(&name)
+                    || schema["deprecated"] == true
+                    || !option.is_simple()
+                {
+                    continue;
+                }
+                match options
+                    .iter_mut()
+                    .find(|(known, _)| known.flag == option.flag)
+                {
+                    Some((known, kinds)) => {
+                        known.widen(&option);
+                        kinds.push(kind.name());
+                    }
+                    None => options.push((option, vec![kind.name()])),
+                }
+            }
+        }
+        options.into_iter().map(described).collect()
+    }
+}
+
+/// Adds to the help of an option the textures that have it, unless most have it.
+fn described((mut option, kinds): (NodeOption, Vec<String>)) -> NodeOption {
+    if 2 * kinds.len() < KINDS.len() {
+        let help = option.help.trim_end_matches('.');
+        option.help = format!("{help}; for {}", kinds.join(", "));
+    }
+    option
+}
+
+/// Returns all names of an option that shares its flag with others, or its name alone.
+pub(super) fn names_of(name: &str) -> Vec<&str> {
+    let shared = SHARED.iter().find(|(_, names)| names.contains(&name));
+    shared.map_or_else(|| vec![name], |(_, names)| names.to_vec())
+}
+
+/// Returns the tables of a texture's options: its own, and those inside of them.
+fn tables(kind: Kind) -> Vec<&'static Value> {
+    let mut textures = variants(&schema()["$defs"]["PupsNode"]);
+    let texture = textures.find_map(|texture| texture["properties"].get(kind.in_recipes()));
+    let texture = followed(texture.unwrap_or(&Value::Null));
+    let inside = |table: &'static Value, name: &str| followed(&table["properties"][name]);
+    let options = inside(texture, "options");
+    vec![
+        texture,
+        options,
+        inside(texture, "net"),
+        inside(options, "net"),
+    ]
+}
+
+/// Returns the options of a table.
+fn entries(table: &'static Value) -> impl Iterator<Item = (&'static str, &'static Value)> {
+    let entries = table["properties"].as_object().into_iter().flatten();
+    entries.map(|(name, schema)| (name.as_str(), schema))
+}
