@@ -42,7 +42,7 @@
 mod links;
 
 use crate::endless::evenness::Costs;
-use crate::endless::stage::{self, DIAGONALS, N_FEATURES, Stage, narrow};
+use crate::endless::level::{self, AppearanceLevel, DIAGONALS, N_FEATURES, narrow};
 use crate::engine::{self, Callback, Progress, Wanted};
 use crate::guides::Targets;
 use crate::options::REGULAR;
@@ -101,7 +101,7 @@ pub(crate) struct Appearance<'a> {
     pub(crate) quarters: Vec<u8>,
     frames: Frames,
     /// Levels of the exemplar, the finest first.
-    stages: Vec<Stage>,
+    stages: Vec<AppearanceLevel>,
     seed: Seed,
     /// Factor on the changes in costs; 0 if parts have no costs.
     evenness: f32,
@@ -139,7 +139,7 @@ impl<'a> Appearance<'a> {
             || exemplar.regularity() > REGULAR;
         let symmetry = synthesizer.orientation().symmetry();
         let wanted = Wanted::new(&|| false);
-        let mut stages = stage::stages(
+        let mut stages = level::stages(
             exemplar,
             &exemplar.guides,
             symmetry,
@@ -196,7 +196,7 @@ impl<'a> Appearance<'a> {
                 engine::report(callback, progress)
             };
             // Move sites with wrong guides, then correct all sites.
-            self.obey(level, &links, &mut places, &mut tell)?;
+            self.apply_guides(level, &links, &mut places, &mut tell)?;
             self.correct(level, &links, n_passes, &mut places, &mut tell)?;
             levels.push(places);
         }
@@ -264,7 +264,7 @@ impl<'a> Appearance<'a> {
 
     /// Moves each site whose guides differ much from the targets to the exemplar position with the most similar
     /// features and guides.
-    fn obey(
+    fn apply_guides(
         &self,
         level: usize,
         links: &Links,
@@ -309,7 +309,7 @@ impl<'a> Appearance<'a> {
         tell: &mut dyn FnMut(usize) -> Result<(), SynthError>,
     ) -> Result<(), SynthError> {
         let simd = simd::level();
-        let Stage { size, spacing, .. } = self.stages[level];
+        let AppearanceLevel { size, spacing, .. } = self.stages[level];
         // Start without costs. The target is even usage of the usable pixels.
         let mut costs = Costs::new(size, spacing as u32);
         let usable = self.stages[level].usable_pixels();
@@ -380,7 +380,7 @@ fn quarters(synthesizer: &Synthesizer, coarsest: &[u8], n_levels: usize) -> Vec<
 /// squared distance in guides from `wanted`, plus cost. The first of equally good positions is returned.
 #[inline(always)]
 fn choose(
-    stage: &Stage,
+    stage: &AppearanceLevel,
     links: &Links,
     site: usize,
     places: &[[u32; 2]],
@@ -438,7 +438,7 @@ impl Choice {
     #[inline(always)]
     fn compare(
         &mut self,
-        stage: &Stage,
+        stage: &AppearanceLevel,
         around: &[Option<[f32; N_FEATURES]>; 4],
         wanted: &[f32],
         place: [u32; 2],
@@ -457,7 +457,7 @@ impl Choice {
 /// `None` for a diagonal without sites, for example past an edge of the surface.
 #[inline(always)]
 fn around(
-    stage: &Stage,
+    stage: &AppearanceLevel,
     links: &Links,
     site: usize,
     places: &[[u32; 2]],
@@ -506,7 +506,11 @@ fn filled(around: [Option<[f32; N_FEATURES]>; 4]) -> Option<[[f32; N_FEATURES]; 
 /// Returns the squared distance between the features on the diagonals of a site and those on the diagonals of a pixel.
 /// Missing diagonals are skipped.
 #[inline(always)]
-fn distance_sq(stage: &Stage, around: &[Option<[f32; N_FEATURES]>; 4], place: [i64; 2]) -> f32 {
+fn distance_sq(
+    stage: &AppearanceLevel,
+    around: &[Option<[f32; N_FEATURES]>; 4],
+    place: [i64; 2],
+) -> f32 {
     let known = around.iter().zip(DIAGONALS);
     let known = known.filter_map(|(own, diagonal)| Some((own.as_ref()?, diagonal)));
     stage.distance_sq_of(known, place)
@@ -524,7 +528,7 @@ fn moved(place: [u32; 2], way: Vec2) -> [i64; 2] {
 
 /// Returns `place` within the exemplar, wrapped if the exemplar wraps, or `None` if its pixel is not usable.
 #[inline(always)]
-fn settled(stage: &Stage, place: [i64; 2]) -> Option<[u32; 2]> {
+fn settled(stage: &AppearanceLevel, place: [i64; 2]) -> Option<[u32; 2]> {
     let pixel = stage.usable(place.map(|at| at >> PART_BITS))?;
     Some(within(pixel, place))
 }

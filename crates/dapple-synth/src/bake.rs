@@ -5,8 +5,8 @@
 //! ([`magnify`](crate::magnify)).
 
 use crate::atlas::Atlas;
-use crate::ground::{Plain, Samples};
-use crate::mesh_ground::{Around, Interpolation, Lattice, Nearby, interpolate};
+use crate::domain::{Plain, Samples};
+use crate::mesh_domain::{Interpolation, Lattice, NeighborScratch, NeighborhoodView, interpolate};
 use crate::{Hierarchy, INTERPOLATION_RADIUS, SynthError, SynthErrorKind};
 use dapple_mesh::{FaceIdx, Surface, SurfacePoint};
 use dapple_raster::{Raster, parallel, simd};
@@ -26,7 +26,7 @@ pub(crate) struct Group<'a> {
     /// Origin of the positions in `sites`, in space.
     pub(crate) center: DVec3,
     /// Superset of the finest sites within reach of any texel of the group.
-    pub(crate) sites: Around<'a>,
+    pub(crate) sites: NeighborhoodView<'a>,
 }
 
 /// Computes the values of texels from nearby sites, with scratch memory that is reused from group to group.
@@ -40,7 +40,7 @@ struct Memory<'a> {
     /// Texels of the block, sorted by face.
     texels: Vec<(FaceIdx, [u32; 2])>,
     points: Vec<SurfacePoint>,
-    nearby: Nearby,
+    nearby: NeighborScratch,
     /// Channels of the group's texels, texel by texel.
     values: Vec<f32>,
     paint: Box<dyn Paint + 'a>,
@@ -128,7 +128,7 @@ impl Baker<'_, '_> {
         let mut memory = Memory {
             texels: Vec::new(),
             points: Vec::new(),
-            nearby: Nearby::default(),
+            nearby: NeighborScratch::default(),
             values: Vec::new(),
             paint: (self.painter)(),
         };

@@ -34,7 +34,7 @@
 //! - Parts of the exemplar that textures would use too often have higher costs ([`evenness`]).
 
 pub(crate) mod evenness;
-pub(crate) mod stage;
+pub(crate) mod level;
 mod window;
 
 use crate::engine::{Progress, Wanted};
@@ -44,7 +44,7 @@ use crate::{Edges, Exemplar, PlaneTexture, Symmetry, SynthError, SynthErrorKind}
 use core::ops::ControlFlow;
 use dapple_hash::Seed;
 use evenness::REPETITION;
-use stage::Stage;
+use level::AppearanceLevel;
 
 /// Penalty on similar pixels relative to predicted ones, for exemplars that are not regular: squared distances are
 /// multiplied by `1 + COHERENCE`. Continuing a piece of the exemplar preserves its detail.
@@ -111,7 +111,7 @@ pub struct Endless {
     seed: Seed,
     period: [Option<u32>; 2],
     /// Levels of the exemplar, the finest first.
-    stages: Vec<Stage>,
+    stages: Vec<AppearanceLevel>,
     /// Usable pixels of the exemplar on the coarsest level, as row-major indices.
     coarsest: Vec<u32>,
     /// Whether the exemplar is a tile that repeats within itself.
@@ -166,7 +166,7 @@ impl Endless {
             }
         }
         // Compute the features of the exemplar on each level.
-        let mut stages = stage::stages(
+        let mut stages = level::stages(
             exemplar,
             &Guides::default(),
             Symmetry::One,
@@ -185,7 +185,9 @@ impl Endless {
             edges: exemplar.edges,
             seed: options.seed,
             period: options.period,
-            coarsest: stages.last().map_or(Vec::new(), Stage::usable_pixels),
+            coarsest: stages
+                .last()
+                .map_or(Vec::new(), AppearanceLevel::usable_pixels),
             stages,
         };
         // Copies of a repeating tile use all parts evenly, and costs would disturb the repetition.

@@ -3,17 +3,17 @@
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 5.
 //!
-//! Input: a [`Ground`] (sites on several levels and how their neighborhoods are sampled), the [`Pyramid`] of the
+//! Input: a [`SynthesisDomain`] (sites on several levels and how their neighborhoods are sampled), the [`Pyramid`] of the
 //! exemplar, and [`Options`] with the schedule of passes. Each pass visits all sites of one level; coarser levels come
-//! first. [`Visit`] implements a single pass. Output: [`Sources`] per level, with the exemplar pixel and the rotation
+//! first. [`LevelPass`] implements a single pass. Output: [`Sources`] per level, with the exemplar pixel and the rotation
 //! at each site.
 
+use crate::domain::{Sources, SynthesisDomain, UNKNOWN};
 use crate::grid;
-use crate::ground::{Ground, Sources, UNKNOWN};
 use crate::guides::{self, Targets};
-use crate::kept::Kept;
+use crate::level_pass::LevelPass;
 use crate::neighborhood::{Part, Pass, Reads};
-use crate::visit::Visit;
+use crate::sample_cache::SampleCache;
 use crate::{Candidates, Exemplar, Options, Pyramid, Symmetry, SynthError, SynthErrorKind};
 use core::ops::ControlFlow;
 use core::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, Ordering};
@@ -85,65 +85,65 @@ impl<'a> Wanted<'a> {
 
 /// Runs the passes of the options. Returns, for each level from the finest, the exemplar pixel of each site, as
 /// `row * width + column` in that level of the pyramid. A level that no pass visited has an empty list.
-pub(crate) fn run<G: Ground>(
-    ground: &G,
+pub(crate) fn run<G: SynthesisDomain>(
+    domain: &G,
     pyramid: &Pyramid,
     options: &Options,
     callback: Callback<'_>,
 ) -> Result<Vec<Vec<u32>>, SynthError> {
-    let levels = run_turned(ground, pyramid, options, callback)?;
+    let levels = run_turned(domain, pyramid, options, callback)?;
     Ok(Sources::pixels_and_quarters(levels).0)
 }
 
 /// Runs the passes of the options. Returns the exemplar pixel and the rotation (in quarter turns) at each site of each
 /// level.
-pub(crate) fn run_turned<G: Ground>(
-    ground: &G,
+pub(crate) fn run_turned<G: SynthesisDomain>(
+    domain: &G,
     pyramid: &Pyramid,
     options: &Options,
     callback: Callback<'_>,
 ) -> Result<Vec<Sources>, SynthError> {
     let passes = options.passes()?.passes;
-    run_passes(ground, pyramid, &passes, options, callback)
+    run_passes(domain, pyramid, &passes, options, callback)
 }
 
 /// Runs the given passes instead of the schedule in the options. Returns the same as [`run_turned`].
-pub(crate) fn run_passes<G: Ground>(
-    ground: &G,
+pub(crate) fn run_passes<G: SynthesisDomain>(
+    domain: &G,
     pyramid: &Pyramid,
     passes: &[Pass],
     options: &Options,
     callback: Callback<'_>,
 ) -> Result<Vec<Sources>, SynthError> {
-    // Match with a pyramid that is blurred as much as the samples of the ground.
-    let seen = match ground.blur() {
+    // Match with a pyramid that is blurred as much as the samples of the domain.
+    let seen = match domain.blur() {
         0.0 => None,
         blur => Some(pyramid.blurred(blur)),
     };
     let seen = seen.as_ref().unwrap_or(pyramid);
     // Gather the candidates. A repair treats neighborhoods that reach past an edge differently.
-    let candidates = |pass: &Pass| match ground.start(pass.level) {
+    let candidates = |pass: &Pass| match domain.start(pass.level) {
         Some(_) => Candidates::of_repair(seen, pass, options.center),
         None => Candidates::for_options(seen, pass, options),
     };
-    run_with(ground, pyramid, passes, &candidates, options, callback)
+    run_with(domain, pyramid, passes, &candidates, options, callback)
 }
 
 /// Runs the given passes like [`run_passes`], with candidates computed by the callback `candidates`.
-pub(crate) fn run_with<G: Ground>(
-    ground: &G,
+pub(crate) fn run_with<G: SynthesisDomain>(
+    domain: &G,
     pyramid: &Pyramid,
     passes: &[Pass],
     candidates: &dyn Fn(&Pass) -> Result<Candidates, SynthError>,
     options: &Options,
     callback: Callback<'_>,
 ) -> Result<Vec<Sources>, SynthError> {
-    let n_guides = ground.targets().map_or(0, Targets::len);
+    let n_guides = domain.targets().map_or(0, Targets::len);
     guides::check_count(n_guides, pyramid.levels()[0].n_guides())?;
     let coherence = options.coherence.factors(&pyramid.levels()[0]);
     let mut levels: Vec<Sources> = Vec::new();
     levels.resize_with(pyramid.levels().len(), Sources::default);
-    let (mut kept, mut visit) = (Kept::default(), None);
+    let (mut kept, mut visit) = (SampleCache::default(), None);
     let n_passes = passes.len();
     for (index, pass) in passes.iter().enumerate() {
         // Consecutive equal passes share their candidates.
@@ -153,20 +153,20 @@ pub(crate) fn run_with<G: Ground>(
             // Initialize the level before its first pass.
             let candidates = candidates(pass)?;
             if levels[pass.level].pixels.is_empty() {
-                let first = first_sources(ground, pyramid, pass, &candidates, options);
+                let first = first_sources(domain, pyramid, pass, &candidates, options);
                 if let (Some(start), Some(coarser)) =
-                    (ground.start(pass.level), levels.get(pass.level + 1))
+                    (domain.start(pass.level), levels.get(pass.level + 1))
                 {
-                    go_on_with(coarser, &first, ground, pyramid, pass.level, &start.is_kept);
+                    go_on_with(coarser, &first, domain, pyramid, pass.level, &start.is_kept);
                 }
                 levels[pass.level] = first;
             }
-            visit = Some(Visit::new(
-                ground, pyramid, candidates, pass, options, coherence,
+            visit = Some(LevelPass::new(
+                domain, pyramid, candidates, pass, options, coherence,
             ));
         }
         let Some(visit) = &visit else { continue };
-        let n_sites = ground.n_sites(pass.level);
+        let n_sites = domain.n_sites(pass.level);
         let mut tell = |done| {
             let progress = Progress {
                 pass: index,
@@ -183,15 +183,15 @@ pub(crate) fn run_with<G: Ground>(
 }
 
 /// Returns the initial sources of a level: known pixels in a repair, random pixels or zeros elsewhere.
-fn first_sources<G: Ground>(
-    ground: &G,
+fn first_sources<G: SynthesisDomain>(
+    domain: &G,
     pyramid: &Pyramid,
     pass: &Pass,
     candidates: &Candidates,
     options: &Options,
 ) -> Sources {
-    let n_sites = ground.n_sites(pass.level);
-    let start = ground.start(pass.level);
+    let n_sites = domain.n_sites(pass.level);
+    let start = domain.start(pass.level);
     let reads_itself = pass.parts.iter().any(|part| part.reads == Reads::Same);
     let mut first = if reads_itself || start.is_some() {
         random_pixels(n_sites, pyramid, candidates, pass.level, options.seed)
@@ -210,7 +210,7 @@ fn first_sources<G: Ground>(
         pixels: first.into_iter().map(AtomicU32::new).collect(),
         ..Sources::default()
     };
-    if ground.symmetry() != Symmetry::One {
+    if domain.symmetry() != Symmetry::One {
         sources.quarters.resize_with(n_sites, AtomicU8::default);
     }
     sources
@@ -218,10 +218,10 @@ fn first_sources<G: Ground>(
 
 /// Initializes the sites of a repair that do not keep their pixel: each takes the pixel that continues its parent on
 /// the coarser level. A site keeps its initial value if it has no parent or if that pixel is not usable.
-fn go_on_with<G: Ground>(
+fn go_on_with<G: SynthesisDomain>(
     coarser: &Sources,
     sources: &Sources,
-    ground: &G,
+    domain: &G,
     pyramid: &Pyramid,
     level: usize,
     is_kept: &[bool],
@@ -229,7 +229,7 @@ fn go_on_with<G: Ground>(
     let [finer, wider] = [0, 1].map(|step| &pyramid.levels()[level + step]);
     let sites = (0..).zip(&sources.pixels).zip(is_kept);
     for ((site, source), _) in sites.filter(|(_, is_kept)| !**is_kept) {
-        let pixel = ground.parent(level, site).and_then(|(parent, quarter)| {
+        let pixel = domain.parent(level, site).and_then(|(parent, quarter)| {
             let coarser = coarser.pixels.get(parent as usize)?;
             let pixel = grid::over(coarser.load(Ordering::Relaxed), wider.size[0], quarter);
             let pixel = finer.pixel_at(pixel);

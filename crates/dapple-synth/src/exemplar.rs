@@ -12,9 +12,9 @@
 //! last and the first only one apart. All coarser levels then have cut edges. [`Exemplar::edges`] returns the edge mode
 //! of a level.
 
+use crate::domain::Plain;
 use crate::error::{SynthError, SynthErrorKind};
 use crate::grid::Grid;
-use crate::ground::Plain;
 use crate::guides::Guides;
 use crate::side_by_side::SideBySide;
 use dapple_color::LinearRgb;

@@ -3,7 +3,7 @@
 //! Positions are in units of half a pixel. A pixel's position on the next coarser level, half of its coordinates, is
 //! then an integer. Values halfway between two or four pixels are the mean of those pixels.
 
-use crate::ground::Colors;
+use crate::domain::Colors;
 use core::ops::RangeInclusive;
 use dapple_raster::Wrap;
 
@@ -109,7 +109,7 @@ pub(crate) fn square(
 #[cfg(test)]
 mod tests {
     use super::Grid;
-    use crate::ground::{Colors as _, Plain};
+    use crate::domain::{Colors as _, Plain};
     use dapple_raster::Wrap;
 
     /// Returns the value of a channel at a pixel, wrapped, in a grid with two channels.

@@ -8,9 +8,9 @@
 //! compared. A guide with a weight of 1 therefore counts as much as a color channel with the same difference at every
 //! pixel.
 
+use crate::domain::Plain;
 use crate::exemplar::{Area, halved, interleaved, roots};
 use crate::grid::Grid;
-use crate::ground::Plain;
 use crate::{Exemplar, Hierarchy, SynthError, SynthErrorKind};
 use dapple_raster::{Raster, Wrap};
 

@@ -36,10 +36,10 @@ mod tests;
 pub(crate) use origin::{LiftedDetail, LiftedPlaces, Origin};
 pub(crate) use repair::order as order_of_repair;
 
+use crate::domain::Sources;
 use crate::engine::{self, Callback, Progress};
-use crate::ground::Sources;
 use crate::guides::Targets;
-use crate::mesh_ground::MeshGround;
+use crate::mesh_domain::MeshDomain;
 use crate::places::Frames;
 use crate::{
     Candidates, Edges, Exemplar, Hierarchy, Options, Pass, Pyramid, SurfaceTexture, SynthError,
@@ -145,11 +145,11 @@ impl MeshExemplar {
         })
     }
 
-    /// Runs the passes of `options` on the target's sites, whose neighborhoods `ground` samples.
+    /// Runs the passes of `options` on the target's sites, whose neighborhoods `domain` samples.
     fn grow(
         &self,
         target: &Synthesizer,
-        ground: &MeshGround<'_>,
+        domain: &MeshDomain<'_>,
         options: &Options,
         callback: Callback<'_>,
     ) -> Result<SurfaceTexture, SynthError> {
@@ -157,7 +157,7 @@ impl MeshExemplar {
         let pyramid = Pyramid { levels };
         let candidates = |pass: &Pass| self.candidates(pass, options);
         let passes = options.passes()?.passes;
-        let levels = engine::run_with(ground, &pyramid, &passes, &candidates, options, callback)?;
+        let levels = engine::run_with(domain, &pyramid, &passes, &candidates, options, callback)?;
         let (sources, quarters) = Sources::pixels_and_quarters(levels);
         let finest = sources.first().map_or(&[][..], Vec::as_slice);
         let frames = Frames::new(target, &quarters);
@@ -192,11 +192,11 @@ impl Synthesizer {
         self.check_levels(options)?;
         let finest = &exemplar.pyramid.levels[0];
         let targets = Targets::of_surface(finest, guides, self.hierarchy(), options.n_levels)?;
-        let ground = MeshGround {
+        let domain = MeshDomain {
             targets: Some(&targets),
-            ..self.ground(options.axes, false)
+            ..self.domain(options.axes, false)
         };
-        exemplar.grow(self, &ground, options, &mut callback)
+        exemplar.grow(self, &domain, options, &mut callback)
     }
 }
 

@@ -20,12 +20,12 @@ mod tile;
 
 use crate::candidates::halves;
 use crate::detail;
+use crate::domain::{Colors, Samples, Square, Start, SynthesisDomain, UNKNOWN};
 use crate::engine::{self, Callback, Progress};
 use crate::grid::{self, Grid};
-use crate::ground::{Colors, Ground, Samples, Square, Start, UNKNOWN};
 use crate::guides::Targets;
 use crate::neighborhood::Reads;
-use crate::turns::Turns;
+use crate::wavefront::WavefrontSchedule;
 use crate::{CoarserCenter, Edges, Exemplar, Options, Pyramid, SynthError, SynthErrorKind};
 use core::ops::ControlFlow;
 use dapple_raster::{Raster, Wrap};
@@ -100,8 +100,8 @@ pub fn synthesize_plane_with(
     mut callback: impl FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<PlaneTexture, SynthError> {
     let pyramid = exemplar.pyramid(options.n_levels)?;
-    let ground = PlaneGround::new(size, edges, options)?;
-    PlaneTexture::grown(&ground, &pyramid, options, &mut callback)
+    let domain = PlaneDomain::new(size, edges, options)?;
+    PlaneTexture::grown(&domain, &pyramid, options, &mut callback)
 }
 
 /// Synthesizes a texture like [`synthesize_plane_with`], controlled by guides: planes that match parts of the texture
@@ -156,21 +156,21 @@ pub fn synthesize_plane_guided(
         }));
     };
     let pyramid = exemplar.pyramid(options.n_levels)?;
-    let mut ground = PlaneGround::new(first.size(), edges, options)?;
-    let targets = Targets::of_plane(exemplar, guides, &ground.sizes, ground.wrap)?;
-    ground.targets = Some(targets);
-    PlaneTexture::grown(&ground, &pyramid, options, &mut callback)
+    let mut domain = PlaneDomain::new(first.size(), edges, options)?;
+    let targets = Targets::of_plane(exemplar, guides, &domain.sizes, domain.wrap)?;
+    domain.targets = Some(targets);
+    PlaneTexture::grown(&domain, &pyramid, options, &mut callback)
 }
 
 impl PlaneTexture {
     /// Runs the passes of a synthesis and returns the texture.
     fn grown(
-        ground: &PlaneGround,
+        domain: &PlaneDomain,
         pyramid: &Pyramid,
         options: &Options,
         callback: Callback<'_>,
     ) -> Result<Self, SynthError> {
-        let mut levels = engine::run(ground, pyramid, options, callback)?;
+        let mut levels = engine::run(domain, pyramid, options, callback)?;
         let exemplar = &pyramid.levels()[0];
         let width = exemplar.size[0];
         let sources = levels.swap_remove(0).into_iter();
@@ -178,8 +178,8 @@ impl PlaneTexture {
             .map(|pixel| [pixel % width, pixel / width])
             .collect();
         Ok(Self {
-            sources: Raster::from_vec(ground.sizes[0], sources)?,
-            edges: ground.edges,
+            sources: Raster::from_vec(domain.sizes[0], sources)?,
+            edges: domain.edges,
             exemplar_size: exemplar.size,
             exemplar_edges: exemplar.edges,
         })
@@ -267,7 +267,7 @@ pub(crate) fn check_pixels(size: [u32; 2]) -> Result<(), SynthError> {
 
 /// Pixels of the texture on all levels, as sites for the engine.
 #[derive(Clone, Debug)]
-struct PlaneGround {
+struct PlaneDomain {
     /// Sizes of the levels in pixels, the finest first.
     sizes: Vec<[u32; 2]>,
     edges: [Edges; 2],
@@ -279,7 +279,7 @@ struct PlaneGround {
     targets: Option<Targets>,
 }
 
-impl PlaneGround {
+impl PlaneDomain {
     fn new(size: [u32; 2], edges: [Edges; 2], options: &Options) -> Result<Self, SynthError> {
         check_pixels(size)?;
         let halvings = options.n_levels.saturating_sub(1).min(31) as u32;
@@ -335,7 +335,7 @@ impl PlaneGround {
     }
 }
 
-impl Ground for PlaneGround {
+impl SynthesisDomain for PlaneDomain {
     /// Half-side length of neighborhoods on the level itself, in pixels.
     type Prepared = i32;
     type Memory = ();
@@ -384,7 +384,7 @@ impl Ground for PlaneGround {
         same.unwrap_or(0)
     }
 
-    fn turns(&self, level: usize, &half: &i32) -> Turns {
+    fn turns(&self, level: usize, &half: &i32) -> WavefrontSchedule {
         let size = self.sizes[level];
         let side = 2 * half as usize + 1;
         let latest = |site, marks: &[u32]| {
@@ -400,7 +400,7 @@ impl Ground for PlaneGround {
             latest
         };
         let order = self.order(level);
-        Turns::new(&order, self.n_sites(level), |site| site as usize, latest)
+        WavefrontSchedule::new(&order, self.n_sites(level), |site| site as usize, latest)
     }
 
     fn read(

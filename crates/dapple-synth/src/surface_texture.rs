@@ -1,6 +1,6 @@
 //! Result of a synthesis on a surface.
 
-use crate::ground::Colors as _;
+use crate::domain::Colors as _;
 use crate::lift::LiftedPlaces;
 use crate::places::Places;
 use crate::{Pyramid, SynthError, SynthErrorKind};

@@ -1,10 +1,10 @@
 //! Entry points for synthesis on surfaces: a one-call function, and a reusable solver.
 
 use crate::appearance::Appearance;
+use crate::domain;
 use crate::engine::{self, Callback, Progress};
-use crate::ground;
 use crate::guides::Targets;
-use crate::mesh_ground::MeshGround;
+use crate::mesh_domain::MeshDomain;
 use crate::places::{Frames, Places};
 use crate::{
     Axes, Direction, Exemplar, Hierarchy, HierarchyOptions, Matching, Options, Orientation,
@@ -211,18 +211,18 @@ impl Synthesizer {
         // Build the exemplar pyramid, and the guides of the surface.
         let pyramid = exemplar.pyramid(options.n_levels)?;
         let targets = Targets::of_surface(exemplar, guides, &self.hierarchy, options.n_levels)?;
-        let ground = MeshGround {
+        let domain = MeshDomain {
             targets: Some(&targets),
-            ..self.ground(options.axes, options.sources == Sources::SubPixel)
+            ..self.domain(options.axes, options.sources == Sources::SubPixel)
         };
         // Assign a pixel of the exemplar to every site.
         let (sources, quarters) = match options.matching {
             Matching::Appearance if options.schedule.is_none() => {
-                self.by_appearance(&ground, &targets, &pyramid, options, callback)?
+                self.by_appearance(&domain, &targets, &pyramid, options, callback)?
             }
             _ => {
-                let levels = engine::run_turned(&ground, &pyramid, options, callback)?;
-                ground::Sources::pixels_and_quarters(levels)
+                let levels = engine::run_turned(&domain, &pyramid, options, callback)?;
+                domain::Sources::pixels_and_quarters(levels)
             }
         };
         // Refine the pixels of the finest sites to positions between pixels.
@@ -255,7 +255,7 @@ impl Synthesizer {
     /// quarter turns.
     fn by_appearance(
         &self,
-        ground: &MeshGround<'_>,
+        domain: &MeshDomain<'_>,
         targets: &Targets,
         pyramid: &Pyramid,
         options: &Options,
@@ -270,9 +270,9 @@ impl Synthesizer {
                 ..progress
             })
         };
-        let mut levels = engine::run_passes(ground, pyramid, &passes[..1], options, &mut first)?;
+        let mut levels = engine::run_passes(domain, pyramid, &passes[..1], options, &mut first)?;
         let coarsest = levels.split_off(options.n_levels - 1);
-        let (sources, quarters) = ground::Sources::pixels_and_quarters(coarsest);
+        let (sources, quarters) = domain::Sources::pixels_and_quarters(coarsest);
         // Correct all levels by appearance.
         let mut appearance = Appearance::new(self, exemplar, targets, &quarters, options)?;
         let places = appearance.run(&sources.concat(), callback)?;
@@ -286,9 +286,9 @@ impl Synthesizer {
         Ok((pixels, appearance.quarters))
     }
 
-    /// Combines the surface, its sites and their orientation into a ground for the engine.
-    pub(crate) fn ground(&self, axes: Axes, is_blurred: bool) -> MeshGround<'_> {
-        MeshGround {
+    /// Combines the surface, its sites and their orientation into a domain for the engine.
+    pub(crate) fn domain(&self, axes: Axes, is_blurred: bool) -> MeshDomain<'_> {
+        MeshDomain {
             surface: &self.surface,
             hierarchy: &self.hierarchy,
             orientation: &self.orientation,

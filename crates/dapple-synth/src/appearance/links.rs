@@ -5,7 +5,7 @@
 //! rows, and the classes of unconnected sites. The graph and the frames do not change, so links are computed once per
 //! level.
 
-use crate::endless::stage::DIAGONALS;
+use crate::endless::level::DIAGONALS;
 use crate::orientation::offset_before;
 use crate::places::Frames;
 use crate::{Hierarchy, SiteGraph, SiteIdx};
@@ -62,7 +62,7 @@ pub(super) struct Links {
 
 /// Links of one site.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Around<'a> {
+pub(super) struct SiteLinks<'a> {
     /// Neighbors of the site in the graph.
     pub(super) near: &'a [Link],
     /// Sites near each of [`DIAGONALS`].
@@ -127,12 +127,12 @@ impl Links {
 
     /// Returns the links of a site.
     #[inline]
-    pub(super) fn of(&self, site: usize) -> Around<'_> {
+    pub(super) fn of(&self, site: usize) -> SiteLinks<'_> {
         let [near, corners @ ..] = self.rows[site];
         let end = self.rows[site + 1][0];
         let [a, b, c, d] = corners;
         let part = |from: u32, until: u32| &self.links[from as usize..until as usize];
-        Around {
+        SiteLinks {
             near: part(near, a),
             corners: [part(a, b), part(b, c), part(c, d), part(d, end)],
         }

@@ -2,7 +2,7 @@
 
 use super::links::Links;
 use super::{Appearance, Choice, around, choose, distance_sq, middle, pixel, quarters};
-use crate::endless::stage::{self, DIAGONALS, Stage};
+use crate::endless::level::{self, AppearanceLevel, DIAGONALS};
 use crate::engine::Wanted;
 use crate::guides::Targets;
 use crate::orientation::offset_before;
@@ -166,13 +166,13 @@ fn pixel_of(place: [i64; 2]) -> [i64; 2] {
     place.map(|at| at.div_euclid(8))
 }
 
-fn usable_at(stage: &Stage, place: [i64; 2]) -> Option<[i64; 2]> {
+fn usable_at(stage: &AppearanceLevel, place: [i64; 2]) -> Option<[i64; 2]> {
     let pixel = stage.usable(pixel_of(place))?;
     Some([0, 1].map(|axis| 8 * pixel[axis] + place[axis].rem_euclid(8)))
 }
 
 /// Returns the usable positions half a pixel from a position.
-fn aside(stage: &Stage, [x, y]: [i64; 2]) -> Vec<[i64; 2]> {
+fn aside(stage: &AppearanceLevel, [x, y]: [i64; 2]) -> Vec<[i64; 2]> {
     let aside = [[x + 4, y], [x - 4, y], [x, y + 4], [x, y - 4]].into_iter();
     aside.filter_map(|place| usable_at(stage, place)).collect()
 }
@@ -282,7 +282,7 @@ fn sites_whose_guides_are_off_search_all_of_the_exemplar() {
     let mut places = before.clone();
     let mut tell = |_| Ok(());
     appearance
-        .obey(0, &links, &mut places, &mut tell)
+        .apply_guides(0, &links, &mut places, &mut tell)
         .expect("nobody stops it");
     let mut n_exact = 0;
     for (site, place) in places.into_iter().enumerate() {
@@ -312,7 +312,7 @@ fn sites_whose_guides_are_off_search_all_of_the_exemplar() {
 }
 
 /// Returns the squared distance between the features on the diagonals of a site and those on the diagonals of a pixel.
-fn unlike(stage: &Stage, around: &[[f32; 8]], [x, y]: [i64; 2]) -> f32 {
+fn unlike(stage: &AppearanceLevel, around: &[[f32; 8]], [x, y]: [i64; 2]) -> f32 {
     let corners = around.iter().zip(DIAGONALS);
     let squares = corners.flat_map(|(own, [i, j])| {
         let other = stage.features([x + i, y + j]);
@@ -339,7 +339,7 @@ fn features_of_what_looks_alike_when_turned_are_those_at_the_turned_place() {
     let plane = Raster::from_fn([SIDE as u32; 2], value).unwrap();
     let exemplar = Exemplar::from_planes(&[(&plane, 1.0)], Edges::Wrap).unwrap();
     for symmetry in [Symmetry::One, Symmetry::Two, Symmetry::Four] {
-        let stage = &stage::stages(
+        let stage = &level::stages(
             &exemplar,
             &exemplar.guides,
             symmetry,

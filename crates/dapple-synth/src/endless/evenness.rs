@@ -19,7 +19,7 @@
 //! assignment problems.
 
 use super::Endless;
-use super::stage::Stage;
+use super::level::AppearanceLevel;
 use super::window::{Area, READS};
 use crate::SynthError;
 use crate::engine::Wanted;
@@ -118,7 +118,7 @@ impl Endless {
         let mut coarser: Option<Area> = None;
         for level in (0..self.stages.len()).rev() {
             // Stop at the first level on which the piece is smaller than the exemplar.
-            let Stage { size, spacing, .. } = self.stages[level];
+            let AppearanceLevel { size, spacing, .. } = self.stages[level];
             if SIDE * spacing < i64::from(size[0].max(size[1])) {
                 return Ok(());
             }
@@ -171,7 +171,7 @@ impl Area {
     }
 
     /// Returns the mean squared distance between the features around pixels and around their sources.
-    fn mean_sq(&self, stage: &Stage) -> f32 {
+    fn mean_sq(&self, stage: &AppearanceLevel) -> f32 {
         let inner: Vec<[i64; 2]> = self.inner().collect();
         let distances = parallel::map_at_least(64, inner.len(), |at| {
             stage.distance_sq(&self.around(stage, inner[at]), self.at(inner[at]))

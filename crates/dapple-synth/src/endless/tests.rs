@@ -1,7 +1,7 @@
 //! Tests for endless textures.
 
 use super::evenness::Costs;
-use super::stage::{DIAGONALS, N_FEATURES, Stage};
+use super::level::{AppearanceLevel, DIAGONALS, N_FEATURES};
 use super::window::{N_PASSES, QUARTERS};
 use super::{Endless, EndlessOptions};
 use crate::{Edges, Exemplar, PlaneTexture, Progress, SynthErrorKind};
@@ -218,7 +218,7 @@ fn pixels_that_are_alike_are_those_that_comparing_with_all_finds() {
 }
 
 /// Returns the features on the diagonals of a pixel.
-fn around(stage: &Stage, [column, row]: [i64; 2]) -> [[f32; N_FEATURES]; 4] {
+fn around(stage: &AppearanceLevel, [column, row]: [i64; 2]) -> [[f32; N_FEATURES]; 4] {
     let h = stage.spacing;
     DIAGONALS.map(|[x, y]| *stage.features([column + x * h, row + y * h]))
 }

@@ -4,10 +4,10 @@
 //! are added on each level, so that every value that the window depends on is computed.
 
 use super::Endless;
-use super::stage::{DIAGONALS, N_FEATURES, Stage, narrow};
+use super::level::{AppearanceLevel, DIAGONALS, N_FEATURES, narrow};
 use crate::SynthError;
 use crate::engine::{self, Callback, Progress};
-use crate::turns::Board;
+use crate::wavefront::WavefrontProgress;
 use core::ops::Range;
 use core::sync::atomic::{AtomicU32, Ordering};
 use dapple_hash::{hash2, unit_f64};
@@ -224,11 +224,11 @@ impl Area {
 
     /// Corrects the pixels of the given subpasses in `rows`, except pixels whose correction reads past the area.
     /// Subpasses run in order; the rows of a subpass run in parallel.
-    fn correct(&self, stage: &Stage, quarters: &[[i64; 2]], rows: Range<i64>) {
+    fn correct(&self, stage: &AppearanceLevel, quarters: &[[i64; 2]], rows: Range<i64>) {
         let level = simd::level();
         let turns = self.turns(quarters, &rows);
         let mut workers = vec![(); parallel::n_threads()];
-        let board = Board::new(0..turns.len(), workers.len());
+        let board = WavefrontProgress::new(0..turns.len(), workers.len());
         parallel::together(&mut workers, |thread, ()| {
             while let Some(turn) = board.take(thread) {
                 let Turn { quarter, row, wait } = turns[turn];
@@ -249,7 +249,7 @@ impl Area {
 
     /// Corrects the pixels of a row at the given columns.
     #[inline(always)]
-    fn correct_row(&self, stage: &Stage, columns: impl Iterator<Item = i64>, row: i64) {
+    fn correct_row(&self, stage: &AppearanceLevel, columns: impl Iterator<Item = i64>, row: i64) {
         for column in columns {
             let [across, down] = narrow(self.corrected(stage, [column, row]));
             let to = &self.places[self.index([column, row])];
@@ -278,7 +278,7 @@ impl Area {
     /// Returns the best source of a pixel: the exemplar pixel whose surroundings are most similar to the pixel's
     /// surroundings in the texture. The first of equally good sources is returned.
     #[inline(always)]
-    fn corrected(&self, stage: &Stage, [column, row]: [i64; 2]) -> [i64; 2] {
+    fn corrected(&self, stage: &AppearanceLevel, [column, row]: [i64; 2]) -> [i64; 2] {
         let mut choice = Choice {
             stage,
             area: self,
@@ -315,7 +315,7 @@ impl Area {
     /// than half the distance between the two pixels. Pixels of the same subpass are ignored, because they are
     /// corrected at the same time.
     #[inline(always)]
-    fn repeats(&self, stage: &Stage, [column, row]: [i64; 2], place: [i64; 2]) -> bool {
+    fn repeats(&self, stage: &AppearanceLevel, [column, row]: [i64; 2], place: [i64; 2]) -> bool {
         for y in -READS..=READS {
             for x in -READS..=READS {
                 if x % 2 == 0 && y % 2 == 0 {
@@ -334,7 +334,11 @@ impl Area {
     /// Returns the features on each diagonal of a pixel: the mean of three values. One is at the source of the diagonal
     /// pixel; the other two are predicted by the pixels one step beyond it along each axis.
     #[inline(always)]
-    pub(super) fn around(&self, stage: &Stage, [column, row]: [i64; 2]) -> [[f32; N_FEATURES]; 4] {
+    pub(super) fn around(
+        &self,
+        stage: &AppearanceLevel,
+        [column, row]: [i64; 2],
+    ) -> [[f32; N_FEATURES]; 4] {
         let mut around = [[0.0; N_FEATURES]; 4];
         for (sums, [x, y]) in around.iter_mut().zip(DIAGONALS) {
             for [beyond_x, beyond_y] in [[0, 0], [x, 0], [0, y]] {
@@ -359,7 +363,7 @@ impl Area {
 
 /// State of the search for the best source of a pixel.
 struct Choice<'a> {
-    stage: &'a Stage,
+    stage: &'a AppearanceLevel,
     area: &'a Area,
     pixel: [i64; 2],
     /// Features on the diagonals of the pixel.

@@ -3,8 +3,8 @@
 mod turned;
 
 use super::{Progress, random_pixels, run};
-use crate::ground::{Ground, Plain, Rows, Samples, Square};
-use crate::mesh_ground::MeshGround;
+use crate::domain::{Plain, Rows, Samples, Square, SynthesisDomain};
+use crate::mesh_domain::MeshDomain;
 use crate::neighborhood::{Part, Pass, Reads};
 use crate::{
     Axes, Candidates, Coherence, Edges, Exemplar, HierarchyOptions, Options, Pyramid, Schedule,
@@ -40,7 +40,7 @@ fn sphere(n_sites: usize) -> Synthesizer {
 
 /// Returns the neighborhood colors N(v) of the paper.
 fn neighborhood(
-    ground: &MeshGround<'_>,
+    domain: &MeshDomain<'_>,
     pass: &Pass,
     site: u32,
     pyramid: &Pyramid,
@@ -57,8 +57,8 @@ fn neighborhood(
             half,
             rows: Rows::All,
         };
-        let prepared = ground.prepare(pass.level, Some(half), None);
-        let coarser = (reads > pass.level).then(|| ground.prepare(pass.level, None, Some(half)));
+        let prepared = domain.prepare(pass.level, Some(half), None);
+        let coarser = (reads > pass.level).then(|| domain.prepare(pass.level, None, Some(half)));
         let mut samples = Samples::default();
         samples.make_room(square.side(), 3);
         let pixels = &pyramid.levels()[reads].pixels;
@@ -69,7 +69,7 @@ fn neighborhood(
             n_channels: 3,
         };
         let prepared = coarser.as_ref().unwrap_or(&prepared);
-        ground.read(
+        domain.read(
             square,
             prepared,
             colors,
@@ -87,7 +87,7 @@ fn neighborhood(
 
 /// Runs the passes as in the paper's pseudocode. The initial pixels are `started`.
 fn pseudo_code(
-    ground: &MeshGround<'_>,
+    domain: &MeshDomain<'_>,
     pyramid: &Pyramid,
     passes: &[Pass],
     options: &Options,
@@ -96,9 +96,9 @@ fn pseudo_code(
     let mut levels = started.to_vec();
     for pass in passes {
         let candidates = Candidates::new(pyramid, pass, options.center).unwrap();
-        levels[pass.level].resize(ground.n_sites(pass.level), 0);
-        for site in ground.order(pass.level) {
-            let query = neighborhood(ground, pass, site, pyramid, &levels);
+        levels[pass.level].resize(domain.n_sites(pass.level), 0);
+        for site in domain.order(pass.level) {
+            let query = neighborhood(domain, pass, site, pyramid, &levels);
             let (mut smallest, mut best) = (f32::INFINITY, 0);
             for row in 0..candidates.len() {
                 let new = distance_sq(&query, candidates.row(row));
@@ -119,7 +119,7 @@ fn go_on(_: Progress) -> ControlFlow<()> {
 #[test]
 fn passes_are_those_of_the_pseudo_code() {
     let case = sphere(300);
-    let ground = case.ground(Axes::Carried, false);
+    let domain = case.domain(Axes::Carried, false);
     let paper = Schedule::paper(2);
     let part = |shape, side, reads| Part::new(shape, side, reads);
     let other = Schedule {
@@ -154,11 +154,11 @@ fn passes_are_those_of_the_pseudo_code() {
             ..Options::default()
         };
         let candidates = Candidates::new(&pyramid, &schedule.passes[0], options.center).unwrap();
-        let n_sites = ground.n_sites(1);
+        let n_sites = domain.n_sites(1);
         let started = random_pixels(n_sites, &pyramid, &candidates, 1, options.seed);
         let started = [Vec::new(), started];
-        let expected = pseudo_code(&ground, &pyramid, &schedule.passes, &options, &started);
-        let found = run(&ground, &pyramid, &options, &mut go_on).unwrap();
+        let expected = pseudo_code(&domain, &pyramid, &schedule.passes, &options, &started);
+        let found = run(&domain, &pyramid, &options, &mut go_on).unwrap();
         assert!(
             found == expected,
             "{edges:?}: other pixels than the pseudo-code's"
@@ -170,7 +170,7 @@ fn passes_are_those_of_the_pseudo_code() {
 #[test]
 fn texture_has_the_same_bits_on_any_number_of_threads() {
     let case = sphere(3000);
-    let ground = case.ground(Axes::Carried, false);
+    let domain = case.domain(Axes::Carried, false);
     let pyramid = pyramid(Edges::Wrap, 2);
     for (coherence, evenness) in [(0.0, 0.0), (1.0, 0.0), (0.0, 2.0), (1.5, 0.5)] {
         let options = Options {
@@ -182,7 +182,7 @@ fn texture_has_the_same_bits_on_any_number_of_threads() {
         let textures = [1, 2, 7].map(|n_threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads);
             let pool = pool.build().unwrap();
-            pool.install(|| run(&ground, &pyramid, &options, &mut go_on).unwrap())
+            pool.install(|| run(&domain, &pyramid, &options, &mut go_on).unwrap())
         });
         assert!(
             textures[0] == textures[1],
@@ -198,7 +198,7 @@ fn texture_has_the_same_bits_on_any_number_of_threads() {
 #[test]
 fn coherent_texture_has_more_neighbors_that_continue_each_other() {
     let case = sphere(2000);
-    let ground = case.ground(Axes::Carried, false);
+    let domain = case.domain(Axes::Carried, false);
     let pyramid = pyramid(Edges::Wrap, 2);
     let continued = |coherence: f32| {
         let options = Options {
@@ -207,7 +207,7 @@ fn coherent_texture_has_more_neighbors_that_continue_each_other() {
             evenness: 0.0,
             ..Options::default()
         };
-        let levels = run(&ground, &pyramid, &options, &mut go_on).unwrap();
+        let levels = run(&domain, &pyramid, &options, &mut go_on).unwrap();
         let sources = &levels[0];
         let graph = case.hierarchy().levels()[0].graph();
         let near = |a: u32, b: u32| {
@@ -243,7 +243,7 @@ fn uses(evenness: f32) -> Vec<usize> {
     };
     let pyramid = pyramid(Edges::Wrap, 2);
     let levels = run(
-        &case.ground(Axes::Carried, false),
+        &case.domain(Axes::Carried, false),
         &pyramid,
         &options,
         &mut go_on,
@@ -268,7 +268,7 @@ fn evenness_spreads_the_uses() {
 #[test]
 fn callback_hears_of_every_pass_and_can_stop_any() {
     let case = sphere(500);
-    let ground = case.ground(Axes::Carried, false);
+    let domain = case.domain(Axes::Carried, false);
     let pyramid = pyramid(Edges::Wrap, 2);
     let options = Options {
         n_levels: 2,
@@ -279,7 +279,7 @@ fn callback_hears_of_every_pass_and_can_stop_any() {
         heard.push(progress);
         ControlFlow::Continue(())
     };
-    run(&ground, &pyramid, &options, &mut listen).unwrap();
+    run(&domain, &pyramid, &options, &mut listen).unwrap();
     let ends: Vec<_> = heard
         .iter()
         .filter(|progress| progress.done == progress.n_sites)
@@ -302,7 +302,7 @@ fn callback_hears_of_every_pass_and_can_stop_any() {
                 ControlFlow::Continue(())
             }
         };
-        let error = run(&ground, &pyramid, &options, &mut stop).unwrap_err();
+        let error = run(&domain, &pyramid, &options, &mut stop).unwrap_err();
         assert_eq!(error.kind(), &SynthErrorKind::Cancelled, "pass {last}");
     }
 }
@@ -310,7 +310,7 @@ fn callback_hears_of_every_pass_and_can_stop_any() {
 #[test]
 fn value_stability_of_a_texture() {
     let case = sphere(400);
-    let ground = case.ground(Axes::Carried, false);
+    let domain = case.domain(Axes::Carried, false);
     let pyramid = pyramid(Edges::Wrap, 2);
     let options = Options {
         n_levels: 2,
@@ -318,7 +318,7 @@ fn value_stability_of_a_texture() {
         evenness: 0.0,
         ..Options::default()
     };
-    let levels = run(&ground, &pyramid, &options, &mut go_on).unwrap();
+    let levels = run(&domain, &pyramid, &options, &mut go_on).unwrap();
     assert_eq!(
         levels[0][..8],
         [6, 4, 165, 133, 230, 228, 160, 198],

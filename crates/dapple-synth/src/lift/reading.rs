@@ -2,7 +2,7 @@
 
 use super::Origin;
 use super::origin::Place;
-use crate::ground::Colors;
+use crate::domain::Colors;
 use crate::guides::Guides;
 use crate::{Edges, Exemplar, SiteGraph, SiteIdx, columns};
 use dapple_raster::Wrap;

@@ -2,7 +2,7 @@
 //!
 //! A stain or a scar is replaced by texture from the rest of the surface, by lifting the surface onto itself. As in a
 //! repair in the plane, all sites have a source before any is visited, and each compares its full neighborhood, several
-//! times. Kept sites are their own sources. On the coarsest level a hole starts as the piece of the surface that fits
+//! times. Fixed sites are their own sources. On the coarsest level a hole starts as the piece of the surface that fits
 //! its surroundings best. Where no piece is as large as the hole, it starts with random sites. A pass proceeds from the
 //! rim of a hole inward.
 //!
@@ -10,9 +10,9 @@
 
 use super::origin::Place;
 use super::{MeshExemplar, Origin};
+use crate::domain::{Colors, Start, UNKNOWN};
 use crate::engine::Progress;
-use crate::ground::{Colors, Start, UNKNOWN};
-use crate::mesh_ground::MeshGround;
+use crate::mesh_domain::MeshDomain;
 use crate::{Exemplar, Options, Schedule, SiteGraph, SiteIdx, SurfaceTexture, SynthError};
 use core::ops::ControlFlow;
 use dapple_raster::parallel;
@@ -50,11 +50,11 @@ impl MeshExemplar {
             ..options.clone()
         };
         let starts = self.starts(self.levels(options.n_levels)?);
-        let ground = MeshGround {
+        let domain = MeshDomain {
             starts: &starts,
-            ..self.source().ground(options.axes, false)
+            ..self.source().domain(options.axes, false)
         };
-        self.grow(self.source(), &ground, &options, &mut callback)
+        self.grow(self.source(), &domain, &options, &mut callback)
     }
 
     /// Returns the initial sources of the sites of each level.

@@ -1,9 +1,9 @@
 //! Gathers the neighborhoods of a source's sites as candidates.
 
 use crate::candidates::{self, Beside};
-use crate::ground::{Ground, Rows, Samples, Square};
-use crate::mesh_ground::{MeshGround, MeshMemory};
-use crate::visit::{self, Half, Term};
+use crate::domain::{Rows, Samples, Square, SynthesisDomain};
+use crate::level_pass::{self, NeighborhoodHalf, Term};
+use crate::mesh_domain::{MeshDomain, MeshMemory};
 use crate::{Candidates, Options, Pass, Pyramid, Reads, SynthError, Synthesizer};
 use dapple_raster::parallel;
 
@@ -23,20 +23,20 @@ pub(super) fn candidates(
     options: &Options,
 ) -> Result<Candidates, SynthError> {
     pass.check(pyramid.levels().len())?;
-    let ground = source.ground(options.axes, false);
-    let halves = [Reads::Same, Reads::Coarser].map(|reads| visit::half_of(pass, reads));
+    let domain = source.domain(options.axes, false);
+    let halves = [Reads::Same, Reads::Coarser].map(|reads| level_pass::half_of(pass, reads));
     let [same, coarser] = halves.map(|half| half.map(|half| half.half));
     let reader = Reader {
-        prepared: ground.prepare(pass.level, same, coarser),
-        beside: ground.prepare(pass.level, Some(1), None),
-        ground: &ground,
-        terms: visit::terms_of(pass, [same, coarser].map(Option::unwrap_or_default)),
+        prepared: domain.prepare(pass.level, same, coarser),
+        beside: domain.prepare(pass.level, Some(1), None),
+        domain: &domain,
+        terms: level_pass::terms_of(pass, [same, coarser].map(Option::unwrap_or_default)),
         halves,
         level: pass.level,
         pyramid,
         guide_scale: candidates::guide_scale(pass),
     };
-    let n_sites = ground.n_sites(pass.level);
+    let n_sites = domain.n_sites(pass.level);
     let chunks = parallel::map(n_sites.div_ceil(CHUNK), |chunk| {
         let first = chunk * CHUNK;
         reader.chunk(first..(first + CHUNK).min(n_sites))
@@ -79,13 +79,13 @@ struct Chunk {
 
 /// Reads neighborhoods on the source, in the same way as on the target.
 struct Reader<'a> {
-    ground: &'a MeshGround<'a>,
-    prepared: <MeshGround<'a> as Ground>::Prepared,
-    beside: <MeshGround<'a> as Ground>::Prepared,
+    domain: &'a MeshDomain<'a>,
+    prepared: <MeshDomain<'a> as SynthesisDomain>::Prepared,
+    beside: <MeshDomain<'a> as SynthesisDomain>::Prepared,
     terms: Vec<Term>,
     /// Extents of the squares on the level itself and on the coarser level; `None` if the pass does not read that
     /// level.
-    halves: [Option<Half>; 2],
+    halves: [Option<NeighborhoodHalf>; 2],
     level: usize,
     pyramid: &'a Pyramid,
     guide_scale: f32,
@@ -106,7 +106,7 @@ impl Reader<'_> {
             let [is_whole_same, is_whole_coarser] = [(0, &mut same), (1, &mut coarser)]
                 .map(|(step, samples)| self.read(site, step, samples, &mut memory));
             let level = &self.pyramid.levels()[self.level];
-            visit::push_terms(
+            level_pass::push_terms(
                 &self.terms,
                 [&same, &coarser],
                 level.n_channels,
@@ -143,9 +143,9 @@ impl Reader<'_> {
         };
         let colors = self.pyramid.levels()[reads].plain();
         samples.make_room(square.side(), colors.n_channels);
-        self.ground
+        self.domain
             .read(square, &self.prepared, colors, samples, memory);
-        memory.is_spread(LEAST * self.ground.hierarchy.levels()[reads].spacing())
+        memory.is_spread(LEAST * self.domain.hierarchy.levels()[reads].spacing())
     }
 
     /// Returns whether all sites in the neighborhood of `site` are usable.
@@ -173,7 +173,7 @@ impl Reader<'_> {
         let mut samples = Samples::default();
         let colors = self.pyramid.levels()[self.level].plain();
         samples.make_room(square.side(), colors.n_channels);
-        self.ground
+        self.domain
             .read(square, &self.beside, colors, &mut samples, memory);
         let mut beside = [site; 9];
         beside.copy_from_slice(&samples.nearest);

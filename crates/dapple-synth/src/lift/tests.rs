@@ -1,7 +1,7 @@
 //! Tests of lifting against the paper's pseudo-code on two surfaces, and against synthesis from an image.
 
 use super::*;
-use crate::ground::{Ground, Painted, Rows, Samples, Square};
+use crate::domain::{LevelState, Rows, Samples, Square, SynthesisDomain};
 use crate::shapes::{geodesic_sphere, square, synthesizer, torus};
 use crate::{
     Atlas, Coherence, HierarchyOptions, Reads, Schedule, bake_colors, bake_normals, bake_values,
@@ -66,7 +66,7 @@ fn options(n_levels: usize) -> Options {
 
 /// Returns the neighborhood of `site`, part by part, on a surface whose sites have the sources `levels`.
 fn neighborhood(
-    ground: &MeshGround<'_>,
+    domain: &MeshDomain<'_>,
     pass: &Pass,
     site: u32,
     pyramid: &Pyramid,
@@ -86,15 +86,15 @@ fn neighborhood(
             Reads::Same => [Some(half), None],
             Reads::Coarser => [None, Some(half)],
         };
-        let prepared = ground.prepare(pass.level, halves[0], halves[1]);
-        let colors = Painted {
+        let prepared = domain.prepare(pass.level, halves[0], halves[1]);
+        let colors = LevelState {
             pixels: pyramid.levels()[square.reads].plain(),
             sources: &levels[square.reads],
         };
         let mut samples = Samples::default();
         samples.make_room(square.side(), 1);
         let mut memory = Default::default();
-        ground.read(square, &prepared, colors, &mut samples, &mut memory);
+        domain.read(square, &prepared, colors, &mut samples, &mut memory);
         for [i, j] in part.offsets() {
             let sample = (j + half) * (2 * half + 1) + i + half;
             values.push(samples.values[sample as usize] * part.weight.sqrt());
@@ -124,8 +124,8 @@ fn lifting_is_the_pseudo_code_with_neighborhoods_of_the_source() {
         axes: crate::Axes::Carried,
         ..options(2)
     };
-    let source_ground = exemplar.source().ground(options.axes, false);
-    let ground = target.ground(options.axes, false);
+    let source_domain = exemplar.source().domain(options.axes, false);
+    let domain = target.domain(options.axes, false);
     let own = own_pixels(&exemplar);
     let found = target.lift(&exemplar, &[], &options, go_on).unwrap();
     // The initial sources of the coarsest level are not public: take the result of its last visit instead.
@@ -135,14 +135,14 @@ fn lifting_is_the_pseudo_code_with_neighborhoods_of_the_source() {
         .map(|[site, _]| AtomicU32::new(site))
         .collect();
     for pass in &Schedule::paper(2).passes[1..] {
-        let n_sites = ground.n_sites(0);
+        let n_sites = domain.n_sites(0);
         levels[0].pixels.resize_with(n_sites, AtomicU32::default);
         let n_rows = exemplar.source().hierarchy().levels()[0].n_sites() as u32;
         let rows: Vec<Vec<f32>> = (0..n_rows)
-            .map(|site| neighborhood(&source_ground, pass, site, &exemplar.pyramid, &own))
+            .map(|site| neighborhood(&source_domain, pass, site, &exemplar.pyramid, &own))
             .collect();
-        for site in ground.order(0) {
-            let query = neighborhood(&ground, pass, site, &exemplar.pyramid, &levels);
+        for site in domain.order(0) {
+            let query = neighborhood(&domain, pass, site, &exemplar.pyramid, &levels);
             let (mut smallest, mut best) = (f32::INFINITY, 0);
             for (row, values) in (0..).zip(&rows) {
                 let distance = distance_sq(&query, values);

@@ -1,7 +1,7 @@
 //! Finds the sites within reach of texels, for all texels of a face at once.
 
 use crate::bake::Group;
-use crate::mesh_ground::{Around, Record};
+use crate::mesh_domain::{NeighborhoodView, Record};
 use crate::sites::weights;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, f32x8, prelude::*};
@@ -127,7 +127,7 @@ impl Reach {
     }
 
     #[inline(always)]
-    fn list<S: Simd>(&mut self, simd: S, radius: f32, around: Around<'_>) {
+    fn list<S: Simd>(&mut self, simd: S, radius: f32, around: NeighborhoodView<'_>) {
         for &[at, normal] in &self.points {
             let n_found = self.found.search(simd, &self.columns, [at, normal], radius);
             let n_found = self.found.keep_largest(n_found);
@@ -230,7 +230,7 @@ impl Found {
 
 /// Returns the site nearest to a point, the first of equally near ones. Sites on the same sheet take precedence.
 #[cold]
-fn nearest([at, normal]: [Vec3; 2], around: Around<'_>) -> Option<Reaching> {
+fn nearest([at, normal]: [Vec3; 2], around: NeighborhoodView<'_>) -> Option<Reaching> {
     let far = |record: &Record| {
         let is_opposed = Vec3::from(record.normal).dot(normal) < 0.0;
         (is_opposed, at.distance_squared(Vec3::from(record.position)))
@@ -250,7 +250,7 @@ fn nearest([at, normal]: [Vec3; 2], around: Around<'_>) -> Option<Reaching> {
 mod tests {
     use super::{Found, LANES, MOST, Reach};
     use crate::bake::Group;
-    use crate::mesh_ground::Nearby;
+    use crate::mesh_domain::NeighborScratch;
     use crate::shapes::{cap, synthesizer, tangle};
     use crate::sites::weights;
     use dapple_mesh::FaceIdx;
@@ -320,7 +320,7 @@ mod tests {
         for face in (0..60).map(FaceIdx) {
             let point = surface.point(face, [0.4, 0.3, 0.3]);
             let center = surface.position(point);
-            let mut nearby = Nearby::default();
+            let mut nearby = NeighborScratch::default();
             let sites = nearby.collect_ball(hierarchy, 0, center, 6.0 * spacing);
             let group = Group {
                 surface,
@@ -349,7 +349,7 @@ mod tests {
         let points = &hierarchy.sites().points()[..40];
         let center = surface.position(points[0]);
         // The ball is so large that some points have many sites in reach, and others none.
-        let mut nearby = Nearby::default();
+        let mut nearby = NeighborScratch::default();
         let sites = nearby.collect_ball(hierarchy, 0, center, 6.0 * spacing);
         let group = Group {
             surface,

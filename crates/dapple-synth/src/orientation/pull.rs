@@ -119,7 +119,7 @@ fn summed(site: usize, sum: DVec3, weight: f64) -> Option<Known> {
 
 /// Downsamples the known directions of a level: blurs them, and retains the results at sites of the coarser level.
 fn down(hierarchy: &Hierarchy, [finer, coarser]: [&Level; 2], known: &[Known]) -> Vec<Known> {
-    let near = Near::new(hierarchy, finer, known);
+    let near = BlurSubgraph::new(hierarchy, finer, known);
     let mut kept: Vec<Known> = Vec::new();
     for (&site, (vector, weight)) in near.sites.iter().zip(near.blur(known)) {
         let weight = weight * THINNING;
@@ -133,14 +133,14 @@ fn down(hierarchy: &Hierarchy, [finer, coarser]: [&Level; 2], known: &[Known]) -
 }
 
 /// Subgraph of the sites around the known sites, which is the part of a level that the blur changes.
-struct Near {
+struct BlurSubgraph {
     /// Indices of the sites; known sites come first.
     sites: Vec<usize>,
     /// For each site, its neighbors as indices in `sites`, with normalized weights.
     edges: Vec<Vec<(usize, f64)>>,
 }
 
-impl Near {
+impl BlurSubgraph {
     fn new(hierarchy: &Hierarchy, level: &Level, known: &[Known]) -> Self {
         const NONE: usize = usize::MAX;
         let graph = level.graph();

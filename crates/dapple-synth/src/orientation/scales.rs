@@ -17,7 +17,7 @@
 
 use super::Orientation;
 use crate::links::{Links, components};
-use crate::mesh_ground::turn_rates;
+use crate::mesh_domain::turn_rates;
 use crate::solve::{System, conjugate_gradients};
 use crate::{Hierarchy, SiteIdx, SynthError, columns};
 use glam::DVec3;

@@ -10,10 +10,10 @@
 //! large as the hole, it starts with random pixels. On finer levels, a pixel starts with the continuation of its
 //! parent's source, as in the paper of 2005.
 
-use super::{PlaneGround, PlaneTexture};
+use super::{PlaneDomain, PlaneTexture};
+use crate::domain::{Colors as _, Start, UNKNOWN};
 use crate::engine::Progress;
 use crate::exemplar::taps;
-use crate::ground::{Colors as _, Start, UNKNOWN};
 use crate::{Exemplar, Options, Pyramid, Schedule, SynthError};
 use core::ops::ControlFlow;
 use dapple_raster::Raster;
@@ -103,9 +103,9 @@ impl PlaneTexture {
             ..options.clone()
         };
         let pyramid = exemplar.pyramid(options.n_levels)?;
-        let mut ground = PlaneGround::new(mask.size(), self.edges, &options)?;
-        ground.starts = self.starts(mask, &pyramid, &ground)?;
-        Self::grown(&ground, &pyramid, &options, &mut callback)
+        let mut domain = PlaneDomain::new(mask.size(), self.edges, &options)?;
+        domain.starts = self.starts(mask, &pyramid, &domain)?;
+        Self::grown(&domain, &pyramid, &options, &mut callback)
     }
 
     /// Computes the initial pixels of the sites on each level.
@@ -113,15 +113,15 @@ impl PlaneTexture {
         &self,
         mask: &Raster<bool>,
         pyramid: &Pyramid,
-        ground: &PlaneGround,
+        domain: &PlaneDomain,
     ) -> Result<Vec<Start>, SynthError> {
         let mut starts = Vec::new();
         let mut sources = self.sources.clone();
         let mut is_kept = mask.map(|&is_made| !is_made);
-        // Kept sites start with their sources. Other sites start with theirs only if the pixel is usable.
+        // Fixed sites start with their sources. Other sites start with theirs only if the pixel is usable.
         for exemplar in pyramid.levels() {
             if !starts.is_empty() {
-                (sources, is_kept) = coarser(&sources, &is_kept, ground)?;
+                (sources, is_kept) = coarser(&sources, &is_kept, domain)?;
             }
             let pixel = |(&[column, row], &is_kept): (&[u32; 2], &bool)| {
                 let pixel = row * exemplar.size[0] + column;
@@ -137,8 +137,8 @@ impl PlaneTexture {
         // Fill the holes of the coarsest level with the pieces that fit best.
         if let (Some(start), Some(exemplar)) = (starts.last_mut(), pyramid.levels().last()) {
             let level = pyramid.levels().len() - 1;
-            for hole in holes(start, ground, level) {
-                hole.fill(start, ground, level, exemplar);
+            for hole in holes(start, domain, level) {
+                hole.fill(start, domain, level, exemplar);
             }
         }
         Ok(starts)
@@ -150,14 +150,14 @@ impl PlaneTexture {
 fn coarser(
     sources: &Raster<[u32; 2]>,
     is_kept: &Raster<bool>,
-    ground: &PlaneGround,
+    domain: &PlaneDomain,
 ) -> Result<(Raster<[u32; 2]>, Raster<bool>), SynthError> {
     let size = sources.size();
     let half = size.map(|side| side.div_ceil(2));
     let halved = |column: u32, row: u32| sources.row(2 * row)[2 * column as usize].map(|at| at / 2);
     let all_kept = |column, row| {
-        let columns = taps(column, size[0], ground.wrap[0]);
-        let rows = taps(row, size[1], ground.wrap[1]).map(|row| is_kept.row(row as u32));
+        let columns = taps(column, size[0], domain.wrap[0]);
+        let rows = taps(row, size[1], domain.wrap[1]).map(|row| is_kept.row(row as u32));
         rows.iter().all(|row| columns.iter().all(|&at| row[at]))
     };
     Ok((
@@ -174,8 +174,8 @@ struct Hole {
 }
 
 /// Returns the holes of a level.
-fn holes(start: &Start, ground: &PlaneGround, level: usize) -> Vec<Hole> {
-    let [width, height] = ground.sizes[level].map(i64::from);
+fn holes(start: &Start, domain: &PlaneDomain, level: usize) -> Vec<Hole> {
+    let [width, height] = domain.sizes[level].map(i64::from);
     let mut found = vec![false; start.pixels.len()];
     let mut holes = Vec::new();
     for first in 0..start.pixels.len() {
@@ -188,7 +188,7 @@ fn holes(start: &Start, ground: &PlaneGround, level: usize) -> Vec<Hole> {
         let mut at = 0;
         while at < sites.len() {
             for site in square(sites[at], 1) {
-                if let Some(index) = ground.index(level, site)
+                if let Some(index) = domain.index(level, site)
                     && !found[index]
                     && start.pixels[index] == UNKNOWN
                 {
@@ -202,7 +202,7 @@ fn holes(start: &Start, ground: &PlaneGround, level: usize) -> Vec<Hole> {
         let mut in_ring = vec![false; (width * height) as usize];
         let mut ring = Vec::new();
         for place in sites.iter().flat_map(|&site| square(site, RING)) {
-            if let Some(index) = ground.index(level, place)
+            if let Some(index) = domain.index(level, place)
                 && !in_ring[index]
                 && start.pixels[index] != UNKNOWN
             {
@@ -229,7 +229,7 @@ impl Hole {
     /// On the coarsest level of a small image, a piece may lack part of its ring, which reaches past an edge or into
     /// the hole. Pieces with at least half of their ring are compared by that part, but their squared differences are
     /// multiplied by [`PARTIAL`].
-    fn fill(&self, start: &mut Start, ground: &PlaneGround, level: usize, exemplar: &Exemplar) {
+    fn fill(&self, start: &mut Start, domain: &PlaneDomain, level: usize, exemplar: &Exemplar) {
         let pixel_of = |place: [i64; 2]| {
             let pixel = exemplar.pixel_at(place);
             pixel.filter(|&pixel| exemplar.is_usable(pixel))
@@ -250,7 +250,7 @@ impl Hole {
             .ring
             .iter()
             .filter_map(|&place| {
-                let site = ground.index(level, place)?;
+                let site = domain.index(level, place)?;
                 Some((place, colors.of(start.pixels[site] as usize)))
             })
             .collect();
@@ -302,7 +302,7 @@ impl Hole {
         let Some([x, y]) = best.1 else { return };
         // Copy the piece.
         for &[column, row] in &self.sites {
-            let site = ground.index(level, [column, row]);
+            let site = domain.index(level, [column, row]);
             if let (Some(site), Some(pixel)) = (site, pixel_of([column + x, row + y])) {
                 start.pixels[site] = pixel as u32;
             }

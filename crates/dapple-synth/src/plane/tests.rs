@@ -1,7 +1,7 @@
 //! Tests synthesis in the plane against the paper's pseudocode.
 
-use super::{MAX_PIXELS, PlaneGround, PlaneTexture, synthesize_plane, synthesize_plane_with};
-use crate::ground::Ground;
+use super::{MAX_PIXELS, PlaneDomain, PlaneTexture, synthesize_plane, synthesize_plane_with};
+use crate::domain::SynthesisDomain;
 use crate::{
     CoarserCenter, Coherence, Edges, Exemplar, Likeness, Options, Part, Pass, Reads, Schedule,
     Shape, SynthErrorKind,
@@ -141,20 +141,20 @@ fn turns_keep_the_order_of_sites_that_read_each_other() {
         ([4, 16], [Wrap, Cut]),
         ([56, 8], [Wrap, Wrap]),
     ] {
-        let ground = PlaneGround::new(size, edges, &paper(2, CoarserCenter::Exact)).unwrap();
+        let domain = PlaneDomain::new(size, edges, &paper(2, CoarserCenter::Exact)).unwrap();
         for (level, half) in [(0, 3), (0, 7), (1, 1), (1, 3)] {
-            let order = ground.order(level);
+            let order = domain.order(level);
             let mut rank = vec![0; order.len()];
             for (at, &site) in order.iter().enumerate() {
                 rank[site as usize] = at;
             }
-            let turns = ground.turns(level, &half);
+            let turns = domain.turns(level, &half);
             let mut turn_of = vec![usize::MAX; order.len()];
             for turn in 0..turns.len() {
                 turn_of[turns.turn(turn).0 as usize] = turn;
             }
             for &site in &order {
-                for &other in near(&ground, level, site, half)
+                for &other in near(&domain, level, site, half)
                     .iter()
                     .filter(|&&other| other != site)
                 {
@@ -176,14 +176,14 @@ fn turns_keep_the_order_of_sites_that_read_each_other() {
 }
 
 /// Returns the sites that a site reads, without those past a cut edge.
-fn near(ground: &PlaneGround, level: usize, site: u32, half: i32) -> Vec<u32> {
-    let size = ground.sizes[level];
-    let [x, y] = ground.pixel(level, site).map(i64::from);
+fn near(domain: &PlaneDomain, level: usize, site: u32, half: i32) -> Vec<u32> {
+    let size = domain.sizes[level];
+    let [x, y] = domain.pixel(level, site).map(i64::from);
     let half = i64::from(half);
     let places = (-half..=half).flat_map(|j| (-half..=half).map(move |i| [x + i, y + j]));
     let inside = places.filter(|place| {
         (0..2).all(|axis| {
-            ground.wrap[axis] == Wrap::Repeat || (0..i64::from(size[axis])).contains(&place[axis])
+            domain.wrap[axis] == Wrap::Repeat || (0..i64::from(size[axis])).contains(&place[axis])
         })
     });
     inside
@@ -193,13 +193,13 @@ fn near(ground: &PlaneGround, level: usize, site: u32, half: i32) -> Vec<u32> {
 
 #[test]
 fn slanted_lines_of_a_torus_wait_only_for_earlier_lines() {
-    let ground = PlaneGround::new(
+    let domain = PlaneDomain::new(
         [512, 256],
         [Edges::Wrap; 2],
         &paper(2, CoarserCenter::Exact),
     )
     .unwrap();
-    let turns = ground.turns(0, &3);
+    let turns = domain.turns(0, &3);
     // A new line begins with the first site that waits for a site of the current line.
     let (mut n_lines, mut first) = (1, 0);
     for turn in 0..turns.len() {

@@ -26,7 +26,7 @@ type Levels = [Vec<(u32, u8)>; 2];
 
 /// Returns the samples of a part of a neighborhood, and their nearest sites.
 fn read(
-    ground: &MeshGround<'_>,
+    domain: &MeshDomain<'_>,
     pass: &Pass,
     part: &Part,
     site: u32,
@@ -43,8 +43,8 @@ fn read(
         rows: Rows::All,
     };
     let prepared = match part.reads {
-        Reads::Same => ground.prepare(pass.level, Some(half), None),
-        Reads::Coarser => ground.prepare(pass.level, None, Some(half)),
+        Reads::Same => domain.prepare(pass.level, Some(half), None),
+        Reads::Coarser => domain.prepare(pass.level, None, Some(half)),
     };
     let mut samples = Samples::default();
     samples.make_room(square.side(), 3);
@@ -55,7 +55,7 @@ fn read(
         values: &values,
         n_channels: 3,
     };
-    ground.read(
+    domain.read(
         square,
         &prepared,
         colors,
@@ -126,18 +126,18 @@ fn naive(
     options: &Options,
     started: &[u32],
 ) -> Levels {
-    let ground = case.ground(Axes::Carried, false);
+    let domain = case.domain(Axes::Carried, false);
     let mut levels = [
         Vec::new(),
         started.iter().map(|&pixel| (pixel, 0)).collect(),
     ];
     for pass in passes {
         let candidates = Candidates::new(pyramid, pass, options.center).unwrap();
-        levels[pass.level].resize(ground.n_sites(pass.level), (0, 0));
-        for site in ground.order(pass.level) {
+        levels[pass.level].resize(domain.n_sites(pass.level), (0, 0));
+        for site in domain.order(pass.level) {
             let parts = pass.parts.iter();
             let samples: Vec<_> = parts
-                .map(|part| read(&ground, pass, part, site, pyramid, &levels))
+                .map(|part| read(&domain, pass, part, site, pyramid, &levels))
                 .collect();
             let is_whole = pass.parts.iter().all(|part| part.shape == Shape::Full);
             let wanted = match is_whole {
@@ -170,7 +170,7 @@ fn naive(
 fn passes_of_a_symmetric_field_are_those_of_turned_squares() {
     for symmetry in [Symmetry::Two, Symmetry::Four] {
         let case = sphere_along(symmetry, 300);
-        let ground = case.ground(Axes::Carried, false);
+        let domain = case.domain(Axes::Carried, false);
         let passes = Schedule::paper(2).passes;
         let pyramid = pyramid(Edges::Wrap, 2);
         let options = Options {
@@ -180,9 +180,9 @@ fn passes_of_a_symmetric_field_are_those_of_turned_squares() {
             ..Options::default()
         };
         let candidates = Candidates::new(&pyramid, &passes[0], options.center).unwrap();
-        let started = random_pixels(ground.n_sites(1), &pyramid, &candidates, 1, options.seed);
+        let started = random_pixels(domain.n_sites(1), &pyramid, &candidates, 1, options.seed);
         let expected = naive(&case, &pyramid, &passes, &options, &started);
-        let found = run_turned(&ground, &pyramid, &options, &mut go_on).unwrap();
+        let found = run_turned(&domain, &pyramid, &options, &mut go_on).unwrap();
         let mut n_turned = 0;
         for (level, (found, expected)) in found.into_iter().zip(&expected).enumerate() {
             let quarters = found
@@ -240,8 +240,8 @@ fn square_that_is_laid_turned_has_the_samples_of_a_turned_square() {
             continue; // The square may end at an edge of the surface.
         }
         let [before, after] = [&down, &right].map(|case| {
-            let ground = case.ground(Axes::Carried, false);
-            read(&ground, &pass, &pass.parts[0], site, &pyramid, &levels)
+            let domain = case.domain(Axes::Carried, false);
+            read(&domain, &pass, &pass.parts[0], site, &pyramid, &levels)
         });
         for offset in pass.parts[0].offsets() {
             let [there, here] = [sample_at(offset, 2, 1), sample_at(offset, 2, 0)];

@@ -1,11 +1,11 @@
 //! The domain of a synthesis, as an interface for [`engine`](crate::engine): sites on several levels, their order, and
 //! how their neighborhoods are sampled.
 //!
-//! [`Ground`] is implemented for surfaces (`mesh_ground.rs`) and for planes (`plane.rs`).
+//! [`SynthesisDomain`] is implemented for surfaces (`mesh_domain.rs`) and for planes (`plane.rs`).
 
 use crate::Symmetry;
 use crate::guides::Targets;
-use crate::turns::Turns;
+use crate::wavefront::WavefrontSchedule;
 use core::ops::RangeInclusive;
 use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
 
@@ -39,7 +39,7 @@ pub(crate) struct Plain<'a> {
 
 /// Colors of sites, stored as references to exemplar pixels. Other threads may change the references at the same time.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Painted<'a> {
+pub(crate) struct LevelState<'a> {
     pub(crate) pixels: Plain<'a>,
     /// Source pixel and rotation of each site.
     pub(crate) sources: &'a Sources,
@@ -87,7 +87,7 @@ pub(crate) struct Samples {
 }
 
 /// Domain of a synthesis: sites on several levels. Level 0 is the finest.
-pub(crate) trait Ground: Sync {
+pub(crate) trait SynthesisDomain: Sync {
     /// Tables that a pass needs to sample squares.
     type Prepared: Sync;
     /// Scratch memory for [`read`](Self::read).
@@ -138,7 +138,7 @@ pub(crate) trait Ground: Sync {
     fn prepare(&self, level: usize, same: Option<i32>, coarser: Option<i32>) -> Self::Prepared;
 
     /// Returns the wavefront schedule of the sites of a level, for a pass that reads squares on the level itself.
-    fn turns(&self, level: usize, prepared: &Self::Prepared) -> Turns;
+    fn turns(&self, level: usize, prepared: &Self::Prepared) -> WavefrontSchedule;
 
     /// Samples a square on the level `square.reads`, whose sites have the given `colors`.
     fn read(
@@ -163,7 +163,7 @@ impl Colors for Plain<'_> {
     }
 }
 
-impl Colors for Painted<'_> {
+impl Colors for LevelState<'_> {
     #[inline(always)]
     fn n_channels(&self) -> usize {
         self.pixels.n_channels
@@ -175,7 +175,7 @@ impl Colors for Painted<'_> {
     }
 }
 
-impl Painted<'_> {
+impl LevelState<'_> {
     /// Returns the exemplar pixel of `site`.
     #[inline(always)]
     pub(crate) fn source(&self, site: usize) -> u32 {

@@ -41,7 +41,7 @@ pub(crate) struct Record {
 
 /// Scratch memory: the sites near a position, in the order in which their colors are added up.
 #[derive(Debug, Default)]
-pub(crate) struct Nearby {
+pub(crate) struct NeighborScratch {
     numbers: Vec<u32>,
     /// Sites found by [`Self::collect_ball`], which are not part of a [`Neighborhoods`].
     records: Vec<Record>,
@@ -49,7 +49,7 @@ pub(crate) struct Nearby {
 
 /// Sites near a position, as a selection of records.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Around<'a> {
+pub(crate) struct NeighborhoodView<'a> {
     records: &'a [Record],
     /// Indices of the selected records.
     numbers: &'a [u32],
@@ -126,8 +126,8 @@ impl Neighborhoods {
         &'a self,
         level: Level,
         site: u32,
-        nearby: &'a mut Nearby,
-    ) -> Around<'a> {
+        nearby: &'a mut NeighborScratch,
+    ) -> NeighborhoodView<'a> {
         let center = self.centers[site as usize].to_array();
         let cell = self.cells.of_site(site);
         let numbers = &mut nearby.numbers;
@@ -135,7 +135,7 @@ impl Neighborhoods {
         if numbers.is_empty() {
             numbers.extend(self.nearest(center));
         }
-        Around {
+        NeighborhoodView {
             records: &self.records,
             numbers,
             center,
@@ -204,7 +204,7 @@ fn difference(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
     core::array::from_fn(|part| a[part] - b[part])
 }
 
-impl<'a> Around<'a> {
+impl<'a> NeighborhoodView<'a> {
     /// Returns the number of sites.
     #[inline(always)]
     pub(crate) fn len(&self) -> usize {
@@ -224,7 +224,7 @@ impl<'a> Around<'a> {
     }
 }
 
-impl Nearby {
+impl NeighborScratch {
     /// Selects the sites of a level within a ball. If there are none, doubles the radius of the ball until there are.
     pub(crate) fn collect_ball(
         &mut self,
@@ -232,7 +232,7 @@ impl Nearby {
         level: usize,
         center: DVec3,
         reach: f64,
-    ) -> Around<'_> {
+    ) -> NeighborhoodView<'_> {
         let sites = hierarchy.sites();
         let mut reach = reach;
         self.records.clear();
@@ -254,7 +254,7 @@ impl Nearby {
         }
         self.numbers.clear();
         self.numbers.extend(0..self.records.len() as u32);
-        Around {
+        NeighborhoodView {
             records: &self.records,
             numbers: &self.numbers,
             center: [0.0; 3],

@@ -3,7 +3,7 @@
 //! Reference: Sylvain Lefebvre and Hugues Hoppe, "Appearance-Space Texture Synthesis", SIGGRAPH 2006, DOI
 //! 10.1145/1141911.1141921.
 //!
-//! Input: an exemplar, its guides and mask, and a number of levels. Output: a [`Stage`] per level, with the features,
+//! Input: an exemplar, its guides and mask, and a number of levels. Output: a [`AppearanceLevel`] per level, with the features,
 //! the usable pixels, and the most similar other pixel of each pixel.
 //!
 //! All levels have the full size of the exemplar, as in an à trous pyramid. Each level is computed by blurring the
@@ -52,7 +52,7 @@ const NONE: u32 = u32::MAX;
 
 /// One level of an exemplar.
 #[derive(Clone, Debug)]
-pub(crate) struct Stage {
+pub(crate) struct AppearanceLevel {
     pub(crate) size: [u32; 2],
     wrap: Wrap,
     /// Distance between adjacent pixels of the level, in pixels of the exemplar.
@@ -93,7 +93,7 @@ pub(crate) fn stages(
     symmetry: Symmetry,
     n_levels: usize,
     wanted: &Wanted<'_>,
-) -> Result<Vec<Stage>, SynthError> {
+) -> Result<Vec<AppearanceLevel>, SynthError> {
     // Blur the pixels and the guides from level to level.
     let mut pixels = vec![exemplar.pixels.clone()];
     let mut guides_of = vec![guides.values.clone()];
@@ -124,7 +124,7 @@ pub(crate) fn stages(
     let stage = |level: usize| {
         let features = features(exemplar, symmetry, &pixels[level], 1 << level, wanted)?;
         let (guides, mask) = (guides_of[level].clone(), masks[level].clone());
-        Stage::new(exemplar, level, features, guides, mask, wanted)
+        AppearanceLevel::new(exemplar, level, features, guides, mask, wanted)
     };
     parallel::map(n_levels, stage).into_iter().collect()
 }
@@ -289,7 +289,7 @@ fn inner(edges: Edges, side: usize, reach: i64, holds: impl Fn(usize) -> bool) -
     inner
 }
 
-impl Stage {
+impl AppearanceLevel {
     /// Creates a level of an exemplar from its features, guides and mask, and finds the most similar pixels.
     fn new(
         exemplar: &Exemplar,

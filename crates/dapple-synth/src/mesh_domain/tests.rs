@@ -1,7 +1,7 @@
 //! Tests sampling on surfaces against samples that are found by separate walks and interpolated from all sites.
 
-use super::{MeshGround, MeshMemory, interpolate};
-use crate::ground::{Ground, Plain, Rows, Samples, Square};
+use super::{MeshDomain, MeshMemory, interpolate};
+use crate::domain::{Plain, Rows, Samples, Square, SynthesisDomain};
 use crate::{Axes, HierarchyOptions, INTERPOLATION_RADIUS, Synthesizer};
 use dapple_hash::Seed;
 use dapple_mesh::{Mesh, Surface};
@@ -50,8 +50,8 @@ impl Case {
         Self(Synthesizer::new(surface, &[], &options).unwrap())
     }
 
-    fn ground(&self) -> MeshGround<'_> {
-        self.0.ground(Axes::Carried, false)
+    fn domain(&self) -> MeshDomain<'_> {
+        self.0.domain(Axes::Carried, false)
     }
 
     /// Walks to one sample, i steps along P and j steps along O.
@@ -128,16 +128,16 @@ fn plain(values: &[f32], n_channels: usize) -> Plain<'_> {
 fn squares_are_those_of_single_walks_and_of_all_sites() {
     for is_open in [false, true] {
         let case = Case::new(torus(40, is_open), 3000);
-        let (ground, column) = (case.ground(), column(3000));
+        let (domain, column) = (case.domain(), column(3000));
         let (mut samples, mut memory) = (Samples::default(), MeshMemory::default());
         let mut n_compared = 0;
         for (reads, half) in [(0, 3), (1, 3), (1, 1), (0, 5)] {
-            let prepared = ground.prepare(0, Some(half), Some(half));
+            let prepared = domain.prepare(0, Some(half), Some(half));
             for site in (0..3000).step_by(97) {
                 let square = square(site, reads, half);
                 samples.make_room(square.side(), 1);
                 let colors = plain(&column, 1);
-                ground.read(square, &prepared, colors, &mut samples, &mut memory);
+                domain.read(square, &prepared, colors, &mut samples, &mut memory);
                 for (sample, &value) in samples.values.iter().enumerate() {
                     let [i, j] =
                         [sample % square.side(), sample / square.side()].map(|at| at as i32 - half);
@@ -161,8 +161,8 @@ fn squares_are_those_of_single_walks_and_of_all_sites() {
 #[test]
 fn squares_have_the_same_bits_at_every_simd_level() {
     let case = Case::new(torus(40, false), 2000);
-    let (ground, column) = (case.ground(), column(2000 * 3));
-    let prepared = ground.prepare(0, Some(3), None);
+    let (domain, column) = (case.domain(), column(2000 * 3));
+    let prepared = domain.prepare(0, Some(3), None);
     let around = prepared.same.as_ref().unwrap();
     let mut all: Vec<Vec<Samples>> = Vec::new();
     for_every_level(|level| {
@@ -173,7 +173,7 @@ fn squares_have_the_same_bits_at_every_simd_level() {
             samples.make_room(7, 3);
             let square = square(site, 0, 3);
             let colors = plain(&column, 3);
-            ground.read(square, &prepared, colors, &mut samples, &mut memory);
+            domain.read(square, &prepared, colors, &mut samples, &mut memory);
             let radius = (case.0.hierarchy().levels()[0].spacing() * INTERPOLATION_RADIUS) as f32;
             let again = (colors, &mut samples);
             interpolate(
@@ -196,14 +196,14 @@ fn squares_have_the_same_bits_at_every_simd_level() {
 #[test]
 fn square_of_constant_values_is_constant() {
     let case = Case::new(torus(30, true), 500);
-    let ground = case.ground();
+    let domain = case.domain();
     let (mut samples, mut memory) = (Samples::default(), MeshMemory::default());
-    let prepared = ground.prepare(0, Some(7), Some(3));
+    let prepared = domain.prepare(0, Some(7), Some(3));
     for site in 0..500 {
         let square = square(site, 0, 7);
         samples.make_room(15, 1);
         let colors = plain(&[0.75; 500], 1);
-        ground.read(square, &prepared, colors, &mut samples, &mut memory);
+        domain.read(square, &prepared, colors, &mut samples, &mut memory);
         // A weighted mean of equal values has a few rounding errors.
         let off = samples
             .values
@@ -222,9 +222,9 @@ fn square_of_constant_values_is_constant() {
 #[test]
 fn turns_keep_the_order_of_sites_that_read_each_other() {
     let case = Case::new(torus(40, false), 4000);
-    let ground = case.ground();
-    let prepared = ground.prepare(0, Some(3), None);
-    let turns = ground.turns(0, &prepared);
+    let domain = case.domain();
+    let prepared = domain.prepare(0, Some(3), None);
+    let turns = domain.turns(0, &prepared);
     let around = prepared.same.as_ref().unwrap();
     let mut memory = MeshMemory::default();
     let mut turn_of = vec![usize::MAX; 4000];
@@ -232,7 +232,7 @@ fn turns_keep_the_order_of_sites_that_read_each_other() {
         turn_of[turns.turn(turn).0 as usize] = turn;
     }
     let mut rank = vec![0; 4000];
-    for (at, site) in ground.order(0).into_iter().enumerate() {
+    for (at, site) in domain.order(0).into_iter().enumerate() {
         rank[site as usize] = at;
     }
     assert!(!turn_of.contains(&usize::MAX), "a site is missing");
@@ -265,12 +265,12 @@ fn piece_without_a_coarse_site_reads_the_nearest_one() {
     let positions = positions.map(|[x, y]| DVec3::new(x, y, 0.0)).to_vec();
     let mesh = Mesh::new(positions, &[[0, 1, 2], [3, 4, 5]]).unwrap();
     let case = Case::new(Surface::new(mesh).unwrap(), 60);
-    let ground = case.ground();
-    let prepared = ground.prepare(0, None, Some(1));
+    let domain = case.domain();
+    let prepared = domain.prepare(0, None, Some(1));
     let (mut samples, mut memory) = (Samples::default(), MeshMemory::default());
     for site in 0..60 {
         samples.make_room(3, 1);
-        ground.read(
+        domain.read(
             square(site, 1, 1),
             &prepared,
             plain(&column(60), 1),

@@ -117,8 +117,8 @@ impl Turn {
 mod tests {
     use super::*;
     use crate::Orientation;
-    use crate::ground::{Rows, Square};
-    use crate::mesh_ground::Lattice;
+    use crate::domain::{Rows, Square};
+    use crate::mesh_domain::Lattice;
     use crate::shapes::{sites_on, square};
     use dapple_mesh::Surface;
     use glam::DVec3;

@@ -1,11 +1,11 @@
 //! Cache of coarser-level samples between two passes. Holds the central part of each site's square, which the next pass
 //! reads again.
 
-use crate::ground::{Samples, Square};
+use crate::domain::{Samples, Square};
 
 /// Cached squares of a pass: one per site, `side` samples wide.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Kept {
+pub(crate) struct SampleCache {
     side: usize,
     n_channels: usize,
     values: Vec<f32>,
@@ -14,13 +14,13 @@ pub(crate) struct Kept {
 
 /// Mutable cached square of one site.
 #[derive(Debug)]
-pub(crate) struct KeptSite<'a> {
+pub(crate) struct CachedSite<'a> {
     side: usize,
     values: &'a mut [f32],
     nearest: &'a mut [u32],
 }
 
-impl Kept {
+impl SampleCache {
     /// Allocates the squares of all sites. A side of 0 allocates nothing.
     pub(crate) fn new(n_sites: usize, side: usize, n_channels: usize) -> Self {
         let n_samples = n_sites * side * side;
@@ -33,18 +33,20 @@ impl Kept {
     }
 
     /// Iterates over the squares of all sites; empty if the side is 0.
-    pub(crate) fn sites(&mut self) -> impl Iterator<Item = KeptSite<'_>> {
+    pub(crate) fn sites(&mut self) -> impl Iterator<Item = CachedSite<'_>> {
         let side = self.side;
         let n_samples = (side * side).max(1);
         let values = self
             .values
             .chunks_exact_mut((n_samples * self.n_channels).max(1));
         let nearest = self.nearest.chunks_exact_mut(n_samples);
-        values.zip(nearest).map(move |(values, nearest)| KeptSite {
-            side,
-            values,
-            nearest,
-        })
+        values
+            .zip(nearest)
+            .map(move |(values, nearest)| CachedSite {
+                side,
+                values,
+                nearest,
+            })
     }
 
     /// Copies the cached square of `site` into `samples` if it is the same size as `square`. Returns whether it was
@@ -65,7 +67,7 @@ impl Kept {
     }
 }
 
-impl KeptSite<'_> {
+impl CachedSite<'_> {
     /// Stores the central part of `samples`, a square that is `from` samples wide.
     pub(crate) fn copy(&mut self, samples: &Samples, from: usize) {
         let side = self.side;

@@ -3,12 +3,12 @@
 //! Input: positions and normals of the samples, and the sites within reach. Output: for each sample, the weighted mean
 //! of the colors of the sites around it, and the site with the largest weight.
 //!
-//! The lanes of a register are samples of a row. For each row, sites are added in the order of [`Around`], so the order
+//! The lanes of a register are samples of a row. For each row, sites are added in the order of [`NeighborhoodView`], so the order
 //! of additions is the same at every SIMD level. Sites out of reach would only add zeros, and are skipped.
 
 use super::lattice::{Lattice, Row};
-use super::nearby::{Around, Record};
-use crate::ground::{Colors, Samples};
+use super::nearby::{NeighborhoodView, Record};
+use crate::domain::{Colors, Samples};
 use crate::sites::weights;
 use core::array;
 use core::ops::Range;
@@ -54,7 +54,7 @@ struct Bounds {
 /// Input for the sums over a square.
 struct Terms<'a> {
     lattice: &'a Lattice,
-    around: Around<'a>,
+    around: NeighborhoodView<'a>,
     radius: f32,
 }
 
@@ -62,7 +62,7 @@ struct Terms<'a> {
 pub(crate) fn interpolate(
     level: Level,
     lattice: &Lattice,
-    around: Around<'_>,
+    around: NeighborhoodView<'_>,
     radius: f32,
     (colors, samples): (impl Colors, &mut Samples),
     memory: &mut Interpolation,
@@ -279,7 +279,7 @@ fn is_one_sheet(lattice: &Lattice, reaching: &[Record]) -> bool {
 /// Returns the site nearest to a sample among those whose normals are not opposed to the sample's. If there are none,
 /// returns the nearest of all sites.
 #[cold]
-fn nearest(row: &Row, around: Around<'_>, lane: usize) -> u32 {
+fn nearest(row: &Row, around: NeighborhoodView<'_>, lane: usize) -> u32 {
     let sample: [f32; 3] = array::from_fn(|part| row.lanes[part][lane]);
     let normal: [f32; 3] = array::from_fn(|part| row.lanes[3 + part][lane]);
     let mut best = (true, f32::INFINITY, u32::MAX);

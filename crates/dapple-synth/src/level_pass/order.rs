@@ -2,17 +2,17 @@
 //!
 //! There are three cases:
 //!
-//! - A pass that reads only the coarser level visits sites in any order, on all threads ([`Visit::visit_freely`]).
-//! - A pass that reads its own level follows the sweep in a wavefront schedule ([`Turns`]): a site runs after every
+//! - A pass that reads only the coarser level visits sites in any order, on all threads ([`LevelPass::visit_freely`]).
+//! - A pass that reads its own level follows the sweep in a wavefront schedule ([`WavefrontSchedule`]): a site runs after every
 //!   earlier site that it reads. The result is the same as that of a sequential sweep.
 //! - A pass that counts usage ([`Usage`]) is sequential, because each site depends on all earlier ones.
 
-use super::{State, Visit, Worker};
+use super::{LevelPass, State, Worker};
 use crate::SynthError;
-use crate::ground::{Ground, Painted, Sources};
-use crate::kept::Kept;
-use crate::turns::{Board, Turns};
+use crate::domain::{LevelState, Sources, SynthesisDomain};
+use crate::sample_cache::SampleCache;
 use crate::usage::Usage;
+use crate::wavefront::{WavefrontProgress, WavefrontSchedule};
 use core::iter::repeat_with;
 use dapple_raster::parallel;
 use std::sync::{Mutex, PoisonError};
@@ -22,17 +22,17 @@ const STRETCH: usize = 1 << 14;
 /// Number of independent sites that a thread takes at a time.
 const PIECE: usize = 64;
 
-impl<G: Ground> Visit<'_, G> {
+impl<G: SynthesisDomain> LevelPass<'_, G> {
     /// Visits all sites of the level. `levels` holds their sources, `kept` the coarser squares retained by the previous
     /// pass. Returns the coarser squares that this pass retains for the next one, `keep` samples wide.
     pub(crate) fn run(
         &self,
         levels: &[Sources],
-        kept: &Kept,
+        kept: &SampleCache,
         keep: u32,
         tell: &mut dyn FnMut(usize) -> Result<(), SynthError>,
-    ) -> Result<Kept, SynthError> {
-        let painted = |level: usize| Painted {
+    ) -> Result<SampleCache, SynthError> {
+        let painted = |level: usize| LevelState {
             pixels: self.pyramid[level].plain(),
             sources: &levels[level],
         };
@@ -53,7 +53,7 @@ impl<G: Ground> Visit<'_, G> {
         } else {
             self.visit_in_turns(&state, &mut workers, tell)?;
         }
-        Ok(Kept::default())
+        Ok(SampleCache::default())
     }
 
     /// Visits sites sequentially and counts how often pixels are used.
@@ -62,7 +62,7 @@ impl<G: Ground> Visit<'_, G> {
         state: State<'_>,
         tell: &mut dyn FnMut(usize) -> Result<(), SynthError>,
     ) -> Result<(), SynthError> {
-        let order = self.ground.order(self.level);
+        let order = self.domain.order(self.level);
         let mut usage = Usage::new(self.evenness, self.candidates.len(), order.len());
         let mut worker = Worker::default();
         let mut done = 0;
@@ -87,14 +87,14 @@ impl<G: Ground> Visit<'_, G> {
     ) -> Result<(), SynthError> {
         // One thread needs no schedule.
         let turns = if workers.len() == 1 {
-            Turns::in_order(self.ground.order(self.level))
+            WavefrontSchedule::in_order(self.domain.order(self.level))
         } else {
-            self.ground.turns(self.level, &self.prepared)
+            self.domain.turns(self.level, &self.prepared)
         };
         // Run the schedule in stretches, with a progress report after each.
         for first in (0..turns.len()).step_by(STRETCH) {
             let end = turns.len().min(first + STRETCH);
-            let board = Board::new(first..end, workers.len());
+            let board = WavefrontProgress::new(first..end, workers.len());
             parallel::together(workers, |thread, worker| {
                 while let Some(turn) = board.take(thread) {
                     let (site, wait) = turns.turn(turn);
@@ -114,13 +114,13 @@ impl<G: Ground> Visit<'_, G> {
         workers: &mut [Worker<G::Memory>],
         keep: usize,
         tell: &mut dyn FnMut(usize) -> Result<(), SynthError>,
-    ) -> Result<Kept, SynthError> {
-        let n_sites = self.ground.n_sites(self.level);
-        let mut kept = Kept::new(n_sites, keep, self.n_channels);
+    ) -> Result<SampleCache, SynthError> {
+        let n_sites = self.domain.n_sites(self.level);
+        let mut kept = SampleCache::new(n_sites, keep, self.n_channels);
         let side = self.coarser.map_or(0, |half| 2 * half.half as usize + 1);
         // Pair each site with the memory for its retained square, if squares are retained.
         let rooms = kept.sites().map(Some).chain(repeat_with(|| None));
-        let start = self.ground.start(self.level);
+        let start = self.domain.start(self.level);
         let is_visited = |site: u32| start.is_none_or(|start| !start.is_kept[site as usize]);
         let mut sites = (0..n_sites as u32).zip(rooms);
         for first in (0..n_sites).step_by(STRETCH) {

@@ -4,7 +4,7 @@
 //! Output: position and normal of each sample. Positions are relative to the center.
 
 use super::turning::Turning;
-use crate::ground::Square;
+use crate::domain::Square;
 use dapple_mesh::{Surface, SurfacePoint, Walk};
 use glam::{DVec2, DVec3, Vec3};
 

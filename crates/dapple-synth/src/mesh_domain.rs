@@ -17,10 +17,10 @@ mod lattice;
 mod nearby;
 mod turning;
 
-use crate::ground::{Colors, Ground, Samples, Square, Start};
+use crate::domain::{Colors, Samples, Square, Start, SynthesisDomain};
 use crate::guides::Targets;
 use crate::lift::order_of_repair;
-use crate::turns::Turns;
+use crate::wavefront::WavefrontSchedule;
 use crate::{Axes, Hierarchy, INTERPOLATION_RADIUS, Orientation, SiteIdx, Sweep, Symmetry};
 use dapple_mesh::Surface;
 use dapple_raster::simd;
@@ -29,7 +29,7 @@ use turning::Turning;
 
 pub(crate) use interpolate::{Interpolation, interpolate};
 pub(crate) use lattice::Lattice;
-pub(crate) use nearby::{Around, Nearby, Record};
+pub(crate) use nearby::{NeighborScratch, NeighborhoodView, Record};
 pub(crate) use turning::turn_rates;
 
 /// Additional reach: how much farther than on a plane a site may be from the center of a square, in multiples of the
@@ -47,7 +47,7 @@ const BLUR: f32 = 0.2;
 
 /// Sites of a hierarchy, with the orientation field of the texture.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct MeshGround<'a> {
+pub(crate) struct MeshDomain<'a> {
     pub(crate) surface: &'a Surface,
     pub(crate) hierarchy: &'a Hierarchy,
     pub(crate) orientation: &'a Orientation,
@@ -73,7 +73,7 @@ pub(crate) struct Prepared {
 /// Scratch memory for sampling, reusable for any number of squares.
 #[derive(Debug, Default)]
 pub(crate) struct MeshMemory {
-    nearby: Nearby,
+    nearby: NeighborScratch,
     lattice: Lattice,
     interpolation: Interpolation,
 }
@@ -86,7 +86,7 @@ impl MeshMemory {
     }
 }
 
-impl MeshGround<'_> {
+impl MeshDomain<'_> {
     /// Returns the size of a pixel of the exemplar at a site, in multiples of the spacing.
     fn scale(&self, site: usize) -> f64 {
         self.scales.get(site).map_or(1.0, |&scale| scale.into())
@@ -118,7 +118,7 @@ fn radius(scale: f64) -> f64 {
     INTERPOLATION_RADIUS * scale.max(1.0)
 }
 
-impl Ground for MeshGround<'_> {
+impl SynthesisDomain for MeshDomain<'_> {
     type Prepared = Prepared;
     type Memory = MeshMemory;
 
@@ -166,11 +166,11 @@ impl Ground for MeshGround<'_> {
         }
     }
 
-    fn turns(&self, level: usize, prepared: &Prepared) -> Turns {
+    fn turns(&self, level: usize, prepared: &Prepared) -> WavefrontSchedule {
         let order = self.order(level);
         match &prepared.same {
-            Some(around) => Turns::by_cells(&order, around.cells()),
-            None => Turns::in_order(order),
+            Some(around) => WavefrontSchedule::by_cells(&order, around.cells()),
+            None => WavefrontSchedule::in_order(order),
         }
     }
 

@@ -2,34 +2,34 @@
 //!
 //! Steps for a site (Turk 2001, section 5):
 //!
-//! - Sample its neighborhood, on its own level and on the next coarser one ([`Visit::read`]).
+//! - Sample its neighborhood, on its own level and on the next coarser one ([`LevelPass::read`]).
 //! - Form the query vector, and the coherent candidates: pixels that continue the source pixels of the neighbors
 //!   (Ashikhmin, "Synthesizing Natural Textures", I3D 2001).
-//! - Take the nearest candidate, or a coherent one that is not much farther ([`Visit::best_row`]).
+//! - Take the nearest candidate, or a coherent one that is not much farther ([`LevelPass::best_row`]).
 //! - If the orientation field has a symmetry, repeat this for each rotation found among the neighbors
-//!   ([`Visit::best_turned`]).
+//!   ([`LevelPass::best_turned`]).
 //!
 //! A row is a candidate's index in [`Candidates`]. The order of the sites and the threads are in `visit/order.rs`.
 
 mod order;
 
 use crate::candidates;
+use crate::domain::{LevelState, Rows, Samples, Square, SynthesisDomain, UNKNOWN};
 use crate::grid;
-use crate::ground::{Ground, Painted, Rows, Samples, Square, UNKNOWN};
-use crate::kept::Kept;
 use crate::matcher::Query;
 use crate::neighborhood::{Pass, Reads, Shape};
 use crate::options::CoherenceFactors;
 use crate::orientation::offset_before;
+use crate::sample_cache::SampleCache;
 use crate::{Candidates, Exemplar, Matcher, MatcherMemory, Options, Pyramid, Symmetry};
 use core::sync::atomic::Ordering;
 
 /// Marks a missing row: no candidate was chosen.
 const NOWHERE: u32 = u32::MAX;
 
-/// A pass with its tables: candidates, matcher, and sampling tables of the ground.
-pub(crate) struct Visit<'a, G: Ground> {
-    ground: &'a G,
+/// A pass with its tables: candidates, matcher, and sampling tables of the domain.
+pub(crate) struct LevelPass<'a, G: SynthesisDomain> {
+    domain: &'a G,
     prepared: G::Prepared,
     level: usize,
     n_channels: usize,
@@ -52,13 +52,13 @@ pub(crate) struct Visit<'a, G: Ground> {
     symmetry: Symmetry,
     /// Squares sampled on the level itself (`same`) and on the next coarser one (`coarser`); `None` if the pass does
     /// not read that level.
-    same: Option<Half>,
-    coarser: Option<Half>,
+    same: Option<NeighborhoodHalf>,
+    coarser: Option<NeighborhoodHalf>,
 }
 
 /// Extent of a square of samples, from `-half` to `half`, and the rows of it that are needed.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Half {
+pub(crate) struct NeighborhoodHalf {
     pub(crate) half: i32,
     pub(crate) rows: Rows,
 }
@@ -82,23 +82,23 @@ struct Worker<M> {
     query: Vec<f32>,
     coherent: Vec<u32>,
     matcher: MatcherMemory,
-    ground: M,
+    domain: M,
 }
 
 /// Shared input of all threads. The sources in `here` are also written.
 #[derive(Clone, Copy)]
 struct State<'a> {
-    here: Painted<'a>,
-    coarser: Option<Painted<'a>>,
-    kept: &'a Kept,
+    here: LevelState<'a>,
+    coarser: Option<LevelState<'a>>,
+    kept: &'a SampleCache,
     /// Factor on the squared distance of each row; see [`Query::factors`].
     factors: Option<&'a [f32]>,
 }
 
-impl<'a, G: Ground> Visit<'a, G> {
+impl<'a, G: SynthesisDomain> LevelPass<'a, G> {
     /// Sets up a pass: builds the sampling tables, the search index over the candidates, and the terms of a query.
     pub(crate) fn new(
-        ground: &'a G,
+        domain: &'a G,
         pyramid: &'a Pyramid,
         candidates: Candidates,
         pass: &Pass,
@@ -108,7 +108,7 @@ impl<'a, G: Ground> Visit<'a, G> {
         let exemplar = &pyramid.levels()[pass.level];
         let same = half_of(pass, Reads::Same);
         // Read all rows of the coarser square, because its middle sample determines the coherent rows.
-        let coarser = half_of(pass, Reads::Coarser).map(|half| Half {
+        let coarser = half_of(pass, Reads::Coarser).map(|half| NeighborhoodHalf {
             rows: Rows::All,
             ..half
         });
@@ -123,8 +123,8 @@ impl<'a, G: Ground> Visit<'a, G> {
             Some(_) => (coherence.finer, 0.0),
         };
         Self {
-            ground,
-            prepared: ground.prepare(
+            domain,
+            prepared: domain.prepare(
                 pass.level,
                 same.map(|half| half.half),
                 coarser.map(|half| half.half),
@@ -142,9 +142,9 @@ impl<'a, G: Ground> Visit<'a, G> {
                 Matcher::new(candidates.dims, &candidates.rows)
             },
             candidates,
-            is_repair: ground.start(pass.level).is_some(),
+            is_repair: domain.start(pass.level).is_some(),
             symmetry: match pass.parts.iter().all(|part| part.shape == Shape::Full) {
-                true => ground.symmetry(),
+                true => domain.symmetry(),
                 // If the square is rotated, the rows above the center do not contain the sites visited earlier.
                 false => Symmetry::One,
             },
@@ -215,7 +215,7 @@ impl<'a, G: Ground> Visit<'a, G> {
         state: &State<'_>,
     ) -> [bool; 4] {
         let mut found = [false; 4];
-        let mut add = |painted: &Painted<'_>, nearest: u32| {
+        let mut add = |painted: &LevelState<'_>, nearest: u32| {
             if nearest != site && nearest != UNKNOWN {
                 found[usize::from(self.quarters_of(site, nearest, painted))] = true;
             }
@@ -238,9 +238,9 @@ impl<'a, G: Ground> Visit<'a, G> {
 
     /// Returns the rotation of the exemplar at `site`, in quarter turns, if it continues the rotation at `other`.
     #[inline]
-    fn quarters_of(&self, site: u32, other: u32, painted: &Painted<'_>) -> u8 {
+    fn quarters_of(&self, site: u32, other: u32, painted: &LevelState<'_>) -> u8 {
         let quarters = painted.quarters(other as usize);
-        self.ground.quarters_toward(site, other, quarters)
+        self.domain.quarters_toward(site, other, quarters)
     }
 
     /// Returns the pixel of a site if its whole neighborhood continues one piece of the exemplar. No candidate fits
@@ -278,7 +278,7 @@ impl<'a, G: Ground> Visit<'a, G> {
         if reads == Reads::Same {
             return (painted.source(site as usize) == piece).then_some(piece);
         }
-        let (_, quarter) = self.ground.parent(self.level, site)?;
+        let (_, quarter) = self.domain.parent(self.level, site)?;
         let pixel = grid::over(piece, self.coarser_width, quarter);
         Some(self.pyramid[self.level].pixel_at(pixel)? as u32)
     }
@@ -288,10 +288,10 @@ impl<'a, G: Ground> Visit<'a, G> {
         let Worker {
             same,
             coarser,
-            ground,
+            domain,
             ..
         } = worker;
-        let square = |reads, half: Half| Square {
+        let square = |reads, half: NeighborhoodHalf| Square {
             site,
             level: self.level,
             reads,
@@ -302,16 +302,16 @@ impl<'a, G: Ground> Visit<'a, G> {
         if let Some(half) = self.same {
             let square = square(self.level, half);
             same.make_room(square.side(), self.n_channels);
-            self.ground
-                .read(square, &self.prepared, state.here, same, ground);
+            self.domain
+                .read(square, &self.prepared, state.here, same, domain);
         }
         // Sample the square on the coarser level, or reuse the samples of the previous pass.
         if let (Some(half), Some(painted)) = (self.coarser, state.coarser) {
             let square = square(self.level + 1, half);
             coarser.make_room(square.side(), self.n_channels);
             if !state.kept.paste(site, &square, coarser) {
-                self.ground
-                    .read(square, &self.prepared, painted, coarser, ground);
+                self.domain
+                    .read(square, &self.prepared, painted, coarser, domain);
             }
         }
     }
@@ -349,7 +349,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             center.quarters,
             query,
         );
-        if let Some(targets) = self.ground.targets() {
+        if let Some(targets) = self.domain.targets() {
             let guides = targets.of(self.level, site).iter();
             query.extend(guides.map(|value| value * self.guide_scale));
         }
@@ -361,7 +361,7 @@ impl<'a, G: Ground> Visit<'a, G> {
         &self,
         center: Center,
         samples: &Samples,
-        painted: &Painted<'_>,
+        painted: &LevelState<'_>,
         coherent: &mut Vec<u32>,
     ) {
         for term in self.terms.iter().filter(|term| term.is_beside()) {
@@ -382,9 +382,9 @@ impl<'a, G: Ground> Visit<'a, G> {
     fn continue_coarser(
         &self,
         center: Center,
-        half: Half,
+        half: NeighborhoodHalf,
         samples: &Samples,
-        painted: &Painted<'_>,
+        painted: &LevelState<'_>,
         coherent: &mut Vec<u32>,
     ) {
         let side = 2 * half.half as usize + 1;
@@ -477,7 +477,7 @@ impl<M: Default> Default for Worker<M> {
             query: Vec::new(),
             coherent: Vec::new(),
             matcher: MatcherMemory::default(),
-            ground: M::default(),
+            domain: M::default(),
         }
     }
 }
@@ -509,7 +509,7 @@ pub(crate) fn push_terms(
 
 /// Returns the smallest square that contains all parts of a pass that read the level `reads`, or `None` if no part
 /// reads it.
-pub(crate) fn half_of(pass: &Pass, reads: Reads) -> Option<Half> {
+pub(crate) fn half_of(pass: &Pass, reads: Reads) -> Option<NeighborhoodHalf> {
     let parts = || pass.parts.iter().filter(|part| part.reads == reads);
     let side = parts().map(|part| part.side).max()?;
     let rows = |shape| match shape {
@@ -517,7 +517,7 @@ pub(crate) fn half_of(pass: &Pass, reads: Reads) -> Option<Half> {
         Shape::HalfWithRow | Shape::Causal => Rows::AboveAndMiddle,
         Shape::Full => Rows::All,
     };
-    Some(Half {
+    Some(NeighborhoodHalf {
         half: side as i32 / 2,
         rows: parts().map(|part| rows(part.shape)).max()?,
     })

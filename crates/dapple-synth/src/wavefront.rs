@@ -18,14 +18,14 @@ const LOOKS: u32 = 64;
 
 /// Wavefront schedule of sites for several threads.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Turns {
+pub(crate) struct WavefrontSchedule {
     /// Site of each turn.
     sites: Vec<u32>,
     /// For each turn, the number of turns at the start of the schedule that must be finished before it runs.
     waits: Vec<u32>,
 }
 
-impl Turns {
+impl WavefrontSchedule {
     /// Builds a sequential schedule, in which every turn waits for all turns before it.
     pub(crate) fn in_order(order: Vec<u32>) -> Self {
         Self {
@@ -118,7 +118,7 @@ fn by_generation(order: &[u32], generations: &[u32]) -> Vec<u32> {
 /// Shared state of a run: the turn that each thread has, within a range of turns. All turns before the range are
 /// finished.
 #[derive(Debug)]
-pub(crate) struct Board {
+pub(crate) struct WavefrontProgress {
     /// First turn that no thread has taken.
     next: AtomicUsize,
     end: usize,
@@ -131,7 +131,7 @@ pub(crate) struct Board {
     turns: Vec<AtomicUsize>,
 }
 
-impl Board {
+impl WavefrontProgress {
     pub(crate) fn new(turns: Range<usize>, n_threads: usize) -> Self {
         Self {
             next: AtomicUsize::new(turns.start),
@@ -171,11 +171,11 @@ impl Board {
 
 #[cfg(test)]
 mod tests {
-    use super::{Board, Turns};
+    use super::{WavefrontProgress, WavefrontSchedule};
     use std::sync::Mutex;
 
     /// Returns a schedule for positions on a line, where two positions are near if they are at most two apart.
-    fn on_a_line(order: &[u32]) -> Turns {
+    fn on_a_line(order: &[u32]) -> WavefrontSchedule {
         let latest = |site: u32, marks: &[u32]| {
             let last = marks.len().min(site as usize + 3);
             *marks[(site as usize).saturating_sub(2)..last]
@@ -183,7 +183,7 @@ mod tests {
                 .max()
                 .unwrap()
         };
-        Turns::new(order, order.len(), |site| site as usize, latest)
+        WavefrontSchedule::new(order, order.len(), |site| site as usize, latest)
     }
 
     #[test]
@@ -215,8 +215,11 @@ mod tests {
     #[test]
     fn turns_are_taken_once_and_not_before_those_waited_for_are_over() {
         let order: Vec<u32> = (0..400).map(|at| at * 177 % 400).collect();
-        for turns in [on_a_line(&order), Turns::in_order(order.clone())] {
-            let board = Board::new(0..turns.len(), 5);
+        for turns in [
+            on_a_line(&order),
+            WavefrontSchedule::in_order(order.clone()),
+        ] {
+            let board = WavefrontProgress::new(0..turns.len(), 5);
             let over = Mutex::new(Vec::new());
             std::thread::scope(|scope| {
                 for thread in 0..5 {
