@@ -1,7 +1,7 @@
 //! Tests that windows, sampling methods, SIMD levels and numbers of threads give equal bits.
 
-use super::doors::reach_of;
 use super::oracle::{METRICS, SCATTERS, position, vectors};
+use super::ways::reach_of;
 use dapple_hash::{Seed, hash1, unit_f64};
 use dapple_raster::simd::for_every_level;
 use dapple_raster::{Raster, Window};

@@ -1,7 +1,7 @@
 //! Tests far from the origin: pictures stay as sharp as near it, and positions out of range have no value.
 
-use super::doors::{RANKS, agrees_with_oracle, sample_by_every_door};
 use super::oracle::{METRICS, SCATTERS};
+use super::ways::{RANKS, agrees_with_oracle, sample_in_every_way};
 use dapple_hash::Seed;
 use dapple_raster::{Field, Raster, Window};
 use dapple_worley::{
@@ -63,7 +63,7 @@ fn doors_agree_far_away() -> Result<(), WorleyError> {
             .with_scatter(scatter)?;
         for (index, far) in (0..).zip([1e9, -1e9, 1e12, -1e12]) {
             let at = [far + 0.125 * f64::from(index), 0.75 - far];
-            let found = sample_by_every_door(&worley, at)?;
+            let found = sample_in_every_way(&worley, at)?;
             agrees_with_oracle(&worley, at, 11, &found);
         }
     }

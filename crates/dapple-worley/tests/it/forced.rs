@@ -3,8 +3,8 @@
 //! Points farther away than one cell are rare, so pictures seldom show whether they are missed. These tests search for
 //! such positions, fail if they find none, and check them by every sampling method and with the oracle.
 
-use super::doors::{agrees_with_oracle, reach_of, sample_by_every_door};
 use super::oracle::position;
+use super::ways::{agrees_with_oracle, reach_of, sample_in_every_way};
 use dapple_hash::Seed;
 use dapple_worley::{Dimensions, Feature, Metric, Scatter, Space, Vector, Worley, WorleyError};
 
@@ -43,7 +43,7 @@ where
         }
         if is_far.contains(&true) && n_checked < 25 {
             n_checked += 1;
-            let found = sample_by_every_door(&worley, at)?;
+            let found = sample_in_every_way(&worley, at)?;
             agrees_with_oracle(&worley, at, reach, &found);
         }
     }
@@ -134,7 +134,7 @@ fn points_many_cells_away_are_found_at_the_least_density() -> Result<(), WorleyE
             .with_scatter(scatter)?;
         for index in 0..12 {
             let at = position::<2>(Seed(54), index, 1e4);
-            let found = sample_by_every_door(&worley, at)?;
+            let found = sample_in_every_way(&worley, at)?;
             agrees_with_oracle(&worley, at, reach_of(&worley)?, &found);
             furthest = furthest.max(cells_away(at, &found[3]));
         }
@@ -172,7 +172,7 @@ where
                     inside
                 }
         });
-        let found = sample_by_every_door(&worley, at)?;
+        let found = sample_in_every_way(&worley, at)?;
         agrees_with_oracle(&worley, at, reach_of(&worley)?, &found);
         n_far += u32::from(cells_away(at, &found[3]) > 1);
     }

@@ -2,8 +2,8 @@
 //!
 //! A search that misses points would violate this at the borders of the cells that it visits.
 
-use super::doors::RANKS;
 use super::oracle::{METRICS, SCATTERS, position};
+use super::ways::RANKS;
 use dapple_hash::Seed;
 use dapple_raster::{Raster, Window};
 use dapple_worley::{Dimensions, Metric, POSITION_STEP, Plane, Space, Vector, Worley, WorleyError};

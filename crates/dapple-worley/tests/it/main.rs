@@ -3,7 +3,6 @@
 
 mod bits;
 mod cell_values;
-mod doors;
 mod edges;
 mod far_away;
 mod fixed;
@@ -27,3 +26,4 @@ mod statistics;
 mod threads;
 mod varying;
 mod voronoi;
+mod ways;

@@ -1,6 +1,6 @@
 //! Properties of every metric, scatter, period and seed.
 
-use super::doors::{RANKS, agrees_with_oracle, reach_of, sample_by_every_door};
+use super::ways::{RANKS, agrees_with_oracle, reach_of, sample_in_every_way};
 use dapple_hash::Seed;
 use dapple_raster::{Raster, Window};
 use dapple_worley::{
@@ -85,7 +85,7 @@ fn doors_agree<const N: usize>(
 where
     Dimensions: Space<N>,
 {
-    let found = sample_by_every_door(worley, at).unwrap();
+    let found = sample_in_every_way(worley, at).unwrap();
     if oracle {
         agrees_with_oracle(worley, at, reach_of(worley).unwrap(), &found);
     }
@@ -444,7 +444,7 @@ fn repeats_of_a_period_of_one_are_points_of_their_own_with_one_id() {
         .unwrap();
     let point = &worley.cell_points([0, 0])[0];
     let at = [17.25, -3.5];
-    let found = sample_by_every_door(&worley, at).unwrap();
+    let found = sample_in_every_way(&worley, at).unwrap();
     assert!(
         found.iter().all(|feature| feature.id == point.id),
         "{found:?}"
@@ -522,7 +522,7 @@ fn points_at_the_same_distance_are_in_the_order_of_their_ids() {
             .unwrap();
         for cell in -20..20 {
             let cell = f64::from(cell);
-            let corner = sample_by_every_door(&worley, [cell, 3.0, -cell]).unwrap();
+            let corner = sample_in_every_way(&worley, [cell, 3.0, -cell]).unwrap();
             let mut ids: Vec<_> = (0..8)
                 .map(|index| [index & 1, index >> 1 & 1, index >> 2].map(|part| part - 1))
                 .flat_map(|[x, y, z]| worley.cell_points([cell as i64 + x, 3 + y, z - cell as i64]))
@@ -534,7 +534,7 @@ fn points_at_the_same_distance_are_in_the_order_of_their_ids() {
                 &ids[..4],
                 "{metric:?} at {cell}"
             );
-            let side = sample_by_every_door(&worley, [cell, 3.5, 0.5]).unwrap();
+            let side = sample_in_every_way(&worley, [cell, 3.5, 0.5]).unwrap();
             assert_eq!(side[0].distance, side[1].distance, "{metric:?} at {cell}");
             assert!(side[0].id < side[1].id, "{metric:?} at {cell}: {side:?}");
         }
@@ -580,7 +580,7 @@ fn periods_without_points_are_infinitely_far_from_any() {
         .find(|worley| worley.cell_points([0, 0]).is_empty())
         .and_then(|worley| worley.with_period([Some(1), Some(1)]).ok())
         .expect("three of four cells are empty");
-    for feature in sample_by_every_door(&empty, [0.25, 7.5]).unwrap() {
+    for feature in sample_in_every_way(&empty, [0.25, 7.5]).unwrap() {
         assert_eq!(
             (feature.distance, feature.id),
             (f32::INFINITY, 0),

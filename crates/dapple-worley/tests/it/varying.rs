@@ -1,7 +1,7 @@
 //! Tests of a density that varies in space.
 
-use super::doors::{RANKS, agrees_with_oracle, sample_by_every_door};
 use super::oracle::{METRICS, position};
+use super::ways::{RANKS, agrees_with_oracle, sample_in_every_way};
 use dapple_hash::Seed;
 use dapple_raster::{Raster, Window};
 use dapple_worley::{Dimensions, Plane, Scatter, Space, Vector, Worley, WorleyError};
@@ -61,7 +61,7 @@ fn densities_out_of_range_count_as_the_nearest_within() -> Result<(), WorleyErro
         for index in 0..10 {
             let at = position::<2>(Seed(93), index, 1e3);
             assert_eq!(
-                sample_by_every_door(&worley, at)?,
+                sample_in_every_way(&worley, at)?,
                 even.sample::<4>(at),
                 "{density} as {counts_as}"
             );
@@ -76,13 +76,13 @@ fn doors_agree_with_the_oracle_where_the_density_varies() -> Result<(), WorleyEr
         let plane = varying::<2>(94).with_metric(metric)?;
         for index in 0..60 {
             let at = position::<2>(Seed(95), index, 60.0);
-            let found = sample_by_every_door(&plane, at)?;
+            let found = sample_in_every_way(&plane, at)?;
             agrees_with_oracle(&plane, at, 20, &found);
         }
         let space = varying::<3>(94).with_metric(metric)?;
         for index in 0..5 {
             let at = position::<3>(Seed(96), index, 60.0);
-            let found = sample_by_every_door(&space, at)?;
+            let found = sample_in_every_way(&space, at)?;
             agrees_with_oracle(&space, at, 10, &found);
         }
     }
@@ -158,7 +158,7 @@ fn varying_density_repeats_exactly_with_a_period() -> Result<(), WorleyError> {
         .with_period([Some(12), Some(5)])?;
     for index in 0..60 {
         let at = position::<2>(Seed(89), index, 100.0);
-        let expected = sample_by_every_door(&worley, at)?;
+        let expected = sample_in_every_way(&worley, at)?;
         agrees_with_oracle(&worley, at, 14, &expected);
         for [x, y] in [[1.0, 0.0], [0.0, 1.0], [-3.0, 100.0], [1e6, -1e6]] {
             let moved = [at[0] + 12.0 * x, at[1] + 5.0 * y];

@@ -22,7 +22,7 @@ const PIXEL: f64 = 1.0 / 64.0;
 /// positions, a window of features, and windows of values.
 ///
 /// The position is a multiple of 2^-21 below 2^31, or of 2^-7, so that the window can have it as a pixel center.
-pub(super) fn sample_by_every_door<const N: usize>(
+pub(super) fn sample_in_every_way<const N: usize>(
     worley: &Worley<N>,
     at: [f64; N],
 ) -> Result<[Feature<Vector<N>>; 4], WorleyError>
