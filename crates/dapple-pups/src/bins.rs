@@ -41,6 +41,7 @@ impl Bin {
     fn of(candidates: &[u32], base: u32) -> Option<Self> {
         let mut bin = Self([Self::NONE; GROUP]);
         for (index, &candidate) in candidates.iter().enumerate() {
+            // Fail if the candidate has more than one block of axes, is too far from the base, or is the ninth.
             let record = Some(candidate).filter(|&candidate| candidate < LONG)?;
             let place = u16::try_from(record.checked_sub(base)?).ok()?;
             *bin.0.get_mut(index)? = Some(place).filter(|&place| place < Self::ELSEWHERE)?;
@@ -127,6 +128,7 @@ impl Bins {
     pub(crate) fn first_candidates(&self, position: DVec2) -> Candidates {
         let row = self.bin(1, position.y);
         let Bin(places) = self.bins[row * self.size[0] + self.bin(0, position.x)];
+        // Read the index of a crowded bin's list from its two halves.
         if places[0] == Bin::ELSEWHERE {
             return self.next_candidates(u32::from(places[1]) | u32::from(places[2]) << 16);
         }
@@ -158,6 +160,7 @@ impl Bins {
             if candidate == END {
                 break;
             }
+            // The group is full: record where the list continues.
             if lane == GROUP {
                 candidates.next = Some(start + GROUP as u32);
                 break;
@@ -180,6 +183,7 @@ impl Bins {
 
     /// Builds the records, sorted by strip, column and row. Returns the record index of each instance.
     fn place_records(&mut self, net: &Net) -> Vec<u32> {
+        // Sort by strip, then by column, so that the candidates of a position are near each other in memory.
         let key = |instance: &Instance| {
             let [column, row] = [0, 1].map(|axis| self.bin(axis, instance.center[axis]));
             (row / STRIP, column, row)
@@ -204,6 +208,7 @@ impl Bins {
     fn list_candidates(&self, net: &Net, places: &[u32]) -> (Vec<u32>, Vec<u32>) {
         let mut entries = Vec::new();
         let mut offsets = vec![0; self.size[0] * self.size[1] + 1];
+        // Of the bins in the bounds of a support, list the candidate in those that the support itself may touch.
         for (instance, &place) in net.instances.iter().zip(places) {
             let is_long = net.blocks(instance).len() > 1;
             let candidate = if is_long { place | LONG } else { place };
@@ -259,10 +264,12 @@ impl Bins {
     /// Returns whether an instance's support may intersect a bin. It cannot if some axis has `u <= 0` at all four
     /// corners.
     fn touches(&self, net: &Net, instance: &Instance, bin: [usize; 2]) -> bool {
+        // Offsets of the bin's corners from the control point.
         let [x, y] = [0, 1].map(|axis| {
             self.ends(net, axis, bin[axis])
                 .map(|end| (end - instance.center[axis]) as f32)
         });
+        // Since u is linear, its largest value is at a corner.
         let can_weigh = |block: &AxisBlock, slot: usize| {
             let u = |x: f32, y: f32| (1.0 - block.y[slot] * y) - block.x[slot] * x;
             u(x[0], y[0])
@@ -287,6 +294,7 @@ impl Bins {
         if net.domain.wrap[axis] {
             return [start, end];
         }
+        // Border bins of an axis that does not wrap extend to the limits of evaluated positions.
         let first = if bin == 0 {
             net.local(axis, f64::MIN)
         } else {

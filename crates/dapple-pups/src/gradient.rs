@@ -39,16 +39,19 @@ impl Texture {
         let value = f64::from(self.sample(position));
         let instances = &net.bins().instances;
         let values = self.values();
+        // Sum the weights W_i, and (T_i − T) ∇W_i.
         let add = |(total, sum): (f64, DVec2), record: usize, weight: f32| {
             if weight == 0.0 {
                 return (total, sum);
             }
             let instance = &net.instances[instances[record] as usize];
+            // Recompute the weight in double precision, together with its gradient.
             let (weight, gradient) = weight_and_gradient(net, instance, local);
             let rise = f64::from(values[instance.point as usize]) - value;
             (total + weight, sum + gradient * rise)
         };
         let (total, sum) = net.fold_weights(local, (0.0, DVec2::ZERO), add);
+        // If all weights underflow, the value is that of the nearest control point, which is constant around it.
         if total < f64::from(LEAST_TOTAL) {
             DVec2::ZERO
         } else {
@@ -77,15 +80,18 @@ fn weight_and_gradient(net: &Net, instance: &Instance, position: DVec2) -> (f64,
     for (index, block) in net.blocks(instance).iter().enumerate() {
         let exponents = net.exponents(instance).get(index);
         for slot in 0..BLOCK {
+            // A_r and its gradient (equation 1), with fading if the axis fades.
             let axial = axial(net.options.weight, block, slot, offset);
             let (value, slope) = match exponents.map(|exponents| exponents[slot]) {
                 Some(exponent) if exponent < 1.0 => faded(axial, exponent.into()),
                 _ => axial,
             };
+            // Product rule: ∇(W A_r) = A_r ∇W + W ∇A_r.
             gradient = gradient * value + slope * weight;
             weight *= value;
         }
     }
+    // Apply equation 4 if there are orientations.
     match net.shifts.get(instance.point as usize) {
         Some(&shift) => shifted(weight, gradient, DVec2::from(shift.map(f64::from)), offset),
         None => (weight, gradient),
@@ -96,6 +102,7 @@ fn weight_and_gradient(net: &Net, instance: &Instance, position: DVec2) -> (f64,
 fn axial(weight: AxialWeight, block: &AxisBlock, slot: usize, offset: DVec2) -> (f64, DVec2) {
     let axis = DVec2::new(f64::from(block.x[slot]), f64::from(block.y[slot]));
     let u = (1.0 - axis.dot(offset)).clamp(0.0, 1.0);
+    // Chain rule with ∇u = −a.
     (weight.value(u), axis * -weight.slope(u))
 }
 
@@ -104,6 +111,7 @@ fn faded((value, slope): (f64, DVec2), exponent: f64) -> (f64, DVec2) {
     if value <= 0.0 {
         return (0.0, DVec2::ZERO);
     }
+    // ∇A^e = e A^(e−1) ∇A.
     let faded = libm::pow(value, exponent);
     (faded, slope * (exponent * faded / value))
 }
@@ -111,6 +119,7 @@ fn faded((value, slope): (f64, DVec2), exponent: f64) -> (f64, DVec2) {
 /// Applies equation 4 to a weight and its gradient.
 fn shifted(weight: f64, gradient: DVec2, shift: DVec2, offset: DVec2) -> (f64, DVec2) {
     let distance = offset.length();
+    // The weight is unchanged where it is zero, and at the control point, where the angle is undefined.
     if distance == 0.0 || weight <= 0.0 {
         return (weight, gradient);
     }
@@ -118,12 +127,14 @@ fn shifted(weight: f64, gradient: DVec2, shift: DVec2, offset: DVec2) -> (f64, D
     let k = shift.dot(direction);
     // The gradient of K: the component of the shift orthogonal to the direction, divided by the distance.
     let k_slope = (shift - direction * k) / distance;
+    // Exponent e of equation 4 and its gradient, by the sign of K.
     let (exponent, slope) = if k >= 0.0 {
         (1.0 - k, -k_slope)
     } else {
         (1.0 / (1.0 + k), -k_slope / ((1.0 + k) * (1.0 + k)))
     };
     let shifted = libm::pow(weight, exponent);
+    // ∇w' = e w^(e−1) ∇w + w' ln w ∇e.
     (
         shifted,
         gradient * (exponent * shifted / weight) + slope * (shifted * libm::log(weight)),

@@ -20,6 +20,7 @@ impl Line {
         let goes = |index: usize| coordinates[index] != coordinates[index - 1];
         let even = count > 1 && goes(1) && goes(count - 1);
         let per_unit = even.then(|| (count - 1) as f64 / (last - first));
+        // Bound the rounding of coordinates far from zero, in pixels.
         let rounding =
             4.0 * f64::EPSILON * first.abs().max(last.abs()) * per_unit.unwrap_or(0.0).abs();
         Self {
@@ -37,6 +38,7 @@ impl Line {
         let Some(per_unit) = self.per_unit else {
             return 0..self.count;
         };
+        // Convert the interval to fractional indices. They are in descending order if the coordinates are.
         let [a, b] = [(min - self.first) * per_unit, (max - self.first) * per_unit];
         // The conversion to an index turns negative numbers into zero, and truncates.
         let start = (a.min(b) + 1.0 - self.slack) as usize;

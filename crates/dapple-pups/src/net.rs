@@ -114,6 +114,7 @@ impl Net {
         }
         PupsError::check_count("points in the graph", graph.n_points(), points.len())?;
         let mut net = Self::empty(*points.domain(), options, points.len())?;
+        // Delaunay graph of the points, triangulated when the first open support needs it.
         let mut closing = None;
         let mut axes = Vec::new();
         for (point, center) in points.iter() {
@@ -121,8 +122,8 @@ impl Net {
                 PupsError::check_wanted(is_cancelled)?;
             }
             axes.clear();
-            // Add Delaunay axes if the graph may leave the support open.
             axes.extend(graph.axes(point).iter().map(|axis| axis.vector));
+            // Add Delaunay axes if the graph may leave the support open.
             if kind == GraphKind::Any && has_gap(&axes) {
                 close_gap(point, &mut axes, points, &mut closing, is_cancelled)?;
             }
@@ -225,10 +226,12 @@ impl Net {
             of(true).map(|(&axis, _)| axis).collect(),
         );
         self.push_blocks(point, &full)?;
+        // Full axes have the exponent 1.
         self.exponents.resize(self.blocks.len(), [1.0; BLOCK]);
         if !fading.is_empty() {
             self.push_blocks(point, &fading)?;
         }
+        // Fill the unused slots of the last fading block with the exponent 1.
         let exponents: Vec<f32> = of(true).map(|(_, &exponent)| exponent).collect();
         for chunk in exponents.chunks(BLOCK) {
             let mut block = [1.0; BLOCK];
@@ -254,6 +257,7 @@ impl Net {
                         limit,
                     }));
                 }
+                // Store s⁻¹ v / |v|². Its product with an offset from the point is the projection p.
                 let scaled = *axis / (length_sq * self.options.axis_scale);
                 block.x[slot] = scaled.x as f32;
                 block.y[slot] = scaled.y as f32;
@@ -278,11 +282,13 @@ impl Net {
         // More than 2^32 blocks of axes do not fit into memory.
         let n_blocks = (self.blocks.len() - first_block) as u32;
         let first_block = first_block as u32;
+        // Find the periodic images whose supports, with their margins, intersect the domain.
         let (min, max) = padded_box(axes, self.options.axis_scale);
         let [columns, rows] =
             [0, 1].map(|axis| self.image_range(axis, center[axis], min[axis], max[axis]));
         for row in rows {
             for column in columns.clone() {
+                // Shift the point by whole periods. All images share the point's axes.
                 let center = center + self.domain.size * DVec2::new(column as f64, row as f64);
                 self.instances.push(Instance {
                     center,
@@ -308,6 +314,7 @@ impl Net {
             return 0..=0;
         }
         let (origin, size) = (self.domain.origin[axis], self.domain.size[axis]);
+        // Solve center + k · size + [min, max] for the periods k at which it meets the domain.
         // With an axis to the point's own image, a support is at most two axis scales wide, in periods.
         let first = ((origin - center - max) / size).ceil().max(-IMAGES_LIMIT);
         let last = ((origin + size - center - min) / size)
@@ -328,6 +335,7 @@ fn close_gap(
     closing: &mut Option<Graph>,
     is_cancelled: &IsCancelled,
 ) -> Result<(), PupsError> {
+    // Triangulate the points when the first support is open; later ones share the graph.
     let graph = match closing {
         Some(graph) => graph,
         None => {

@@ -170,6 +170,7 @@ impl Orientation {
     /// Returns ε times the orientation in the plane of control point `index`.
     pub(crate) fn shift(&self, index: usize) -> [f32; 2] {
         let vector = self.vectors[if self.vectors.len() == 1 { 0 } else { index }];
+        // Project the unit vector to the plane, and scale it by ε.
         let shift = vector.truncate() * (self.strength / vector.length());
         let length = shift.length();
         let shorten = if length > Self::LONGEST_SHIFT {

@@ -69,6 +69,7 @@ impl Profile for Cubic {
 
     #[inline(always)]
     fn finish<V: Lane>(self, q: V, t: V, n: usize) -> V {
+        // Each axis contributes a factor of 2, since 3 − 2u = 2 (3/2 − u).
         const POWERS: [f32; BLOCK + 1] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0];
         q * q * (t * POWERS[n])
     }

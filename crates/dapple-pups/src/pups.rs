@@ -183,6 +183,7 @@ impl Pups {
             return f32::NAN;
         };
         let points = &self.net.bins().points;
+        // Of all periodic images of this control point, the largest weight counts.
         let larger = |largest: f32, record: usize, weight: f32| {
             if points[record] == point.0 {
                 largest.max(weight)
@@ -202,6 +203,7 @@ impl Pups {
         let Some(position) = self.local(position) else {
             return Vec::new();
         };
+        // Collect the nonzero weights in the order of summation, and add them up.
         let mut weights = Vec::new();
         let points = &self.net.bins().points;
         let total = self
@@ -212,9 +214,11 @@ impl Pups {
                 }
                 total + weight
             });
+        // If all weights underflow, the nearest control point alone determines the texture.
         if total < LEAST_TOTAL {
             return vec![(PointIdx(self.net.nearest(position)), 1.0)];
         }
+        // Normalize the weights, as in equation 3.
         weights.iter_mut().for_each(|(_, weight)| *weight /= total);
         weights
     }
@@ -227,6 +231,7 @@ impl Pups {
     pub fn strongest(&self, position: DVec2) -> Option<PointIdx> {
         let position = self.local(position)?;
         let points = &self.net.bins().points;
+        // Only a larger weight replaces the best one, so the first of equal weights wins.
         let stronger = |best: (f32, Option<u32>), record: usize, weight: f32| {
             if weight > best.0 {
                 (weight, Some(points[record]))
@@ -235,6 +240,7 @@ impl Pups {
             }
         };
         let best = self.net.fold_weights(position, (0.0, None), stronger);
+        // Without a positive weight, all of them have underflowed. Use the nearest control point.
         let point = best.1.unwrap_or_else(|| self.net.nearest(position));
         Some(PointIdx(point))
     }
@@ -291,6 +297,7 @@ impl Pups {
     /// Moves a position into the range of the evaluation (see [`Net::local`]). Returns `None` if it is not finite.
     #[inline]
     pub(crate) fn local(&self, position: DVec2) -> Option<DVec2> {
+        // Most positions are inside of the domain and need no wrapping.
         if self.net.domain.contains(position) {
             return Some(position);
         }
@@ -328,11 +335,13 @@ impl Sink for Strongest {
         sums: &mut [f32],
         lane: usize,
     ) {
-        // `select` moves bits and does not compute with them.
+        // Pass the point's index as the bits of a float. `select` moves bits and does not compute with them.
         let point = V::splat(simd, f32::from_bits(point));
         for row in 0..N {
+            // A row has two planes: the largest weights so far, and the points that have them.
             let at = row * Self::PLANES * LANES + lane;
             let best_weight = V::from_slice(simd, &sums[at..at + V::LEN]);
+            // In lanes with a larger weight, replace the weight and the point.
             let stronger = weights[row].simd_gt(best_weight);
             let weight = stronger.select(weights[row], best_weight);
             weight.store_slice(&mut sums[at..at + V::LEN]);
@@ -350,12 +359,14 @@ impl Sink for Strongest {
         values: &mut [PointIdx],
         nearest: impl Fn(usize) -> u32,
     ) {
+        // Split the row into its planes of weights and points.
         let (weights, points) = sums.split_at(LANES);
         for (pixel, (value, (&weight, &point))) in values
             .iter_mut()
             .zip(weights.iter().zip(points))
             .enumerate()
         {
+            // Where all weights underflow, use the nearest control point.
             *value = PointIdx(if weight > 0.0 {
                 point.to_bits()
             } else {

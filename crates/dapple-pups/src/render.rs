@@ -41,6 +41,7 @@ pub(crate) fn render<K: Sink>(net: &Net, window: &Window, sink: &K, rows: &mut [
         .into_iter()
         .map(|run| Lane::new(&xs, run, LANES))
         .collect();
+    // Choose the height of a band so that its sums fit into the cache.
     let height = BAND_NUMBERS / Planes::<K>::per_row(xs.len());
     let height = height.clamp(ROWS, BAND_ROWS);
     // Collect the instances of each band, and split the rows.
@@ -62,6 +63,7 @@ pub(crate) fn render<K: Sink>(net: &Net, window: &Window, sink: &K, rows: &mut [
             });
         }
     }
+    // Render the bands. Each thread reuses its planes.
     parallel::consume_with(bands, Planes::default, |planes, _, band| {
         band.render(level, planes);
     });
@@ -107,10 +109,12 @@ impl<K: Sink> Band<'_, '_, K> {
     /// Renders the band's rows; `planes` is scratch memory.
     fn render(mut self, level: Level, planes: &mut Planes<K>) {
         for columns in self.columns {
+            // A coordinate that is not finite is a run of its own, so the first one stands for all.
             if !columns.is_finite() || !self.ys.is_finite() {
                 self.leave_undefined(&columns.range);
                 continue;
             }
+            // Sum the weights of all instances in the planes, then convert the sums to pixel values.
             planes.clear(columns.range.len(), self.ys.padded.len());
             match self.net.options.weight {
                 AxialWeight::Cubic => {
@@ -175,6 +179,7 @@ impl<K: Sink> Band<'_, '_, K> {
         for (row, values) in self.rows.iter_mut().enumerate() {
             let values = &mut values[start * per_pixel..end * per_pixel];
             for (index, values) in values.chunks_mut(LANES * per_pixel).enumerate() {
+                // The planes store the sums of a row in columns of `LANES` pixels.
                 let (sums, _) = planes.rows(index * LANES, row, 1);
                 let nearest = |pixel: usize| {
                     let x = columns.padded[index * LANES + pixel];
@@ -201,6 +206,7 @@ impl<K: Sink> Band<'_, '_, K> {
 fn band_members(net: &Net, ys: &[f64], height: usize) -> Vec<Vec<u32>> {
     let mut members = vec![Vec::new(); ys.len().div_ceil(height)];
     let line = Line::new(ys);
+    // Instances are visited in ascending order, so every list is sorted.
     for (index, instance) in (0..).zip(&net.instances) {
         let rows = line.touched(instance.min.y, instance.max.y);
         if !rows.is_empty() {

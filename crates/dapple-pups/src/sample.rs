@@ -137,6 +137,7 @@ impl Net {
 /// Computes `−u` along each axis of a block.
 #[inline(always)]
 fn project<S: Simd>(simd: S, axes: &AxisBlock, [x, y]: [f32; 2]) -> f32x8<S> {
+    // Group the terms as everywhere in this crate, (1 − a_y d_y) − a_x d_x, so that the bits agree.
     let rest = f32x8::splat(simd, 1.0) - f32x8::from_slice(simd, &axes.y) * y;
     minus_u(simd, f32x8::from_slice(simd, &axes.x) * x, rest)
 }
@@ -153,6 +154,7 @@ fn go_on<S: Simd, P: Profile>(
 ) -> f32 {
     for (index, block) in blocks.iter().enumerate().skip(1) {
         let minus_u = project(simd, block, offset);
+        // Fading axes come first in their block, so the first exponent tells whether any axis fades.
         weight *= match exponents.get(index) {
             Some(exponents) if exponents[0] < 1.0 => faded(simd, profile, exponents, minus_u),
             _ => profile.product::<f32>(minus_u.into()),
@@ -173,6 +175,7 @@ fn faded<S: Simd, P: Profile>(
     let [weights] = powers(simd, &weights, &[f32x8::from_slice(simd, exponents)]);
     let mut product = 1.0;
     for (&weight, &exponent) in weights.as_slice().iter().zip(exponents) {
+        // Unused slots have the exponent 1.
         if exponent < 1.0 {
             product *= weight;
         }

@@ -21,10 +21,13 @@ pub(crate) fn shift_weights<S: Simd, V: SimdFloat<S, Element = f32>, const ROWS:
     y: &[f32; ROWS],
 ) -> [V; ROWS] {
     let zero = V::splat(simd, 0.0);
+    // Compute the terms that all rows share.
     let (square, along) = (x * x, x * shift[0]);
     let mut exponents = [x; ROWS];
     for row in 0..ROWS {
+        // d = |x − c|.
         let distance = (square + (y[row] * y[row] + LEAST_SQUARE)).sqrt();
+        // n = ε (x − c)·v, which is positive on the side that the orientation points to.
         let along = along + y[row] * shift[1];
         exponents[row] = (distance - along.max(zero)) / (distance + along.min(zero));
     }

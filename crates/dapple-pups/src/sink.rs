@@ -77,6 +77,7 @@ impl<K: Sink> Planes<K> {
     pub(crate) fn clear(&mut self, width: usize, height: usize) {
         self.height = height;
         self.numbers.clear();
+        // Reserve one more cache line, for the offset that aligns the first one.
         self.numbers
             .resize(Self::per_row(width) * height + LANES, 0.0);
         // If the memory cannot be aligned, the code is only slower.

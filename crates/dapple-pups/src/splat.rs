@@ -132,6 +132,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         // Multiply all axes of the other blocks.
         let blocks = strips.iter().zip(member.blocks).enumerate().skip(1);
         for (index, (strip, block)) in blocks {
+            // Fading axes come first in their block, so the first exponent tells whether any axis fades.
             let products: [S::f32s; N] = match member.exponents.get(index) {
                 Some(exponents) if exponents[0] < 1.0 => {
                     self.faded(simd, strip, &block.x, exponents, x)
@@ -169,6 +170,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
     ) -> [V; N] {
         let mut products = [V::splat(simd, 1.0); N];
         let mut weights = products;
+        // Multiply `A(u)^e` axis by axis. Fading axes come first; unused slots have the exponent 1.
         for axis in 0..BLOCK {
             if exponents[axis] >= 1.0 {
                 break;
@@ -197,15 +199,18 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         mut active: u32,
         x: V,
     ) -> [V; N] {
+        // The remainder proves to the compiler that the number is at most `BLOCK`.
         let n_axes = active.count_ones() as usize % (BLOCK + 1);
         let mut q = [x; N];
         let mut t = [x; N];
+        // Start the products with the first active axis.
         let axis = take_lowest(&mut active);
         let (along, rest) = (x * ax[axis], &strip.rest[axis][..N]);
         for row in 0..N {
             let minus_u = minus_u(simd, along, V::splat(simd, rest[row]));
             (q[row], t[row]) = self.profile.first(minus_u);
         }
+        // Multiply by the other active axes.
         while active != 0 {
             let axis = take_lowest(&mut active);
             let (along, rest) = (x * ax[axis], &strip.rest[axis][..N]);
@@ -214,6 +219,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
                 (q[row], t[row]) = self.profile.step(q[row], t[row], minus_u);
             }
         }
+        // Combine the partial products into weights.
         for row in 0..N {
             q[row] = self.profile.finish(q[row], t[row], n_axes);
         }

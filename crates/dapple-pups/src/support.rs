@@ -9,6 +9,7 @@ use glam::DVec2;
 /// Returns whether two neighboring axes, in angular order, are 180° or more apart.
 pub(crate) fn has_gap(axes: &[DVec2]) -> bool {
     let next = axes.iter().cycle().skip(1);
+    // Two axes cannot enclose the point. Neighbors are less than 180° apart if their cross product is positive.
     axes.len() < 3
         || axes
             .iter()
@@ -41,10 +42,12 @@ fn walk_support(axes: &[DVec2], scale: f64) -> Option<(DVec2, DVec2)> {
     }
     let vector = |index: usize| axes[index % axes.len()];
     let corner = |a: DVec2, b: DVec2| corner(a, b) * scale;
+    // Start at the corner between the last and the first axis, and follow the polygon counterclockwise.
     let mut before = corner(vector(axes.len() - 1), vector(0));
     let (mut min, mut max) = (before, before);
     for index in 0..axes.len() {
         let after = corner(vector(index), vector(index + 1));
+        // If the border runs backward between its corners, other axes cut it off completely.
         if vector(index).perp_dot(after - before) < 0.0 {
             return None;
         }
@@ -56,6 +59,7 @@ fn walk_support(axes: &[DVec2], scale: f64) -> Option<(DVec2, DVec2)> {
 
 /// Returns the bounds of any support, by clipping a very large square.
 fn clip_support(axes: &[DVec2], scale: f64) -> (DVec2, DVec2) {
+    // Start with a square that is far larger than any bounded support.
     let longest = axes.iter().map(|axis| axis.length()).fold(0.0, f64::max);
     let far = (longest * scale).max(f64::MIN_POSITIVE) * 1e12;
     let mut polygon = vec![
@@ -64,6 +68,7 @@ fn clip_support(axes: &[DVec2], scale: f64) -> (DVec2, DVec2) {
         DVec2::new(-far, -far),
         DVec2::new(far, -far),
     ];
+    // Clip the polygon by the half-plane d·v ≤ s |v|² of each axis (Sutherland-Hodgman).
     for axis in axes {
         let inside = |corner: DVec2| scale * axis.length_squared() - corner.dot(*axis);
         let mut clipped = Vec::with_capacity(polygon.len() + 1);
@@ -73,6 +78,7 @@ fn clip_support(axes: &[DVec2], scale: f64) -> (DVec2, DVec2) {
             if here >= 0.0 {
                 clipped.push(corner);
             }
+            // Where the edge crosses the border, add the intersection.
             if (here < 0.0) != (there < 0.0) {
                 clipped.push(corner + (next - corner) * (here / (here - there)));
             }
@@ -100,6 +106,7 @@ fn clip_support(axes: &[DVec2], scale: f64) -> (DVec2, DVec2) {
 
 /// Returns the intersection of two axes' borders, at an axis scale of 1.
 fn corner(a: DVec2, b: DVec2) -> DVec2 {
+    // Solve d·a = |a|² and d·b = |b|² by Cramer's rule.
     (b.perp() * a.length_squared() - a.perp() * b.length_squared()) / -a.perp_dot(b)
 }
 
@@ -119,11 +126,14 @@ fn walk_borders(axes: &[DVec2]) -> Option<Vec<f64>> {
         return None;
     }
     let vector = |index: usize| axes[index % axes.len()];
+    // Start at the corner between the last and the first axis.
     let mut before = corner(vector(axes.len() - 1), vector(0));
     let border = |index: usize| {
         let after = corner(vector(index), vector(index + 1));
+        // Corners are for the axis scale 1; the Voronoi cell is half as large.
         let side = 0.5 * (after - before);
         before = after;
+        // A border that runs backward between its corners is empty.
         (vector(index).perp_dot(side) >= 0.0).then(|| side.length())
     };
     (0..axes.len()).map(border).collect()
@@ -133,15 +143,18 @@ fn walk_borders(axes: &[DVec2]) -> Option<Vec<f64>> {
 /// is open, and zero for an axis without a border.
 fn clip_borders(axes: &[DVec2]) -> Vec<f64> {
     let border = |(index, &axis): (usize, &DVec2)| {
+        // The border is part of the bisector ½ v + t v⊥ of the axis v. Clip the interval of t by all other bisectors.
         let along = axis.perp();
         let [mut first, mut last] = [f64::NEG_INFINITY, f64::INFINITY];
         for (other, &cut) in axes.iter().enumerate() {
+            // The bisector of another axis c requires t (c·v⊥) ≤ ½ c·(c − v).
             let (rate, room) = (cut.dot(along), 0.5 * cut.dot(cut - axis));
             if rate > 0.0 {
                 last = last.min(room / rate);
             } else if rate < 0.0 {
                 first = first.max(room / rate);
             } else if room < 0.0 || (room == 0.0 && other < index) {
+                // A nearer parallel bisector hides the whole border. Of two equal axes, the first has the border.
                 return 0.0;
             }
         }

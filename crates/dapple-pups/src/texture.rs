@@ -187,6 +187,7 @@ impl Values {
         };
         let net = &self.pups.net;
         let values = self.by_record(net.bins());
+        // Sum the weights, and the values times the weights. A single component is summed in a register.
         let total = match &mut *mean {
             [mean] => {
                 let add = |(total, sum): (f32, f32), record: usize, weight: f32| {
@@ -215,6 +216,7 @@ impl Values {
     fn render(&self, window: &Window, rows: &mut [&mut [f32]]) {
         let mut first = 0;
         while first < self.width {
+            // Three components share the weights of one pass over the control points.
             let (values, width) = (&self.by_point, self.width);
             first += if width - first >= 3 {
                 let mean = Mean::<3>::new(values, width, first);
@@ -279,7 +281,9 @@ impl<const N: usize> Sink for Mean<'_, N> {
     ) {
         let value = self.of_point(point);
         for row in 0..ROWS {
+            // The first plane sums the weights.
             add(simd, sums, row * Self::PLANES * LANES + lane, weights[row]);
+            // The other planes sum the products of weights and components.
             for channel in 0..N {
                 let at = (row * Self::PLANES + channel + 1) * LANES + lane;
                 add(simd, sums, at, weights[row] * value[channel]);

@@ -91,9 +91,11 @@ impl Tiles {
         self.axes = blocks[0].slots(simd);
         self.n_columns = xs.len() / width;
         self.n_strips = ys.len() / H;
+        // Memory is reused by all control points of a band, so it only grows.
         if self.columns.len() < self.n_columns {
             self.columns.resize(self.n_columns, Column::default());
         }
+        // Compute the offsets of the columns, and bounds of a_x d_x for each column of tiles.
         for (column, xs) in self.columns.iter_mut().zip(xs.chunks_exact(width)) {
             column.enter(simd, &blocks[0], xs, center.x);
         }
@@ -101,6 +103,7 @@ impl Tiles {
             self.strips
                 .resize(self.n_strips * self.n_blocks, Strip::default());
         }
+        // Compute 1 − a_y d_y, and its bounds, for each row of tiles and each block of axes.
         let mut strips = self.strips.iter_mut();
         for ys in ys.chunks_exact(H) {
             for (axes, strip) in blocks.iter().zip(strips.by_ref()) {
@@ -129,6 +132,7 @@ impl Tiles {
         let columns = &self.columns[..self.n_columns];
         // Append each tile to the section of its number of axes.
         for strip in 0..self.n_strips {
+            // Only axes of the first block are selected; further blocks are always multiplied.
             let rest = self.strips[strip * self.n_blocks].ends(simd);
             for (column, ends) in columns.iter().enumerate() {
                 let (active, has_weight) = ends.active_axes(simd, rest);
@@ -152,6 +156,7 @@ impl Tiles {
     /// zero. If there are few tiles, it is a row and a column of tiles; otherwise, a section and an index in it.
     #[inline(always)]
     pub(crate) fn next<S: Simd>(&self, simd: S, [outer, inner]: &mut [usize; 2]) -> Option<Tile> {
+        // A few tiles are tested when they are visited, row by row.
         if self.are_few() {
             while *outer < self.n_strips {
                 let (strip, column) = (*outer, *inner);
@@ -172,6 +177,7 @@ impl Tiles {
             }
             return None;
         }
+        // Sorted tiles are visited section by section. The last section, tiles without a weight, is left out.
         let n_tiles = self.n_columns * self.n_strips;
         while *outer < NOTHING {
             if *inner < self.lengths[*outer] {
@@ -199,6 +205,7 @@ impl Tiles {
 impl Column {
     #[inline(always)]
     fn enter<S: Simd>(&mut self, simd: S, axes: &AxisBlock, xs: &[f64], center: f64) {
+        // Compute the offsets in double precision, and round them.
         if xs.len().is_multiple_of(BLOCK) {
             for (x, xs) in self.x.chunks_exact_mut(BLOCK).zip(xs.chunks_exact(BLOCK)) {
                 offsets(simd, xs, center).store_slice(x);
@@ -208,6 +215,7 @@ impl Column {
                 *x = (coordinate - center) as f32;
             }
         }
+        // a_x d_x is monotonic in x, so its bounds are at the first and the last column.
         let ax = f32x8::from_slice(simd, &axes.x);
         let (left, right) = (ax * self.x[0], ax * self.x[xs.len() - 1]);
         left.min(right).store_slice(&mut self.least);
@@ -218,8 +226,10 @@ impl Column {
     /// point has a weight there. `rest` holds the [ends](Strip::ends) of the tile's row.
     #[inline(always)]
     fn active_axes<S: Simd>(&self, simd: S, rest: [f32x8<S>; 2]) -> (u32, bool) {
+        // Bounds of u = (1 − a_y d_y) − a_x d_x in the tile.
         let least = rest[0] - f32x8::from_slice(simd, &self.most);
         let most = rest[1] - f32x8::from_slice(simd, &self.least);
+        // An axis is relevant if its u is below 1 somewhere. One whose u is nowhere above 0 makes the weight zero.
         let active = least.simd_lt(f32x8::splat(simd, 1.0)).to_bitmask();
         let without = most.simd_le(f32x8::splat(simd, 0.0)).to_bitmask();
         // Eight lanes give eight bits.
@@ -239,12 +249,14 @@ impl Strip {
         let y = if H == BLOCK {
             offsets(simd, ys, center)
         } else {
+            // Fill a register with the four offsets twice.
             let low = f64x4::from_slice(simd, ys) - center;
             low.narrow(low)
         };
         y.store_slice(&mut self.y);
         let one = f32x8::splat(simd, 1.0);
         let ay = f32x8::from_slice(simd, &axes.y);
+        // 1 − a_y d_y is monotonic in y, so its bounds are in the first and the last row.
         let (top, bottom) = (one - ay * y.as_slice()[0], one - ay * y.as_slice()[H - 1]);
         top.min(bottom).store_slice(&mut self.least);
         top.max(bottom).store_slice(&mut self.most);

@@ -70,6 +70,7 @@ impl AxialWeight {
             Self::Cubic => cubic(u),
             Self::Quintic => u * u * u * ((u * 6.0 - 15.0) * u + 10.0),
             Self::Oscillating { dips, depth } => {
+                // T = T_n(2u − 1) is ±1 where the falloff is the cubic, and 0 where the dip is deepest.
                 let swing = chebyshev(dips, u * 2.0 - 1.0);
                 let dip = swing * swing * -1.0 + 1.0;
                 cubic(u) * (dip * dip * -depth + 1.0)
@@ -79,6 +80,7 @@ impl AxialWeight {
 
     /// Returns the weight at `u` (in `[0, 1]`), in double precision.
     pub(crate) fn value(self, u: f64) -> f64 {
+        // These are the formulas of `of_complement`, in double precision.
         let cubic = u * u * (3.0 - 2.0 * u);
         match self {
             Self::Cubic => cubic,
@@ -98,6 +100,7 @@ impl AxialWeight {
             Self::Cubic => cubic_slope,
             Self::Quintic => 30.0 * u * u * (1.0 - u) * (1.0 - u),
             Self::Oscillating { dips, depth } => {
+                // Product rule for cubic · (1 − d D²), with the dip D = 1 − T².
                 let (depth, cubic) = (f64::from(depth), u * u * (3.0 - 2.0 * u));
                 let (swing, swing_slope) = swing(dips, u);
                 let dip = 1.0 - swing * swing;
@@ -140,9 +143,11 @@ fn cubic<V: Lane>(u: V) -> V {
 /// Computes `T_n(x)` by its recurrence. The result is exact at the ends: 1 at 1, and ±1 at −1.
 #[inline(always)]
 fn chebyshev<V: Lane>(n: u32, x: V) -> V {
+    // Start with T_0 = 1 and T_1 = x.
     let mut former = x * 0.0 + 1.0;
     let mut latter = x;
     for _ in 1..n {
+        // T_(k+1) = 2 x T_k − T_(k−1).
         (former, latter) = (latter, x * latter * 2.0 - former);
     }
     latter
@@ -152,11 +157,13 @@ fn chebyshev<V: Lane>(n: u32, x: V) -> V {
 /// second kind of degree `n − 1`.
 fn swing(n: u32, u: f64) -> (f64, f64) {
     let x = 2.0 * u - 1.0;
+    // Both kinds share a recurrence. The first starts with T_0 = 1 and T_1 = x, the second with U_(−1) = 0 and U_0 = 1.
     let (mut former, mut latter) = ([1.0, 0.0], [x, 1.0]);
     for _ in 1..n {
         let next = [0, 1].map(|kind| 2.0 * x * latter[kind] - former[kind]);
         (former, latter) = (latter, next);
     }
+    // T_n' = n U_(n−1), and x = 2u − 1 has the slope 2.
     (latter[0], 2.0 * f64::from(n) * latter[1])
 }
 

@@ -59,12 +59,14 @@ pub fn grouped_labels(graph: &Graph, sizes: [u32; 2], seed: Seed) -> Result<Vec<
 /// Returns each point's neighbors over edges in either direction, without the point itself.
 fn neighbors(graph: &Graph) -> Vec<Vec<u32>> {
     let mut neighbors = vec![Vec::new(); graph.n_points()];
+    // Record every edge at both of its ends.
     for point in 0..graph.n_points() as u32 {
         for axis in graph.axes(PointIdx(point)) {
             neighbors[point as usize].push(axis.to.0);
             neighbors[axis.to.index()].push(point);
         }
     }
+    // Remove duplicates, and edges to a point's own periodic images.
     for (point, row) in (0..).zip(&mut neighbors) {
         row.sort_unstable();
         row.dedup();
@@ -86,6 +88,7 @@ struct Growth<'a> {
 
 impl<'a> Growth<'a> {
     fn new(neighbors: &'a [Vec<u32>], seed: Seed) -> Self {
+        // A hash decides between points with the same number of free neighbors.
         let ranks = (0..neighbors.len() as i64).map(|point| hash1(seed, [point], 0));
         let mut growth = Self {
             neighbors,
@@ -110,6 +113,7 @@ impl<'a> Growth<'a> {
             self.queue.remove(&key);
         }
         self.free_neighbors[point as usize] = None;
+        // Its free neighbors have one free neighbor less: update their keys.
         for &other in &self.neighbors[point as usize] {
             let Some(key) = self.key(other) else {
                 continue;
@@ -123,6 +127,7 @@ impl<'a> Growth<'a> {
     fn grow_all(mut self, sizes: [u32; 2], seed: Seed) -> Vec<Vec<u32>> {
         let mut groups = Vec::new();
         while let Some(&(_, _, first)) = self.queue.first() {
+            // Draw the size, uniformly between the limits.
             let random = hash1(seed, [groups.len() as i64], 0) >> 32;
             let more = (random * u64::from(sizes[1] - sizes[0] + 1)) >> 32;
             groups.push(self.grow(first, sizes[0] as usize + more as usize));
@@ -135,6 +140,7 @@ impl<'a> Growth<'a> {
         let mut group = vec![first];
         self.take(first);
         while group.len() < size {
+            // Add the free point next to the group that has the fewest free neighbors, so that few become isolated.
             let around = group
                 .iter()
                 .flat_map(|&point| &self.neighbors[point as usize]);
@@ -151,12 +157,14 @@ impl<'a> Growth<'a> {
 
 /// Divides each group that is too small again, together with one or two adjacent groups.
 fn mend(neighbors: &[Vec<u32>], groups: &mut Vec<Vec<u32>>, sizes: [u32; 2]) {
+    // Index the group of each point.
     let mut group_of = vec![0; neighbors.len()];
     for (index, group) in groups.iter().enumerate() {
         group
             .iter()
             .for_each(|&point| group_of[point as usize] = index);
     }
+    // For each group that is too small, divide the region around it again.
     for small in 0..groups.len() {
         if groups[small].len() >= sizes[0] as usize {
             continue;
@@ -192,6 +200,7 @@ fn regions(
     group_of: &[usize],
     small: usize,
 ) -> Vec<Vec<usize>> {
+    // Indices of the groups that are adjacent to a group.
     let beside = |group: usize| -> BTreeSet<usize> {
         let points = groups[group].iter();
         points
@@ -200,8 +209,10 @@ fn regions(
             .filter(|&other| other != group)
             .collect()
     };
+    // First try the small group with one adjacent group.
     let near = beside(small);
     let mut regions: Vec<Vec<usize>> = near.iter().map(|&first| vec![small, first]).collect();
+    // Then try it with that group and another one that is adjacent to either.
     for &first in &near {
         let others: BTreeSet<usize> = near.union(&beside(first)).copied().collect();
         let others = others

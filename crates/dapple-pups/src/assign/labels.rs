@@ -24,6 +24,7 @@ pub fn random_labels(n_points: usize, n_labels: u32, seed: Seed) -> Result<Vec<u
         f64::from(n_labels),
         "at least 1",
     )?;
+    // Multiply a fixed-point number below 1 by the number of labels.
     let label = |index: i64| (((hash1(seed, [index], 0) >> 32) * u64::from(n_labels)) >> 32) as u32;
     Ok((0..n_points as i64).map(label).collect())
 }

@@ -16,9 +16,11 @@ use std::sync::Arc;
 #[must_use]
 pub fn random_orientations(n_points: usize, seed: Seed) -> Vec<DVec3> {
     let vector = |index: i64| {
+        // Draw the azimuth, in turns, and the height.
         let [turn, height] = [0, 1].map(|lane| unit_f64(hash1(seed, [index], lane)));
         let z = 2.0 * height - 1.0;
         let direction = DVec2::new(libm::cos(TAU * turn), libm::sin(TAU * turn));
+        // The sphere's cross section at height z has the radius √(1 − z²).
         (direction * (1.0 - z * z).sqrt()).extend(z)
     };
     (0..n_points as i64).map(vector).collect()
@@ -37,6 +39,7 @@ pub fn outward_orientations(points: &PointSet, center: DVec2) -> Result<Vec<DVec
     let domain = points.domain();
     let center = domain.wrap(center);
     let vector = |&position: &DVec2| {
+        // Take the shortest vector from the center, across wrapped axes.
         let outward = domain.delta(center, position).normalize_or_zero();
         if outward == DVec2::ZERO {
             DVec3::Z

@@ -44,6 +44,7 @@ impl ReferenceImage {
     /// repeats along axes that wrap; along other axes, its border pixels are extended.
     #[must_use]
     pub fn intensity(&self, domain: &Domain, position: DVec2) -> f32 {
+        // Convert the position to fractions of the domain, then to pixels.
         let uv = (domain.wrap(position) - domain.origin) / domain.size;
         let [column, row] =
             [0, 1].map(|axis| (uv[axis] * f64::from(self.intensities.size()[axis])).floor() as i64);

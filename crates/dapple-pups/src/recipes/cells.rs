@@ -76,12 +76,14 @@ pub fn cells(options: &CellsOptions, seed: Seed) -> Result<LabelTexture, PupsErr
         .net
         .points(&options.spacing, options.domain, seed.child("points", 0))?;
     let graph = options.net.delaunay(&points)?;
+    // Divide the points into cells of one point or of a few connected ones.
     let labels = if options.points_per_cell == [1, 1] {
         own_labels(points.len())
     } else {
         grouped_labels(&graph, options.points_per_cell, seed.child("label", 0))?
     };
     let n_labels = labels.iter().max().map_or(0, |&label| label as usize + 1);
+    // Draw a value for each cell.
     let values = random_values(n_labels, seed.child("value", 0));
     let orientation = options.net.orientation(&points, seed)?;
     let pups = options

@@ -87,6 +87,7 @@ pub fn cellular_noise(
     )?;
     let mut layers = Vec::with_capacity(options.layers as usize);
     let mut spacing = options.spacing.clone();
+    // Each layer has its own points, spaced more closely by the lacunarity.
     for layer in 0..u64::from(options.layers) {
         let finer = spacing.finer(options.lacunarity);
         let options = CellsOptions {

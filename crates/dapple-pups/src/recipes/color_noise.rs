@@ -72,6 +72,7 @@ pub fn color_noise(options: &ColorNoiseOptions, seed: Seed) -> Result<VectorText
     let points = options
         .net
         .points(&options.spacing, options.domain, seed.child("points", 0))?;
+    // Draw a color of the palette for each point.
     let n_colors = u32::try_from(options.palette.len()).unwrap_or(u32::MAX);
     let labels = random_labels(points.len(), n_colors, seed.child("label", 0))?;
     let colors = palette_values(&labels, &options.palette)?;

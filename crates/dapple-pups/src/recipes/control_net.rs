@@ -98,6 +98,7 @@ impl ControlNet {
     /// for colors, and if the texture's period differs from the tile's.
     fn to_points(&self, tile: Domain) -> Option<ControlPoints> {
         let (domain, numbers) = (self.pups.domain(), self.numbers()?);
+        // The net's domain must be the tile, extended by a margin along the axes on which the net does not wrap.
         let wraps_within = |axis: usize| !domain.wrap[axis] || tile.wrap[axis];
         let margin = (tile.origin - domain.origin).max(DVec2::ZERO);
         let covered = Domain {
@@ -109,6 +110,7 @@ impl ControlNet {
         }
         let orientations = self.orientations();
         let shared = self.shared_labels();
+        // Points of a texture with shared labels are described by their labels, other points by their values.
         let points = self.pups.points().iter().zip(numbers);
         let points = points.map(|((point, at), value)| ControlPoint {
             x: at.x,

@@ -163,6 +163,7 @@ impl Default for ControlPoints {
 pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, PupsError> {
     let points = options.point_set()?;
     let net = &options.net;
+    // Use the points' own orientations if they have any, else those of the net's options.
     let pups = match options.orientations()? {
         Some(vectors) => {
             let orientation = Orientation::new(vectors).with_strength(net.strength);
@@ -171,6 +172,7 @@ pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, 
         }
         None => net.pups(&points, seed)?,
     };
+    // The texture has hard cells with shared labels only if every point has a label.
     let numbers = options.numbers(&options.points)?;
     let labels: Option<Vec<u32>> = options.points.iter().map(|point| point.label).collect();
     Ok(match (options.cells, labels) {
@@ -225,6 +227,7 @@ impl ControlPoints {
         &self,
         points: impl IntoIterator<Item = &'a ControlPoint>,
     ) -> Result<Vec<f32>, PupsError> {
+        // A point has either its own value or that of its label.
         let number = |point: &ControlPoint| match (point.value, point.label) {
             (Some(value), None) => Ok(value),
             (None, Some(label)) => {

@@ -109,13 +109,16 @@ pub fn iterated_reference(
     let mut former: Option<Texture> = None;
     for (iteration, points) in (0..).zip(options.point_sets(seed)?) {
         let seed = seed.child("iteration", iteration);
+        // Probability of white at each point: the intensity of the image, or the value of the previous texture.
         let intensities = match &former {
             Some(texture) => field_values(&points, texture)?,
             None => first_intensities(image, &points),
         };
+        // Draw white where a random number is below the probability.
         let random = random_values(points.len(), seed.child("label", 0));
         let white = |(random, intensity)| if random < intensity { 1.0 } else { 0.0 };
         let values: Vec<f32> = random.into_iter().zip(intensities).map(white).collect();
+        // Build the texture without motion for the next iteration. The returned one includes motion.
         let texture = still.pups(&points, seed)?.texture(values.clone())?;
         textures.push(match options.net.motion {
             Some(_) => options.net.pups(&points, seed)?.texture(values)?,
@@ -137,6 +140,7 @@ impl IteratedOptions {
     fn point_sets(&self, seed: Seed) -> Result<Vec<PointSet>, PupsError> {
         let factors = core::iter::successors(Some(1.0), |factor| Some(factor * SQRT_2));
         let factors = factors.take(self.iterations as usize);
+        // Fresh points are generated separately for each iteration.
         if self.points == IterationPoints::Fresh {
             let points = |(iteration, factor)| {
                 let seed = seed.child("iteration", iteration).child("points", 0);
@@ -145,6 +149,7 @@ impl IteratedOptions {
             };
             return (0..).zip(factors).map(points).collect();
         }
+        // Nested points are generated as one sequence. Each iteration uses a longer prefix of it.
         let Some(distance) = self.spacing.uniform_distance(self.domain)? else {
             return Err(PupsError::new(PupsErrorKind::SpacingVaries));
         };

@@ -64,6 +64,7 @@ fn render_labels<T: Copy>(
     value: impl Fn(PointIdx) -> T,
 ) -> Result<(), RasterError> {
     window.check_size(out.size())?;
+    // Find the strongest control point of each pixel, and look up its value.
     let mut strongest = Raster::filled(window.size, PointIdx(u32::MAX))?;
     pups.render_strongest(window, strongest.view_mut())?;
     for (row, values) in (0..).zip(out.rows_mut()) {

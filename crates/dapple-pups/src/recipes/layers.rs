@@ -100,6 +100,7 @@ impl<F: Field> Field for Layers<F> {
         window.check_size(out.size())?;
         let mut values = Raster::filled(window.size, 0.0)?;
         out.fill(0.0);
+        // Add the layers one by one, in the same order as for a single position.
         for (layer, &amplitude) in self.layers.iter().zip(&self.amplitudes) {
             layer.render(window, values.view_mut())?;
             for (row, sums) in (0..).zip(out.rows_mut()) {
@@ -108,6 +109,7 @@ impl<F: Field> Field for Layers<F> {
                 }
             }
         }
+        // Clamp sums that exceed the maximum because of rounding.
         for sum in out.rows_mut().flatten() {
             *sum = self.finish(*sum);
         }

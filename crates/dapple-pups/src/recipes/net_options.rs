@@ -231,6 +231,7 @@ impl NetOptions {
             axis_scale: self.axis_scale,
             weight: self.weight,
             orientation,
+            // The edges of moving points change, so their axes always fade.
             fade: match self.motion {
                 Some(_) => self.fade.max(MOVING_FADE),
                 None => self.fade,
@@ -263,6 +264,7 @@ struct Triangulated {
 
 /// Returns whether the coordinates of two point sets have the same bits.
 fn is_same(a: &PointSet, b: &PointSet) -> bool {
+    // Numbers that are equal may still differ in the sign of zero.
     let pairs = a.positions().iter().zip(b.positions());
     a == b
         && pairs

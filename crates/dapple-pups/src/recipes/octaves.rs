@@ -119,6 +119,7 @@ pub fn octaves(options: &OctavesOptions, seed: Seed) -> Result<Layers<Octave>, P
     let scales = core::iter::successors(Some(1.0), |scale| Some(scale * options.lacunarity));
     let scales = scales.take(options.octaves as usize);
     let octaves: Result<Vec<Octave>, PupsError> = match options.source {
+        // Each octave has its own points, spaced more closely by the scale.
         OctaveSource::Separate => (0..)
             .zip(scales)
             .map(|(index, scale)| {
@@ -126,6 +127,7 @@ pub fn octaves(options: &OctavesOptions, seed: Seed) -> Result<Layers<Octave>, P
                 Ok(Octave::new(texture, 1.0))
             })
             .collect(),
+        // All octaves share one texture, with positions multiplied by the scale.
         OctaveSource::Rescaled => {
             let texture = options.texture(1.0, seed.child("octave", 0))?;
             Ok(scales
@@ -172,6 +174,7 @@ impl OctavesOptions {
             self.lacunarity,
             self.gain,
         )?;
+        // Only powers of two scale positions exactly. Scaled positions leave the domain, so it must wrap.
         if self.source == OctaveSource::Rescaled {
             let power = [2.0, 4.0, 8.0, 16.0].contains(&self.lacunarity);
             PupsError::check(

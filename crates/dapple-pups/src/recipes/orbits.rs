@@ -52,15 +52,18 @@ impl Orbits {
     ) -> Result<PointSet, PupsError> {
         PupsError::check_in(RADIUS, "radius of the orbits", self.radius)?;
         PupsError::check_in(TIME, "time", time)?;
+        // Reduce the time to a fraction of the loop.
         let passed = time - time.floor();
         let moved = points.iter().map(|(point, center)| {
             let random = CellHash::new(seed, [i64::from(point.0)]);
+            // Draw the phase, in turns, the size of the orbit, and the direction of rotation.
             let [phase, size, way] = [0, 1, 2].map(|lane| unit_f64(random.at(lane)));
             let turn = if way < 0.5 {
                 phase + passed
             } else {
                 phase - passed
             };
+            // The radius is from half to all of the option, in multiples of the mean length of the point's edges.
             let radius = self.radius * (0.5 + 0.5 * size) * mean_distance(graph, point);
             let circle = DVec2::new(libm::cos(TAU * turn), libm::sin(TAU * turn));
             within(points, center, radius, circle)
@@ -80,6 +83,7 @@ fn mean_distance(graph: &Graph, point: PointIdx) -> f64 {
 fn within(points: &PointSet, center: DVec2, mut radius: f64, circle: DVec2) -> DVec2 {
     let domain = points.domain();
     let (first, last) = (domain.origin, domain.end());
+    // Reduce the radius so that the circle does not cross a border of the domain.
     for axis in (0..2).filter(|&axis| !domain.wrap[axis]) {
         let room = (center[axis] - first[axis]).min(last[axis] - center[axis]);
         radius = radius.min(room);

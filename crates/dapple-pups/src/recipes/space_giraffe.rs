@@ -139,6 +139,7 @@ impl SpaceGiraffeOptions {
         let mut centers = self
             .net
             .points(&self.spacing, self.domain, seed_of_points)?;
+        // If points move, move the centers first. Spots are built around the new positions.
         if self.net.motion.is_some() {
             let graph = self.net.delaunay(&centers)?;
             if let Some(moved) = self.net.moved(&centers, &graph, seed)? {
@@ -147,6 +148,7 @@ impl SpaceGiraffeOptions {
         }
         let spots = self.place_spots(&centers, seed.child("spot", 0))?;
 
+        // Add the pairs to the centers. Centers and inner points have label 1 (spot), outer points 0 (background).
         let mut positions = centers.positions().to_vec();
         let mut labels = vec![1; positions.len()];
         for (spot, &center) in spots.iter().zip(centers.positions()) {
@@ -155,6 +157,7 @@ impl SpaceGiraffeOptions {
                 labels.extend([1, 0]);
             }
         }
+        // Along axes that do not wrap, extend the domain so that every spot is whole.
         let reach = spots.iter().map(|spot| spot.radius).fold(0.0, f64::max);
         let domain = self.domain.grown(DVec2::splat(reach));
         Ok((PointSet::new(domain, positions)?, labels))
@@ -191,6 +194,7 @@ impl SpaceGiraffeOptions {
 /// Returns half the distance to the nearest other center (or periodic image). This is half the length of the shortest
 /// Delaunay edge.
 fn radius(graph: &Graph, center: PointIdx) -> Result<f64, PupsError> {
+    // The nearest center is a Delaunay neighbor, so the shortest axis leads to it.
     let lengths = graph.axes(center).iter().map(|axis| axis.vector.length());
     lengths.reduce(f64::min).map(|length| 0.5 * length).ok_or(
         // Without wrapping, a single point has no neighbor.

@@ -180,11 +180,13 @@ fn expected_by_parts(domain: Domain, radius: &Varying) -> f64 {
     let row = |y: u32| (0..=PARTS).map(|x| at(x, y)).collect::<Vec<_>>();
     // Points on the border of the domain count in addition to the points of its area.
     let is_border = |index: u32| f64::from(u8::from(index == 0 || index == PARTS - 1));
+    // Adjacent rows of cells share a row of corners, so each is evaluated once.
     let mut above = row(0);
     let mut sum = 1.0;
     for y in 0..PARTS {
         let below = row(y + 1);
         for (x, (above, below)) in (0..).zip(above.windows(2).zip(below.windows(2))) {
+            // The smallest distance at the corners gives the largest number of points.
             let corners = above.iter().chain(below).copied();
             let smallest = corners.fold(f64::INFINITY, f64::min);
             let sides = part / smallest + DVec2::new(is_border(x), is_border(y));

@@ -12,6 +12,7 @@ pub(super) fn divide(
     if points.len() > 64 {
         return None;
     }
+    // Represent the points by bits, and the neighbors of each by a mask.
     let bit = |point: &u32| points.iter().position(|other| other == point);
     let adjacent = |&point: &u32| {
         let bits = neighbors[point as usize].iter().filter_map(bit);

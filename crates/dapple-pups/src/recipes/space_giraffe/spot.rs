@@ -35,9 +35,12 @@ impl Spot {
     ) -> Self {
         let random = CellHash::new(seed, [i64::from(center.0)]);
         let [least, most] = options.pairs;
+        // Draw the number of pairs, uniformly from the range.
         let more = (random.at(0) >> 32) * u64::from(most - least + 1);
         let n_pairs = least + (more >> 32) as u32;
+        // Draw the first angle, as a fraction of the interval between two pairs.
         let first = unit_f64(random.at(1));
+        // Draw two radii for each pair, as fractions of the spot's radius.
         let draw = |index: u32| [2, 3].map(|lane| unit_f64(random.at(2 * index + lane)));
         let radii: Vec<[f64; 2]> = match options.spots {
             Spots::Literal => (0..n_pairs).map(|index| sorted(draw(index))).collect(),
@@ -47,6 +50,7 @@ impl Spot {
                 filled(&smoothed(&even.collect::<Vec<_>>()))
             }
         };
+        // Place the pairs around the center, at equal angular intervals.
         let place = |(index, pair): (u32, &[f64; 2])| {
             let angle = TAU * (f64::from(index) + first) / f64::from(n_pairs);
             let direction = DVec2::new(libm::cos(angle), libm::sin(angle)) * radius;
@@ -73,6 +77,7 @@ impl Spot {
 
     /// Returns the maximum scale at which the spot fits, at most 1.
     pub(super) fn room(&self, axes: &[Axis], axis_scale: f64) -> f64 {
+        // The center's Voronoi cell is d·v ≤ ½ |v|² for every axis v. Find the largest scale that fits a corner in it.
         let room_for = |corner: DVec2| {
             let along = |axis: &Axis| {
                 let reach = corner.dot(axis.vector);
@@ -81,6 +86,7 @@ impl Spot {
             };
             axes.iter().map(along).fold(1.0, f64::min)
         };
+        // Apply this to all corners of the supports of the center and the inner points.
         let inner = self.pairs.iter().map(|&[inner, _]| inner);
         core::iter::once(DVec2::ZERO)
             .chain(inner)
@@ -96,6 +102,7 @@ impl Spot {
         let mut corners = [(-far, -far), (far, -far), (far, far), (-far, far)]
             .map(DVec2::from)
             .to_vec();
+        // Clip by the border of each axis v from the point: (x − point)·v ≤ s |v|².
         let others = core::iter::once(&DVec2::ZERO).chain(self.pairs.as_flattened());
         for axis in others.map(|&other| other - point) {
             if axis != DVec2::ZERO {
@@ -110,7 +117,9 @@ impl Spot {
 /// Converts two random numbers to the radii of a pair, as fractions of the spot's radius. The inner one is first. The
 /// radii have gaps to the center, to the rim and between them.
 fn sorted(parts: [f64; 2]) -> [f64; 2] {
+    // Leave a gap to the center and to the rim.
     let [a, b] = parts.map(|part| GAP + (1.0 - 2.0 * GAP) * part);
+    // Leave a gap between both radii.
     let outer = a.max(b).max(2.0 * GAP);
     let inner = a.min(b).min(outer - GAP);
     [inner, outer]
@@ -120,10 +129,12 @@ fn sorted(parts: [f64; 2]) -> [f64; 2] {
 /// side. Weights decrease linearly. Inner points remain inside of outer ones.
 fn smoothed(radii: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let n_pairs = radii.len();
+    // Half-width of the window. Its weights rise and fall linearly, and their sum is the square of the half-width.
     let reach = (n_pairs / 5).max(3);
     let total = (reach * reach) as f64;
     let mean = |at: usize| {
         let mut sum = [0.0; 2];
+        // Sum the neighbors on the circle, from one side to the other.
         for tap in 1..2 * reach {
             let weight = tap.min(2 * reach - tap) as f64;
             let [inner, outer] = radii[(at + reach * n_pairs + tap - reach) % n_pairs];
@@ -149,6 +160,7 @@ fn clipped(corners: &[DVec2], normal: DVec2, limit: f64) -> Vec<DVec2> {
     let mut kept = Vec::with_capacity(corners.len() + 1);
     for (index, &from) in corners.iter().enumerate() {
         let to = corners[(index + 1) % corners.len()];
+        // Signed distances beyond the border, multiplied by the normal's length.
         let [over_from, over_to] = [from, to].map(|corner| normal.dot(corner) - limit);
         if over_from <= 0.0 {
             kept.push(from);
