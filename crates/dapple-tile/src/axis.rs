@@ -43,6 +43,7 @@ pub(crate) fn transpose(raster: &Raster<f32>) -> Result<Raster<f32>, TileError> 
     let [width, height] = raster.size().map(|side| side as usize);
     let from = raster.pixels();
     let mut to = vec![0.0; from.len()];
+    // Transpose in square blocks.
     for top in (0..height).step_by(BLOCK) {
         for left in (0..width).step_by(BLOCK) {
             for y in top..(top + BLOCK).min(height) {

@@ -227,6 +227,7 @@ fn mix_map(
     bands: &[Vec<Raster<f32>>],
     mixing: &Mixing,
 ) -> Result<Map, TileError> {
+    // Iterate over the planes of this map in all layers at once.
     let mut of_layers: Vec<_> = layers
         .iter()
         .map(|layer| layer.maps[map].planes().into_iter())
@@ -254,6 +255,7 @@ pub(crate) fn linear(
 ) -> Result<Raster<f32>, TileError> {
     let size = planes[0].size();
     Ok(Raster::from_rows(size, |row| {
+        // For each pixel, compute the weighted sum, and the range of the values that have a share.
         let mut sums = vec![(0.0_f64, f32::INFINITY, f32::NEG_INFINITY); size[0] as usize];
         for (plane, shares) in planes.iter().zip(shares) {
             let pixels = plane.row(row).iter().zip(shares.row(row));
@@ -276,6 +278,7 @@ fn keep_variance(planes: &[Raster<f32>], shares: &[Raster<f32>]) -> Result<Raste
     let size = planes[0].size();
     let means: Vec<f64> = planes.iter().map(|plane| plane.statistics().mean).collect();
     Ok(Raster::from_rows(size, |row| {
+        // For each pixel, compute `Σ w μ`, `Σ w (x - μ)` and `Σ w²`.
         let mut sums = vec![[0.0_f64; 3]; size[0] as usize];
         for ((plane, shares), mean) in planes.iter().zip(shares).zip(&means) {
             let pixels = plane.row(row).iter().zip(shares.row(row));

@@ -161,6 +161,7 @@ impl BlendMap {
         check_finite(texture)?;
         let importance = self.importance(&to_unit_range(texture), is_cancelled)?;
         check(is_cancelled)?;
+        // Center the importance on its median, which becomes ½.
         let median = median(&importance);
         Ok(importance.par_map(|&value| squash(contrast * f64::from(value - median))))
     }
@@ -186,6 +187,7 @@ impl BlendMap {
         let squares = band.map(|band| band * band);
         let floor = WHOLE * mean(&squares) + FLAT;
         let power = blur(&squares, COARSE * sigma)?;
+        // Compute the importance, (B - D) / E.
         let excess = band.zip_map(&edges, |band, edge| band - sigma as f32 * edge)?;
         Ok(excess.zip_map(&power, |excess, power| excess / (power + floor).sqrt())?)
     }
@@ -199,6 +201,7 @@ fn to_unit_range(raster: &Raster<f32>) -> Raster<f32> {
     let min = pixels().fold(f64::INFINITY, f64::min);
     let max = pixels().fold(f64::NEG_INFINITY, f64::max);
     let [middle, half] = [0.5 * (min + max), 0.5 * (max - min)];
+    // A constant raster has no range.
     let half = if half > 0.0 { half } else { 1.0 };
     raster.par_map(|&value| ((f64::from(value) - middle) / half) as f32)
 }
@@ -207,6 +210,7 @@ fn to_unit_range(raster: &Raster<f32>) -> Raster<f32> {
 fn slopes(raster: &Raster<f32>, wrap: [Wrap; 2]) -> Result<Raster<f32>, TileError> {
     let [width, height] = raster.size();
     let last = width as usize - 1;
+    // Columns next to the first and the last one, across the border.
     let [before, after] = [-1, i64::from(width)].map(|at| wrap[0].index(at, width) as usize);
     Ok(Raster::from_rows([width, height], |row| {
         let [above, below] =
@@ -215,6 +219,7 @@ fn slopes(raster: &Raster<f32>, wrap: [Wrap; 2]) -> Result<Raster<f32>, TileErro
         (0..=last).map(move |column| {
             let left = if column > 0 { column - 1 } else { before };
             let right = if column < last { column + 1 } else { after };
+            // Neighbors are two pixels apart, so half of their difference is the change per pixel.
             let [x, y] = [here[right] - here[left], below[column] - above[column]];
             0.5 * (x * x + y * y).sqrt()
         })

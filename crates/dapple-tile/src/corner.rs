@@ -184,14 +184,17 @@ impl CornerTiles {
         size: [u32; 2],
     ) -> Result<Vec<Map>, TileError> {
         let seed = seed.child("corner", 0);
+        // Divide the columns at the borders of the tiles.
         let columns = pieces(first[0], size[0], self.size()[0]);
         let mut planes = Vec::new();
         for plane in 0..self.sources[0].len() {
             planes.push(Raster::from_rows(size, |row| {
+                // Find the row of tiles, and the row within a tile.
                 let y = first[1].wrapping_add(row.into());
                 let above = y.div_euclid(self.size()[1].into());
                 let row = Wrap::Repeat.index(y, self.size()[1]);
                 let mut values = Vec::with_capacity(size[0] as usize);
+                // Append the columns of each tile.
                 for piece in &columns {
                     let colors = self.colors(seed, [piece.copy, above]);
                     let pixels = piece.from..piece.from + piece.count;
@@ -212,6 +215,7 @@ impl CornerTiles {
     }
 
     fn color(&self, seed: Seed, corner: [i64; 2]) -> u8 {
+        // Corners one period apart have the same color.
         let [x, y] = [0, 1].map(|axis| match self.period[axis] {
             Some(period) => corner[axis].rem_euclid(period.into()),
             None => corner[axis],
@@ -232,15 +236,18 @@ impl CornerTiles {
     ) {
         let colors = colors.map(usize::from);
         let [nw, ne, sw, se] = colors.map(|color| self.sources[color][plane].row(row));
+        // With equal colors, the tile is a copy of the source.
         if colors == [colors[0]; 4] {
             values.extend_from_slice(&nw[columns.start as usize..columns.end as usize]);
             return;
         }
         let n_colors = self.sources.len();
+        // The upper pair and the lower pair have their own cuts from top to bottom.
         let [upper, lower] = [[colors[0], colors[1]], [colors[2], colors[3]]]
             .map(|[left, right]| &self.cuts.beside[left + right * n_colors]);
         let across = &self.cuts.across[index_of(colors, n_colors)];
         values.extend(columns.map(|column| {
+            // Join left and right in both pairs, then the upper with the lower pair.
             let x = column as usize;
             let above = mix(nw[x], ne[x], upper.weight(column, row));
             let below = mix(sw[x], se[x], lower.weight(column, row));
@@ -266,6 +273,7 @@ impl Cuts {
     /// Finds the cheapest cuts in a band that occupies the fraction `width` of the shorter side.
     fn new(sources: &[Vec<Raster<f32>>], width: f64) -> Result<Self, TileError> {
         let size = check_planes(&sources.concat())?;
+        // Determine the bands of the cuts, and the scales that give all planes the same variance.
         let [along_x, along_y] = size.map(|side| band(side, size, width));
         let of_scales: Vec<_> = sources.iter().map(Vec::as_slice).collect();
         let scales = scales(&of_scales);
@@ -275,12 +283,14 @@ impl Cuts {
         // Cut each pair from top to bottom, and record where its cut from left to right starts and ends.
         let (mut beside, mut halves, mut ends) = (Vec::new(), Vec::new(), Vec::new());
         for (a, b) in (0..n_colors).flat_map(|b| (0..n_colors).map(move |a| (a, b))) {
+            // Between equal sources, every cut is invisible.
             let cheapest = |of: &[Vec<Raster<f32>>], band| match a == b {
                 true => Ok(Cut::straight(band, of[a][0].height())),
                 false => Cut::cheapest([&of[a], &of[b]], &scales, band, Ends::Closed),
             };
             let cut = cheapest(sources, along_x)?;
             ends.push(cheapest(&turned, along_y)?.ends());
+            // Join the pair along its cut. Transpose it, since the next cut runs from left to right.
             let pairs = sources[a].iter().zip(&sources[b]);
             let joined: Vec<_> = pairs
                 .map(|(a, b)| cut.join([a, b]))

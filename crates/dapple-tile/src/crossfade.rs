@@ -45,6 +45,7 @@ impl Crossfade {
     ) -> Result<Raster<f32>, TileError> {
         let correlation = match self {
             Self::KeepVariance => pair.correlation(weights)?,
+            // With a correlation of 1, the operator is the plain mean.
             Self::Linear => 1.0,
         };
         let pixels = pair.pixels(weights)?;
@@ -62,6 +63,7 @@ impl Crossfade {
 
 /// Returns the factors of the two deviations, for the second image's weight and a correlation.
 fn shares(weight: f64, correlation: f64) -> [f64; 2] {
+    // Divide by the standard deviation of the weighted mean of two images with unit variance.
     let [v, w] = [1.0 - weight, weight];
     let length = (v * v + w * w + 2.0 * correlation * v * w).sqrt();
     [v / length, w / length]
@@ -90,6 +92,7 @@ impl<'a> Pair<'a> {
     /// Returns the correlation of the images over all blended pixels, clamped to 0 to 1. It is 0 if one image is
     /// constant there.
     fn correlation(self, weights: &Raster<f64>) -> Result<f64, TileError> {
+        // Sum the squares and the products of the deviations, where both images are visible.
         let [mut aa, mut bb, mut ab] = [0.0; 3];
         for ([a, b], weight) in self.pixels(weights)? {
             if weight > 0.0 && weight < 1.0 {

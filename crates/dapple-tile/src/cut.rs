@@ -59,10 +59,12 @@ impl Cut {
             band.count.max(1),
             images[0].first().map_or(1, Raster::height),
         ];
+        // Sum the squared differences of all planes.
         let mut differences = Raster::filled(size, 0.0)?;
         for ((a, b), scale) in images[0].iter().zip(images[1]).zip(scales) {
             add_differences([a, b], band.first as usize, *scale, &mut differences);
         }
+        // Find the path with the lowest total cost, among the columns in which the ramp fits into the band.
         let costs = costs(&differences, half_width)?;
         let first = band.first + inset(half_width);
         let mut columns = match ends {
@@ -114,11 +116,13 @@ fn half_width(band: Band) -> f64 {
 /// Computes the cost of a cut through each pixel whose ramp fits into the band.
 fn costs(differences: &Raster<f64>, half_width: f64) -> Result<Raster<f64>, TileError> {
     let inset = inset(half_width);
+    // Loss of variance at each pixel of the ramp, w (1 - w).
     let factors: Vec<f64> = (0..=2 * inset)
         .map(|column| weight(f64::from(column) - f64::from(inset), half_width))
         .map(|weight| weight * (1.0 - weight))
         .collect();
     let size = [differences.width() - 2 * inset, differences.height()];
+    // Sum the differences over the ramp, multiplied by that loss.
     Ok(Raster::from_fn(size, |column, row| {
         let pixels = &differences.row(row)[column as usize..][..factors.len()];
         let products = pixels.iter().zip(&factors);

@@ -27,8 +27,10 @@ pub(crate) fn open_path(costs: &Raster<f64>) -> Vec<u32> {
 pub(crate) fn closed_path(costs: &Raster<f64>) -> Vec<u32> {
     let [left, right] = whole_band(costs);
     let mut search = Search::new(costs);
+    // Start with the first column. Its path bounds the paths of all other columns on the left.
     let mut best = search.cheapest(&left, &right, Some(0));
     let left = best.columns.clone();
+    // Search the other columns by bisection.
     search.halve([1, costs.width()], &left, &right, &mut best);
     best.columns
 }
@@ -90,10 +92,13 @@ impl<'a> Search<'a> {
         if first[0] >= first[1] {
             return;
         }
+        // Find the cheapest path of the middle column.
         let middle = first[0] + (first[1] - first[0]) / 2;
         let path = self.cheapest(left, right, Some(middle));
+        // Paths of columns on either side need not cross it, so it bounds both searches.
         self.halve([first[0], middle], left, &path.columns, best);
         self.halve([middle + 1, first[1]], &path.columns, right, best);
+        // If costs are equal, prefer the smaller first column.
         if path.price < best.price || (path.price == best.price && path.first() < best.first()) {
             *best = path;
         }
@@ -106,6 +111,7 @@ impl<'a> Search<'a> {
         let begins = begin.map_or([left[0], right[0]], |column| [column; 2]);
         self.spread(left, right, begins);
         let [mut from, mut to] = [left[last], right[last]];
+        // A closed path ends at most one column from where it began.
         if let Some(column) = begin {
             from = from.max(column.saturating_sub(1));
             to = to.min(column + 1);
@@ -125,6 +131,7 @@ impl<'a> Search<'a> {
     fn begin(&mut self, band: [u32; 2], [from, to]: [u32; 2]) {
         let [low, high] = band.map(|column| column as usize + PAD);
         let prices = &mut self.prices[0];
+        // Only the cells in `from..=to` can be reached.
         prices[low - PAD..=high + PAD].fill(f64::INFINITY);
         for column in from..=to {
             prices[column as usize + PAD] = self.costs.row(0)[column as usize];
@@ -138,6 +145,7 @@ impl<'a> Search<'a> {
         let costs = &self.costs.pixels()[row * width..][..width];
         let steps = &mut self.steps[row * width..][..width];
         let [above, prices] = &mut self.prices;
+        // Pad the band with infinite costs, since the next row reads up to two cells beyond it.
         prices[low..low + PAD].fill(f64::INFINITY);
         prices[high + PAD + 1..=high + 2 * PAD].fill(f64::INFINITY);
         for column in low..=high {
@@ -166,8 +174,10 @@ impl<'a> Search<'a> {
                 best
             }
         };
+        // Find the cheapest end; the first one if several are equal.
         let end = (from + 1..=to).fold(from, cheaper);
         let width = self.costs.width() as usize;
+        // Follow the steps from the last row to the first.
         let mut columns = vec![end; last + 1];
         for row in (1..=last).rev() {
             let step = self.steps[row * width + columns[row] as usize];

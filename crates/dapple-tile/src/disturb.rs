@@ -144,8 +144,10 @@ impl Disturbance {
     ) -> Result<Vec<Raster<f32>>, TileError> {
         let sides = check_planes(tile)?;
         self.check_width(sides)?;
+        // Check the size before memory is allocated.
         Raster::<()>::filled(size, ())?;
         let seed = self.seed.child("disturb", 0);
+        // Divide the columns and rows at the borders of the copies.
         let [columns, rows] = [0, 1].map(|axis| pieces(first[axis], size[axis], sides[axis]));
         // Compute each copy that the window touches, and assemble the map.
         let copies = Raster::from_rows([columns.len() as u32, rows.len() as u32], |row| {
@@ -169,12 +171,14 @@ impl Disturbance {
 
     /// Computes the planes of the copy whose shift comes from `hash`.
     fn copy(&self, tile: &[Raster<f32>], hash: CellHash) -> Result<Vec<Raster<f32>>, TileError> {
+        // Roll the tile by a random shift along each axis.
         let [x, y] = [0, 1].map(|axis| shift(hash.at(axis), tile[0].size()[axis as usize]));
         let shifted = tile.iter().map(|plane| rolled(plane, [x, y]));
         let width = Frame {
             whole: self.frozen,
             band: self.margin,
         };
+        // Surround it with the borders of the tile itself.
         framed(&shifted.collect::<Result<Vec<_>, _>>()?, tile, width)
     }
 

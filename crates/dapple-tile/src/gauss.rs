@@ -35,9 +35,11 @@ pub fn blur(raster: &Raster<f32>, sigma: f64, wrap: [Wrap; 2]) -> Result<Raster<
     let holds = (0.0..=65536.0).contains(&sigma);
     TileError::check(holds, "sigma of a blur", sigma, "from 0 to 65536")?;
     let weights = weights(sigma);
+    // Blur the rows.
     let along_rows = rows(raster.size(), |row, blurred| {
         blur_row(raster.row(row), &weights, wrap[0], blurred);
     })?;
+    // Blur the columns, by sums of whole rows.
     let height = raster.height();
     rows(raster.size(), |row, blurred| {
         let at = |step: i64| along_rows.row(wrap[1].index(i64::from(row) + step, height));
@@ -58,10 +60,12 @@ fn rows(size: [u32; 2], fill: impl Fn(u32, &mut [f32]) + Sync) -> Result<Raster<
 /// Returns the weight of the center, followed by the weight of each distance from it.
 fn weights(sigma: f64) -> Vec<f32> {
     let reach = libm::ceil(REACH * sigma) as u32;
+    // Compute the right half of the Gaussian, including its center.
     let bell: Vec<f64> = (0..=reach)
         .map(|k| f64::from(k) / sigma.max(f64::MIN_POSITIVE))
         .map(|distance| libm::exp(-0.5 * distance * distance))
         .collect();
+    // Divide by the sum of both halves, which share the center.
     let sum = 2.0 * bell.iter().sum::<f64>() - bell[0];
     bell.iter().map(|weight| (weight / sum) as f32).collect()
 }
@@ -70,6 +74,7 @@ fn blur_row(row: &[f32], weights: &[f32], wrap: Wrap, blurred: &mut [f32]) {
     let reach = weights.len() - 1;
     let width = row.len() as u32;
     let past = |at: i64| row[wrap.index(at, width) as usize];
+    // Extend the row on both sides by the radius, as the wrap mode determines.
     let mut padded = Vec::with_capacity(row.len() + 2 * reach);
     padded.extend((1..=reach as i64).rev().map(|step| past(-step)));
     padded.extend_from_slice(row);
@@ -83,10 +88,12 @@ fn sum_up<'a>(at: impl Fn(i64) -> &'a [f32], weights: &[f32], sums: &mut [f32]) 
     for (block, sums) in sums.chunks_mut(BLOCK).enumerate() {
         let range = block * BLOCK..block * BLOCK + sums.len();
         let at = |step: i64| &at(step)[range.clone()];
+        // Start with the center.
         for (sum, value) in sums.iter_mut().zip(at(0)) {
             *sum = value * weights[0];
         }
         let mut k = 1;
+        // Add the pixels on both sides, four distances at a time.
         let mut fours = weights[1..].chunks_exact(4);
         for four in &mut fours {
             let pairs = [0, 1, 2, 3].map(|j| [at(-k - j), at(k + j)]);

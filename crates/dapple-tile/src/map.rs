@@ -44,6 +44,7 @@ impl Map {
         match self {
             Self::Value(raster) => vec![raster.clone()],
             Self::Color(raster) => color_planes(raster).into(),
+            // Represent normals by their slopes along x and y.
             Self::Normal(raster) => vec![
                 raster.map(|normal| slope(normal.x, normal.z)),
                 raster.map(|normal| slope(normal.y, normal.z)),
@@ -80,6 +81,7 @@ impl Map {
     ) -> Result<Vec<Vec<Raster<f32>>>, TileError> {
         let mut all = Vec::new();
         for maps in materials {
+            // Every material must have the kinds of maps of the first one, in its size.
             let first = &materials[0];
             if maps.is_empty() || maps.len() != first.len() {
                 return Err(TileError::new(TileErrorKind::Count {

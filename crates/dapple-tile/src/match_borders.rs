@@ -145,10 +145,13 @@ impl MatchBorders {
         size: [u32; 2],
     ) -> Result<Vec<Map>, TileError> {
         let matched = self.matched(Map::planes_of_all(tiles)?, &|| false)?;
+        // Check the size before memory is allocated.
         Raster::<()>::filled(size, ())?;
         let seed = seed.child("match borders", 0);
+        // Divide the columns and rows at the borders of the tiles.
         let side = matched[0][0].size();
         let [columns, rows] = [0, 1].map(|axis| pieces(first[axis], size[axis], side[axis]));
+        // Choose a tile at random for each position.
         let tile = |[column, row]: [usize; 2]| {
             let bits = CellHash::new(seed, [rows[row].copy])
                 .axis(columns[column].copy)
@@ -172,10 +175,12 @@ impl MatchBorders {
             needed: "at least 1",
         }))?;
         self.check_width(first[0].size())?;
+        // Determine the tile whose borders all tiles get.
         let donor = match self.source {
             BorderSource::Border => first.clone(),
             BorderSource::Middle => self.with_middle_at_borders(first, is_cancelled)?,
         };
+        // Put the other tiles into the frame of that tile.
         let framed = |tile: &Vec<Raster<f32>>| {
             framed_along(tile, self.frame(), |_, axis| {
                 check(is_cancelled)?;
@@ -215,6 +220,7 @@ impl MatchBorders {
     ) -> Result<Vec<Raster<f32>>, TileError> {
         framed_along(tile, self.frame(), |planes, _: Axis| {
             check(is_cancelled)?;
+            // Roll the tile by half, which moves its middle to the borders.
             let half = planes[0].width() / 2;
             planes
                 .iter()

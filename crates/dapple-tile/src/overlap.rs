@@ -45,6 +45,7 @@ pub(crate) fn overlap(
         .iter()
         .map(|plane| {
             let margin = weights.width();
+            // A weight of 0 shows the last columns, a weight of 1 the first ones.
             let [first, last] = ends(plane, margin)?;
             let pair = Pair {
                 images: [&last, &first],
@@ -59,6 +60,7 @@ pub(crate) fn overlap(
 /// Joins the blended columns and the columns outside of the overlap.
 fn join(mixed: &Raster<f32>, plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     let margin = mixed.width();
+    // Leave out the last columns, which are blended into the first ones.
     let rest = margin as usize..(plane.width() - margin) as usize;
     Ok(Raster::from_rows(
         [plane.width() - margin, plane.height()],

@@ -23,8 +23,10 @@ pub(crate) fn pieces(first: i64, length: u32, side: u32) -> Vec<Piece> {
     while done < length {
         let at = first.wrapping_add(done.into());
         let from = at.rem_euclid(side.into()) as u32;
+        // Number of pixels up to the largest coordinate, where coordinates wrap around.
         let before_end =
             u32::try_from(i64::MAX.saturating_sub(at)).map_or(u32::MAX, |n| n.saturating_add(1));
+        // A piece ends with its copy, with the map, or with the coordinates.
         let count = (side - from).min(length - done).min(before_end);
         pieces.push(Piece {
             copy: at.div_euclid(side.into()),
@@ -41,6 +43,7 @@ pub(crate) fn lay<'a>(
     [columns, rows]: [&[Piece]; 2],
     copy: impl Fn([usize; 2]) -> &'a Raster<f32> + Sync,
 ) -> Result<Raster<f32>, TileError> {
+    // For each row of the map, find the index of its piece and the row within the copy.
     let rows = (0..).zip(rows).flat_map(|(index, piece)| {
         (piece.from..piece.from + piece.count).map(move |row| (index, row))
     });

@@ -71,11 +71,13 @@ impl Pyramid {
         let mut shares = finest;
         let mut bands = Vec::new();
         for level in 0..levels {
+            // Sharpen the shares by a power, the largest for the finest band.
             let part = f64::from(levels - level) / f64::from(levels);
             bands.push(sharpen(&shares, 1.0 + sharpness * part)?);
             let halved = shares.iter().map(|share| filter.down(share, self.borders));
             shares = halved.collect::<Result<_, _>>()?;
         }
+        // The shares of the coarse remainder are not sharpened.
         bands.push(sharpen(&shares, 1.0)?);
         Ok(bands)
     }
@@ -108,6 +110,7 @@ impl Pyramid {
 /// Raises shares to a power, and normalizes them to a sum of 1. Slightly negative shares, which filters may cause,
 /// count as 0.
 fn sharpen(shares: &[Raster<f32>], power: f64) -> Result<Vec<Raster<f32>>, TileError> {
+    // Find the largest share of each pixel.
     let mut most = shares[0].clone();
     for shares in &shares[1..] {
         most = zip(&most, shares, |most, share| share.max(*most))?;

@@ -40,11 +40,13 @@ use dapple_raster::{Raster, parallel};
 /// ```
 pub fn rank_equalize(raster: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     check_finite(raster)?;
+    // Sort the pixels by value, and equal values by the hash of their position.
     let mut order = keys(raster)?.into_pixels();
     parallel::sort(&mut order);
     let n = order.len() as f64;
     let mut ranks = raster.clone();
     let pixels = ranks.pixels_mut();
+    // Divide the range from 0 to 1 evenly among the ranks, and assign the middle of each part.
     for (rank, &key) in order.iter().enumerate() {
         pixels[key as u32 as usize] = ((rank as f64 + 0.5) / n) as f32;
     }

@@ -65,10 +65,12 @@ const BAND_ROWS: u32 = 64;
 
 /// Fills a row with periods of the tile's row, starting at pixel `first` of the tile.
 fn repeat_row<T: Copy>(from: &[T], first: usize, to: &mut [T]) {
+    // Copy one period, starting in column `first` of the tile.
     let end = (from.len() - first).min(to.len());
     to[..end].copy_from_slice(&from[first..first + end]);
     let begin = first.min(to.len() - end);
     to[end..end + begin].copy_from_slice(&from[..begin]);
+    // Repeat it, in pieces of doubling length.
     let mut filled = end + begin;
     while filled < to.len() {
         let more = filled.min(to.len() - filled);

@@ -182,13 +182,15 @@ impl SeamReport {
     ) -> Result<Self, TileError> {
         check_finite(source)?;
         check_finite(tile)?;
-        // Clamp the tile to the range of an image file if the source is in that range.
+        // Count samples beyond 0 and 1, before they are clamped.
         let [source_ends, tile_ends] =
             [source, tile].map(|image| Ends::of(image.pixels().iter().copied(), PLAIN_SLOPES));
+        // Clamp the tile to the range of an image file if the source is in that range.
         let range = source.statistics();
         let is_within = range.min >= 0.0 && range.max <= 1.0;
         let shown = is_within.then(|| tile.map(|value| value.clamp(0.0, 1.0)));
         let report = Self::of(shown.as_ref().unwrap_or(tile), options)?;
+        // Measure strangeness in squares of 8 × 8 and of 16 × 16 pixels.
         let strangeness = |scale| {
             strange::strangeness(source, shown.as_ref().unwrap_or(tile), options.axes, scale)
         };
@@ -203,6 +205,7 @@ impl SeamReport {
                 strangeness: fine,
                 coarse_strangeness: coarse,
                 clipped: Ends::clipped(&source_ends, &tile_ends),
+                // Symmetry that the source has itself is not a fault of the method.
                 is_mirrored: mirrored::is_mirrored(tile, options.axes)?
                     && !mirrored::is_mirrored(source, options.axes)?,
             }),

@@ -53,6 +53,7 @@ fn change<C: Fn(Vec<Element>) -> Vec<Element> + Sync>(
     along: impl Fn(usize) -> C,
 ) -> Result<Raster<f32>, TileError> {
     let values: Vec<_> = plane.pixels().iter().map(|&value| value.into()).collect();
+    // Process the columns. The result is transposed, so the rows are the next columns.
     let turned = map_columns(&values, plane.width() as usize, along(1));
     let values = map_columns(&turned, size[1] as usize, along(0));
     let pixels = values.into_iter().map(|value| value as f32).collect();
@@ -72,14 +73,17 @@ struct Sampling {
 
 impl Sampling {
     fn new(axis: &Axis) -> Self {
+        // A line that does not repeat is followed by its mirror image.
         let mirrored = !axis.repeats;
         let copies = if mirrored { 2 } else { 1 };
         let [fine, coarse] = [axis.fine, axis.coarse].map(|length| copies * length as usize);
+        // Offset of the first coarse sample from the first pixel, in pixels, for centered samples.
         let middle = 0.5 * (f64::from(axis.fine) / f64::from(axis.coarse) - 1.0);
         let first_sample = match axis.phase {
             Phase::CookDeRose if axis.repeats => -middle,
             _ => middle,
         };
+        // Phase of frequency k at the first coarse sample.
         let turn = |k: usize| {
             let (sin, cos) = libm::sincos(TAU * (k as f64 * first_sample / fine as f64));
             [cos, sin]
@@ -97,6 +101,7 @@ impl Sampling {
         let [n_fine, n_coarse] = [self.fine.length(), self.coarse.length()];
         self.mirror(&mut line);
         self.fine.forward(&mut line);
+        // Evaluate the low frequencies at the coarse samples, and drop the others.
         let mut spectrum = vec![[0.0; BAND]; n_coarse];
         let scale = 1.0 / n_fine as f64;
         for (k, &[cos, sin]) in self.turns.iter().enumerate() {
@@ -119,6 +124,7 @@ impl Sampling {
         let [n_fine, n_coarse] = [self.fine.length(), self.coarse.length()];
         self.mirror(&mut line);
         self.coarse.forward(&mut line);
+        // Evaluate the frequencies of the coarse line at the pixels.
         let mut spectrum = vec![[0.0; BAND]; n_fine];
         for (k, &[cos, sin]) in self.turns.iter().enumerate() {
             // The highest frequency of an even line is split between both signs.

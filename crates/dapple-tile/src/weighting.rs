@@ -134,6 +134,7 @@ fn by_height(
     heights: &[&Raster<f32>],
     depth: f64,
 ) -> Result<Vec<Raster<f32>>, TileError> {
+    // Compute the level of each layer, and the largest level of each pixel.
     let levels: Vec<Raster<f64>> = weights
         .iter()
         .zip(heights)
@@ -146,6 +147,7 @@ fn by_height(
     // Divide by the depth first. The highest layer then has a nearness of 1 even for the smallest depth.
     let nearness = |level: &f64, top: &f64| (1.0 - (top - level) / depth).max(0.0);
     let product = |&weight: &f32, nearness: &f64| (f64::from(weight) * nearness) as f32;
+    // Multiply weights by nearness, and normalize the products.
     let shares: Vec<Raster<f32>> = weights
         .iter()
         .zip(&levels)
@@ -158,6 +160,7 @@ fn by_height(
 /// below all others.
 fn level(&weight: &f32, &height: &f32) -> f64 {
     let weight = f64::from(weight);
+    // Below a weight of ¼, the level decreases without limit.
     f64::from(height) + weight - (0.25 / weight - 1.0).max(0.0)
 }
 
@@ -188,6 +191,7 @@ fn by_mask(
 ) -> Result<Vec<Raster<f32>>, TileError> {
     let half_width = if gain < MOST_GAIN { 0.5 / gain } else { 0.0 };
     let sums = sums(weights)?;
+    // Cumulative weights of the layers, and the ramp at the previous threshold.
     let mut part = mask.map(|_| 0.0);
     let mut below = mask.map(|_| 0.0);
     let mut shares = Vec::with_capacity(weights.len());
@@ -195,9 +199,11 @@ fn by_mask(
         part = zip(&part, weights, |part, &weight| part + f64::from(weight))?;
         // These sums are computed in the same way as the sums of all weights, so the last threshold is exactly 1.
         let thresholds = zip(&part, &sums, |part, sum| part / sum)?;
+        // Parts of the mask below the threshold belong to this layer and those before it.
         let up_to = zip(&thresholds, mask, |&threshold, &mask| {
             step(threshold, mask, half_width)
         })?;
+        // The layer's share is the difference from the previous threshold.
         shares.push(zip(&up_to, &below, |up_to, below| {
             (up_to - below).max(0.0) as f32
         })?);
@@ -208,6 +214,7 @@ fn by_mask(
 
 /// Returns a ramp from 1, where the mask is below the threshold, to 0, where it is above.
 fn step(threshold: f64, mask: f32, half_width: f64) -> f64 {
+    // Narrow the ramp near 0 and 1, where it would exceed the values of the mask.
     let half_width = half_width.min(threshold).min(1.0 - threshold);
     let above = f64::from(mask) - threshold;
     if half_width > 0.0 {

@@ -23,6 +23,7 @@ pub(super) struct Pass {
 pub(super) fn plan(length: usize) -> Option<Vec<Pass>> {
     let mut passes = Vec::new();
     let mut rest = length;
+    // Divide out the radices. The number of transforms before a pass is its stride.
     for radix in RADICES {
         while rest.is_multiple_of(radix) {
             passes.push(Pass::new(radix, rest, length / rest));
@@ -34,6 +35,7 @@ pub(super) fn plan(length: usize) -> Option<Vec<Pass>> {
 
 /// Transforms all lines, in place.
 pub(super) fn run(passes: &[Pass], lines: &mut Vec<Element>) {
+    // Passes alternate between two buffers.
     let mut other = vec![[0.0; BAND]; lines.len()];
     for pass in passes {
         match pass.radix {
@@ -53,6 +55,7 @@ type Parts<const R: usize> = ([f64; R], [f64; R]);
 impl Pass {
     fn new(radix: usize, length: usize, stride: usize) -> Self {
         let blocks = length / radix;
+        // The twiddle factor of output j in block b is exp(−2πi bj/length).
         let outputs = |block| (0..radix).map(move |output| (block * output) as u64);
         Self {
             radix,
@@ -77,13 +80,16 @@ impl Pass {
         butterfly: impl Fn(Parts<R>, &[[f64; 2]; R]) -> Parts<R>,
     ) {
         let roots: [[f64; 2]; R] = core::array::from_fn(|j| self.roots[j]);
+        // The inputs of a butterfly are this far apart.
         let step = self.blocks * self.stride;
         for (block, to) in to.chunks_exact_mut(R * self.stride).enumerate() {
             let twiddles: [[f64; 2]; R] = core::array::from_fn(|j| self.twiddles[block * R + j]);
+            // All transforms share the twiddle factors of the block.
             for at in 0..self.stride {
                 let first = block * self.stride + at;
                 let inputs: [&Element; R] = core::array::from_fn(|j| &from[first + j * step]);
                 let mut outputs = [[0.0; BAND]; R];
+                // Apply the butterfly to all lines, and multiply its outputs by the twiddle factors.
                 for lane in 0..LANES {
                     let re = core::array::from_fn(|j| inputs[j][lane]);
                     let im = core::array::from_fn(|j| inputs[j][LANES + lane]);
@@ -94,6 +100,7 @@ impl Pass {
                         outputs[j][LANES + lane] = re[j] * sin + im[j] * cos;
                     }
                 }
+                // Store the outputs one stride apart, which leaves the result in its natural order.
                 for j in 0..R {
                     to[at + j * self.stride] = outputs[j];
                 }
@@ -114,6 +121,7 @@ fn butterfly2((re, im): Parts<2>, _: &[[f64; 2]; 2]) -> Parts<2> {
 /// Transforms four elements.
 #[inline(always)]
 fn butterfly4((re, im): Parts<4>, _: &[[f64; 2]; 4]) -> Parts<4> {
+    // Transform the elements with even indices and those with odd indices, then combine both.
     let even_re = [re[0] + re[2], re[0] - re[2]];
     let even_im = [im[0] + im[2], im[0] - im[2]];
     // The difference of the odd elements is multiplied by −i, the first root.
@@ -134,6 +142,7 @@ fn butterfly4((re, im): Parts<4>, _: &[[f64; 2]; 4]) -> Parts<4> {
 #[inline(always)]
 fn butterfly_odd<const R: usize>((re, im): Parts<R>, roots: &[[f64; 2]; R]) -> Parts<R> {
     let mut out = ([0.0; R], [0.0; R]);
+    // Output 0 is the sum of all elements.
     out.0[0] = re[0];
     out.1[0] = im[0];
     for l in 1..=R / 2 {
@@ -141,6 +150,7 @@ fn butterfly_odd<const R: usize>((re, im): Parts<R>, roots: &[[f64; 2]; R]) -> P
         out.1[0] += im[l] + im[R - l];
     }
     for j in 1..=R / 2 {
+        // Multiply sums of the elements l and R − l by cosines, and their differences by sines.
         let mut cosines = [re[0], im[0]];
         let mut sines = [0.0, 0.0];
         for l in 1..=R / 2 {
@@ -150,6 +160,7 @@ fn butterfly_odd<const R: usize>((re, im): Parts<R>, roots: &[[f64; 2]; R]) -> P
             sines[0] += (re[l] - re[R - l]) * sin;
             sines[1] += (im[l] - im[R - l]) * sin;
         }
+        // Output j adds i times the sines, output R − j subtracts them.
         out.0[j] = cosines[0] - sines[1];
         out.1[j] = cosines[1] + sines[0];
         out.0[R - j] = cosines[0] + sines[1];

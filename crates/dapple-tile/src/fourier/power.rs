@@ -30,6 +30,7 @@ fn column_spectra(values: &[f64], width: usize, n_halves: usize) -> Vec<[f64; 2]
         let first = strip * BAND;
         let mut lines = columns(values, width, first);
         fourier.forward(&mut lines);
+        // Two real columns are the parts of one complex line; separate their spectra.
         let opposite = |row| (height - row) % height;
         let at = |row: usize, line| half_of_pair(&lines[row], &lines[opposite(row)], line);
         let spectrum = |line| (0..n_halves).map(move |row| at(row, line));
@@ -43,6 +44,7 @@ fn half_of_pair(element: &Element, opposite: &Element, line: usize) -> [f64; 2] 
     let lane = line % LANES;
     let [re, im] = [element[lane], element[LANES + lane]];
     let [opposite_re, opposite_im] = [opposite[lane], opposite[LANES + lane]];
+    // The real part has the spectrum (F(k) + conj F(−k)) / 2, the imaginary part (F(k) − conj F(−k)) / 2i.
     if line < LANES {
         [0.5 * (re + opposite_re), 0.5 * (im - opposite_im)]
     } else {
@@ -55,6 +57,7 @@ fn row_powers(spectra: &[[f64; 2]], width: usize, n_halves: usize) -> Vec<f64> {
     let fourier = Fourier::new(width);
     par_flat_map(n_halves.div_ceil(LANES), |strip| {
         let rows = strip * LANES..n_halves.min((strip + 1) * LANES);
+        // Collect the spectra of these rows, one complex line for each row.
         let mut lines = vec![[0.0; BAND]; width];
         for (element, spectrum) in lines.iter_mut().zip(spectra.chunks_exact(n_halves)) {
             for (lane, [re, im]) in spectrum[rows.clone()].iter().enumerate() {

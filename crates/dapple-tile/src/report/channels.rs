@@ -166,7 +166,9 @@ fn channels(map: &Map) -> Result<Vec<(&'static str, Raster<f32>)>, TileError> {
             ("y", normals.map(|normal| normal.y)),
         ],
         Map::Color(colors) => {
+            // Check the pixels first, since integers cannot represent NaN.
             crate::map::check_planes(&crate::map::color_planes(colors))?;
+            // Colors are measured as displayed, by their sRGB codes.
             let shown = colors.map(|color: &LinearRgb| color.to_srgb::<u16>());
             let channel =
                 |index: usize| shown.map(|codes| f32::from(codes[index]) / f32::from(u16::MAX));

@@ -27,8 +27,10 @@ impl Ends {
     /// Counts samples before they are clamped to 0 and 1. `slopes` are the slopes of the displayed value at 0 and at 1.
     pub(super) fn of(samples: impl ExactSizeIterator<Item = f32>, slopes: [f32; 2]) -> Self {
         let n = samples.len() as f64;
+        // A displayed value within half an 8-bit code of the range may be a rounding error.
         let [below, above] = slopes.map(|slope| ROUNDING / slope);
         let (mut reached, mut past) = ([0_u64; 2], [0_u64; 2]);
+        // Count the samples at the ends of the range, and those beyond.
         for value in samples {
             reached[0] += u64::from(value <= 0.0);
             reached[1] += u64::from(value >= 1.0);
@@ -46,6 +48,7 @@ impl Ends {
         if source.past != [0.0; 2] {
             return 0.0;
         }
+        // At each end, limit the share to the tile's surplus over the source.
         let at = |end: usize| {
             let more = tile.reached[end] - source.reached[end];
             tile.past[end].min(more.max(0.0))

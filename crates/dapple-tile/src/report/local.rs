@@ -33,6 +33,7 @@ fn detail_powers(image: &Raster<f32>, wrap: [Wrap; 2]) -> [Vec<f64>; 2] {
             .map(|x| mean_121([above[x], here[x], below[x]].map(f64::from)))
             .collect();
         let mut row = 0.0;
+        // Subtract the mean of 3 × 3 pixels, with weights 1 2 1 along both axes.
         for (x, of) in neighbors.iter().enumerate() {
             let detail = f64::from(here[x]) - mean_121(of.map(|x| down[x as usize]));
             columns[x] += detail * detail;

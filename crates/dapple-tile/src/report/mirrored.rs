@@ -20,10 +20,12 @@ fn along_rows(tile: &Raster<f32>) -> bool {
     let reach = REACH.min(tile.width() as usize / 2);
     let [mut apart, mut varies] = [0.0; 2];
     for line in tile.view().rows() {
+        // Take the first pixels of the line, and the last ones in reverse order.
         let after = line.iter().take(reach).map(|&value| f64::from(value));
         let before = line.iter().rev().map(|&value| f64::from(value));
         let mean =
             after.clone().chain(before.clone().take(reach)).sum::<f64>() / (2 * reach) as f64;
+        // Sum the squared differences of both, and their variation around the mean.
         for (a, b) in after.zip(before) {
             apart += (a - b) * (a - b);
             varies += (a - mean) * (a - mean) + (b - mean) * (b - mean);

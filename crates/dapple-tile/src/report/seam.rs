@@ -62,6 +62,7 @@ pub(super) fn seams(tile: &Raster<f32>, options: &SeamOptions) -> Result<[Seam; 
     Ok(core::array::from_fn(|index| {
         let at = |steps: &Option<[Option<Steps>; 4]>| steps.as_ref().and_then(|all| all[index]);
         let (x_steps, y_steps) = (at(&x), at(&y));
+        // Combine both axes, or take the one that repeats.
         let both = match options.axes {
             [true, true] => x_steps.zip(y_steps).map(|(x, y)| x.plus(y)),
             [true, false] => x_steps,

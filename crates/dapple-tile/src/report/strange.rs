@@ -77,6 +77,7 @@ pub(super) fn strangeness(
     // Measure the distance of matches within the source.
     let places = Places::new(&reduced);
     let usual = places.usual();
+    // Limit that distance from below, since squares of a regular source have exact matches.
     let usual = usual.max(LEAST_DISTANCE * deviation * f64::from(SIDE));
     // Measure the distances of the tile's squares, along each axis that repeats.
     let mut most: f64 = 0.0;
@@ -116,12 +117,15 @@ fn mean_at(image: &Raster<f32>, [x, y]: [i64; 2], scale: u32, wrap: [Wrap; 2]) -
 /// are transposed back.
 fn zones(tile: &Raster<f32>, is_turned: bool, scale: u32) -> [Vec<Square>; 2] {
     let [width, height] = tile.size();
+    // Number of positions for squares next to the wrap.
     let beside = (width / scale / BESIDE).saturating_sub(SIDE).max(1);
     let from = |column: i64, index: u32| {
         let row = spread(index, height / scale) * i64::from(scale);
         square(tile, [column, row], is_turned, scale)
     };
+    // Squares across the wrap begin at most seven values before it.
     let across = |index: u32| i64::from(width) - i64::from(scale * (1 + index % (SIDE - 1)));
+    // Squares next to the wrap begin in the zone after it.
     let after = |index: u32| i64::from(scale * (index % beside));
     [
         (0..SQUARES)
@@ -184,6 +188,7 @@ fn quarter_means(
 ) -> Vec<f32> {
     let mut sums = vec![0.0; padded(size[0]) * size[1]];
     for (y, sums) in sums.chunks_exact_mut(padded(size[0])).enumerate() {
+        // Add the rows of the quarter, in all squares of this row of the lattice.
         for line in 0..HALF {
             let line = &source.row((y * step + row + line) as u32)[column..];
             for (x, sum) in sums[..size[0]].iter_mut().enumerate() {
@@ -228,9 +233,11 @@ struct Places<'a> {
 impl<'a> Places<'a> {
     fn new(source: &'a Raster<f32>) -> Self {
         let ends = source.size().map(|side| (side - SIDE + 1) as usize);
+        // Choose the finest lattice with at most `PLACES` positions.
         let step = (1..)
             .find(|step| ends[0] * ends[1] / (step * step) <= PLACES)
             .unwrap_or(1);
+        // Divide each row of pixels into `step` runs, in which the pixels of adjacent candidates are adjacent.
         let run_length = (source.width() as usize).div_ceil(step) + LANES;
         let mut runs = vec![0.0; run_length * step * source.height() as usize];
         for (line, runs) in source
@@ -258,6 +265,7 @@ impl<'a> Places<'a> {
     fn usual(&self) -> f64 {
         let [columns, rows] = self.source.size().map(|side| side - SIDE + 1);
         self.mean(SQUARES as usize, |index| {
+            // Spread the sample squares over the source. Each is compared with all squares that it does not overlap.
             let index = index as u32;
             let corner = [
                 spread(index.wrapping_mul(7) + 3, columns),
@@ -285,6 +293,7 @@ impl<'a> Places<'a> {
     /// Returns the squared distance of a square to the nearest candidate.
     #[inline(always)]
     fn search<S: Simd>(&self, simd: S, square: &Square, left_out: Option<[usize; 2]>) -> f64 {
+        // Compute the quarters' means, and the rounding error of their differences.
         let own = QUARTERS.map(|quarter| mean(square, quarter));
         let error = self.mean_error + MEAN_ERROR * largest(square);
         let rows = 0..self.size[1];
@@ -321,6 +330,7 @@ impl<'a> Places<'a> {
     /// Returns whether `place` is a candidate, and its square does not overlap the one at `left_out`.
     #[inline(always)]
     fn is_compared(&self, place: [usize; 2], left_out: Option<[usize; 2]>) -> bool {
+        // Squares that overlap the sample square are left out.
         let meets = |axis: usize| {
             left_out.is_some_and(|corner| {
                 (place[axis] * self.step).abs_diff(corner[axis]) < SIDE as usize
@@ -343,9 +353,11 @@ impl<'a> Places<'a> {
         let mut bounds = zero;
         for (own, others) in own.iter().zip(&self.quarters) {
             let others = f32x16::from_slice(simd, &others[at..at + LANES]);
+            // Reduce the difference of the means by its rounding error.
             let apart = ((f32x16::splat(simd, *own) - others).abs() - error).max(zero);
             bounds += apart * apart;
         }
+        // The squared distance of two quarters of 16 values is at least 16 times the squared difference of their means.
         let factor = SAFE * (HALF * HALF) as f32;
         at_most_largest(simd, bounds * f32x16::splat(simd, factor))
     }
@@ -360,6 +372,7 @@ impl<'a> Places<'a> {
         limit: f32x16<S>,
     ) -> bool {
         let safe = f32x16::splat(simd, SAFE);
+        // Sum the squared differences of sixteen candidates, pixel by pixel.
         let mut sums = f32x16::splat(simd, 0.0);
         for (row, part) in square.chunks_exact(SIDE as usize).enumerate() {
             for (column, &value) in part.iter().enumerate() {
@@ -401,6 +414,7 @@ impl<'a> Places<'a> {
     /// Returns the pixels at one position within the squares of adjacent candidates.
     #[inline(always)]
     fn others(&self, [first, row]: [usize; 2], [x, y]: [usize; 2]) -> &[f32] {
+        // The run holds every `step`-th pixel of the row, starting at the remainder of the column.
         let run = (row * self.step + y) * self.step + x % self.step;
         let at = run * self.run_length + first + x / self.step;
         &self.runs[at..at + LANES]

@@ -93,6 +93,7 @@ impl SeamReport {
         if stands_out > STANDS_OUT {
             faults.push(Fault::Step { width });
         }
+        // With a source, compare the other measures with their limits.
         if let Some(kept) = &self.kept {
             let of_kept = kept.measures(self.lowest_local_detail);
             faults.extend(
@@ -145,13 +146,16 @@ impl SeamReport {
 impl DetailKept {
     /// Returns each measure as a multiple of its limit, with the fault that it indicates if it is above 1.
     fn measures(&self, lowest_local_detail: f64) -> [(f64, Fault); 5] {
+        // Measure of a quantity with a lower limit.
         let over = |limit: f64, kept: f64| super::quotient(limit, kept);
+        // Power of the third octave as a multiple of the source's; without a third octave, the variance.
         let power = self
             .octaves
             .get(2)
             .copied()
             .unwrap_or(self.contrast * self.contrast);
         let share = self.clipped;
+        // Measure of a quantity with an upper limit.
         let strange = |of: Option<f64>, limit: f64| of.unwrap_or(0.0) / limit;
         let strangeness = strange(self.strangeness, STRANGEST)
             .max(strange(self.coarse_strangeness, COARSE_STRANGEST));

@@ -38,6 +38,7 @@ pub(super) fn stands_out(tile: &Raster<f32>, width: usize, lattice: usize) -> Op
         let steps = steps(line, width);
         let floor = FLOOR * steps.iter().sum::<f64>() / n as f64;
         let beside = sums_beside(&steps, width..width + around);
+        // Divide the step at each boundary by the mean of the steps around it.
         for (shown, &at) in shown.iter_mut().zip(&at) {
             let beside = beside[at] / (2 * around) as f64 + floor;
             if beside > 0.0 {
@@ -67,12 +68,14 @@ fn above(wrap: f64, inside: &[f64]) -> f64 {
 fn steps(line: &[f32], width: usize) -> Vec<f64> {
     let n = line.len();
     let values: Vec<f64> = once_more(line, width).map(f64::from).collect();
+    // Sum `width` values, starting at each pixel.
     let mut sums = vec![0.0; n];
     for off in 0..width {
         for (sum, value) in sums.iter_mut().zip(&values[off..]) {
             *sum += value;
         }
     }
+    // Compare each sum with the sum that ends where it begins.
     let before = sums[n - width..].iter().chain(&sums);
     let pairs = sums.iter().zip(before);
     pairs
@@ -83,6 +86,7 @@ fn steps(line: &[f32], width: usize) -> Vec<f64> {
 /// Computes, for each step, the sum of the steps at the given distances before and after it, on a circular line.
 fn sums_beside(steps: &[f64], distances: Range<usize>) -> Vec<f64> {
     let (n, reach) = (steps.len(), distances.end);
+    // Extend the circular line by the reach on both sides.
     let before = &steps[n - reach..];
     let around: Vec<f64> = before
         .iter()

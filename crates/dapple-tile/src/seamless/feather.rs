@@ -58,6 +58,7 @@ pub(crate) fn tile(
             check_margin(planes, margin, axes)?;
             each_axis(planes, axes, |planes, _| {
                 let height = planes.first().map_or(1, Raster::height);
+                // Weights rise linearly over the margin. They are sampled at the pixels' centers.
                 let share = |column: u32| (f64::from(column) + 0.5) / f64::from(margin);
                 let weights = Raster::from_fn([margin, height], |column, _| share(column))?;
                 overlap(planes, &weights, crossfade)
@@ -78,6 +79,7 @@ fn half_shift(plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     let weights = &weights;
     Ok(Raster::from_rows(plane.size(), |row| {
         let row = plane.row(row);
+        // Blend the row with itself, rolled by half. Weights of 0 and 1 give exact copies.
         let rolled = row[half..].iter().chain(&row[..half]);
         let pixels = row.iter().zip(rolled).zip(weights);
         pixels.map(|((own, rolled), weight)| match *weight {
@@ -91,6 +93,7 @@ fn half_shift(plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
 /// Returns the weight of the original image: 0 at the first and last pixel, 1 at both pixels where the rolled image has
 /// its ends.
 fn tent(column: u32, length: u32) -> f32 {
+    // The ends of the rolled image are at the pixels `left - 1` and `left`.
     let left = length - length / 2;
     if column < left {
         column as f32 / (left - 1) as f32

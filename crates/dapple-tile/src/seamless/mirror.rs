@@ -30,6 +30,7 @@ fn mirrored(
         false => plane.size()[axis],
     };
     Ok(Raster::from_rows([side(0), side(1)], |row| {
+        // Rows and columns beyond the last are reflected, and multiplied by the factors of the reflection.
         let down = if row < plane.height() { 1.0 } else { down };
         let row = plane.row(Wrap::Mirror.index(row.into(), plane.height()));
         let left = row.iter().map(move |value| value * down);

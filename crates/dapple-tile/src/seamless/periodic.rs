@@ -48,6 +48,7 @@ pub(crate) fn border(
     index: u32,
 ) -> impl Iterator<Item = f64> + '_ {
     let [width, index] = [plane.width() as usize, index as usize];
+    // Pixels of a column are one row apart in memory, pixels of a row are adjacent.
     let (first, step) = [(index, width), (index * width, 1)][axis];
     let pixels = plane.pixels().iter().skip(first).step_by(step);
     let count = plane.size()[1 - axis] as usize;
@@ -63,6 +64,7 @@ pub(crate) fn without_jumps(
 ) -> Result<Raster<f32>, TileError> {
     let [width, height] = plane.size().map(|length| length as usize);
     let smooth = Smooth::new([width, height], jumps);
+    // Subtract the smooth part, in bands of rows.
     let pixels = par_flat_map(height.div_ceil(BAND), |band| {
         let values = plane.pixels()[band * BAND * width..].iter();
         let less = |(&value, smooth)| (f64::from(value) - smooth) as f32;
@@ -88,6 +90,7 @@ impl Smooth {
             let jumps = jumps[axis].as_ref()?;
             Some(Layer::new(jumps, repeats, size[axis]))
         };
+        // Jumps across x are solved column by column. Every row needs all columns, so they are computed now.
         let bands = |layer: Layer| parallel::map(size[0].div_ceil(BAND), |band| layer.band(band));
         Self {
             size,
@@ -101,6 +104,7 @@ impl Smooth {
         let [width, height] = self.size;
         let rows = band * BAND..height.min((band + 1) * BAND);
         let mut smooth = vec![0.0; rows.len() * width];
+        // Jumps across y are solved row by row, so only this band is computed.
         if let Some(layer) = &self.across_y {
             add_rows(&mut smooth, &layer.band(band));
         }
@@ -153,12 +157,14 @@ struct Mode {
 impl Layer {
     /// Builds the layer for the jumps along a border that repeats, or that is mirrored at its ends.
     fn new(jumps: &[f64], repeats: bool, across: usize) -> Self {
+        // Extend a border that does not repeat by its mirror image.
         let mirrored = jumps.iter().rev().filter(|_| !repeats);
         let line = jumps.iter().chain(mirrored);
         let mut spectrum: Vec<_> = line.map(|&jump| only_first(jump)).collect();
         let n = spectrum.len();
         let fourier = Fourier::new(n);
         fourier.forward(&mut spectrum);
+        // Every frequency except 0 decays exponentially away from the borders.
         let mode = |k: usize| {
             let jump = [spectrum[k][0], spectrum[k][LANES]];
             Mode::new(k, n, jump, across)
@@ -177,6 +183,7 @@ impl Layer {
         let n = self.fourier.length();
         let first = band * BAND;
         let mut elements = vec![[0.0; BAND]; n];
+        // The mean jump is distributed linearly from border to border.
         elements[0] = ramp(first, self.across).map(|height| height * self.mean);
         for (k, mode) in (1..).zip(&self.modes) {
             let profile = mode.profile(first, self.across);
@@ -185,9 +192,11 @@ impl Layer {
                 break;
             }
             let [re, im] = mode.amplitude;
+            // The line is real, so negative frequencies are the conjugates of positive ones.
             elements[k] = times(&profile, [re, im]);
             elements[n - k] = times(&profile, [re, -im]);
         }
+        // Transform the frequencies along the border to pixels.
         self.fourier.backward(&mut elements);
         elements.truncate(self.along);
         elements
@@ -204,6 +213,7 @@ impl Mode {
         let sine = libm::sin(PI * (k as f64 / n as f64));
         // Compute 1 − cos φ without cancellation.
         let rise = 2.0 * sine * sine;
+        // ρ is the root below 1 of ρ + 1/ρ = 2 + 2 (1 − cos φ).
         let decay = 1.0 / (1.0 + rise + (rise * (2.0 + rise)).sqrt());
         let scale = decay / ((1.0 + decay) * (1.0 - power(decay, across)));
         Self {
@@ -214,12 +224,14 @@ impl Mode {
 
     /// Returns the profile `ρ^(across − 1 − x) − ρ^x` for [`BAND`] positions, starting at `first`.
     fn profile(&self, first: usize, across: usize) -> Element {
+        // Subtract ρ^x, which decays from the first border.
         let mut profile = [0.0; BAND];
         let mut near = power(self.decay, first);
         for value in &mut profile {
             *value -= near;
             near *= self.decay;
         }
+        // Add ρ^(across − 1 − x), which decays from the last border.
         let last = (across - 1).min(first + BAND - 1);
         let mut far = power(self.decay, across - 1 - last);
         for value in profile[..=last - first].iter_mut().rev() {
@@ -245,6 +257,7 @@ fn only_first(value: f64) -> Element {
 
 /// Returns the power `base^exponent` for a base from 0 to 1, or 0 if it is below [`NEGLIGIBLE`].
 fn power(base: f64, exponent: usize) -> f64 {
+    // Compute the power by repeated squaring, until it is negligible.
     let (mut square, mut product, mut rest) = (base, 1.0, exponent);
     while rest > 0 && product > NEGLIGIBLE {
         if rest % 2 == 1 {

@@ -46,6 +46,7 @@ pub(crate) fn tile(
 fn wrap_errors(plane: &Raster<f32>, wrap: WrapGradient, axis: usize) -> Vec<f64> {
     let mut errors = jumps(plane, axis);
     if wrap == WrapGradient::Extrapolate {
+        // The target is the mean of the gradients at both borders.
         let last = plane.size()[axis] - 1;
         // An axis of one pixel has no second pixel. Its gradient is then zero.
         let second = last.min(1);

@@ -69,7 +69,9 @@ pub(crate) fn tile(
         "from 0 to half of the margin",
     )?;
     each_axis(planes, axes, |planes, axis| {
+        // Find the path on which the two ends of the rows are most similar.
         let differences = differences(planes, cut)?;
+        // If columns repeat, so must the cut across them.
         let path = match axis {
             Axis::Y if axes[0] => closed_path(&differences),
             Axis::X | Axis::Y => open_path(&differences),
@@ -105,6 +107,7 @@ fn weights(path: &[u32], cut: &SoftCut) -> Result<Raster<f64>, TileError> {
     Ok(Raster::from_fn(
         [cut.margin, path.len() as u32],
         |column, row| {
+            // The path is counted from the first column that the cut may pass through.
             let cut = path[row as usize] + inset;
             weight(f64::from(column) - f64::from(cut), half_width)
         },

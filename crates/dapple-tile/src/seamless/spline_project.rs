@@ -121,6 +121,7 @@ impl SplineProject {
         match self.basis {
             _ if self.levels == 0 => Ok(image.clone()),
             Basis::Spline(degree) => {
+                // Halve the coefficients level by level (equation 12).
                 let (filter, borders) = (self.filter(degree), borders(axes));
                 let mut coarse = self.coefficients(&filter, image, borders)?;
                 for _ in 0..self.levels {
@@ -154,6 +155,7 @@ impl SplineProject {
         match self.basis {
             _ if self.levels == 0 => Ok(coarse.clone()),
             Basis::Spline(degree) => {
+                // Double the coefficients level by level (equation 13).
                 let (filter, borders) = (self.filter(degree), borders(axes));
                 let mut fine = self.coefficients(&filter, coarse, borders)?;
                 for &size in sizes[..self.levels as usize].iter().rev() {
