@@ -124,12 +124,12 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         let x = S::f32s::from_slice(simd, &tiles.x(tile)[..S::f32s::LEN]);
         let strips = tiles.strips(tile);
         let mut weights = [S::f32s::splat(simd, 1.0); N];
-        // Multiply the active axes of the first block.
+        // Multiply the axial weights of the active axes in the first block.
         if tile.active != 0 {
             let ax = &member.blocks[0].x;
             weights = self.products(simd, &strips[0], ax, tile.active, x);
         }
-        // Multiply all axes of the other blocks.
+        // Multiply by the axial weights of all other blocks.
         let blocks = strips.iter().zip(member.blocks).enumerate().skip(1);
         for (index, (strip, block)) in blocks {
             // Fading axes come first in their block, so the first exponent tells whether any axis fades.

@@ -163,6 +163,7 @@ impl Picture<'_> {
     /// [`place`](Self::place), since the other component of the position then adds zero.
     fn line(&self, axis: usize, len: u32, position: impl Fn(u32) -> [f64; 2]) -> Line {
         let coordinate = |index| self.section.coordinate(axis, position(index)) * self.frequency;
+        // Stop at the first coordinate that is not finite or out of range.
         let mut places: Vec<_> = (0..len)
             .map_while(|index| split(coordinate(index)))
             .collect();
@@ -215,6 +216,7 @@ pub(crate) fn render_stack<'a>(stack: Vec<(Picture<'a>, Vec<Output<'a>>)>) {
         }
     }
     let level = simd::level();
+    // Render the jobs. Each thread reuses its scratch memory.
     parallel::consume_with(jobs, Memory::new, |memory, _, (bands, outs)| {
         render_bands(level, &bands, outs, memory);
     });
@@ -284,6 +286,7 @@ impl<'a> Band<'a> {
 
     /// Returns whether this band and another one are slices along the first two axes with equal columns and rows.
     fn is_slice(&self, other: &Self) -> bool {
+        // Rows of a slice differ along the second axis only.
         let is_flat = |band: &Self| band.picture.section.row_axis() == Some(1);
         is_flat(self)
             && is_flat(other)

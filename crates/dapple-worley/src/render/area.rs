@@ -55,6 +55,7 @@ impl Iterator for Parts<'_> {
             rows: self.row..rows.end.min(self.row + height),
             slices: slices.clone(),
         };
+        // Go on to the next columns, or to the first columns of the next rows.
         self.column += width;
         if self.column >= columns.end {
             self.column = columns.start;

@@ -36,6 +36,7 @@ where
     }
 
     fn nearest(&self, place: &FlatPlace, hits: &mut [Hit<MOST_AXES>]) {
+        // Search in the space of the basis, and pad the vectors with zeros.
         let place = own_axes(place);
         let mut found = [Hit::NONE; MAX_NEAREST];
         let found = &mut found[..hits.len()];

@@ -133,6 +133,7 @@ impl Bins {
     /// Clears the bins for a block with the given column coordinates and number of rows.
     pub(super) fn clear(&mut self, columns: &[i32], height: usize, reach: Reach) {
         let width = columns.len();
+        // Count the bins that the block's tiles are compared with.
         let n_columns = width.div_ceil(TILE) + reach.columns - 1;
         self.n_halves = 2 * height.div_ceil(TILE) + 2 * reach.halves;
         self.starts.clear();
@@ -162,6 +163,7 @@ impl Bins {
     fn collect_by<S: Simd>(&mut self, simd: S, lattice: &Lattice, cells: &CellBox, grid: &Grid) {
         self.len = 0;
         let side = cells.side(0);
+        // All rows of cells share the parts of the cell words along the first axis.
         let padded = side.next_multiple_of(LANES) as i64;
         let columns = (0..padded).map(|column| lattice.parts(0, cells.first[0] + column).into());
         let columns: (Vec<u32>, Vec<u32>) = columns.unzip();
@@ -267,6 +269,7 @@ impl Bins {
     /// Counts the points of each bin, and accumulates the counts to the index of each bin's first point.
     pub(super) fn count(&mut self) {
         for &place in &self.places[..self.len] {
+            // Count two elements ahead, so that element i + 1 becomes the index of the first point of bin i.
             self.starts[index(place) + 2] += 1;
         }
         let mut end = 0;
@@ -337,6 +340,7 @@ impl Bins {
             .zip(&self.across[..self.len]);
         // Counting sort: the next free slot of the bin.
         for (((&column, &row), &across), &place) in from.zip(&self.places[..self.len]) {
+            // Advancing the slot turns element i + 1 into the end of bin i, which is the start of bin i + 1.
             let start = &mut self.starts[index(place) + 1];
             let point = &mut points[*start as usize];
             *start += 1;

@@ -110,12 +110,14 @@ impl Memory {
             low: [0; MOST_AXES],
             high: [0; MOST_AXES],
         };
+        // Coordinates are monotonic along a line, so the bounds are at the ends of each range.
         for axis in 0..self.n_axes {
             let line = &self.lines[axis];
             let range = if axis == 0 { &area.columns } else { &area.rows };
             let [a, b] = [line[range.start], line[range.end - 1]];
             (pixels.low[axis], pixels.high[axis]) = (a.min(b), a.max(b));
         }
+        // Each slice is constant along the other axes.
         if let Some([first, others @ ..]) = self.slices.get(area.slices.clone()) {
             for axis in 2..self.n_axes {
                 (pixels.low[axis], pixels.high[axis]) = (first[axis], first[axis]);
@@ -148,6 +150,7 @@ impl Memory {
             ((cell - cells.first[axis]) as i32) * STEPS + steps
         };
         self.slices.clear();
+        // Record the coordinates of several slices along the axes that are orthogonal to them.
         if block.bands.len() > 1 {
             let slices = block.bands.iter().map(|band| {
                 let mut slice = [0; MOST_AXES];
@@ -158,6 +161,7 @@ impl Memory {
             });
             self.slices.extend(slices);
         }
+        // Convert the columns and rows to steps, and pad them by a register.
         for axis in 0..cells.n_axes {
             let places = match axis {
                 0 => &band.columns.places[block.range.clone()],
@@ -195,6 +199,7 @@ impl Block<'_> {
             return 1;
         }
         let bands = &self.bands[first..];
+        // Slices share candidates only for values, and only where dominated points are culled.
         let is_single = !matches!(out, Output::Values(..))
             || !culls_dominated(self.level, bands[0].picture.basis.metric())
             || self.splat(out, self.guess(out)).is_some();
@@ -252,6 +257,7 @@ impl Block<'_> {
         let is_values = matches!(outs[0], Output::Values(..));
         let wants_ids = outs[0].wants_ids();
         let depth = Self::depth(&outs[0]);
+        // Estimate the neighborhood that contains the nearest points.
         let guess = self.guess(&outs[0]);
         let splat = self.splat(&outs[0], guess);
         let reach = splat.map_or(0, |splat| splat.reach.ceil() as i32);
@@ -276,7 +282,7 @@ impl Block<'_> {
         }
         memory.square.wants_numbers = !is_values;
         memory.tile.wants_numbers = !is_values;
-        // Otherwise, select candidates for squares and tiles.
+        // Without the method for small cells, select candidates for squares and tiles.
         let plan = Plan {
             depth,
             guess,
@@ -324,12 +330,14 @@ impl Block<'_> {
             first: [0; MOST_AXES],
             last: [0; MOST_AXES],
         };
+        // Find the cells of the first slice.
         for axis in 0..n_axes {
             [cells.first[axis], cells.last[axis]] = match axis {
                 0 => band.columns.cells(self.range.clone()),
                 _ => band.rows[axis].cells(0..band.n_rows),
             };
         }
+        // Extend the box to the cells of the other slices.
         for slice in &self.bands[1..] {
             for axis in 2..n_axes {
                 let (cell, _) = slice.rows[axis].places[0];
@@ -337,6 +345,7 @@ impl Block<'_> {
                 cells.last[axis] = cells.last[axis].max(cell);
             }
         }
+        // Add the rings of cells around the pixels.
         let cells = cells.widened(i64::from(ring));
         let is_small = cells.n_cells() <= MOST_CELLS
             && (0..n_axes).all(|axis| cells.side(axis) <= LONGEST_SIDE);
@@ -365,6 +374,7 @@ impl Block<'_> {
         let band = &self.bands[slice];
         let Picture { basis, section, .. } = band.picture;
         let place = band.picture.place(column, band.first + row);
+        // Positions out of range have no nearest points.
         let nearest = |n: usize| {
             let mut hits = [Hit::NONE; MAX_NEAREST];
             if let Some(place) = &place {

@@ -23,14 +23,16 @@ impl Memory {
             self.tile
                 .take_undominated(level, plan.metric, &self.square, &cuboid, dominance);
         } else {
-            // Otherwise, cull by bounds, and project the remaining points to the image.
+            // Without dominance culling, cull by bounds, and project the remaining points to the image.
             let pixels = self.pixel_box(area);
+            // Shift the tile's bounds to the coordinates of the table that the candidates come from.
             let mut moved = pixels;
             for axis in 0..pixels.n_axes {
                 let by = self.low[axis] - low[axis];
                 moved.low[axis] += by;
                 moved.high[axis] += by;
             }
+            // If the square is a single tile, its candidates are culled already.
             if square.is_tile {
                 core::mem::swap(&mut self.list, &mut self.tile_list);
             } else {
@@ -74,6 +76,7 @@ impl Memory {
                 return;
             }
             self.column_terms(simd, measure, area, square);
+            // With several slices, the terms at the rows are computed for one slice at a time.
             match plan.row_axis {
                 Some(_) if plan.deep_axis.is_some() => {}
                 Some(row_axis) => self.row_terms(simd, measure, area, square, row_axis),
@@ -89,6 +92,7 @@ impl Memory {
             return cuboid;
         }
         let row_axis = square.plan.row_axis.unwrap_or(1);
+        // Tighten the bounds along the axes of the columns and of the rows.
         for (index, axis, range) in [(0, 0, &area.columns), (1, row_axis, &area.rows)] {
             let line = &self.lines[axis];
             let [a, b] = [line[range.start], line[range.end - 1]];
@@ -170,6 +174,7 @@ impl Memory {
             let FlatPoints { y, rest, len, .. } = &self.tile;
             let points = y[..*len].iter().zip(&rest[..*len]);
             for ((&y, &rest), candidate) in points.zip(&mut self.candidates) {
+                // Accumulate the terms of the row onto those of the axes that are orthogonal to the image.
                 let [terms] = measure.terms([places - y]);
                 let terms = measure.accumulate(terms, f32x16::splat(simd, rest));
                 terms.store_slice(&mut candidate.rows[first..first + LANES]);
@@ -188,6 +193,7 @@ impl Memory {
     ) {
         for first in (0..area.rows.len()).step_by(LANES) {
             for (index, candidate) in self.candidates[..self.tile.len].iter_mut().enumerate() {
+                // Accumulate the terms of all axes except the first, from the last axis on.
                 let mut keys = f32x16::splat(simd, 0.0);
                 for axis in (1..square.pixels.n_axes).rev() {
                     let line = &self.lines[axis][area.rows.start + first..];

@@ -255,8 +255,10 @@ impl PixelBox {
             }
             let [low, high] = [self.low[axis], self.high[axis]];
             let steps = i32x16::from_slice(simd, &steps[axis][start..start + LANES]);
+            // Offsets from the low and from the high end of the box, in cells.
             let ahead = (steps - low).to_float::<f32x16<S>>() * STEP;
             let past = ahead - (high - low) as f32 * STEP;
+            // The smallest difference is zero inside of the box; the largest is to the farther end.
             // Terms are at least zero, so accumulating onto zero gives the terms themselves.
             let [near, far] = measure.terms([past.max(-ahead).max(zero), ahead.max(-past)]);
             near_key = measure.accumulate(near, near_key);

@@ -57,6 +57,7 @@ impl Dominance {
     /// Returns the largest key, at the far corner of the rectangle, for which a point is tested as a dominator.
     #[inline(always)]
     fn nearby(&self, metric: Metric, cuboid: &Cuboid) -> f32 {
+        // The far corner is up to half of the diagonal farther away than the center.
         let sides = [0, 1, 2].map(|axis| cuboid.high[axis] - cuboid.low[axis]);
         let diagonal = metric.distance(metric.key(sides));
         metric.term(self.distance + diagonal / 2.0)
@@ -84,11 +85,13 @@ impl<S: Simd> Seen<S> {
     fn new<const DEEP: bool>(exact: Exact, cuboid: &Cuboid, lanes: [f32x16<S>; 4]) -> Self {
         let Cuboid { low, high, .. } = cuboid;
         let [x, y, z, rest] = lanes;
+        // Compute the terms at both ends of the axes of the image.
         let [left, right, top, bottom] =
             exact.terms([x - low[0], x - high[0], y - low[1], y - high[1]]);
         let mut seen = Self {
             ends: [[left, right], [top, bottom], [rest; 2]],
             rest,
+            // The largest key is at the corner where both terms are largest.
             far: rest + left.max(right) + top.max(bottom),
         };
         if DEEP {
@@ -167,6 +170,7 @@ impl Dominators {
             if DEEP {
                 nearer += (deep[0] - front[index]).min(deep[1] - back[index]);
             }
+            // A dominator is nearer even where the difference of the keys is smallest.
             number = nearer.simd_gt(0.0).select(number + 1, number);
         }
         number

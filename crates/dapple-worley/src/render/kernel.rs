@@ -47,6 +47,7 @@ impl Rows<'_> {
         depth: usize,
         out: &mut [&mut [f32]],
     ) -> usize {
+        // Groups have fewer rows if sixteen lanes take several registers.
         let is_split = const { <S::f32s as SimdBase<S>>::LEN < LANES };
         match self.columns.len() {
             TILE if is_split => self.fill_groups::<S, M, K, 1, 2>(simd, measure, depth, out),
@@ -162,6 +163,7 @@ pub(super) fn empty<S: Simd, const K: usize>(
 /// Inserts a key into `K` sorted keys, and drops the largest.
 #[inline(always)]
 fn insert<S: Simd, const K: usize>(best: &mut [f32x16<S>; K], key: f32x16<S>) {
+    // Each rank gets the median of its key, the key before it, and the new key.
     for rank in (1..K).rev() {
         best[rank] = lesser(best[rank], greater(best[rank - 1], key));
     }

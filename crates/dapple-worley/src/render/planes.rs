@@ -78,6 +78,7 @@ impl Neighbors {
         let mut n_there = 0;
         for run in runs {
             for start in run.clone().step_by(LANES) {
+                // Compute the vectors from sixteen points to this one, and their squared lengths.
                 let mut ways = [zero; MOST_AXES];
                 let mut length_sq = zero;
                 for axis in 0..self.n_axes {
@@ -94,6 +95,7 @@ impl Neighbors {
                 self.push(&ways, length_sq, is_near);
             }
         }
+        // The point itself is at distance zero. Any other such point coincides with it.
         n_there == 1
     }
 
@@ -141,6 +143,7 @@ impl Neighbors {
         for axis in 0..self.n_axes {
             let from = (pixels.low[axis] - self.point[axis]) as f32 * STEP;
             let to = (pixels.high[axis] - self.point[axis]) as f32 * STEP;
+            // Distance to the box along this axis, and largest half-width of the ball inside of the box.
             let gap = from.max(-to).max(0.0);
             let widest = libm::sqrtf((spare_sq + gap * gap).max(0.0));
             (low[axis], high[axis]) = (from.max(-widest), to.min(widest));
@@ -148,6 +151,7 @@ impl Neighbors {
         // Test whether the whole box lies beyond the bisecting plane of a neighbor.
         for start in (0..self.len).step_by(LANES) {
             let at = start..start + LANES;
+            // Find the box's largest signed distance from the plane, multiplied by the length of the vector.
             let mut ahead = f32x16::from_slice(simd, &self.lengths_sq[at.clone()]) * 0.5;
             for axis in 0..self.n_axes {
                 let ways = f32x16::from_slice(simd, &self.ways[axis][at.clone()]);
@@ -168,6 +172,7 @@ impl Neighbors {
         let inner = self.reach * INNER;
         for start in (0..self.len).step_by(LANES) {
             let at = start..start + LANES;
+            // A plane is halfway to the neighbor and orthogonal to the vector.
             let lengths_sq = f32x16::from_slice(simd, &self.lengths_sq[at.clone()]);
             let lengths = lengths_sq.sqrt();
             (lengths * 0.5).store_slice(&mut self.distances[at.clone()]);
@@ -176,6 +181,7 @@ impl Neighbors {
                 let ways = f32x16::from_slice(simd, &self.ways[axis][at.clone()]);
                 (ways * per_length).store_slice(&mut self.normals[axis][at.clone()]);
             }
+            // Record the neighbors within the inner part of the reach.
             let is_there = lanes_before(simd, self.len - start);
             let mut is_inner = (lengths.simd_le(inner) & is_there).to_bitmask();
             while is_inner != 0 {
@@ -202,6 +208,7 @@ impl Neighbors {
             let mut matters = lanes_before(simd, self.len - start);
             // Compare with the planes of the inner neighbors.
             for &other in &self.inner {
+                // Compare squares: the difference of the distances, and the distance of the normals times the radius.
                 let nearer = distances - self.distances[other];
                 let mut apart_sq = f32x16::splat(simd, SLACK);
                 for axis in 0..self.n_axes {
@@ -216,6 +223,7 @@ impl Neighbors {
             while matters != 0 {
                 let index = start + matters.trailing_zeros() as usize;
                 matters &= matters - 1;
+                // Store the vector. The planes are computed from it in double precision.
                 for axis in 0..self.n_axes {
                     planes.normals[axis][planes.len] = f64::from(self.ways[axis][index]);
                 }
@@ -259,6 +267,7 @@ impl Planes {
                 let ways = f64x8::from_slice(simd, &self.normals[axis][at.clone()]);
                 length_sq += ways * ways;
             }
+            // Normalize the vectors, and take half of their lengths as distances.
             let length = length_sq.sqrt();
             let per_length = f64x8::splat(simd, 1.0) / length;
             (length * 0.5).store_slice(&mut self.distances[at.clone()]);

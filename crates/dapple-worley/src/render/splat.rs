@@ -68,6 +68,7 @@ impl Splat {
         }
         let window = block.bands[0].picture.window;
         let frequency = block.bands[0].picture.frequency;
+        // Compute the distance between pixels, in cells.
         let [x, y] = [0, 1].map(|axis| window.pixel[axis] * window.scale[axis]);
         let pixel = [
             (section.u[0] * x * frequency) as f32,
@@ -85,6 +86,7 @@ impl Splat {
             let Some(halves) = halves.filter(|_| useful.contains(&along_row)) else {
                 continue;
             };
+            // Within this distance, neither the rectangle nor the limit along the other axes excludes a point.
             let along = along_row.min(reach(pixel[1], HALF * halves));
             let across = if section.n_axes > 2 {
                 distance * SPARE
@@ -326,12 +328,14 @@ fn fill<
     let empty = empty::<S, K>(simd, depth, f32::INFINITY);
     let mut best = [empty; TILES];
     let rows = i32x4::from_slice(simd, &runs.rows[tiles.index * TILE..][..TILE]);
+    // Find the bin rows that this row of tiles is compared with.
     let first = tiles.index * TILE / HALF;
     let last = first + TILE / HALF + 2 * runs.halves;
     for column in 0..tiles.unknown.len() + TILES - 1 {
         let starts = &runs.starts[column * runs.n_halves..];
         // Compare the points of this bin column with the tiles around it.
         for point in &runs.points[starts[first] as usize..starts[last] as usize] {
+            // Compute the point's terms at the four rows of the tiles.
             let ahead = (rows - point.row).to_float::<f32x4<S>>() * STEP;
             let [mut rows] = measure.terms([ahead]);
             if DEEP {
@@ -341,6 +345,7 @@ fn fill<
             let rows = f32x16::block_splat(rows);
             let rows = rows.zip_low(rows);
             let rows = rows.zip_low(rows);
+            // Compare the point with the tiles around its bin column, and insert the keys into the sorted ones.
             for tile in 0..TILES {
                 let columns = f32x4::from_slice(simd, &point.terms[tile]);
                 let mut key = measure.accumulate(f32x16::block_splat(columns), rows);
@@ -377,6 +382,7 @@ impl TileRow<'_> {
         let is_known = keys[K - 1].simd_lt(limit);
         let unknown = !is_known.to_bitmask() as u16;
         let mut lanes = [0.0; LANES];
+        // Read the pixels if values are added to them, or if unknown pixels must not change.
         if values.is_added || unknown != 0 {
             for row in 0..TILE {
                 lanes[row * TILE..][..TILE].copy_from_slice(&self.pixels[row][left..left + TILE]);
@@ -385,6 +391,7 @@ impl TileRow<'_> {
         let before = f32x16::from_slice(keys[0].simd, &lanes);
         values.put(measure, keys, &mut lanes);
         let after = f32x16::from_slice(keys[0].simd, &lanes);
+        // Store the values of the known pixels only.
         is_known.select(after, before).store_slice(&mut lanes);
         for row in 0..TILE {
             self.pixels[row][left..left + TILE].copy_from_slice(&lanes[row * TILE..][..TILE]);

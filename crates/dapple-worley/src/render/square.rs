@@ -38,6 +38,7 @@ impl Guess {
         n_axes: usize,
         depth: usize,
     ) -> Self {
+        // Mean of the Poisson distribution that is below `depth` with this probability.
         let points = [5.5, 7.8, 9.8, 11.6][depth - 1];
         // Volumes of the Euclidean unit balls, precise enough for an estimate.
         let ball = [1.0, 2.0, 3.1, 4.2, 4.9][n_axes];
@@ -195,6 +196,7 @@ impl Block<'_> {
         memory: &mut Memory,
     ) {
         let pixels = memory.pixel_box(area);
+        // Beyond this span, coordinates are not exact in `f32`, so each pixel is searched on its own.
         if !neighborhood.fits(&pixels) {
             self.one_by_one(area, outs);
             return;
@@ -210,6 +212,7 @@ impl Block<'_> {
         for tile in area.parts(plan.tile) {
             self.tile(&tile, &square, outs, memory);
         }
+        // Unknown pixels are rendered again in tiles of a single slice.
         plan.tile = [LANES, TILE];
         plan.deep_axis = None;
         if memory.unknown.is_empty() {
@@ -285,6 +288,7 @@ impl Block<'_> {
                 &moved,
                 PictureAxes { rows, slices },
             );
+            // For a square of a single tile, dominated points are removed when the tile is rendered.
             if has_tiles {
                 tile.take_undominated(self.level, metric, square, &whole, dominance);
                 core::mem::swap(tile, square);
@@ -298,6 +302,7 @@ impl Block<'_> {
         let plan = square.plan;
         memory.candidates(self.level, area, square);
         let is_values = matches!(outs[0], Output::Values(..));
+        // Features and gradients look up the nearest candidates by index.
         if !is_values {
             let table = if memory.is_wide {
                 &memory.wide_table
@@ -306,6 +311,7 @@ impl Block<'_> {
             };
             memory.lookup.fill(&memory.tile, table, memory.low);
         }
+        // Render two registers of columns at once if the kernel supports it.
         let size = match area.columns.len() {
             TILE if is_values && plan.has_wide_kernel(self.level) => [TILE; 2],
             _ => [LANES, TILE],

@@ -42,6 +42,7 @@ impl CellBox {
             let mut parts = [0; 2];
             let mut cell = self.first;
             let mut rest = n_rows;
+            // Convert the index to the row's first cell, and combine the parts of the cell words.
             for axis in (1..self.n_axes).rev() {
                 rest /= self.side(axis);
                 cell[axis] += (index / rest) as i64;
@@ -115,6 +116,7 @@ impl Table {
         self.starts.push(0);
         self.ids.clear();
         let side = cells.side(0);
+        // All rows of cells share the parts of the cell words along the first axis.
         let columns = 0..side.next_multiple_of(LANES) as i64;
         let columns = columns.map(|column| lattice.parts(0, cells.first[0] + column).into());
         let columns: (Vec<u32>, Vec<u32>) = columns.unzip();
@@ -203,6 +205,7 @@ impl Table {
     fn add_ids<S: Simd>(&mut self, simd: S, hashes: CellHashes<S>, numbers: &[u32]) {
         let most = numbers.iter().copied().fold(0, u32::max);
         let mut end = self.ids.len();
+        // Find the index of each cell's first point.
         let starts: Vec<usize> = numbers
             .iter()
             .map(|&number| {
@@ -211,6 +214,7 @@ impl Table {
             })
             .collect();
         self.ids.resize(end, 0);
+        // Hash the ids of all cells, one point per cell at a time.
         for index in 0..most {
             let [high, low] = hashes.at(u32x16::splat(simd, IDS + index));
             for (lane, &number) in numbers.iter().enumerate() {
@@ -260,11 +264,13 @@ impl Table {
         let columns = first[0] as usize..last[0] as usize + 1;
         let mut row = first;
         loop {
+            // Find the points in this row of cells.
             let mut index = 0;
             for axis in (1..n_axes).rev() {
                 index = index * self.cells.side(axis) + row[axis] as usize;
             }
             runs.push(self.run(index, columns.clone()));
+            // Advance to the next row of cells.
             let Some(axis) = (1..n_axes).find(|&axis| row[axis] < last[axis]) else {
                 return;
             };
@@ -293,6 +299,7 @@ pub(super) fn numbers<S: Simd>(
         cells.counts.store_slice(&mut numbers);
         return numbers;
     }
+    // With a density, the number of points depends on the position of the cell.
     for (lane, number) in numbers.iter_mut().enumerate() {
         *number = lattice.count(&cell[..lattice.n_axes], cells.words[0][lane]);
         cell[0] += 1;

@@ -126,6 +126,7 @@ impl TrackedRows<'_> {
             ids: [[0; LANES]; MAX_NEAREST],
             unknown: 0,
         };
+        // Convert the columns to cells. The other coordinates are set for each row.
         let columns = i32x16::from_slice(simd, &self.lines[0][..LANES]);
         let mut places = [(columns - self.low[0]).to_float::<f32x16<S>>() * STEP; MOST_AXES];
         // The number of low bits that an index needs.
@@ -138,6 +139,7 @@ impl TrackedRows<'_> {
             }
             // Find the nearest candidates; stop at the first row with a key at or above the limit.
             let keys = self.smallest::<S, M, K>(simd, measure, depth, row, mask);
+            // With all low bits set, the coded key is an upper bound of the exact one.
             let last = (keys.best[K - 1] | mask).bitcast::<f32x16<S>>();
             if !last.simd_lt(self.limit).all_true() {
                 return row;
@@ -183,6 +185,7 @@ impl TrackedRows<'_> {
                 *best = lesser(*best, coded);
                 coded = larger;
             }
+            // The key that drops out may be the smallest of all other points.
             next = lesser(next, coded);
         }
         let mut bits = [next.to_bits(); K];
@@ -235,6 +238,7 @@ impl TrackedRows<'_> {
         let lookup = self.lookup;
         let mut keys = f32x16::splat(simd, 0.0);
         let mut vectors = [keys; N];
+        // Compute the vector and the exact key from the coordinates of the candidates.
         for axis in (0..N).rev() {
             let points = look_up(simd, &lookup.coordinates[axis], numbers);
             vectors[axis] = places[axis] - points;
@@ -273,6 +277,7 @@ fn interleave<S: Simd>(parts: &[f32x16<S>], out: &mut [f32; MOST_AXES * LANES]) 
             high.zip_high(other_high).store_slice(&mut out[3]);
         }
         _ => {
+            // Three components are stored lane by lane.
             let out = out.as_flattened_mut();
             let mut lanes = [0.0; LANES];
             for (axis, parts) in parts.iter().enumerate() {
@@ -293,6 +298,7 @@ fn look_up<S: Simd>(simd: S, table: &[f32], indices: u32x16<S>) -> f32x16<S> {
         let bytes = indices * 0x0404_0404 + 0x0302_0100;
         return f32x16::from_slice(simd, table).swizzle_dyn(bytes.bitcast::<u8x64<S>>());
     }
+    // Read larger tables lane by lane.
     let mut lanes = [0; LANES];
     indices.store_slice(&mut lanes);
     let values = lanes.map(|index| table[index as usize]);

@@ -64,7 +64,7 @@ impl Search {
         if size == self.sizes[1] {
             return false;
         }
-        // Otherwise, extend the group by one adjacent point. Ban each point after its trial, to try every group once.
+        // Extend the group by one adjacent point. Exclude each point after its trial, so that every group is tried once.
         let around = bits(part).fold(0, |mask, bit| mask | self.adjacent[bit]);
         for bit in bits(around & free & !part & !banned) {
             if self.extend(part | 1 << bit, banned, free) {
