@@ -51,7 +51,7 @@ impl Texture {
             (total + weight, sum + gradient * rise)
         };
         let (total, sum) = net.fold_weights(local, (0.0, DVec2::ZERO), add);
-        // If all weights underflow, the value is that of the nearest control point, which is constant around it.
+        // If all weights underflow, the texture has the nearest control point's value, which is locally constant.
         if total < f64::from(LEAST_TOTAL) {
             DVec2::ZERO
         } else {

@@ -109,7 +109,7 @@ impl<K: Sink> Band<'_, '_, K> {
     /// Renders the band's rows; `planes` is scratch memory.
     fn render(mut self, level: Level, planes: &mut Planes<K>) {
         for columns in self.columns {
-            // A coordinate that is not finite is a run of its own, so the first one stands for all.
+            // A coordinate that is not finite forms a separate run, so testing the first one is enough.
             if !columns.is_finite() || !self.ys.is_finite() {
                 self.leave_undefined(&columns.range);
                 continue;

@@ -163,7 +163,7 @@ impl Default for ControlPoints {
 pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, PupsError> {
     let points = options.point_set()?;
     let net = &options.net;
-    // Use the points' own orientations if they have any, else those of the net's options.
+    // Use the points' own orientations if they have any, else the orientations from the net's options.
     let pups = match options.orientations()? {
         Some(vectors) => {
             let orientation = Orientation::new(vectors).with_strength(net.strength);
@@ -227,7 +227,7 @@ impl ControlPoints {
         &self,
         points: impl IntoIterator<Item = &'a ControlPoint>,
     ) -> Result<Vec<f32>, PupsError> {
-        // A point has either its own value or that of its label.
+        // A point has either its own value or its label's value.
         let number = |point: &ControlPoint| match (point.value, point.label) {
             (Some(value), None) => Ok(value),
             (None, Some(label)) => {

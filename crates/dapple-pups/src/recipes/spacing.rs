@@ -186,7 +186,7 @@ fn expected_by_parts(domain: Domain, radius: &Varying) -> f64 {
     for y in 0..PARTS {
         let below = row(y + 1);
         for (x, (above, below)) in (0..).zip(above.windows(2).zip(below.windows(2))) {
-            // The smallest distance at the corners gives the largest number of points.
+            // Use the smallest distance at the corners, where points are densest.
             let corners = above.iter().chain(below).copied();
             let smallest = corners.fold(f64::INFINITY, f64::min);
             let sides = part / smallest + DVec2::new(is_border(x), is_border(y));

@@ -140,7 +140,7 @@ impl SplineProject {
     ///
     /// # Errors
     ///
-    /// Same as [`coarse`](Self::coarse). Also if the small tile is not as large as an image of `size` is after halving.
+    /// Same as [`coarse`](Self::coarse). Also if the small tile's size differs from `size` after halving.
     pub fn refine(
         &self,
         coarse: &Raster<f32>,

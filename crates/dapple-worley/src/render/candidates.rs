@@ -174,7 +174,7 @@ impl Memory {
             let FlatPoints { y, rest, len, .. } = &self.tile;
             let points = y[..*len].iter().zip(&rest[..*len]);
             for ((&y, &rest), candidate) in points.zip(&mut self.candidates) {
-                // Accumulate the terms of the row onto those of the axes that are orthogonal to the image.
+                // Accumulate the terms of the row after the terms of the axes that are orthogonal to the image.
                 let [terms] = measure.terms([places - y]);
                 let terms = measure.accumulate(terms, f32x16::splat(simd, rest));
                 terms.store_slice(&mut candidate.rows[first..first + LANES]);
