@@ -47,7 +47,7 @@ pub(super) fn windows() -> Vec<Window> {
 /// compared in the plane, where samples take a tenth of the time.
 const DEPTHS: [Combination; 3] = [COMBINATIONS[0], COMBINATIONS[1], COMBINATIONS[4]];
 
-fn doors_agree<const N: usize>(
+fn ways_agree<const N: usize>(
     worley: &Worley<N>,
     planes: &[Plane<N>],
     combinations: &[Combination],
@@ -102,8 +102,8 @@ fn render_equals_sample_bit_for_bit_in_the_plane() -> Result<(), WorleyError> {
         let worley = Worley::new(Seed(11)).with_scatter(scatter)?;
         let metric = METRICS[index % METRICS.len()];
         let plane = [Plane::default()];
-        doors_agree::<2>(&worley, &plane, &COMBINATIONS)?;
-        doors_agree::<2>(&worley.with_metric(metric)?, &plane, &COMBINATIONS)?;
+        ways_agree::<2>(&worley, &plane, &COMBINATIONS)?;
+        ways_agree::<2>(&worley.with_metric(metric)?, &plane, &COMBINATIONS)?;
     }
     Ok(())
 }
@@ -118,10 +118,10 @@ fn render_equals_sample_bit_for_bit_in_space() -> Result<(), WorleyError> {
     };
     let planes = [Plane::slice([0.1, 0.2, -5.3].into()), oblique];
     for metric in METRICS {
-        doors_agree::<3>(&Worley::new(seed).with_metric(metric)?, &planes, &DEPTHS)?;
+        ways_agree::<3>(&Worley::new(seed).with_metric(metric)?, &planes, &DEPTHS)?;
     }
     let planes = [Plane::slice([0.1, 0.2, -5.3, 1e4].into())];
-    doors_agree::<4>(&Worley::new(seed).with_density(1.0)?, &planes, &DEPTHS)
+    ways_agree::<4>(&Worley::new(seed).with_density(1.0)?, &planes, &DEPTHS)
 }
 
 fn features_agree<const N: usize>(worley: &Worley<N>, plane: &Plane<N>) -> Result<(), WorleyError>

@@ -56,7 +56,7 @@ fn steps_far_away_can_be_told_apart() -> Result<(), WorleyError> {
 }
 
 #[test]
-fn doors_agree_far_away() -> Result<(), WorleyError> {
+fn ways_agree_far_away() -> Result<(), WorleyError> {
     for (metric, scatter) in METRICS.iter().flat_map(|&m| SCATTERS.map(|s| (m, s))) {
         let worley = Worley::<2>::new(Seed(82))
             .with_metric(metric)?

@@ -17,7 +17,7 @@ fn positions() -> Vec<DVec2> {
     positions
 }
 
-fn doors_agree(field: &dyn Field, what: &str) {
+fn ways_agree(field: &dyn Field, what: &str) {
     let positions = positions();
     let mut values = vec![-1.0; positions.len()];
     field.sample_many(&positions, &mut values).unwrap();
@@ -52,13 +52,13 @@ fn sample_many_equals_sample_bit_for_bit() -> Result<(), WorleyError> {
             Combination::F4_MINUS_F1,
         ] {
             let texture = worley.combine(combination);
-            doors_agree(&texture, &what);
-            doors_agree(&texture.fractal(octaves)?, &what);
+            ways_agree(&texture, &what);
+            ways_agree(&texture.fractal(octaves)?, &what);
         }
-        doors_agree(&worley.cell_values(), &what);
-        doors_agree(&worley.edge_distances(), &what);
+        ways_agree(&worley.cell_values(), &what);
+        ways_agree(&worley.edge_distances(), &what);
     }
     let varying = Worley2::new(Seed(5)).with_varying_density(|at| 1.0 + at.x.abs());
-    doors_agree(&varying.combine(Combination::F1), "varying density");
+    ways_agree(&varying.combine(Combination::F1), "varying density");
     Ok(())
 }

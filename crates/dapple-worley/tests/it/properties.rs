@@ -77,7 +77,7 @@ fn cases(cases: u32) -> ProptestConfig {
     }
 }
 
-fn doors_agree<const N: usize>(
+fn ways_agree<const N: usize>(
     worley: &Worley<N>,
     at: [f64; N],
     oracle: bool,
@@ -257,8 +257,8 @@ proptest! {
     #![proptest_config(cases(256))]
 
     #[test]
-    fn doors_agree_in_the_plane(worley in any_worley::<2>(), at in any_position::<2>()) {
-        doors_agree(&worley, at, true)?;
+    fn ways_agree_in_the_plane(worley in any_worley::<2>(), at in any_position::<2>()) {
+        ways_agree(&worley, at, true)?;
     }
 
     #[test]
@@ -398,8 +398,8 @@ proptest! {
     }
 
     #[test]
-    fn doors_agree_in_space(worley in any_worley::<3>(), at in any_position::<3>()) {
-        doors_agree(&worley, at, true)?;
+    fn ways_agree_in_space(worley in any_worley::<3>(), at in any_position::<3>()) {
+        ways_agree(&worley, at, true)?;
     }
 
     #[test]
@@ -419,8 +419,8 @@ proptest! {
     #![proptest_config(cases(24))]
 
     #[test]
-    fn doors_agree_in_four_dimensions(worley in any_worley::<4>(), at in any_position::<4>()) {
-        doors_agree(&worley, at, false)?;
+    fn ways_agree_in_four_dimensions(worley in any_worley::<4>(), at in any_position::<4>()) {
+        ways_agree(&worley, at, false)?;
     }
 
     #[test]

@@ -71,7 +71,7 @@ fn densities_out_of_range_count_as_the_nearest_within() -> Result<(), WorleyErro
 }
 
 #[test]
-fn doors_agree_with_the_oracle_where_the_density_varies() -> Result<(), WorleyError> {
+fn ways_agree_with_the_oracle_where_the_density_varies() -> Result<(), WorleyError> {
     for metric in METRICS {
         let plane = varying::<2>(94).with_metric(metric)?;
         for index in 0..60 {
