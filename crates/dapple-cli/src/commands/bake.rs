@@ -2,6 +2,7 @@
 
 mod batch;
 mod claim;
+mod contact_sheet;
 mod documents;
 mod images;
 mod maps;
@@ -23,6 +24,9 @@ use crate::words::{NamedValueParser, unknown};
 use anyhow::Result;
 use batch::Batch;
 use claim::claim;
+use contact_sheet::ContactSheet;
+use dapple::color::LinearRgb;
+use dapple::raster::Raster;
 use dapple::recipe::{
     Bake, BakeMemory, BakeOptions, Images, Input, MapKind, Material, Plan, PlanCache, PlanLimits,
     Recipe, Samples,
@@ -47,7 +51,7 @@ Examples:
   dapple bake craters --maps height --size 4096x256 --banded -o wide.exr
   dapple bake rock ice marble -o all/ --size 256 --preview
   dapple bake flagstone --set joint.seed=5 --set material.relief=0.6 -o deep/
-  dapple bake rock --seed 1-20 --size 256 --maps albedo -o variants/
+  dapple bake rock --seed 1-20 --size 256 --maps albedo --contact-sheet -o variants/
   dapple bake flagstone --node joint -o joint.png
   dapple bake 'my-*.toml' --keep-going --maps albedo --sheet -o mine/
   dapple bake rock --preset unity -o Assets/Rock/
@@ -127,6 +131,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "THING", value_parser = NamedValueParser::<Thing>::all(), num_args = 0..=1, require_equals = true, default_missing_value = "plane", help_heading = "Output")]
     preview: Option<Thing>,
 
+    /// Also write `contact_sheet.png`, with a lit preview of each recipe and seed: on a sphere, or as by --preview.
+    #[arg(long, conflicts_with_all = ["shard", "node"], help_heading = "Output")]
+    contact_sheet: bool,
+
     /// File format [default: by the extension of the output, else PNG with 16 bits].
     #[arg(long, value_name = "FORMAT", value_parser = NamedValueParser::<Format>::all(), help_heading = "Output")]
     format: Option<Format>,
@@ -192,15 +200,23 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             return Err(usage(message).hint("give each a `name`"));
         }
     }
+    let sheet = args
+        .contact_sheet
+        .then(|| ContactSheet::claim(&files, context));
+    let mut sheet = sheet.transpose()?;
     // Bake each recipe.
     let rows = u64::from(args.n_rows()?) * u64::from(args.frames.unwrap_or(1));
     let progress = Progress::bar("baking", rows * works.len() as u64, context);
     for (index, (name, work)) in (0..).zip(&works) {
         let baked = work.bake(&files, context, &progress);
-        batch.checked(name, baked)?;
+        let is_baked = batch.checked(name, baked)?.is_some();
+        if let Some(sheet) = sheet.as_mut().filter(|_| is_baked) {
+            sheet.add(&work.preview()?)?;
+        }
         progress.set(rows * (index + 1));
     }
     drop(progress);
+    sheet.map(ContactSheet::write).transpose()?;
     Ok(batch.exit())
 }
 
@@ -300,6 +316,14 @@ impl Work {
             self.bake_picture(&args, job, &mut made, progress)?;
         }
         Ok(())
+    }
+
+    /// Renders the lit preview of the recipe for the contact sheet.
+    fn preview(&self) -> Result<Raster<LinearRgb>> {
+        let images = read_images(&self.recipe, &self.folder, self.args.material.finite)?;
+        let time = self.args.frame.map_or(0.0, Frame::time);
+        let thing = self.args.preview.unwrap_or(Thing::Sphere);
+        preview::picture(&self.recipe, &images, time, thing)
     }
 
     fn bake_picture(

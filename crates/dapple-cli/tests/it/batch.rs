@@ -82,6 +82,15 @@ fn a_range_of_seeds_bakes_a_variant_with_each() {
         &folder.run(&[&bake[..], &["--seed", "10", "-o", "ten.png"]].concat()),
         "one seed",
     );
+    let sheet = ["--seed", "9-11", "--contact-sheet", "--force", "-o", "all/"];
+    assert_done(
+        &folder.run(&[&bake[..], &sheet].concat()),
+        "a contact sheet",
+    );
+    assert!(names(&folder, "all").contains(&"contact_sheet.png".to_owned()));
+    // Two columns and two rows of previews with gaps between them.
+    let sheet = read(&folder, "all/contact_sheet.png");
+    assert_eq!(sheet.size(), [2 * 256 + 3 * 8; 2]);
     let bytes = |name: &str| fs::read(folder.path(name)).unwrap();
     assert_eq!(bytes("ten.png"), bytes("all/rock_10_height.png"));
     assert_ne!(bytes("ten.png"), bytes("all/rock_11_height.png"));
