@@ -124,8 +124,14 @@ impl<F> Fractal<F> {
         self.shape
     }
 
+    /// Returns the field, the frequency and the weight of each octave, coarsest first.
+    pub fn octaves(&self) -> impl Iterator<Item = (&F, f64, f32)> {
+        let octaves = self.octaves.iter();
+        octaves.map(|octave| (&octave.field, octave.frequency, octave.weight))
+    }
+
     /// Returns the octaves scaled to their frequencies, with their weights.
-    pub(super) fn octaves<const N: usize>(&self) -> impl Iterator<Item = (Scaled<&F, N>, f32)> {
+    pub(super) fn scaled<const N: usize>(&self) -> impl Iterator<Item = (Scaled<&F, N>, f32)> {
         self.octaves.iter().map(|octave| {
             let scaled = Scaled {
                 field: &octave.field,
@@ -139,7 +145,7 @@ impl<F> Fractal<F> {
 impl<const N: usize, F: Field<N>> Field<N> for Fractal<F> {
     fn value(&self, position: [f64; N]) -> f32 {
         let mut sum = 0.0;
-        for (octave, weight) in self.octaves() {
+        for (octave, weight) in self.scaled() {
             sum += weight * self.shape.of(octave.value(position));
         }
         sum
@@ -149,7 +155,7 @@ impl<const N: usize, F: Field<N>> Field<N> for Fractal<F> {
         RasterError::check_length(values.len(), positions.len())?;
         values.fill(0.0);
         let mut others = vec![0.0; positions.len()];
-        for (octave, weight) in self.octaves() {
+        for (octave, weight) in self.scaled() {
             octave.values(positions, &mut others)?;
             for (value, &other) in values.iter_mut().zip(&others) {
                 *value += weight * self.shape.of(other);
@@ -162,7 +168,7 @@ impl<const N: usize, F: Field<N>> Field<N> for Fractal<F> {
         window.check_size(out.size())?;
         by_bands(window, out, |part, mut band, memory| {
             band.fill(0.0);
-            for (octave, weight) in self.octaves() {
+            for (octave, weight) in self.scaled() {
                 octave.render(part, memory.reborrow())?;
                 zip_rows(&mut band, memory, |value, other| {
                     *value += weight * self.shape.of(other);
@@ -173,7 +179,7 @@ impl<const N: usize, F: Field<N>> Field<N> for Fractal<F> {
     }
 
     fn period(&self) -> [Option<f64>; N] {
-        let periods = self.octaves().map(|(octave, _)| octave.period());
+        let periods = self.scaled().map(|(octave, _)| octave.period());
         periods.fold([Some(0.0); N], common_period)
     }
 }

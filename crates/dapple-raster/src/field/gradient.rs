@@ -192,7 +192,7 @@ impl<A: Gradient<N>, B: Gradient<N>, T: Gradient<N>, const N: usize> Gradient<N>
 impl<F: Gradient<N>, const N: usize> Gradient<N> for Fractal<F> {
     fn value_and_gradient(&self, position: [f64; N]) -> (f32, [f32; N]) {
         let (mut sum, mut gradient) = (0.0, [0.0; N]);
-        for (octave, weight) in self.octaves() {
+        for (octave, weight) in self.scaled() {
             let (value, slope) = octave.value_and_gradient(position);
             let shape = self.shape();
             sum += weight * shape.of(value);
