@@ -209,6 +209,55 @@ impl<const N: usize> GradientNoise<N> {
         self.period.map(|cells| (cells > 0).then_some(cells))
     }
 
+    /// Returns the noise as a structure for shaders: the 16 words of `GradientNoise` in the WGSL of `dapple-wgsl`. `weight`
+    /// is the weight of an octave in a fractal sum; it does not affect the noise itself.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](dapple_raster::RasterErrorKind::Range) if a period is above 2^31 cells, or if deserialized noise has an
+    /// offset that is not a multiple of 2^-24 from 0 to below 128.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_noise::{GradientNoise2, hash::Seed, raster::FractalShape};
+    ///
+    /// // The octaves of a fractal sum, as a buffer
+    /// let sum = GradientNoise2::new(Seed(7)).fractal(6, 0.5, 2.0, FractalShape::Sum)?;
+    /// let mut words = Vec::new();
+    /// for (noise, _frequency, weight) in sum.octaves() {
+    ///     words.extend(noise.shader_words(weight)?);
+    /// }
+    /// assert_eq!(words.len(), 6 * 16);
+    /// # Ok::<(), dapple_noise::raster::RasterError>(())
+    /// ```
+    pub fn shader_words(&self, weight: f32) -> Result<[u32; 16], RasterError> {
+        const { assert!(N <= 4, "a vector of a shader has four components") };
+        let mut words = [0; 16];
+        for axis in 0..N {
+            let period = self.period[axis];
+            RasterError::check_range(
+                period <= 1 << 31,
+                "period of noise in a shader",
+                f64::from(period),
+                "at most 2^31",
+            )?;
+            let offset = f64::from_bits(self.offset[axis]);
+            let parts = offset * f64::from(1 << 24);
+            RasterError::check_range(
+                (0.0..128.0).contains(&offset) && parts.fract() == 0.0,
+                "offset of noise in a shader",
+                offset,
+                "a multiple of 2^-24 from 0 to below 128",
+            )?;
+            words[axis] = self.hash.key(axis);
+            words[4 + axis] = period;
+            words[8 + axis] = parts as u32;
+        }
+        words[12] = weight.to_bits();
+        Ok(words)
+    }
+
     /// Returns the value at a position in cells.
     #[must_use]
     pub fn sample(&self, position: impl Into<[f64; N]>) -> f32 {

@@ -564,3 +564,33 @@ fn sums_of_octaves_have_gradients() {
         assert!((f64::from(gradient[axis]) - difference).abs() < 4e-3);
     }
 }
+
+#[test]
+fn shader_words_refuse_periods_above_two_to_the_31() {
+    let words = |period| {
+        let noise = GradientNoise2::new(Seed(7)).with_period([None, Some(period)]);
+        noise.expect("a period").shader_words(0.5)
+    };
+    let most = words(1 << 31).expect("a period of 2^31");
+    assert_eq!(most[4..8], [0, 1 << 31, 0, 0]);
+    assert_eq!(most[12], 0.5_f32.to_bits());
+    let error = words((1 << 31) + 1).expect_err("one cell too many");
+    assert_eq!(
+        error.to_string(),
+        "the period of noise in a shader is 2147483649, but it must be at most 2^31"
+    );
+}
+
+#[test]
+fn shader_words_of_octaves_have_their_offsets() {
+    let noise = GradientNoise3::new(Seed(7));
+    let octaves = noise.octaves(3, 2.0).expect("octaves");
+    for octave in octaves {
+        let words = octave.shader_words(1.0).expect("words");
+        for axis in 0..3 {
+            let offset = f64::from(words[8 + axis]) / f64::from(1 << 24);
+            assert_eq!(octave.moved(0.0, axis), offset);
+        }
+        assert_eq!(words[11], 0);
+    }
+}
