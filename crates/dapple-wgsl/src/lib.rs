@@ -1,0 +1,212 @@
+//! The noise of dapple in WGSL, with the same bits as on the CPU.
+//!
+//! The shaders are text without bindings and entry points. [`Module::source`] gives one file that needs nothing else, to
+//! be copied into a `wgpu` program. [`Module::naga_oil`] gives the same text as a module for `naga_oil`, which Bevy uses.
+//! The command prints both: `dapple wgsl gradient_noise_2d`.
+//!
+//! ```
+//! use dapple_wgsl::{Module, source};
+//!
+//! // A complete shader: the noise, and an entry point that calls it.
+//! let shader = Module::GradientNoise2d.source() + "
+//!     @group(0) @binding(0) var<uniform> noise: GradientNoise;
+//!     @group(0) @binding(1) var<uniform> zero: u32;
+//!     @group(0) @binding(2) var<storage, read_write> heights: array<f32>;
+//!     @compute @workgroup_size(64)
+//!     fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+//!         let place = place_2d(vec2<f32>(id.xy) / 16.0);
+//!         heights[id.x] = gradient_noise_2d(noise, place, zero);
+//!     }";
+//! assert!(shader.contains("fn gradient_noise_2d"));
+//!
+//! // Several modules in one file contain their shared parts once.
+//! let terrain = source(&[Module::GradientNoise2d, Module::Fractal]);
+//! assert_eq!(terrain.matches("fn exact_mul").count(), 1);
+//! ```
+//!
+//! The 16 words of the uniform `noise` come from `GradientNoise::shader_words` of `dapple-noise`. `zero` is 0.
+//!
+//! # How the bits stay the same
+//!
+//! WGSL allows a compiler to fuse a product with a sum, and drivers do. They also reorder sums. Both change the last bit.
+//! So every result passes through `exact`, the exclusive or of its bits with `zero`. This number is 0, but the compiler
+//! must not know it: it is read from a buffer. As a constant, it has no effect.
+//!
+//! Everything else is exact: hashes are computed with `u32`, and a position is a cell (`i32`) and a fraction (`f32`).
+//!
+//! # Limits
+//!
+//! * The values equal `sample(cell + fraction)` of the CPU where this sum is exact in `f64`. It is for every cell if the
+//!   fraction is a multiple of 2^-21, and up to 2^29 cells if it is a multiple of 2^-24.
+//! * Cells are from -2^31 to 2^31 - 2, periods at most 2^31.
+//! * WGSL leaves two things open: the direction of rounding, and denormal numbers. All known hardware rounds to nearest
+//!   even. Denormal numbers occur where a fraction is below 2^-24 but not 0, and may then become 0.
+//! * The tests compare all bits on Mesa's software implementation of Vulkan, lavapipe.
+
+#![no_std]
+#![forbid(unsafe_code)]
+
+extern crate alloc;
+
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt::Write as _;
+
+/// A module of WGSL.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Module {
+    /// Sums and products that a compiler cannot fuse or reorder.
+    Exact,
+    /// Hashes of lattice coordinates.
+    Hash,
+    /// Positions in the plane, as cell and fraction.
+    Place2d,
+    /// Parts that gradient noise of all dimensions shares.
+    GradientNoise,
+    /// Gradient noise in two dimensions.
+    GradientNoise2d,
+    /// Positions in space, as cell and fraction.
+    Place3d,
+    /// Positions in four dimensions, as cell and fraction.
+    Place4d,
+    /// Gradients of noise in three and four dimensions.
+    GradientEdges,
+    /// Gradient noise in three dimensions.
+    GradientNoise3d,
+    /// Gradient noise in four dimensions.
+    GradientNoise4d,
+    /// Sums of octaves.
+    Fractal,
+}
+
+/// Description of a module.
+struct Entry {
+    module: Module,
+    name: &'static str,
+    text: &'static str,
+    /// Modules that it uses directly.
+    uses: &'static [Module],
+}
+
+macro_rules! entries {
+    ($($module:ident = $name:literal [$($uses:ident),*],)*) => {
+        /// All modules, in the order of the variants; a module uses only earlier ones.
+        static ENTRIES: &[Entry] = &[$(Entry {
+            module: Module::$module,
+            name: $name,
+            text: include_str!(concat!($name, ".wgsl")),
+            uses: &[$(Module::$uses),*],
+        }),*];
+
+        impl Module {
+            /// All modules; each uses only earlier ones.
+            pub const ALL: &[Self] = &[$(Self::$module),*];
+        }
+    };
+}
+
+entries! {
+    Exact = "exact" [],
+    Hash = "hash" [],
+    Place2d = "place_2d" [],
+    GradientNoise = "gradient_noise" [Exact, Hash],
+    GradientNoise2d = "gradient_noise_2d" [Exact, Hash, Place2d, GradientNoise],
+    Place3d = "place_3d" [],
+    Place4d = "place_4d" [],
+    GradientEdges = "gradient_edges" [],
+    GradientNoise3d = "gradient_noise_3d" [Exact, Hash, Place3d, GradientNoise, GradientEdges],
+    GradientNoise4d = "gradient_noise_4d" [Exact, Hash, Place4d, GradientNoise, GradientEdges],
+    Fractal = "fractal" [Exact],
+}
+
+impl Module {
+    fn entry(self) -> &'static Entry {
+        &ENTRIES[self as usize]
+    }
+
+    /// Returns the name of the module, such as `gradient_noise_2d`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        self.entry().name
+    }
+
+    /// Returns the text of the module alone, without the modules that it uses.
+    #[must_use]
+    pub fn text(self) -> &'static str {
+        self.entry().text
+    }
+
+    /// Returns the modules that this module uses directly.
+    #[must_use]
+    pub fn uses(self) -> &'static [Self] {
+        self.entry().uses
+    }
+
+    /// Returns the module with all modules that it uses, as one file of plain WGSL.
+    #[must_use]
+    pub fn source(self) -> String {
+        source(&[self])
+    }
+
+    /// Returns the module as a module for `naga_oil`, with the import path `dapple::NAME`. The modules that it
+    /// [uses](Self::uses) must be added, too, in the order of [`ALL`](Self::ALL).
+    #[must_use]
+    pub fn naga_oil(self) -> String {
+        let mut out = String::new();
+        let _ = writeln!(out, "#define_import_path dapple::{}", self.name());
+        for used in self.uses() {
+            let names = declared(used.text()).filter(|name| mentions(self.text(), name));
+            let names: Vec<_> = names.collect();
+            if !names.is_empty() {
+                let _ = writeln!(
+                    out,
+                    "#import dapple::{}::{{{}}}",
+                    used.name(),
+                    names.join(", ")
+                );
+            }
+        }
+        out + "\n" + self.text()
+    }
+}
+
+/// Returns modules with all modules that they use, each once, as one file of plain WGSL.
+#[must_use]
+pub fn source(modules: &[Module]) -> String {
+    let mut needed = [false; ENTRIES.len()];
+    for &module in modules {
+        needed[module as usize] = true;
+    }
+    // A module uses only earlier ones, so one pass from the last to the first finds all.
+    for entry in ENTRIES.iter().rev() {
+        if needed[entry.module as usize] {
+            for &used in entry.uses {
+                needed[used as usize] = true;
+            }
+        }
+    }
+    let entries = ENTRIES.iter().filter(|entry| needed[entry.module as usize]);
+    let texts: Vec<_> = entries.map(|entry| entry.text).collect();
+    texts.join("\n")
+}
+
+/// Returns the names of the functions, structures and constants that a module declares.
+fn declared(text: &str) -> impl Iterator<Item = &str> {
+    text.lines().filter_map(|line| {
+        let mut words = line.split(|c: char| !is_name(c));
+        let is_declaration = matches!(words.next(), Some("fn" | "struct" | "const"));
+        is_declaration.then(|| words.next()).flatten()
+    })
+}
+
+/// Returns whether the code of a module contains a name.
+fn mentions(text: &str, name: &str) -> bool {
+    let code = text.lines().filter_map(|line| line.split("//").next());
+    code.flat_map(|line| line.split(|c: char| !is_name(c)))
+        .any(|word| word == name)
+}
+
+fn is_name(c: char) -> bool {
+    c.is_ascii_alphanumeric() || c == '_'
+}

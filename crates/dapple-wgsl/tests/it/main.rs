@@ -1,0 +1,86 @@
+//! Tests of the texts, without a GPU: every module is valid WGSL, alone and in all its flavors.
+
+use dapple_wgsl::{Module, source};
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+/// Parses and validates a shader.
+fn validate(name: &str, text: &str) {
+    let module = naga::front::wgsl::parse_str(text)
+        .unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(text)));
+    Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(&module)
+        .unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(text)));
+}
+
+#[test]
+fn every_module_is_valid_as_one_file() {
+    for &module in Module::ALL {
+        validate(module.name(), &module.source());
+    }
+    validate("all modules", &source(Module::ALL));
+}
+
+#[test]
+fn naga_oil_imports_all_that_a_module_uses_and_nothing_else() {
+    for &module in Module::ALL {
+        let text = module.naga_oil();
+        let first = text.lines().next();
+        let path = format!("#define_import_path dapple::{}", module.name());
+        assert_eq!(first, Some(path.as_str()));
+        // Resolve the imports as `naga_oil` does: an imported name is declared in the module that it comes from.
+        for import in text.lines().filter(|line| line.starts_with("#import")) {
+            let (from, names) = import
+                .strip_prefix("#import dapple::")
+                .and_then(|rest| rest.strip_suffix('}'))
+                .and_then(|rest| rest.split_once("::{"))
+                .expect("the form of an import");
+            let used = module.uses().iter().find(|used| used.name() == from);
+            let used = used.expect("a module that is used");
+            for name in names.split(", ") {
+                let declares = |keyword: &str| used.text().contains(&format!("\n{keyword} {name}"));
+                assert!(declares("fn") || declares("struct"), "{from}: {name}");
+                assert!(module.text().contains(name), "{import} is not used");
+            }
+        }
+        // The text is that of the plain flavor.
+        assert!(text.ends_with(module.text()), "{}", module.name());
+    }
+}
+
+#[test]
+fn names_suit_naga_oil_which_forbids_digits_at_their_ends() {
+    for &module in Module::ALL {
+        let parsed = naga::front::wgsl::parse_str(&module.source()).expect("a valid module");
+        let functions = parsed.functions.iter();
+        let functions = functions.filter_map(|(_, function)| function.name.clone());
+        let types = parsed
+            .types
+            .iter()
+            .filter_map(|(_, kind)| kind.name.clone());
+        for name in functions.chain(types) {
+            assert!(!name.ends_with(|end: char| end.is_ascii_digit()), "{name}");
+        }
+    }
+}
+
+#[test]
+fn modules_use_only_earlier_ones_and_are_in_the_order_of_their_variants() {
+    for (at, &module) in Module::ALL.iter().enumerate() {
+        assert_eq!(module as usize, at, "{}", module.name());
+        let mut used = module.uses().iter();
+        assert!(used.all(|&used| (used as usize) < at), "{}", module.name());
+    }
+}
+
+#[test]
+fn shaders_are_short() {
+    let lines = |module: Module| {
+        let source = module.source();
+        let lines = source.lines().map(str::trim);
+        lines
+            .filter(|line| !line.is_empty() && !line.starts_with("//"))
+            .count()
+    };
+    let noise = lines(Module::GradientNoise2d);
+    assert!(noise <= 80, "{noise} lines");
+}
