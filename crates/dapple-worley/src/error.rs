@@ -14,6 +14,11 @@ dapple_raster::error! {
             /// Number of values needed.
             needed: usize,
         } => "there is room for {length} values, but {needed} are needed";
+        /// The WGSL of `dapple-wgsl` does not support the basis.
+        NotInShader {
+            /// Description of what is not supported.
+            what: &'static str,
+        } => "the shader does not support {what}";
         /// The texture has no measured range.
         NoRange {
             /// Description of the textures that have a measured range.

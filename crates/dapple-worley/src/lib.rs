@@ -105,6 +105,7 @@ mod radial;
 mod ranges;
 mod scattered;
 mod set;
+mod shader;
 mod voronoi;
 
 mod dispatch;

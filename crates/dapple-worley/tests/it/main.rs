@@ -19,6 +19,7 @@ mod ranges;
 #[cfg(feature = "serde")]
 mod serialized;
 mod set;
+mod shader;
 mod sheet;
 mod slice;
 mod stability;
