@@ -78,6 +78,16 @@ pub enum Module {
     GradientNoise4d,
     /// Sums of octaves.
     Fractal,
+    /// Correctly rounded square roots.
+    Root,
+    /// Ids of feature points.
+    CellId,
+    /// Parts that Worley's basis shares in all dimensions.
+    Worley,
+    /// Worley's basis in two dimensions: the two nearest feature points.
+    Worley2d,
+    /// Worley's basis in three dimensions: the two nearest feature points.
+    Worley3d,
 }
 
 /// Description of a module.
@@ -118,6 +128,11 @@ entries! {
     GradientNoise3d = "gradient_noise_3d" [Exact, Hash, Place3d, GradientNoise, GradientEdges],
     GradientNoise4d = "gradient_noise_4d" [Exact, Hash, Place4d, GradientNoise, GradientEdges],
     Fractal = "fractal" [Exact],
+    Root = "root" [],
+    CellId = "cell_id" [],
+    Worley = "worley" [Hash],
+    Worley2d = "worley_2d" [Exact, Hash, Place2d, Root, CellId, Worley],
+    Worley3d = "worley_3d" [Exact, Hash, Place3d, Root, CellId, Worley],
 }
 
 impl Module {

@@ -1,6 +1,7 @@
 //! The shaders of `dapple-wgsl` against the CPU: all bits are equal.
 
 mod gradient_noise;
+mod worley;
 
 use dapple_hash::Seed;
 use dapple_hash::rand_core::Rng;

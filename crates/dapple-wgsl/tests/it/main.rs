@@ -83,4 +83,6 @@ fn shaders_are_short() {
     };
     let noise = lines(Module::GradientNoise2d);
     assert!(noise <= 80, "{noise} lines");
+    let worley = lines(Module::Worley2d);
+    assert!(worley <= 160, "{worley} lines");
 }
