@@ -20,6 +20,7 @@ mod synth;
 mod tile;
 mod watch;
 mod wavelet;
+mod wgsl;
 mod worley;
 
 use crate::error::Exit;
@@ -41,6 +42,7 @@ pub(crate) enum Command {
     Pups(Box<pups::Args>),
     Noise(Box<noise::Args>),
     Wavelet(Box<wavelet::Args>),
+    Wgsl(wgsl::Args),
     Tile(Box<tile::Args>),
     Copies(Box<copies::Args>),
     Blend(Box<blend::Args>),
@@ -71,6 +73,7 @@ pub(crate) fn run(command: &Command, context: &Context) -> Result<Exit> {
         Command::Pups(args) => pups::run(args, context),
         Command::Noise(args) => noise::run(args, context),
         Command::Wavelet(args) => wavelet::run(args, context),
+        Command::Wgsl(args) => wgsl::run(args),
         Command::Tile(args) => tile::run(args, context),
         Command::Copies(args) => copies::run(args, context),
         Command::Blend(args) => blend::run(args, context),

@@ -1,6 +1,6 @@
 //! Parses words on the command line. They are case-insensitive, and `-` and `_` are equivalent.
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, Str, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{Arg, Command, Error};
 use dapple::raster::Named;
@@ -70,6 +70,16 @@ impl<T: Named> NamedValueParser<T> {
 }
 
 impl<T> NamedValueParser<T> {
+    /// Creates a parser of `values`, which are pairs of a name and a value without help text.
+    pub(crate) fn of(values: impl IntoIterator<Item = (impl Into<Str>, T)>) -> Self {
+        let values = values.into_iter();
+        Self(
+            values
+                .map(|(name, value)| (PossibleValue::new(name), value))
+                .collect(),
+        )
+    }
+
     /// Creates a parser that accepts no value, to which [`or`](Self::or) adds values.
     pub(crate) fn none() -> Self {
         Self(Vec::new())

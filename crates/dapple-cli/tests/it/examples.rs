@@ -5,7 +5,7 @@
 use crate::support::{Folder, assert_done, stdout};
 use std::fs;
 
-const SUBCOMMANDS: [&str; 20] = [
+const SUBCOMMANDS: [&str; 21] = [
     "bake",
     "watch",
     "studio",
@@ -16,6 +16,7 @@ const SUBCOMMANDS: [&str; 20] = [
     "pups",
     "noise",
     "wavelet",
+    "wgsl",
     "tile",
     "copies",
     "blend",
@@ -99,6 +100,11 @@ fn examples_of_fields_run() {
     run_examples(&["pups"]);
     run_examples(&["noise"]);
     run_examples(&["wavelet"]);
+}
+
+#[test]
+fn examples_of_wgsl_run() {
+    run_examples(&["wgsl"]);
 }
 
 #[test]

@@ -29,5 +29,6 @@ mod support;
 mod synthesis;
 mod turned_examples;
 mod watch;
+mod wgsl;
 mod whole_materials;
 mod words;

@@ -1,0 +1,112 @@
+//! `dapple wgsl`: prints shaders that compute the noise of the command.
+
+use crate::args::seed;
+use crate::error::{Exit, usage};
+use crate::job::say;
+use crate::words::{NamedValueParser, with_dashes};
+use anyhow::Result;
+use dapple::hash::Seed;
+use dapple::noise::{GradientNoise, GradientNoise2, GradientNoise3, GradientNoise4};
+use dapple::worley::{Dimensions, Scatter, Space, Worley, Worley2, Worley3};
+use dapple_wgsl::{Module, source};
+
+const EXAMPLES: &str = "\
+Examples:
+  dapple wgsl gradient-noise-2d > noise.wgsl
+  dapple wgsl gradient-noise-3d fractal > clouds.wgsl
+  dapple wgsl worley-2d --seed 7 --period 8 > cells.wgsl
+  dapple wgsl gradient-noise-2d --naga-oil > gradient_noise_2d.wgsl
+
+A file is complete: it imports nothing, and has no bindings and entry points. --seed adds the
+parameters as a constant; otherwise `shader_words` of the Rust crates gives them for a uniform.
+With --naga-oil, as for Bevy, a file is one module; print those that it imports, too.";
+
+/// Print noise as a shader in WGSL, with the same bits as here.
+#[derive(clap::Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// Modules to print; each file contains what they need.
+    #[arg(required = true, value_name = "MODULE", value_parser = NamedValueParser::of(Module::ALL.iter().map(|module| (with_dashes(module.name()), *module))))]
+    modules: Vec<Module>,
+
+    /// Print a single module with its import path, for naga_oil.
+    #[arg(long, conflicts_with = "seed")]
+    naga_oil: bool,
+
+    /// Add the parameters of this random seed as constants.
+    #[arg(long, value_name = "N", value_parser = seed)]
+    seed: Option<u64>,
+
+    /// Period along all axes, in cells.
+    #[arg(long, value_name = "N", requires = "seed", value_parser = clap::value_parser!(u32).range(1..=1 << 31))]
+    period: Option<u32>,
+
+    /// Place one point in each cell, at most this far from the center, from 0 to 1.
+    #[arg(long, value_name = "PART", requires = "seed")]
+    jitter: Option<f64>,
+}
+
+/// Prints the shader.
+///
+/// # Errors
+///
+/// If the jitter is out of range, several modules for naga_oil are asked for, or standard output cannot be written.
+pub(crate) fn run(args: &Args) -> Result<Exit> {
+    if args.naga_oil {
+        let [module] = args.modules[..] else {
+            return Err(usage("--naga-oil prints one module at a time"));
+        };
+        say(module.naga_oil().trim_end())?;
+        return Ok(Exit::Done);
+    }
+    let mut text = source(&args.modules);
+    if let Some(seed) = args.seed {
+        for &module in &args.modules {
+            text += &constant(module, Seed(seed), args)?;
+        }
+    }
+    say(text.trim_end())?;
+    Ok(Exit::Done)
+}
+
+/// Returns the declaration of the parameters of a module; empty if it has none.
+fn constant(module: Module, seed: Seed, args: &Args) -> Result<String> {
+    Ok(match module {
+        Module::GradientNoise2d => noise("NOISE_2D", GradientNoise2::new(seed), args)?,
+        Module::GradientNoise3d => noise("NOISE_3D", GradientNoise3::new(seed), args)?,
+        Module::GradientNoise4d => noise("NOISE_4D", GradientNoise4::new(seed), args)?,
+        Module::Worley2d => worley("WORLEY_2D", Worley2::new(seed), args)?,
+        Module::Worley3d => worley("WORLEY_3D", Worley3::new(seed), args)?,
+        _ => String::new(),
+    })
+}
+
+fn noise<const N: usize>(name: &str, noise: GradientNoise<N>, args: &Args) -> Result<String> {
+    let words = noise.with_period([args.period; N])?.shader_words(1.0)?;
+    let [keys, period, offset] = [0, 4, 8].map(|at| vector(&words[at..at + 4]));
+    Ok(format!(
+        "\nconst {name} = GradientNoise({keys}, {period}, {offset}, 1.0);\n"
+    ))
+}
+
+fn worley<const N: usize>(name: &str, worley: Worley<N>, args: &Args) -> Result<String>
+where
+    Dimensions: Space<N>,
+{
+    let mut worley = worley.with_period([args.period; N])?;
+    if let Some(jitter) = args.jitter {
+        worley = worley.with_scatter(Scatter::Jittered { jitter })?;
+    }
+    let words = worley.shader_words()?;
+    let [first, second, period, low, high] = [0, 4, 8, 12, 16].map(|at| vector(&words[at..at + 4]));
+    let [least, jitter] = [words[20], words[21]];
+    Ok(format!(
+        "\nconst {name} = Worley(\n    array({first}, {second}),\n    {period},\n    array({low}, {high}),\n    {least}u,\n    {jitter}u,\n);\n"
+    ))
+}
+
+/// Returns four words as a vector of WGSL.
+fn vector(words: &[u32]) -> String {
+    let words: Vec<_> = words.iter().map(|word| format!("{word}u")).collect();
+    format!("vec4({})", words.join(", "))
+}
