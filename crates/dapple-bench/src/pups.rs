@@ -8,7 +8,6 @@
 mod alone;
 #[cfg(feature = "peers")]
 mod beside_spade;
-mod edits;
 
 use crate::harness::Bench;
 use crate::naive::Naive;
@@ -23,8 +22,7 @@ use dapple_raster::{Raster, Window};
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     #[cfg(feature = "peers")]
     beside_spade::run(bench)?;
-    alone::run(bench)?;
-    edits::run(bench)
+    alone::run(bench)
 }
 
 /// Width and height of the images in pixels.

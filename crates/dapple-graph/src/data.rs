@@ -111,7 +111,7 @@ impl TryFrom<GraphData> for Graph {
 
 #[cfg(test)]
 mod tests {
-    use crate::{EdgeDirection, EditableDelaunay, Graph, PointSet, delaunay, gabriel, k_nearest};
+    use crate::{EdgeDirection, Graph, PointSet, delaunay, gabriel, k_nearest};
     use dapple_points::hash::Seed;
     use dapple_points::{Domain, white_noise};
     use glam::DVec2;
@@ -135,7 +135,6 @@ mod tests {
             let empty = PointSet::new(*points.domain(), Vec::new()).unwrap();
             for graph in [
                 delaunay(&points).unwrap(),
-                EditableDelaunay::new(&points).unwrap().to_graph(),
                 delaunay(&empty).unwrap(),
                 gabriel(&points).unwrap(),
                 k_nearest(&points, 3, EdgeDirection::Directed).unwrap(),

@@ -14,8 +14,6 @@
 //! whose Voronoi cells share a side of positive length. It is the same for all images and does not depend on the
 //! origin of the domain.
 
-mod buckets;
-mod editable;
 mod images;
 mod order;
 mod patch;
@@ -23,7 +21,6 @@ mod star;
 mod tiles;
 pub(crate) mod triangles;
 
-pub use editable::{EditableDelaunay, Star};
 pub use triangles::{Triangle, delaunay_triangles, delaunay_triangles_cancellable};
 
 use crate::grid::{LazyGrid, TooThin};

@@ -32,7 +32,6 @@
 //! |---|---|---|
 //! | a Delaunay graph | [`delaunay`] | 457 ns/point for a million points on a torus, 286 for 700 |
 //! | its triangles | [`Graph::triangles`], [`delaunay_triangles`] | |
-//! | a graph that changes point by point | [`EditableDelaunay`] | a tenth of a millisecond for an edit among 40,000 points |
 //! | Voronoi cells, vertices, sides | [`Voronoi`] | the Delaunay graph first |
 //! | the nearest point of a position | [`Voronoi::locate`] | a walk from a cell nearby, such as the result of the last query |
 //! | a cell within a rectangle | [`VoronoiCell::clipped`] | |
@@ -94,8 +93,7 @@ pub use dapple_points as points;
 pub use dapple_points::{IsCancelled, PointIdx, PointSet, glam};
 pub use dapple_raster as raster;
 pub use delaunay::{
-    EditableDelaunay, Star, Triangle, delaunay, delaunay_cancellable, delaunay_triangles,
-    delaunay_triangles_cancellable,
+    Triangle, delaunay, delaunay_cancellable, delaunay_triangles, delaunay_triangles_cancellable,
 };
 pub use error::{GraphError, GraphErrorKind};
 pub use gabriel::{gabriel, gabriel_cancellable};

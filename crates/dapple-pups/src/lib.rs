@@ -40,7 +40,6 @@
 //! |---|---|---|
 //! | one | [`sample`](dapple_raster::FieldExt::sample) | 42.0 ns |
 //! | a window | [`to_raster`](dapple_raster::Field::to_raster), [`render`](dapple_raster::Field::render) | 1.67 ns/pixel, 3.37 with orientations |
-//! | what an edit changed | [`EditablePups::windows`], then [`EditablePups::render`] | 0.13 ms in an image of 1000 × 1000 pixels |
 //!
 //! Times are from one thread of a server processor (AMD EPYC). With 10,000 points a raster takes 3.79 ns/pixel.
 //!
@@ -102,8 +101,6 @@ mod sink;
 mod assign;
 mod recipes;
 
-mod editable;
-
 #[cfg(feature = "schema")]
 mod schema;
 
@@ -118,7 +115,6 @@ pub use dapple_points as points;
 pub use dapple_points::{Cancel, IsCancelled};
 pub use dapple_raster as raster;
 pub(crate) use dapple_raster::{Range, range};
-pub use editable::{Changed, EditablePups};
 pub use error::{PupsError, PupsErrorKind};
 pub use glam;
 pub use options::{Orientation, PupsOptions};

@@ -133,11 +133,7 @@ impl Net {
     }
 
     /// Creates a net for `n_points` points, which must be added in order.
-    pub(crate) fn empty(
-        domain: Domain,
-        options: PupsOptions,
-        n_points: usize,
-    ) -> Result<Self, PupsError> {
+    fn empty(domain: Domain, options: PupsOptions, n_points: usize) -> Result<Self, PupsError> {
         options.check(n_points)?;
         let size = domain.size;
         let holds = size.min_element() >= 1e-18 && size.max_element() <= 1e18;
@@ -163,12 +159,7 @@ impl Net {
     }
 
     /// Adds the next point; `axes` are the vectors of its axes, in order.
-    pub(crate) fn push(
-        &mut self,
-        point: PointIdx,
-        center: DVec2,
-        axes: &[DVec2],
-    ) -> Result<(), PupsError> {
+    fn push(&mut self, point: PointIdx, center: DVec2, axes: &[DVec2]) -> Result<(), PupsError> {
         let first_block = self.blocks.len();
         self.push_axes(point, axes)?;
         self.push_instances(point, center, axes, first_block);

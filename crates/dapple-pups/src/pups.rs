@@ -118,14 +118,6 @@ impl Pups {
         })
     }
 
-    /// Combines a net with the `points` that it was built from.
-    pub(crate) fn of_net(net: Net, points: PointSet) -> Self {
-        Self {
-            net: Arc::new(net),
-            points: Arc::new(points),
-        }
-    }
-
     /// Returns the number of control points.
     #[must_use]
     pub fn n_points(&self) -> usize {

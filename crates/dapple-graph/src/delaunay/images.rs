@@ -28,26 +28,6 @@ impl Cover {
         }
     }
 
-    /// Creates the square with half-side length `reach` around a position. Where it extends beyond an end of the
-    /// domain that does not wrap, it is unbounded, since there are no further images.
-    pub(super) fn about(lattice: &Lattice, place: DVec2, reach: f64) -> Self {
-        let (mut low, mut high) = (place - reach, place + reach);
-        for axis in (0..2).filter(|&axis| !lattice.wrap[axis]) {
-            if low[axis] < 0.0 {
-                low[axis] = f64::NEG_INFINITY;
-            }
-            if high[axis] > lattice.size[axis] {
-                high[axis] = f64::INFINITY;
-            }
-        }
-        Self { low, high }
-    }
-
-    /// Returns the corners of the rectangle.
-    pub(super) fn corners(&self) -> [DVec2; 2] {
-        [self.low, self.high]
-    }
-
     /// Returns the distance from a position in the rectangle to the rectangle's border.
     #[inline]
     pub(super) fn depth(&self, at: DVec2) -> f64 {

@@ -116,22 +116,6 @@ impl<'a> Patch<'a> {
         Ok(rows)
     }
 
-    /// Computes the axes of each point with a row; `None` for a point whose axes an image outside the patch could
-    /// affect.
-    pub(super) fn certain_rows(&self) -> Vec<Option<Vec<Axis>>> {
-        let mut star = Star::default();
-        let row = |&vertex: &FixedVertexHandle| {
-            let vertex = self.triangulation.vertex(vertex);
-            star.read(vertex, self.cover.depth(at(vertex)));
-            (!star.is_doubtful()).then(|| {
-                let mut axes = Vec::new();
-                star.push_axes(self.lattice, &mut axes);
-                axes
-            })
-        };
-        self.vertices.iter().map(row).collect()
-    }
-
     /// Inserts images until the stars of the given rows are correct. Returns whether any image was inserted.
     fn complete(&mut self, doubtful: &[u32], grid: &LazyGrid<'a>) -> Result<bool, TooThin> {
         let mut star = Star::default();

@@ -1,7 +1,6 @@
 //! Tests of graphs against searches through all pairs, through the public interface.
 
 mod delaunay_oracle;
-mod editable;
 mod other_graphs;
 mod thin;
 mod voronoi;

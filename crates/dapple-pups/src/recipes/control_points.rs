@@ -1,13 +1,12 @@
 //! Builds textures from individual control points.
 
 use crate::{
-    LabelTexture, NetField, NetOptions, Orientation, Orientations, Pups, PupsError, PupsErrorKind,
-    PupsField, PupsRecipe, Range, own_labels, range,
+    LabelTexture, NetOptions, Orientation, Orientations, PupsError, PupsErrorKind, PupsField,
+    PupsRecipe, Range, own_labels, range,
 };
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointSet};
 use glam::{DVec2, DVec3};
-use std::sync::Arc;
 
 /// Texture of control points that are given one by one.
 #[derive(Clone, Debug)]
@@ -173,37 +172,24 @@ pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, 
         None => net.pups(&points, seed)?,
     };
     // The texture has hard cells with shared labels only if every point has a label.
-    let numbers = options.numbers(&options.points)?;
+    let numbers = options.numbers()?;
     let labels: Option<Vec<u32>> = options.points.iter().map(|point| point.label).collect();
     Ok(match (options.cells, labels) {
+        (Cells::Mixed, _) => PupsField::numbers(pups.texture(numbers)?),
         (Cells::Hard, Some(labels)) => {
             let values = options.values.clone();
             PupsField::numbers(LabelTexture::new(pups, labels, values)?)
         }
-        (cells, _) => PupsField::Numbers(cells.texture(pups, numbers)?),
+        (Cells::Hard, None) => {
+            let labels = own_labels(numbers.len());
+            PupsField::numbers(LabelTexture::new(pups, labels, numbers)?)
+        }
     })
-}
-
-impl Cells {
-    /// Builds the texture of a net whose points have the given values.
-    pub(crate) fn texture(
-        self,
-        pups: Pups,
-        values: Vec<f32>,
-    ) -> Result<Arc<dyn NetField>, PupsError> {
-        Ok(match self {
-            Self::Mixed => Arc::new(pups.texture(values)?),
-            Self::Hard => {
-                let labels = own_labels(values.len());
-                Arc::new(LabelTexture::new(pups, labels, values)?)
-            }
-        })
-    }
 }
 
 impl ControlPoints {
     /// Returns the points' positions, in order.
-    pub(crate) fn point_set(&self) -> Result<PointSet, PupsError> {
+    fn point_set(&self) -> Result<PointSet, PupsError> {
         let positions = self.points.iter().map(|point| DVec2::new(point.x, point.y));
         Ok(PointSet::new(self.points_domain()?, positions.collect())?)
     }
@@ -223,10 +209,7 @@ impl ControlPoints {
     }
 
     /// Returns the value of each point (for labeled points, the label's value).
-    pub(crate) fn numbers<'a>(
-        &self,
-        points: impl IntoIterator<Item = &'a ControlPoint>,
-    ) -> Result<Vec<f32>, PupsError> {
+    fn numbers(&self) -> Result<Vec<f32>, PupsError> {
         // A point has either its own value or its label's value.
         let number = |point: &ControlPoint| match (point.value, point.label) {
             (Some(value), None) => Ok(value),
@@ -244,11 +227,11 @@ impl ControlPoints {
                 Err(PupsError::new(PupsErrorKind::Conflict { rule }))
             }
         };
-        points.into_iter().map(number).collect()
+        self.points.iter().map(number).collect()
     }
 
     /// Returns the points' orientations; `None` if no point has one.
-    pub(crate) fn orientations(&self) -> Result<Option<Vec<DVec3>>, PupsError> {
+    fn orientations(&self) -> Result<Option<Vec<DVec3>>, PupsError> {
         let given: Vec<_> = self.points.iter().filter_map(|p| p.orientation).collect();
         let conflict = |rule| Err(PupsError::new(PupsErrorKind::Conflict { rule }));
         if given.is_empty() {

@@ -3,7 +3,6 @@
 
 mod bad_input;
 mod bits;
-mod editable;
 mod fading;
 mod gradient;
 mod oracle;
