@@ -2,7 +2,7 @@
 //!
 //! It faces +x, stands on the plane y = 0 and is about 8 units long.
 
-use super::polygonize::Solid;
+use dapple_models::solid::Solid;
 use glam::DVec3;
 
 /// Part of the creature that a point belongs to.

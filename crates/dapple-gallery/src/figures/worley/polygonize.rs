@@ -5,20 +5,14 @@
 //! vertex, first at the mean of the crossings on its edges and then moved onto the surface. Every edge that the
 //! surface crosses gets a quadrilateral between the four cells around it. Blocks of cells far from the surface are
 //! skipped.
+//!
+//! The mesh is only rendered, so it need not be manifold or evenly meshed like those of `dapple_models::polygonize`,
+//! whose other vertices would change the pixels of the figure.
 
+use dapple_models::solid::Solid;
 use dapple_preview::{Mesh, PreviewError};
 use glam::DVec3;
 use std::collections::BTreeMap;
-
-/// A solid given by its distance function.
-pub(super) trait Solid: Sync {
-    /// Returns the distance from the surface, negative inside. It may be approximate, but must not grow faster than
-    /// the true distance by more than a fifth.
-    fn distance(&self, position: DVec3) -> f64;
-
-    /// Returns two corners of a box around the solid, with some margin.
-    fn bounds(&self) -> [DVec3; 2];
-}
 
 /// Triangulates the surface of a solid on a grid of cells with the given side.
 pub(super) fn polygonize(solid: &dyn Solid, side: f64) -> Result<Mesh, PreviewError> {
@@ -167,24 +161,17 @@ fn cells(low: Cell, size: Cell) -> impl Iterator<Item = Cell> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Net, Solid};
+    use super::Net;
+    use dapple_models::solid::Ball;
     use glam::DVec3;
-
-    struct Ball;
-
-    impl Solid for Ball {
-        fn distance(&self, position: DVec3) -> f64 {
-            position.length() - 1.0
-        }
-
-        fn bounds(&self) -> [DVec3; 2] {
-            [DVec3::splat(-1.3), DVec3::splat(1.3)]
-        }
-    }
 
     #[test]
     fn a_ball_is_closed_faces_outward_and_has_its_volume() {
-        let mut net = Net::new(&Ball, 0.07);
+        let ball = Ball {
+            center: DVec3::ZERO,
+            radius: 1.0,
+        };
+        let mut net = Net::new(&ball, 0.07);
         net.add_vertices();
         let triangles = net.triangles();
         let mut volume = 0.0;
