@@ -12,7 +12,6 @@
 //!
 //! [`documented`] lists the images of all crates. Each crate has its own file.
 
-mod base64;
 mod color;
 mod front;
 mod graph;
@@ -29,6 +28,7 @@ mod worley;
 
 use crate::{Panel, Picture};
 use anyhow::ensure;
+use base64::prelude::{BASE64_STANDARD as BASE64, Engine as _};
 use core::fmt::Write as _;
 use dapple_color::Code;
 use dapple_image::{Limits, PngImage, Transfer, decode_png, encode_png};
@@ -132,7 +132,7 @@ impl Strip {
         ensure!(!panels.is_empty(), "the strip {} is empty", self.name);
         let mut text = String::new();
         for panel in &panels {
-            let (label, data) = (&panel.label, base64::encode(&png(panel)?));
+            let (label, data) = (&panel.label, BASE64.encode(png(panel)?));
             writeln!(text, "![{label}]({DATA}{data} \"{label}\")")?;
         }
         let labels: Vec<_> = panels.iter().map(|panel| panel.label.as_str()).collect();
@@ -176,7 +176,7 @@ fn decode_markdown(markdown: &[u8]) -> Option<(String, Vec<PngImage>)> {
     let mut images = Vec::new();
     for part in parts {
         let (data, rest) = part.split_once(' ')?;
-        images.push(decode(&base64::decode(data).ok()?)?);
+        images.push(decode(&BASE64.decode(data).ok()?)?);
         text.push_str(rest);
     }
     Some((text, images))

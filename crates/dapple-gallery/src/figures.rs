@@ -7,8 +7,6 @@ pub(crate) mod surface;
 mod wavelet;
 mod worley;
 
-pub use surface::own::{Own, OwnTextured};
-
 use crate::{Figure, Paper};
 
 /// Returns the papers in page order.

@@ -37,6 +37,6 @@ pub mod lock;
 pub mod page;
 
 pub use figure::{Figure, Paper, Source};
-pub use figures::{Own, OwnTextured, figures, papers, select};
+pub use figures::{figures, papers, select};
 pub use lock::{LOCK_SIZE, Lock};
 pub use panel::{Panel, Picture};

@@ -20,7 +20,6 @@ mod fig_extra_sizes;
 mod fig_extra_symmetry;
 mod hooks;
 mod letter;
-pub(crate) mod own;
 mod puzzle;
 mod scales;
 pub(crate) mod stage;

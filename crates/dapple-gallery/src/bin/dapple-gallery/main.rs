@@ -4,11 +4,11 @@ mod check;
 mod command;
 mod docs;
 mod export;
-mod own;
 mod ranges;
 
 use anyhow::ensure;
-use command::{Command, HELP, Task};
+use clap::Parser;
+use command::Command;
 use dapple_gallery::{Figure, select};
 use dapple_raster::parallel;
 use std::io::{IsTerminal, stderr};
@@ -16,8 +16,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let command = command::parse(lexopt::Parser::from_env());
-    match command.and_then(|command| perform(&command)) {
+    match perform(&Command::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error:#}");
@@ -27,40 +26,46 @@ fn main() -> ExitCode {
 }
 
 fn perform(command: &Command) -> anyhow::Result<()> {
-    let out = command.out.as_deref();
-    let out = out.map_or_else(|| root().join("target/gallery"), Path::to_path_buf);
-    match &command.task {
-        Task::Help => say(HELP),
-        Task::Version => say(concat!("dapple-gallery ", env!("CARGO_PKG_VERSION"))),
-        Task::Own(own) => own::run(own, command.size, &out)?,
-        Task::Ranges => say(&ranges::table()?),
-        Task::Docs { check: true } => docs::check()?,
-        Task::Docs { check: false } => docs::write()?,
-        Task::List => selected(command)?
-            .iter()
-            .for_each(|figure| say(&figure.name())),
-        Task::Check => check::check(&selected(command)?, &lock_path())?,
-        Task::Bless => check::bless(&selected(command)?, &lock_path())?,
-        Task::Export { open } => {
-            let figures = selected(command)?;
-            let page = export::export(&figures, command.size, &out)?;
-            let shown = page.canonicalize().unwrap_or_else(|_| page.clone());
-            say(&format!("{} figures in {}", figures.len(), shown.display()));
-            if *open {
-                export::open(&page)?;
-            }
-        }
+    if command.docs {
+        return if command.check {
+            docs::check()
+        } else {
+            docs::write()
+        };
+    }
+    if command.ranges {
+        say(&ranges::table()?);
+        return Ok(());
+    }
+    let figures = selected(&command.filters)?;
+    if command.list {
+        figures.iter().for_each(|figure| say(&figure.name()));
+        return Ok(());
+    }
+    if command.check {
+        return check::check(&figures, &lock_path());
+    }
+    if command.bless {
+        return check::bless(&figures, &lock_path());
+    }
+    let out = command.out.clone();
+    let out = out.unwrap_or_else(|| root().join("target/gallery"));
+    let page = export::export(&figures, command.size(), &out)?;
+    let shown = page.canonicalize().unwrap_or_else(|_| page.clone());
+    say(&format!("{} figures in {}", figures.len(), shown.display()));
+    if command.open {
+        export::open(&page)?;
     }
     Ok(())
 }
 
 /// Returns the figures that the filters select; fails if there are none.
-fn selected(command: &Command) -> anyhow::Result<Vec<&'static Figure>> {
-    let figures = select(&command.filter);
+fn selected(filters: &[String]) -> anyhow::Result<Vec<&'static Figure>> {
+    let figures = select(filters);
     ensure!(
         !figures.is_empty(),
         "no figure has `{}` in its name; `--list` shows all names",
-        command.filter.join("` or `")
+        filters.join("` or `")
     );
     Ok(figures)
 }

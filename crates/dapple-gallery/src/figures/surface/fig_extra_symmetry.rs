@@ -4,8 +4,7 @@
 //! No directions are given: a field with one direction runs down the model, and the others are the smoothest fields.
 
 use super::exemplar::EXEMPLARS;
-use super::own::views;
-use super::stage::lit;
+use super::stage::{lit, views};
 use super::textured::Job;
 use crate::draw::sheet;
 use crate::figure::source;
@@ -79,7 +78,8 @@ fn four_sides(
     let mesh = textured.synthesizer.surface().mesh();
     let views = views(mesh);
     sheet([size; 2], [2, 2], 0, LinearRgb::BLACK, |at, size| {
-        let (_, view) = &views[at as usize];
-        lit(mesh, view, size, |surface| textured.color(surface))
+        lit(mesh, &views[at as usize], size, |surface| {
+            textured.color(surface)
+        })
     })
 }

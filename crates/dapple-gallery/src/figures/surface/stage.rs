@@ -28,6 +28,26 @@ impl View {
     }
 }
 
+/// Returns views from four sides, slightly from above, far enough away to show the whole mesh.
+pub(super) fn views(mesh: &dapple_synth::mesh::Mesh) -> [View; 4] {
+    let positions = mesh.positions().iter().copied();
+    let low = positions.clone().fold(DVec3::INFINITY, DVec3::min);
+    let high = positions.clone().fold(DVec3::NEG_INFINITY, DVec3::max);
+    let target = low * 0.5 + high * 0.5;
+    let radius = positions.map(|at| at.distance(target)).fold(0.0, f64::max);
+    let view = |toward: DVec3| View {
+        eye: target + toward.normalize() * (3.6 * radius),
+        target,
+        fov: 0.6,
+    };
+    [
+        view(DVec3::new(0.5, 0.4, 1.0)),
+        view(DVec3::new(1.0, 0.4, -0.5)),
+        view(DVec3::new(-0.5, 0.4, -1.0)),
+        view(DVec3::new(-1.0, 0.4, 0.5)),
+    ]
+}
+
 /// Renders a mesh in a plain room, with two lights from above that follow the eye.
 pub(crate) fn lit(
     mesh: &dapple_synth::mesh::Mesh,
