@@ -14,3 +14,8 @@ mod gpu;
 
 #[cfg(feature = "gpu")]
 pub use gpu::Gpu;
+
+/// Runs the program of the README.
+#[cfg(all(doctest, feature = "gpu"))]
+#[doc = include_str!("../../dapple-wgsl/README.md")]
+mod readme {}

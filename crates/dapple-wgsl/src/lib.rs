@@ -63,7 +63,7 @@ pub enum Module {
     /// Positions in the plane, as cell and fraction.
     Place2d,
     /// Parts that gradient noise of all dimensions shares.
-    GradientNoise,
+    GradientNoiseParts,
     /// Gradient noise in two dimensions.
     GradientNoise2d,
     /// Positions in space, as cell and fraction.
@@ -76,6 +76,10 @@ pub enum Module {
     GradientNoise3d,
     /// Gradient noise in four dimensions.
     GradientNoise4d,
+    /// Gradient noise in two dimensions with its derivatives.
+    GradientNoise2dWithGradient,
+    /// Gradient noise in three dimensions with its derivatives.
+    GradientNoise3dWithGradient,
     /// Sums of octaves.
     Fractal,
     /// Correctly rounded square roots.
@@ -83,7 +87,7 @@ pub enum Module {
     /// Ids of feature points.
     CellId,
     /// Parts that Worley's basis shares in all dimensions.
-    Worley,
+    WorleyParts,
     /// Worley's basis in two dimensions: the two nearest feature points.
     Worley2d,
     /// Worley's basis in three dimensions: the two nearest feature points.
@@ -120,19 +124,23 @@ entries! {
     Exact = "exact" [],
     Hash = "hash" [],
     Place2d = "place_2d" [],
-    GradientNoise = "gradient_noise" [Exact, Hash],
-    GradientNoise2d = "gradient_noise_2d" [Exact, Hash, Place2d, GradientNoise],
+    GradientNoiseParts = "gradient_noise_parts" [Exact, Hash],
+    GradientNoise2d = "gradient_noise_2d" [Exact, Hash, Place2d, GradientNoiseParts],
     Place3d = "place_3d" [],
     Place4d = "place_4d" [],
     GradientEdges = "gradient_edges" [],
-    GradientNoise3d = "gradient_noise_3d" [Exact, Hash, Place3d, GradientNoise, GradientEdges],
-    GradientNoise4d = "gradient_noise_4d" [Exact, Hash, Place4d, GradientNoise, GradientEdges],
+    GradientNoise3d = "gradient_noise_3d" [Exact, Hash, Place3d, GradientNoiseParts, GradientEdges],
+    GradientNoise4d = "gradient_noise_4d" [Exact, Hash, Place4d, GradientNoiseParts, GradientEdges],
+    GradientNoise2dWithGradient = "gradient_noise_2d_with_gradient"
+        [Exact, Place2d, GradientNoiseParts, GradientNoise2d],
+    GradientNoise3dWithGradient = "gradient_noise_3d_with_gradient"
+        [Exact, Hash, Place3d, GradientNoiseParts, GradientEdges, GradientNoise3d],
     Fractal = "fractal" [Exact],
     Root = "root" [],
     CellId = "cell_id" [],
-    Worley = "worley" [Hash],
-    Worley2d = "worley_2d" [Exact, Hash, Place2d, Root, CellId, Worley],
-    Worley3d = "worley_3d" [Exact, Hash, Place3d, Root, CellId, Worley],
+    WorleyParts = "worley_parts" [Hash],
+    Worley2d = "worley_2d" [Exact, Hash, Place2d, Root, CellId, WorleyParts],
+    Worley3d = "worley_3d" [Exact, Hash, Place3d, Root, CellId, WorleyParts],
 }
 
 impl Module {

@@ -72,6 +72,45 @@ fn compare_values<const D: usize>(module: Module, new: impl Fn(Seed) -> Gradient
     }
 }
 
+/// Compares values with derivatives, also of an octave, which has an offset.
+fn compare_gradients<const D: usize>(module: Module, new: impl Fn(Seed) -> GradientNoise<D>) {
+    let Some(gpu) = Gpu::new() else { return };
+    let words_out = D + 1;
+    let shader = module.source()
+        + &bindings(D)
+        + &format!(
+            "
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
+    var values = gradient_noise_{D}d_with_gradient(octaves[0], read_place(id.x), zero);
+    for (var i = 0u; i < {words_out}u; i++) {{
+        out[{words_out}u * id.x + i] = values[i];
+    }}
+}}"
+        );
+    for (seed, bits) in [2, 20].into_iter().enumerate() {
+        let noise = new(Seed(seed as u64)).with_period([Some(6); D]);
+        let sum = noise
+            .expect("a period")
+            .fractal(3, 0.5, 1.0, FractalShape::Sum);
+        let sum = sum.expect("a sum");
+        let (octave, ..) = sum.octaves().last().expect("three octaves");
+        for noise in [new(Seed(seed as u64)), *octave] {
+            let places = places::<D>(seed as u64, bits);
+            let mut on_cpu = Vec::new();
+            for place in &places {
+                let (value, gradient) = noise.sample_with_gradient(place.position());
+                on_cpu.push(value.to_bits());
+                on_cpu.extend(gradient.map(f32::to_bits));
+            }
+            let parameters = noise.shader_words(1.0).expect("parameters");
+            let inputs = [&[0][..], &parameters, &words(&places)];
+            let on_gpu = gpu.compute(&shader, &inputs, N, words_out);
+            assert_eq!(differing(&on_cpu, &on_gpu), 0, "cells of {bits} bits");
+        }
+    }
+}
+
 /// Compares fractal sums, near and so far that the last octave still has cells of 32 bits.
 fn compare_sums<const D: usize>(module: Module, new: impl Fn(Seed) -> GradientNoise<D>) {
     let Some(gpu) = Gpu::new() else { return };
@@ -188,6 +227,12 @@ fn gradient_noise_3d_has_the_bits_of_the_cpu() {
 #[test]
 fn gradient_noise_4d_has_the_bits_of_the_cpu() {
     compare_values(Module::GradientNoise4d, GradientNoise4::new);
+}
+
+#[test]
+fn derivatives_have_the_bits_of_the_cpu() {
+    compare_gradients(Module::GradientNoise2dWithGradient, GradientNoise2::new);
+    compare_gradients(Module::GradientNoise3dWithGradient, GradientNoise3::new);
 }
 
 #[test]

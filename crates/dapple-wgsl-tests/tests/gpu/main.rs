@@ -1,6 +1,7 @@
 //! The shaders of `dapple-wgsl` against the CPU: all bits are equal.
 
 mod gradient_noise;
+mod naga_oil;
 mod worley;
 
 use dapple_hash::Seed;
