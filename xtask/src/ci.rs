@@ -26,6 +26,8 @@ pub(crate) enum Step {
     Tidy,
     /// The license texts of third-party crates, as in `cargo xtask licenses --check`.
     Licenses,
+    /// The shaders on a GPU, or on a processor that emulates one, compared with the CPU.
+    Shaders,
     /// Each published crate built alone, without features and with each of its features, and its tests without `rayon`.
     Features,
     /// The package of each published crate, as uploaded to a registry.
@@ -44,13 +46,14 @@ pub(crate) enum Step {
 
 impl Step {
     /// All steps, in the order in which CI runs them.
-    pub(crate) const ALL: [Self; 13] = [
+    pub(crate) const ALL: [Self; 14] = [
         Self::Test,
         Self::Fmt,
         Self::Clippy,
         Self::Doc,
         Self::Tidy,
         Self::Licenses,
+        Self::Shaders,
         Self::Features,
         Self::Package,
         Self::Exchange,
@@ -69,6 +72,7 @@ impl Step {
             Self::Doc => "doc",
             Self::Tidy => "tidy",
             Self::Licenses => "licenses",
+            Self::Shaders => "shaders",
             Self::Features => "features",
             Self::Package => "package",
             Self::Exchange => "exchange",
@@ -105,6 +109,11 @@ fn run(shell: &Shell, step: Step) -> anyhow::Result<()> {
         Step::Doc => return doc(shell),
         Step::Tidy => return tidy::tidy(shell),
         Step::Licenses => return crate::licenses::licenses(shell, true),
+        // Only these tests compile `wgpu`. They skip themselves without a graphics adapter.
+        Step::Shaders => cmd!(
+            shell,
+            "cargo test --package dapple-wgsl-tests --features gpu"
+        ),
         Step::Features => return features(shell),
         Step::Package => return package(shell),
         Step::Exchange => return exchange::exchange(shell),

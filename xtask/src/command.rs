@@ -29,7 +29,7 @@ Usage: cargo xtask <command>
   licenses [--check]    rewrite the texts of the licenses of other people's crates, or compare them
   tidy                  check the house rules: layers, lints, headers, lengths, figures.lock
   ci [step...]          what CI runs, or some of its steps: test fmt clippy doc tidy
-                      licenses features package exchange page web python fuzz";
+                      licenses shaders features package exchange page web python fuzz";
 
 /// A command of `cargo xtask` and its arguments.
 #[derive(Debug, PartialEq)]
