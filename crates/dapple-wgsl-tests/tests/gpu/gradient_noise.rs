@@ -211,7 +211,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
         );
     let parameters = noise.shader_words(1.0).expect("parameters");
     let on_gpu = gpu.compute(&shader, &[&[0], &parameters, &input], N, 1);
-    assert_eq!(differing(&on_cpu, &on_gpu), 0);
+    assert_eq!(differing(&on_cpu, &on_gpu), 0, "{D} dimensions");
 }
 
 #[test]

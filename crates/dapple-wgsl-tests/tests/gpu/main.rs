@@ -72,6 +72,7 @@ fn without_barrier(source: &str) -> String {
 }
 
 /// Counts the results whose bits differ, and prints the first.
+#[expect(clippy::print_stdout, reason = "it is shown if a test fails")]
 fn differing(on_cpu: &[u32], on_gpu: &[u32]) -> usize {
     assert_eq!(on_cpu.len(), on_gpu.len(), "number of results");
     let pairs = on_cpu.iter().zip(on_gpu).enumerate();
