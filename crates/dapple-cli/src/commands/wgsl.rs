@@ -29,7 +29,7 @@ pub(crate) struct Args {
     #[arg(required = true, value_name = "MODULE", value_parser = NamedValueParser::of(Module::ALL.iter().map(|module| (with_dashes(module.name()), *module))))]
     modules: Vec<Module>,
 
-    /// Print a single module with its import path, for naga_oil.
+    /// Print a single module with its import path, as Bevy needs it.
     #[arg(long, conflicts_with = "seed")]
     naga_oil: bool,
 
@@ -50,7 +50,7 @@ pub(crate) struct Args {
 ///
 /// # Errors
 ///
-/// If the jitter is out of range, several modules for naga_oil are asked for, or standard output cannot be written.
+/// If the jitter is out of range, several modules are asked for with `--naga-oil`, or standard output cannot be written.
 pub(crate) fn run(args: &Args) -> Result<Exit> {
     if args.naga_oil {
         let [module] = args.modules[..] else {
