@@ -12,7 +12,7 @@ import dapple_textures as dp
 GROUPS = {
     "Fields": ["worley", "Worley", "gradient_noise", "wavelet_noise", "constant", "Field", "ColorField", "Features"],
     "Points and graphs": ["Domain", "Points", "poisson_disk", "extend_poisson_disk", "nested_poisson_disk", "jittered_grid", "white_noise", "spectrum", "Spectrum", "EmptyCircle", "delaunay", "gabriel", "yao", "k_nearest", "Graph", "Axes"],
-    "Partitions of unity": ["pups", "Partition", "Weights", "angle_orientations", "biased_labels", "grouped_labels", "outward_orientations", "random_labels", "random_orientations", "random_values", "reference_labels"],
+    "Partitions of unity": ["pups", "Partition", "Net", "Weights", "angle_orientations", "biased_labels", "grouped_labels", "outward_orientations", "random_labels", "random_orientations", "random_values", "reference_labels"],
     "Textures of control points": [],
     "Materials": ["Recipe", "read_recipe", "read_recipe_images", "Plan", "MapInfo", "map_names", "shards", "ShardList"],
     "Pictures": ["read_image", "write_image", "write_maps", "decode_image", "encode_image", "ramp", "palettes", "linear_from_srgb", "srgb_from_linear", "normal_map", "ambient_occlusion", "curvature"],

@@ -18,6 +18,7 @@ mod images;
 mod maps;
 mod meshes;
 mod models;
+mod options;
 mod pictures;
 mod points;
 mod pups;

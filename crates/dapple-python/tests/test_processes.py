@@ -44,7 +44,7 @@ def test_deep_fields_are_pickled_or_refused():
     leaves = [
         dp.worley(scatter={"poisson": {"density": 3}}, octaves={"count": 2}),
         dp.noise(dp.Domain(1), spacing=0.3, seed=1),
-        dp.pups(points, np.ones(len(points)), orientations="random"),
+        dp.pups(points, np.ones(len(points)), net={"orientations": "random"}),
         dp.Recipe.builtin("flagstone").plan().field(),
     ]
     for chain in chains:

@@ -39,9 +39,9 @@ def test_windows_and_samples_are_those_of_the_whole(points: dp.Points, values: n
         dp.pups(points, values),
         dp.pups(points, values[:3], labels=labels),
         dp.pups(points, values[:3, 0], labels=labels),
-        dp.pups(points, values[:, 0], graph=dp.yao(points), weight={"oscillating": {"dips": 3, "depth": 0.5}}),
+        dp.pups(points, values[:, 0], graph=dp.yao(points), net=dp.Net(weight={"oscillating": {"dips": 3, "depth": 0.5}})),
         dp.color_noise(dp.Domain((2, 1)), seed=2),
-        dp.pups(points, values, orientations="random", strength=0.9, seed=4),
+        dp.pups(points, values, net={"orientations": "random", "strength": 0.9}, seed=4),
     ]
     ys, xs = np.mgrid[:40, :80]
     centers = np.stack([(xs + 0.5) * (2 / 80), (ys + 0.5) * (1 / 40)], axis=-1)
@@ -72,7 +72,7 @@ def test_channels_are_fields(points: dp.Points, values: np.ndarray) -> None:
 
 def test_labels_make_cells(points: dp.Points, values: np.ndarray) -> None:
     n_points = len(points)
-    partition = dp.Partition(points, orientations="random", seed=3)
+    partition = dp.Partition(points, net={"orientations": "random"}, seed=3)
     strongest = partition.strongest((50, 100))
     assert strongest.dtype == np.uint32 and strongest.shape == (50, 100)
     cells = partition.field(values, labels=range(n_points)).render((50, 100))
@@ -126,8 +126,9 @@ def test_labels_and_orientations_follow_what_they_are_given(points: dp.Points) -
 
 
 def test_orientations_have_many_forms(points: dp.Points, values: np.ndarray) -> None:
-    def picture(orientations: object, **options: object) -> np.ndarray:
-        return dp.pups(points, values[:, 0], orientations=orientations, **options).render((30, 60))
+    def picture(orientations: object, seed: int = 0, **options: object) -> np.ndarray:
+        net = dp.Net(orientations=orientations, **options)
+        return dp.pups(points, values[:, 0], net=net, seed=seed).render((30, 60))
 
     plain = picture(None)
     assert np.array_equal(plain, picture("none"))
@@ -142,13 +143,13 @@ def test_orientations_have_many_forms(points: dp.Points, values: np.ndarray) -> 
 
 def test_fields_are_their_descriptions(points: dp.Points, values: np.ndarray) -> None:
     tokenize = pytest.importorskip("dask.base").tokenize
-    land = dp.pups(points, values[:, 0], graph=dp.gabriel(points), orientations="random")
+    land = dp.pups(points, values[:, 0], graph=dp.gabriel(points), net={"orientations": "random"})
     made = [
         land,
         land * 2.0 + dp.noise(dp.Domain((2, 1)), seed=3),
         dp.pups(points, values, labels=None),
         dp.pups(points, values[:5], labels=np.arange(len(points)) % 5),
-        dp.Partition(points, axis_scale=2.0),
+        dp.Partition(points, net=dp.Net(axis_scale=2.0)),
         dp.reference_texture(values[:4, :2].astype(np.float32), seed=3),
     ]
     for field in made:
@@ -202,10 +203,10 @@ def test_bad_input_is_refused_with_its_kind(points: dp.Points, values: np.ndarra
     kinds = {
         "count": lambda: dp.pups(points, few),
         "no_points": lambda: dp.pups(np.zeros((0, 2)), []),
-        "range": lambda: dp.pups(points, one, axis_scale=0.5),
+        "range": lambda: dp.pups(points, one, net={"axis_scale": 0.5}),
         "shape": lambda: dp.pups(points, values[None]),
         "different_points": lambda: dp.pups(points, one, graph=dp.delaunay([[0, 0], [1, 1], [1, 0]])),
-        "options": lambda: dp.pups(points, one, weight="linear"),
+        "options": lambda: dp.pups(points, one, net={"weight": "linear"}),
         "short_axis": lambda: dp.pups([[0, 0], [1, 0], [1e-12, 0]], [1, 2, 3]),
         "channels": lambda: dp.pups(points, np.ones((len(points), 0))),
         "graph": lambda: dp.pups([[0, 0], [0, 0]], [1, 2]),
@@ -216,9 +217,9 @@ def test_bad_input_is_refused_with_its_kind(points: dp.Points, values: np.ndarra
         assert error.value.kind == kind, (kind, error.value.kind, str(error.value))
     for call in [
         lambda: dp.pups(points, np.full(len(points), np.nan)),
-        lambda: dp.pups(points, one, strength=1.0, orientations="random"),
-        lambda: dp.pups(points, one, orientations=np.zeros((len(points), 3))),
-        lambda: dp.pups(points, one, orientations=np.zeros((3, 3))),
+        lambda: dp.pups(points, one, net={"strength": 1.0, "orientations": "random"}),
+        lambda: dp.pups(points, one, net={"orientations": np.zeros((len(points), 3))}),
+        lambda: dp.pups(points, one, net={"orientations": np.zeros((3, 3))}),
         lambda: dp.pups(points, few, labels=[0] * 3),
         lambda: dp.pups(points, few, labels=[5] * len(points)),
         lambda: dp.random_labels(10, 0),
@@ -246,7 +247,7 @@ def test_threads_do_not_change_fields(points: dp.Points, values: np.ndarray) -> 
         pictures = []
         for count in [1, 2]:
             dp.set_threads(count)
-            field = dp.pups(points, values, orientations="random")
+            field = dp.pups(points, values, net={"orientations": "random"})
             pictures.append((field.render((200, 400)), field.sample(np.random.default_rng(1).random((5000, 2)))))
         assert all(np.array_equal(one, two) for one, two in zip(*pictures, strict=True))
     finally:
@@ -261,7 +262,7 @@ def test_samples_on_corners_are_values_at_corners(points: dp.Points, values: np.
     assert np.array_equal(picture[:-1, :-1], color.sample(places))
     assert np.array_equal(picture[-1], picture[0]) and np.array_equal(picture[:, -1], picture[:, 0])
     assert np.array_equal(color.render((31, 71), samples="corners", window=np.s_[9:31, 70:71]), picture[9:31, 70:71])
-    partition = dp.Partition(points, orientations="random", seed=3)
+    partition = dp.Partition(points, net={"orientations": "random"}, seed=3)
     strongest = partition.strongest((31, 71), samples="corners")
     cells = partition.field(values, labels=range(len(points))).render((31, 71), samples="corners")
     assert np.array_equal(cells, values.astype(np.float32)[strongest])

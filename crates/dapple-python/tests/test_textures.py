@@ -17,7 +17,6 @@ KINDS: dict[str, Any] = json.loads(_native._texture_defaults())
 #: The names of functions that are not those of the textures.
 FUNCTIONS = {"reference": "reference_texture", "points": "control_points"}
 TRIANGLE = np.minimum(np.arange(32), 31 - np.arange(32)).astype(np.float32)[:, None] / 15
-NET = ["axis_scale", "weight", "orientations", "strength", "fade"]
 
 
 def function(kind: str) -> Any:
@@ -43,13 +42,14 @@ def test_options_and_defaults_are_those_of_recipes(kind: str) -> None:
     if kind == "points":
         options.pop("points")
     # Options that recipes leave out where they are the default.
-    expected = options | options.pop("net") | {"fade": 0.0} | ({"values": ()} if kind == "points" else {})
+    net = {"fade": 0.0} | options.pop("net")
+    expected = options | ({"values": ()} if kind == "points" else {})
     parameters = inspect.signature(function(kind)).parameters.values()
     given = {p.name: p.default for p in parameters if p.kind is p.KEYWORD_ONLY}
     assert given.pop("seed") == 0
     assert [p.name for p in parameters if p.kind is not p.KEYWORD_ONLY][-1] == "domain"
-    given["orientations"] = given["orientations"] or "none"
-    assert given.keys() == expected.keys() - {"net"}
+    assert given.pop("net") is None and made(kind, seed=2) == made(kind, net=net, seed=2)
+    assert given.keys() == expected.keys()
     for name, default in given.items():
         value = expected[name]
         if isinstance(default, str):
@@ -125,14 +125,14 @@ def test_options_reach_the_texture() -> None:
 
     assert size(dp.noise(torus, spacing=0.05)) > 1.5 * size(dp.noise(torus, spacing=0.2))
     assert size(dp.noise(torus, spacing={"count": 400})) > 1.5 * size(dp.noise(torus, spacing={"count": 30}))
-    assert size(dp.noise(torus, axis_scale=3.0)) < size(dp.noise(torus))
+    assert size(dp.noise(torus, net={"axis_scale": 3.0})) < size(dp.noise(torus))
     assert size(dp.octaves(torus, octaves=6)) > size(dp.octaves(torus, octaves=1))
     assert dp.cow(torus, probability=1, values=(0.25, 0.75)).render(16).tolist() == [[0.75] * 16] * 16
     red = dp.color_noise(torus, palette=np.array([[1, 0, 0]], np.float32)).render(8)
     assert np.array_equal(red, np.tile(np.float32([1, 0, 0]), (8, 8, 1)))
     hard = dp.control_points([{"x": 0.2, "y": 0.5, "value": 0}, {"x": 0.7, "y": 0.5, "value": 1}], torus, cells="hard")
     assert set(hard.render(16).ravel().tolist()) == {0.0, 1.0}
-    assert dp.cells(torus, orientations=None) != dp.cells(torus)
+    assert dp.cells(torus, net=dp.Net()) != dp.cells(torus)
     assert dp.noise(torus, spacing=1 / 8) == dp.noise(torus, spacing=np.float64(0.125))
 
 
@@ -140,8 +140,9 @@ def test_control_points_are_those_of_pups() -> None:
     points = dp.poisson_disk(dp.Domain(1), distance=0.2, seed=3)
     values = dp.random_values(len(points), seed=1)
     given = [{"x": x, "y": y, "value": v} for (x, y), v in zip(points.array.tolist(), values.tolist(), strict=True)]
-    texture = dp.control_points(given, dp.Domain(1), axis_scale=1.5, weight="quintic")
-    same = dp.pups(points, values, axis_scale=1.5, weight="quintic")
+    net = dp.Net(axis_scale=1.5, weight="quintic")
+    texture = dp.control_points(given, dp.Domain(1), net=net)
+    same = dp.pups(points, values, net=net)
     assert np.array_equal(texture.render(64), same.render(64))
 
 
@@ -163,7 +164,7 @@ def test_bad_options_are_refused() -> None:
     for call in [
         lambda: dp.noise(torus, spacing=-1.0),
         lambda: dp.noise(torus, spacing={"distnace": 1.0}),
-        lambda: dp.noise(torus, weight="linear"),  # type: ignore[arg-type]
+        lambda: dp.noise(torus, net={"weight": "linear"}),
         lambda: dp.cow(torus, probability=2.0),
         lambda: dp.cells(torus, points_per_cell=(0, 1)),
         lambda: dp.octaves(dp.Domain(1, wrap=False), source="rescaled"),

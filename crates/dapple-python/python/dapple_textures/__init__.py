@@ -86,6 +86,7 @@ from ._native import (
 )
 from ._coats import cow, cow_progression, giraffe_progression, space_giraffe
 from ._meshes import MeshFile
+from ._options import Net
 from ._pictures import Bands, SeamReport
 from ._recipes import read_recipe, read_recipe_images
 from ._textures import (
@@ -117,6 +118,7 @@ __all__ = [
     "MapInfo",
     "MeshFile",
     "Model",
+    "Net",
     "Partition",
     "Plan",
     "Points",

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Literal, SupportsIndex, cast
 
 from ._native import Domain, Field, _texture
-from ._textures import Orientations, Spacing, Varying, Weight, _net
+from ._textures import NetLike, Spacing, Varying, _net
 
 __all__ = [
     "cow",
@@ -24,11 +24,7 @@ def cow(
     spacing: Spacing = 0.1,
     probability: Varying = 0.5,
     values: tuple[float, float] = (0.0, 1.0),
-    axis_scale: float = 1.0,
-    weight: Weight = "cubic",
-    orientations: Orientations = None,
-    strength: float = 0.5,
-    fade: float = 0.0,
+    net: NetLike = None,
     seed: SupportsIndex = 0,
 ) -> Field:
     """The patches of a cow: cells of two values. Caron and Mould, figure 11.
@@ -45,18 +41,8 @@ def cow(
         The probability of label 1, 0 to 1: a number or a ramp, as in `poisson_disk`.
     values : tuple of float, default (0.0, 1.0)
         The values of the labels 0 and 1.
-    axis_scale : float, default 1.0
-        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : {"cubic", "quintic"} or dict, default "cubic"
-        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
-    orientations : {"random"}, dict or None, default None
-        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
-    strength : float, default 0.5
-        How strongly orientations shift weights, from 0 to below 1.
-    fade : float, default 0.0
-        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
-        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
+    net : Net, dict or None, default None
+        The weights of the control points; by default Net().
     seed : int, default 0
         From 0 to 2**64 - 1.
 
@@ -77,12 +63,7 @@ def cow(
     >>> sorted(set(coat.render(32).ravel().tolist()))
     [0.0, 1.0]
     """
-    options = {
-        "spacing": spacing,
-        "probability": probability,
-        "values": values,
-        "net": _net(axis_scale, weight, orientations, strength, fade),
-    }
+    options = {"spacing": spacing, "probability": probability, "values": values, "net": _net(net)}
     return cast("Field", _texture("cow", options, domain, None, seed))
 
 
@@ -93,11 +74,7 @@ def space_giraffe(
     pairs: tuple[int, int] = (10, 20),
     spots: Literal["separated", "literal"] = "separated",
     values: tuple[float, float] = (1.0, 0.0),
-    axis_scale: float = 1.0,
-    weight: Weight = "cubic",
-    orientations: Orientations = None,
-    strength: float = 0.5,
-    fade: float = 0.0,
+    net: NetLike = None,
     seed: SupportsIndex = 0,
 ) -> Field:
     """The coat of a giraffe: spots on a ground. Caron and Mould, figure 12.
@@ -117,18 +94,8 @@ def space_giraffe(
         pieces.
     values : tuple of float, default (1.0, 0.0)
         The values of the ground and of the spots.
-    axis_scale : float, default 1.0
-        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : {"cubic", "quintic"} or dict, default "cubic"
-        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
-    orientations : {"random"}, dict or None, default None
-        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
-    strength : float, default 0.5
-        How strongly orientations shift weights, from 0 to below 1.
-    fade : float, default 0.0
-        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
-        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
+    net : Net, dict or None, default None
+        The weights of the control points; by default Net().
     seed : int, default 0
         From 0 to 2**64 - 1.
 
@@ -147,13 +114,7 @@ def space_giraffe(
     >>> import dapple_textures as dp
     >>> coat = dp.space_giraffe(dp.Domain(1), spacing=0.28, seed=6)
     """
-    options = {
-        "spacing": spacing,
-        "pairs": pairs,
-        "spots": spots,
-        "values": values,
-        "net": _net(axis_scale, weight, orientations, strength, fade),
-    }
+    options = {"spacing": spacing, "pairs": pairs, "spots": spots, "values": values, "net": _net(net)}
     return cast("Field", _texture("space_giraffe", options, domain, None, seed))
 
 
@@ -161,11 +122,7 @@ def cow_progression(
     domain: Domain | None = None,
     *,
     distances: tuple[float, float] = (0.2, 0.025),
-    axis_scale: float = 1.0,
-    weight: Weight = "cubic",
-    orientations: Orientations = None,
-    strength: float = 0.5,
-    fade: float = 0.0,
+    net: NetLike = None,
     seed: SupportsIndex = 0,
 ) -> Field:
     """A cow whose patches get smaller to the right. Caron and Mould, figure 15.
@@ -177,18 +134,8 @@ def cow_progression(
         since the texture changes along x.
     distances : tuple of float, default (0.2, 0.025)
         The smallest distance of points at the left and at the right, with equal ratios over equal lengths in between.
-    axis_scale : float, default 1.0
-        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : {"cubic", "quintic"} or dict, default "cubic"
-        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
-    orientations : {"random"}, dict or None, default None
-        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
-    strength : float, default 0.5
-        How strongly orientations shift weights, from 0 to below 1.
-    fade : float, default 0.0
-        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
-        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
+    net : Net, dict or None, default None
+        The weights of the control points; by default Net().
     seed : int, default 0
         From 0 to 2**64 - 1.
 
@@ -209,10 +156,7 @@ def cow_progression(
     >>> coat.period
     [None, 1.0]
     """
-    options = {
-        "distances": distances,
-        "net": _net(axis_scale, weight, orientations, strength, fade),
-    }
+    options = {"distances": distances, "net": _net(net)}
     return cast("Field", _texture("cow_progression", options, domain, None, seed))
 
 
@@ -220,11 +164,7 @@ def giraffe_progression(
     domain: Domain | None = None,
     *,
     distances: tuple[float, float] = (0.2, 0.025),
-    axis_scale: float = 1.0,
-    weight: Weight = "cubic",
-    orientations: Orientations = None,
-    strength: float = 0.5,
-    fade: float = 0.0,
+    net: NetLike = None,
     seed: SupportsIndex = 0,
 ) -> Field:
     """A giraffe whose spots get smaller to the right. Caron and Mould, figure 16.
@@ -236,18 +176,8 @@ def giraffe_progression(
         since the texture changes along x.
     distances : tuple of float, default (0.2, 0.025)
         The smallest distance of points at the left and at the right, with equal ratios over equal lengths in between.
-    axis_scale : float, default 1.0
-        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : {"cubic", "quintic"} or dict, default "cubic"
-        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
-    orientations : {"random"}, dict or None, default None
-        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
-    strength : float, default 0.5
-        How strongly orientations shift weights, from 0 to below 1.
-    fade : float, default 0.0
-        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
-        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
+    net : Net, dict or None, default None
+        The weights of the control points; by default Net().
     seed : int, default 0
         From 0 to 2**64 - 1.
 
@@ -266,8 +196,5 @@ def giraffe_progression(
     >>> import dapple_textures as dp
     >>> coat = dp.giraffe_progression(dp.Domain(1), distances=(0.4, 0.2))
     """
-    options = {
-        "distances": distances,
-        "net": _net(axis_scale, weight, orientations, strength, fade),
-    }
+    options = {"distances": distances, "net": _net(net)}
     return cast("Field", _texture("giraffe_progression", options, domain, None, seed))

@@ -12,6 +12,7 @@ import xarray
 from typing_extensions import disjoint_base
 
 from ._meshes import MeshFile
+from ._options import Net
 from ._pictures import Bands, SeamReport
 from ._types import Axes, EmptyCircle, Features, MapInfo, Spectrum, Weights
 
@@ -37,8 +38,8 @@ _Progress: TypeAlias = Callable[[float], object]
 #: Anything with `.vertices` and `.faces`, or a pair of arrays.
 _Mesh: TypeAlias = Any
 _Varying: TypeAlias = float | Mapping[str, object] | Field | npt.ArrayLike
-_Weight: TypeAlias = Literal["cubic", "quintic"] | Mapping[str, object]
-_Orientations: TypeAlias = Literal["none", "random"] | Mapping[str, object] | npt.ArrayLike | None
+#: An option object, or a dict of its fields.
+_Net: TypeAlias = Net | Mapping[str, object] | None
 
 __version__: str
 
@@ -333,11 +334,7 @@ class Partition:
         *,
         domain: Domain | None = None,
         graph: Graph | None = None,
-        axis_scale: float = 1.0,
-        weight: _Weight = "cubic",
-        orientations: _Orientations = None,
-        strength: float = 0.5,
-        fade: float = 0.0,
+        net: _Net = None,
         seed: SupportsIndex = 0,
     ) -> Partition: ...
     def field(
@@ -392,11 +389,7 @@ def pups(
     labels: Sequence[int] | npt.NDArray[np.integer] | None = None,
     domain: Domain | None = None,
     graph: Graph | None = None,
-    axis_scale: float = 1.0,
-    weight: _Weight = "cubic",
-    orientations: _Orientations = None,
-    strength: float = 0.5,
-    fade: float = 0.0,
+    net: _Net = None,
     seed: SupportsIndex = 0,
 ) -> Field | ColorField: ...  # Values of two axes make a ColorField.
 def random_values(count: int, *, seed: SupportsIndex = 0) -> npt.NDArray[np.float32]: ...

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal, SupportsIndex, TypeAlias, cast
 import numpy as np
 
 from ._native import ColorField, Domain, Field, _texture
+from ._options import Net, read
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -32,32 +33,24 @@ __all__ = [
 Varying: TypeAlias = float | Mapping[str, object]
 #: The smallest distance between points as a number, or {"distance": …}, {"density": …} or {"count": n}.
 Spacing: TypeAlias = float | Mapping[str, object]
-#: How the weight of a control point falls off.
-Weight: TypeAlias = Literal["cubic", "quintic"] | Mapping[str, object]
-#: The directions in which the weights of control points lean.
-Orientations: TypeAlias = Literal["random"] | Mapping[str, object] | None
+#: The weights of control points.
+NetLike: TypeAlias = Net | Mapping[str, object] | None
+
+#: The default of textures of cells.
+_RANDOM = Net(orientations="random")
 
 
-def _net(axis_scale: float, weight: Weight, orientations: Orientations, strength: float, fade: float) -> dict[str, object]:
-    """Returns the options of weights in the form of a recipe."""
-    return {
-        "axis_scale": axis_scale,
-        "weight": weight,
-        "orientations": "none" if orientations is None else orientations,
-        "strength": strength,
-        "fade": fade,
-    }
+def _net(net: NetLike, default: Net = Net()) -> dict[str, object]:
+    """Returns the weights in the form of a recipe."""
+    options = vars(default if net is None else read(Net, "net", net))
+    return {**options, "orientations": "none" if options["orientations"] is None else options["orientations"]}
 
 
 def noise(
     domain: Domain | None = None,
     *,
     spacing: Spacing = 0.1,
-    axis_scale: float = 1.0,
-    weight: Weight = "cubic",
-    orientations: Orientations = None,
-    strength: float = 0.5,
-    fade: float = 0.0,
+    net: NetLike = None,
     seed: SupportsIndex = 0,
 ) -> Field:
     """Random values at control points, interpolated: smooth noise from 0 to 1. Caron and Mould, section 3.1.
@@ -70,18 +63,8 @@ def noise(
     spacing : float or dict, default 0.1
         The spacing of control points: the smallest distance in units of the domain, or {"distance": …}, {"density": …}
         or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    axis_scale : float, default 1.0
-        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : {"cubic", "quintic"} or dict, default "cubic"
-        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
-    orientations : {"random"}, dict or None, default None
-        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
-    strength : float, default 0.5
-        How strongly orientations shift weights, from 0 to below 1.
-    fade : float, default 0.0
-        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
-        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
+    net : Net, dict or None, default None
+        The weights of the control points; by default Net().
     seed : int, default 0
         From 0 to 2**64 - 1.
 
@@ -102,10 +85,7 @@ def noise(
     >>> noise.render((64, 64)).shape
     (64, 64)
     """
-    options = {
-        "spacing": spacing,
-        "net": _net(axis_scale, weight, orientations, strength, fade),
-    }
+    options = {"spacing": spacing, "net": _net(net)}
     return cast("Field", _texture("noise", options, domain, None, seed))
 
 
@@ -117,11 +97,7 @@ def octaves(
     lacunarity: float = 2.0,
     gain: float = 0.5,
     source: Literal["separate", "rescaled"] = "separate",
-    axis_scale: float = 1.0,
-    weight: Weight = "cubic",
-    orientations: Orientations = None,
-    strength: float = 0.5,
-    fade: float = 0.0,
+    net: NetLike = None,
     seed: SupportsIndex = 0,
 ) -> Field:
     """The sum of octaves of noise, from 0 to 1 (fractional Brownian motion). Caron and Mould, figure 6.
@@ -144,18 +120,8 @@ def octaves(
     source : {"separate", "rescaled"}, default "separate"
         "separate", each octave with points of its own, or "rescaled", one tile at several scales, which takes less
         memory; the domain must then wrap along both axes.
-    axis_scale : float, default 1.0
-        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : {"cubic", "quintic"} or dict, default "cubic"
-        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
-    orientations : {"random"}, dict or None, default None
-        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
-    strength : float, default 0.5
-        How strongly orientations shift weights, from 0 to below 1.
-    fade : float, default 0.0
-        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
-        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
+    net : Net, dict or None, default None
+        The weights of the control points; by default Net().
     seed : int, default 0
         From 0 to 2**64 - 1.
 
@@ -182,7 +148,7 @@ def octaves(
         "lacunarity": lacunarity,
         "gain": gain,
         "source": source,
-        "net": _net(axis_scale, weight, orientations, strength, fade),
+        "net": _net(net),
     }
     return cast("Field", _texture("octaves", options, domain, None, seed))
 
@@ -195,11 +161,7 @@ def turbulence(
     lacunarity: float = 2.0,
     gain: float = 0.5,
     source: Literal["separate", "rescaled"] = "separate",
-    axis_scale: float = 1.0,
-    weight: Weight = "cubic",
-    orientations: Orientations = None,
-    strength: float = 0.5,
-    fade: float = 0.0,
+    net: NetLike = None,
     seed: SupportsIndex = 0,
 ) -> Field:
     """The sum of octaves of folded noise, from 0 to 1 (Perlin's turbulence). Caron and Mould, figure 8.
@@ -222,18 +184,8 @@ def turbulence(
     source : {"separate", "rescaled"}, default "separate"
         "separate", each octave with points of its own, or "rescaled", one tile at several scales, which takes less
         memory; the domain must then wrap along both axes.
-    axis_scale : float, default 1.0
-        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : {"cubic", "quintic"} or dict, default "cubic"
-        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
-    orientations : {"random"}, dict or None, default None
-        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
-    strength : float, default 0.5
-        How strongly orientations shift weights, from 0 to below 1.
-    fade : float, default 0.0
-        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
-        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
+    net : Net, dict or None, default None
+        The weights of the control points; by default Net().
     seed : int, default 0
         From 0 to 2**64 - 1.
 
@@ -258,7 +210,7 @@ def turbulence(
         "lacunarity": lacunarity,
         "gain": gain,
         "source": source,
-        "net": _net(axis_scale, weight, orientations, strength, fade),
+        "net": _net(net),
     }
     return cast("Field", _texture("turbulence", options, domain, None, seed))
 
@@ -268,11 +220,7 @@ def cells(
     *,
     spacing: Spacing = 0.1,
     points_per_cell: tuple[int, int] = (1, 1),
-    axis_scale: float = 1.0,
-    weight: Weight = "cubic",
-    orientations: Orientations = "random",
-    strength: float = 0.5,
-    fade: float = 0.0,
+    net: NetLike = None,
     seed: SupportsIndex = 0,
 ) -> Field:
     """Cells with a random value each, from 0 to below 1. A cell has one control point or a few neighboring ones. Caron and
@@ -288,18 +236,8 @@ def cells(
         or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
     points_per_cell : tuple of int, default (1, 1)
         The least and the largest number of control points of a cell, 1 to 16.
-    axis_scale : float, default 1.0
-        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : {"cubic", "quintic"} or dict, default "cubic"
-        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
-    orientations : {"random"}, dict or None, default "random"
-        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
-    strength : float, default 0.5
-        How strongly orientations shift weights, from 0 to below 1.
-    fade : float, default 0.0
-        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
-        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
+    net : Net, dict or None, default None
+        The weights of the control points; by default Net(orientations="random").
     seed : int, default 0
         From 0 to 2**64 - 1.
 
@@ -318,11 +256,7 @@ def cells(
     >>> import dapple_textures as dp
     >>> cobbles = dp.cells(dp.Domain(1), points_per_cell=(3, 4), seed=7)
     """
-    options = {
-        "spacing": spacing,
-        "points_per_cell": points_per_cell,
-        "net": _net(axis_scale, weight, orientations, strength, fade),
-    }
+    options = {"spacing": spacing, "points_per_cell": points_per_cell, "net": _net(net, _RANDOM)}
     return cast("Field", _texture("cells", options, domain, None, seed))
 
 
@@ -334,11 +268,7 @@ def cellular_noise(
     lacunarity: float = 2.0,
     gain: float = 0.5,
     points_per_cell: tuple[int, int] = (1, 1),
-    axis_scale: float = 1.0,
-    weight: Weight = "cubic",
-    orientations: Orientations = "random",
-    strength: float = 0.5,
-    fade: float = 0.0,
+    net: NetLike = None,
     seed: SupportsIndex = 0,
 ) -> Field:
     """The sum of layers of cells, from 0 to 1. Caron and Mould, figure 10.
@@ -359,18 +289,8 @@ def cellular_noise(
         The amplitude of a layer as a multiple of the previous one, above 0 and at most 1.
     points_per_cell : tuple of int, default (1, 1)
         The least and the largest number of control points of a cell, 1 to 16.
-    axis_scale : float, default 1.0
-        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : {"cubic", "quintic"} or dict, default "cubic"
-        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
-    orientations : {"random"}, dict or None, default "random"
-        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
-    strength : float, default 0.5
-        How strongly orientations shift weights, from 0 to below 1.
-    fade : float, default 0.0
-        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
-        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
+    net : Net, dict or None, default None
+        The weights of the control points; by default Net(orientations="random").
     seed : int, default 0
         From 0 to 2**64 - 1.
 
@@ -395,7 +315,7 @@ def cellular_noise(
         "lacunarity": lacunarity,
         "gain": gain,
         "points_per_cell": points_per_cell,
-        "net": _net(axis_scale, weight, orientations, strength, fade),
+        "net": _net(net, _RANDOM),
     }
     return cast("Field", _texture("cellular_noise", options, domain, None, seed))
 
@@ -405,11 +325,7 @@ def color_noise(
     *,
     spacing: Spacing = 0.1,
     palette: Sequence[Sequence[float]] | npt.NDArray[np.floating] = ((0.75, 0.2, 0.03), (0.9, 0.8, 0.55), (0.05, 0.3, 0.3), (0.01, 0.03, 0.15)),
-    axis_scale: float = 1.0,
-    weight: Weight = "cubic",
-    orientations: Orientations = None,
-    strength: float = 0.5,
-    fade: float = 0.0,
+    net: NetLike = None,
     seed: SupportsIndex = 0,
 ) -> ColorField:
     """Random colors of a palette at control points, interpolated; not in the paper.
@@ -424,18 +340,8 @@ def color_noise(
         or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
     palette : sequence of sequence of float or numpy.ndarray of float, default ((0.75, 0.2, 0.03), (0.9, 0.8, 0.55), (0.05, 0.3, 0.3), (0.01, 0.03, 0.15))
         Linear RGB colors from 0 to 1, all equally probable.
-    axis_scale : float, default 1.0
-        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : {"cubic", "quintic"} or dict, default "cubic"
-        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
-    orientations : {"random"}, dict or None, default None
-        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
-    strength : float, default 0.5
-        How strongly orientations shift weights, from 0 to below 1.
-    fade : float, default 0.0
-        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
-        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
+    net : Net, dict or None, default None
+        The weights of the control points; by default Net().
     seed : int, default 0
         From 0 to 2**64 - 1.
 
@@ -456,11 +362,7 @@ def color_noise(
     >>> dye.render((64, 64)).shape
     (64, 64, 3)
     """
-    options = {
-        "spacing": spacing,
-        "palette": palette,
-        "net": _net(axis_scale, weight, orientations, strength, fade),
-    }
+    options = {"spacing": spacing, "palette": palette, "net": _net(net)}
     return cast("ColorField", _texture("color_noise", options, domain, None, seed))
 
 
@@ -469,11 +371,7 @@ def label_ramp(
     *,
     spacing: Spacing = 0.05,
     probabilities: tuple[float, float] = (0.0, 1.0),
-    axis_scale: float = 1.0,
-    weight: Weight = "cubic",
-    orientations: Orientations = None,
-    strength: float = 0.5,
-    fade: float = 0.0,
+    net: NetLike = None,
     seed: SupportsIndex = 0,
 ) -> Field:
     """Black cells (0) on the left that turn white (1) to the right. Caron and Mould, figure 17.
@@ -488,18 +386,8 @@ def label_ramp(
         or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
     probabilities : tuple of float, default (0.0, 1.0)
         The probability of white at the left and at the right, linear in between.
-    axis_scale : float, default 1.0
-        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : {"cubic", "quintic"} or dict, default "cubic"
-        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
-    orientations : {"random"}, dict or None, default None
-        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
-    strength : float, default 0.5
-        How strongly orientations shift weights, from 0 to below 1.
-    fade : float, default 0.0
-        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
-        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
+    net : Net, dict or None, default None
+        The weights of the control points; by default Net().
     seed : int, default 0
         From 0 to 2**64 - 1.
 
@@ -520,11 +408,7 @@ def label_ramp(
     >>> float(ramp.sample([0.0, 0.5]))
     0.0
     """
-    options = {
-        "spacing": spacing,
-        "probabilities": probabilities,
-        "net": _net(axis_scale, weight, orientations, strength, fade),
-    }
+    options = {"spacing": spacing, "probabilities": probabilities, "net": _net(net)}
     return cast("Field", _texture("label_ramp", options, domain, None, seed))
 
 
@@ -534,11 +418,7 @@ def reference_texture(
     *,
     spacing: Spacing = 0.05,
     values: tuple[float, float] = (0.0, 1.0),
-    axis_scale: float = 1.0,
-    weight: Weight = "cubic",
-    orientations: Orientations = None,
-    strength: float = 0.5,
-    fade: float = 0.0,
+    net: NetLike = None,
     seed: SupportsIndex = 0,
 ) -> Field:
     """Black and white cells after an image: a control point is white with the probability of the pixel under it.
@@ -556,18 +436,8 @@ def reference_texture(
         or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
     values : tuple of float, default (0.0, 1.0)
         The values of the black and of the white group.
-    axis_scale : float, default 1.0
-        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : {"cubic", "quintic"} or dict, default "cubic"
-        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
-    orientations : {"random"}, dict or None, default None
-        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
-    strength : float, default 0.5
-        How strongly orientations shift weights, from 0 to below 1.
-    fade : float, default 0.0
-        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
-        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
+    net : Net, dict or None, default None
+        The weights of the control points; by default Net().
     seed : int, default 0
         From 0 to 2**64 - 1.
 
@@ -588,11 +458,7 @@ def reference_texture(
     >>> halves.sample([[0.25, 0.5], [0.75, 0.5]]).tolist()
     [0.0, 1.0]
     """
-    options = {
-        "spacing": spacing,
-        "values": values,
-        "net": _net(axis_scale, weight, orientations, strength, fade),
-    }
+    options = {"spacing": spacing, "values": values, "net": _net(net)}
     return cast("Field", _texture("reference", options, domain, image, seed))
 
 
@@ -603,11 +469,7 @@ def iterated_reference(
     spacing: Spacing = 0.1,
     iterations: int = 4,
     points: Literal["fresh", "nested"] = "fresh",
-    axis_scale: float = 1.0,
-    weight: Weight = "cubic",
-    orientations: Orientations = None,
-    strength: float = 0.5,
-    fade: float = 0.0,
+    net: NetLike = None,
     seed: SupportsIndex = 0,
 ) -> Field:
     """Black and white cells with edges like a coast, from several rounds of points. The first round follows an image, and
@@ -628,18 +490,8 @@ def iterated_reference(
     points : {"fresh", "nested"}, default "fresh"
         "fresh", each round with points of its own, or "nested", each round with the points of the previous one and as
         many again.
-    axis_scale : float, default 1.0
-        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : {"cubic", "quintic"} or dict, default "cubic"
-        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
-    orientations : {"random"}, dict or None, default None
-        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
-    strength : float, default 0.5
-        How strongly orientations shift weights, from 0 to below 1.
-    fade : float, default 0.0
-        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
-        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
+    net : Net, dict or None, default None
+        The weights of the control points; by default Net().
     seed : int, default 0
         From 0 to 2**64 - 1.
 
@@ -658,12 +510,7 @@ def iterated_reference(
     >>> import dapple_textures as dp
     >>> coast = dp.iterated_reference([[0.0, 1.0]], dp.Domain(1), iterations=2, seed=7)
     """
-    options = {
-        "spacing": spacing,
-        "iterations": iterations,
-        "points": points,
-        "net": _net(axis_scale, weight, orientations, strength, fade),
-    }
+    options = {"spacing": spacing, "iterations": iterations, "points": points, "net": _net(net)}
     return cast("Field", _texture("iterated_reference", options, domain, image, seed))
 
 
@@ -673,11 +520,7 @@ def control_points(
     *,
     values: Sequence[float] = (),
     cells: Literal["mixed", "hard"] = "mixed",
-    axis_scale: float = 1.0,
-    weight: Weight = "cubic",
-    orientations: Orientations = None,
-    strength: float = 0.5,
-    fade: float = 0.0,
+    net: NetLike = None,
     seed: SupportsIndex = 0,
 ) -> Field:
     """A texture of control points that are given one by one, in the form of a recipe; `pups` takes arrays.
@@ -693,18 +536,8 @@ def control_points(
         The values of labels, from label 0.
     cells : {"mixed", "hard"}, default "mixed"
         "mixed", the weighted mean of the values, or "hard", the value of the strongest point.
-    axis_scale : float, default 1.0
-        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : {"cubic", "quintic"} or dict, default "cubic"
-        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
-    orientations : {"random"}, dict or None, default None
-        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
-    strength : float, default 0.5
-        How strongly orientations shift weights, from 0 to below 1.
-    fade : float, default 0.0
-        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
-        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
+    net : Net, dict or None, default None
+        The weights of the control points; by default Net().
     seed : int, default 0
         From 0 to 2**64 - 1.
 
@@ -725,10 +558,5 @@ def control_points(
     >>> float(dot.sample([0.1, 0.2]))
     1.0
     """
-    options = {
-        "points": points,
-        "values": values,
-        "cells": cells,
-        "net": _net(axis_scale, weight, orientations, strength, fade),
-    }
+    options = {"points": points, "values": values, "cells": cells, "net": _net(net)}
     return cast("Field", _texture("points", options, domain, None, seed))

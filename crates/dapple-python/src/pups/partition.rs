@@ -7,11 +7,13 @@ use crate::data;
 use crate::error::{Error, Result};
 use crate::function::Made;
 use crate::grid::{Grid, GridArguments};
+use crate::options;
 use crate::points::{Domain, Graph, GraphMade, Points};
 use crate::seed::SeedArgument;
 use crate::shared::{Build, Shared};
 use crate::threads;
 use crate::watch::Stop;
+use dapple::hash::Seed;
 use dapple::points::{PointIdx, PointSet};
 use dapple::pups::{Orientation, Orientations, Pups, PupsOptions};
 use dapple::raster::RasterViewMut;
@@ -87,21 +89,8 @@ impl Build for PupsMade {
 ///     The domain of an array of points; by default the smallest rectangle around it, which does not wrap.
 /// graph : Graph or None, default None
 ///     A graph of the points; by default the Delaunay graph.
-/// axis_scale : float, default 1.0
-///     The length of axes as a multiple of their edges, above 0.5 and at most 16. Up to 1, the field interpolates the
-///     values at the control points; above 1, it is smoother.
-/// weight : {"cubic", "quintic"} or dict, default "cubic"
-///     The falloff of the weight: "cubic", "quintic", or {"oscillating": {"dips": 3, "depth": 0.5}} with 1 to 16 dips
-///     and a depth of 0 to 0.99.
-/// orientations : {"none", "random"}, dict, array_like or None, default None
-///     The direction in which the weight of each point leans: None, "random" (drawn from `seed`), an array (n, 2) or
-///     (n, 3) of vectors, {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle": radians}.
-/// strength : float, default 0.5
-///     How strongly orientations shift weights, from 0 to below 1.
-/// fade : float, default 0.0
-///     Fades axes whose edge crosses only a short border of their point's cell. An axis fades if the border is
-///     shorter than this fraction of the edge, from 0 (never) to 1. With 0.25, the field changes smoothly when points
-///     move.
+/// net : Net, dict or None, default None
+///     The weights of the control points; by default Net().
 /// seed : int, default 0
 ///     The random seed, from 0 to 2**64 - 1.
 ///
@@ -124,72 +113,45 @@ pub(crate) struct Partition {
     pups: Pups,
 }
 
-/// The arguments for the net of control points, as the caller passes them.
-struct NetArguments<'a, 'py> {
-    points: &'a Bound<'py, PyAny>,
-    domain: Option<&'a Domain>,
-    graph: Option<&'a Graph>,
+/// The fields of the option object `Net`.
+#[derive(FromPyObject)]
+struct Net<'py> {
     axis_scale: f64,
-    weight: Option<&'a Bound<'py, PyAny>>,
-    orientations: Option<&'a Bound<'py, PyAny>>,
+    weight: Bound<'py, PyAny>,
+    orientations: Option<Bound<'py, PyAny>>,
     strength: f64,
     fade: f64,
-    seed: SeedArgument,
 }
 
-impl NetArguments<'_, '_> {
-    fn partition(&self, py: Python<'_>) -> Result<Partition> {
-        let points = Points::read(self.points, self.domain)?;
-        if self.graph.is_some_and(|graph| **graph.set() != *points) {
-            let message = "the graph is of other points than those that are given";
-            return Err(Error::new("different_points", message));
-        }
-        let orientation = self.vectors(&points)?.map(|vectors| Orientation {
-            strength: self.strength,
-            vectors,
-        });
-        let net = Shared::new(NetMade {
-            domain: *points.domain(),
-            points: points.positions().to_vec(),
-            graph: self.graph.map_or(GraphMade::Delaunay, Graph::made),
-            options: PupsOptions {
-                axis_scale: self.axis_scale,
-                weight: data::options_or("weight", self.weight, Default::default())?,
-                orientation,
-                fade: self.fade,
-            },
-        });
-        let work = net.clone();
-        let pups = threads::run(py, move || work.get())??;
-        Ok(Partition { net, pups })
+/// Reads the orientation vectors; `seed` is the seed of the net.
+fn vectors(
+    orientations: Option<Bound<'_, PyAny>>,
+    points: &PointSet,
+    seed: Seed,
+) -> Result<Option<Vec<DVec3>>> {
+    let Some(orientations) = orientations else {
+        return Ok(None);
+    };
+    if orientations.is_instance_of::<PyString>() || orientations.is_instance_of::<PyDict>() {
+        let orientations: Orientations = data::options("orientations", &orientations)?;
+        let seed = seed.child("orientation", 0);
+        return Ok(orientations.vectors(points, seed)?);
     }
-
-    /// Reads the orientation vectors.
-    fn vectors(&self, points: &PointSet) -> Result<Option<Vec<DVec3>>> {
-        let Some(orientations) = self.orientations else {
-            return Ok(None);
-        };
-        if orientations.is_instance_of::<PyString>() || orientations.is_instance_of::<PyDict>() {
-            let orientations: Orientations = data::options("orientations", orientations)?;
-            let seed = self.seed.0.child("orientation", 0);
-            return Ok(orientations.vectors(points, seed)?);
+    let array: PyArrayLikeDyn<'_, f64, AllowTypeChange> = orientations.extract()?;
+    let array = array.as_array();
+    let axes = match *array.shape() {
+        [_, axes @ (2 | 3)] => axes,
+        _ => {
+            let message = format!(
+                "the orientations have the shape {:?}, but they must be rows of 2 or 3 numbers",
+                array.shape()
+            );
+            return Err(Error::new("shape", message));
         }
-        let array: PyArrayLikeDyn<'_, f64, AllowTypeChange> = orientations.extract()?;
-        let array = array.as_array();
-        let axes = match *array.shape() {
-            [_, axes @ (2 | 3)] => axes,
-            _ => {
-                let message = format!(
-                    "the orientations have the shape {:?}, but they must be rows of 2 or 3 numbers",
-                    array.shape()
-                );
-                return Err(Error::new("shape", message));
-            }
-        };
-        let numbers: Vec<f64> = array.iter().copied().collect();
-        let vector = |row: &[f64]| DVec3::new(row[0], row[1], row.get(2).copied().unwrap_or(0.0));
-        Ok(Some(numbers.chunks_exact(axes).map(vector).collect()))
-    }
+    };
+    let numbers: Vec<f64> = array.iter().copied().collect();
+    let vector = |row: &[f64]| DVec3::new(row[0], row[1], row.get(2).copied().unwrap_or(0.0));
+    Ok(Some(numbers.chunks_exact(axes).map(vector).collect()))
 }
 
 /// Reads control-point values, and the number of values per control point; `None` for scalars.
@@ -213,33 +175,40 @@ fn read_values(values: &Bound<'_, PyAny>) -> Result<(Vec<f32>, Option<usize>)> {
 #[pymethods]
 impl Partition {
     #[new]
-    #[pyo3(signature = (points, *, domain = None, graph = None, axis_scale = 1.0, weight = None, orientations = None, strength = 0.5, fade = 0.0, seed = SeedArgument::default()),
-        text_signature = "(points, *, domain=None, graph=None, axis_scale=1.0, weight='cubic', orientations=None, strength=0.5, fade=0.0, seed=0)")]
-    #[expect(clippy::too_many_arguments, reason = "they are keywords")]
+    #[pyo3(signature = (points, *, domain = None, graph = None, net = None, seed = SeedArgument::default()),
+        text_signature = "(points, *, domain=None, graph=None, net=None, seed=0)")]
     fn new(
         py: Python<'_>,
         points: &Bound<'_, PyAny>,
         domain: Option<&Domain>,
         graph: Option<&Graph>,
-        axis_scale: f64,
-        weight: Option<&Bound<'_, PyAny>>,
-        orientations: Option<&Bound<'_, PyAny>>,
-        strength: f64,
-        fade: f64,
+        net: Option<&Bound<'_, PyAny>>,
         seed: SeedArgument,
     ) -> Result<Self> {
-        let arguments = NetArguments {
-            points,
-            domain,
-            graph,
-            axis_scale,
-            weight,
-            orientations,
-            strength,
-            fade,
-            seed,
-        };
-        arguments.partition(py)
+        let points = Points::read(points, domain)?;
+        if graph.is_some_and(|graph| **graph.set() != *points) {
+            let message = "the graph is of other points than those that are given";
+            return Err(Error::new("different_points", message));
+        }
+        let options: Net<'_> = options::read(py, "Net", "net", net)?;
+        let vectors = vectors(options.orientations, &points, seed.0)?;
+        let net = Shared::new(NetMade {
+            domain: *points.domain(),
+            points: points.positions().to_vec(),
+            graph: graph.map_or(GraphMade::Delaunay, Graph::made),
+            options: PupsOptions {
+                axis_scale: options.axis_scale,
+                weight: data::options("weight", &options.weight)?,
+                orientation: vectors.map(|vectors| Orientation {
+                    strength: options.strength,
+                    vectors,
+                }),
+                fade: options.fade,
+            },
+        });
+        let work = net.clone();
+        let pups = threads::run(py, move || work.get())??;
+        Ok(Self { net, pups })
     }
 
     /// Returns the field interpolated from the control points' values: a `Field` for values of shape (n,), a
@@ -448,16 +417,8 @@ pub(crate) fn _partition_from_description(py: Python<'_>, description: &str) -> 
 ///     The domain of the points; by default that of the `Points`, or the smallest rectangle around an array.
 /// graph : Graph or None, default None
 ///     A graph of the points; by default the Delaunay graph.
-/// axis_scale : float, default 1.0
-///     The length of a point's axes as a multiple of the distances to its neighbors.
-/// weight : {"cubic", "quintic"} or dict, default "cubic"
-///     The falloff of the weight, as for `Partition`.
-/// orientations : {"none", "random"}, dict, array_like or None, default None
-///     Directions in which the weights lean: "random", a dictionary, or an array of 2-D or 3-D vectors.
-/// strength : float, default 0.5
-///     How strongly the weights lean, from 0 to 1.
-/// fade : float, default 0.0
-///     From 0 (off) to 1: neighbors across a short border have less influence.
+/// net : Net, dict or None, default None
+///     The weights of the control points; by default Net().
 /// seed : int, default 0
 ///     The random seed, from 0 to 2**64 - 1.
 ///
@@ -485,8 +446,8 @@ pub(crate) fn _partition_from_description(py: Python<'_>, description: &str) -> 
 /// (64, 64, 3)
 /// >>> cells = dp.pups(points, palette, labels=labels)
 #[pyfunction]
-#[pyo3(signature = (points, values, *, labels = None, domain = None, graph = None, axis_scale = 1.0, weight = None, orientations = None, strength = 0.5, fade = 0.0, seed = SeedArgument::default()),
-    text_signature = "(points, values, *, labels=None, domain=None, graph=None, axis_scale=1.0, weight='cubic', orientations=None, strength=0.5, fade=0.0, seed=0)")]
+#[pyo3(signature = (points, values, *, labels = None, domain = None, graph = None, net = None, seed = SeedArgument::default()),
+    text_signature = "(points, values, *, labels=None, domain=None, graph=None, net=None, seed=0)")]
 #[expect(clippy::too_many_arguments, reason = "they are keywords")]
 pub(crate) fn pups(
     py: Python<'_>,
@@ -495,23 +456,8 @@ pub(crate) fn pups(
     labels: Option<Vec<u32>>,
     domain: Option<&Domain>,
     graph: Option<&Graph>,
-    axis_scale: f64,
-    weight: Option<&Bound<'_, PyAny>>,
-    orientations: Option<&Bound<'_, PyAny>>,
-    strength: f64,
-    fade: f64,
+    net: Option<&Bound<'_, PyAny>>,
     seed: SeedArgument,
 ) -> Result<Py<PyAny>> {
-    let arguments = NetArguments {
-        points,
-        domain,
-        graph,
-        axis_scale,
-        weight,
-        orientations,
-        strength,
-        fade,
-        seed,
-    };
-    arguments.partition(py)?.field(py, values, labels)
+    Partition::new(py, points, domain, graph, net, seed)?.field(py, values, labels)
 }
