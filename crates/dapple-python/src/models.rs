@@ -10,20 +10,21 @@ use crate::data;
 use crate::error::{Error, Result};
 use crate::images::encode;
 use crate::meshes::{corners, faces, positions, vectors};
+use crate::options::{self, Vectors};
 use crate::pictures::{self, Content, Kind, Layout};
 use crate::seed::SeedArgument;
-use crate::synthesis::{Coherence, Matching, check_sizes, exemplar};
+use crate::synthesis::{Exemplar, Matching};
 use crate::watch::{self, Stop};
 pub(crate) use along::synthesize_along;
 use dapple::color::{Code, LinearRgb, LinearRgba, NormalY};
 use dapple::image::{Depth, Encoding};
 use dapple::mesh::glam::{DVec2, DVec3};
-use dapple::mesh::{CREASE, EncodedImage, FaceIdx, Mesh, Repair, Surface};
+use dapple::mesh::{EncodedImage, FaceIdx, Mesh, Repair, Surface};
 use dapple::mesh_io::{self, MaterialPlace, MeshFormat};
 use dapple::raster::Raster;
 use dapple::synth::{
-    Atlas, Axes, Direction, Hierarchy, HierarchyOptions, Orientation, Progress, SurfaceTexture,
-    Symmetry, SynthError, Synthesizer, bake_colors, bake_normals, bake_values, site_model,
+    Atlas, Direction, Hierarchy, HierarchyOptions, Orientation, Progress, SurfaceTexture, Symmetry,
+    SynthError, Synthesizer, bake_colors, bake_normals, bake_values, site_model,
 };
 use dapple::tile::Map;
 use example_mesh::ExampleMesh;
@@ -31,7 +32,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 pub(crate) use repair::repair_on;
 use std::path::PathBuf;
-use surface_guides::{Guide, SitesOfMesh, SurfaceGuides, SurfaceScales};
+use surface_guides::{SitesOfMesh, SurfaceGuides, SurfaceScales};
 
 dapple::raster::named! {
     /// The layout of a mesh in a texture.
@@ -96,62 +97,20 @@ impl SitePoints {
 /// ----------
 /// mesh : mesh
 ///     Any object with `.vertices` (n, 3) and `.faces` (m, 3), such as a `trimesh.Trimesh`, or a pair of such arrays.
-/// exemplar : array_like or dict of array_like
+/// exemplar : array_like, dict of array_like or Exemplar
 ///     (rows, columns), or (rows, columns, 3) in linear light; or a dictionary of maps, of which the first is matched
-///     and the others follow it: `normal` and `orm` are also written to the material of exported files.
-/// texels : int, default 1024
-///     The side of the square texture in pixels, at most 16384.
+///     and the others follow it: `normal` and `orm` are also written to the material of exported files. The texture of
+///     another mesh is lifted from there: `Exemplar(maps, mesh=…)`.
 /// sites : int, default 65536
 ///     The number of points on the surface that get a color, 1 to 2**28.
-/// directions : tuple of array_like or None, default None
-///     (positions, vectors), each (n, 3): the direction in which the example's downward axis points at each position.
-///     Directions are interpolated in between.
-/// down : sequence of float or None, default None
-///     The downward direction for connected pieces of the surface that contain none of the `directions`.
-/// symmetry : {1, 2, 4}, default 1
-///     The rotational symmetry of the example: 2 if it looks the same upside down, such as bricks, and 4 if it looks
-///     the same after a quarter turn, such as a checkerboard. Higher symmetry gives the texture fewer tears.
-/// scales : array_like or None, default None
-///     The size of an example pixel, in multiples of the point spacing, from 1/8 to 8; by default 1. Pass a number
-///     for each vertex, (n,), or an image that is sampled at `mesh.uv` and repeats, (rows, columns). Or pass two
-///     bounds, between which sizes follow the directions: features grow where the directions diverge and shrink where
-///     they converge, so that they continue without breaks.
-/// atlas : {"charts", "area", "uniform", "uv"}, default "charts"
-///     How faces are laid out: `"charts"` (large pieces), `"area"` (triangles sized by their areas), `"uniform"`, or
-///     `"uv"` (`mesh.uv`, (m, 3, 2), v down).
-/// padding : int or None, default None
-///     The width, in pixels, by which each piece of the texture extends past its border.
-/// crease : float, default 30.0
-///     The crease angle in degrees: an edge with a larger angle is shaded as a crease.
-/// axes : {"followed", "carried"} or None, default None
-///     How neighborhoods continue over the surface: `"followed"` or `"carried"`.
-/// matching : {"appearance", "colors"} or None, default None
-///     The compared quantities: `"appearance"` by default, or `"colors"` as in the paper; always colors with
-///     `example_mesh`.
+/// directions : Directions, dict, tuple of array_like or None, default None
+///     How the texture lies on the surface; by default Directions(). A pair (positions, vectors) is `field` alone.
+/// atlas : Atlas, dict or None, default None
+///     The layout of the texture; by default Atlas().
 /// seed : int, default 0
 ///     As for `synthesize`.
-/// edges : {"cut", "wrap"}, default "cut"
-///     As for `synthesize`.
-/// levels : int, default 3
-///     As for `synthesize`.
-/// coherence : float, {"auto"} or None, default None
-///     As for `synthesize`.
-/// evenness : float or None, default None
-///     As for `synthesize`.
-/// paper : bool, default False
-///     As for `synthesize`.
-/// guides : sequence of tuple of (array_like, float), default ()
-///     A list of (of_example, of_mesh, weight). `of_example` is a scalar image of the same size as the example.
-///     `of_mesh` is a number for each vertex, (n,), or an image that is sampled at `mesh.uv` and repeats, (rows,
-///     columns). Parts of the example are placed where both have similar values. Weights are as for `synthesize`, and
-///     `evenness` has no effect.
-/// example_mesh : mesh or None, default None
-///     The mesh that `exemplar` is the texture of, with `.uv` (m, 3, 2), v down, such as a `MeshFile` or a `Model`:
-///     its texture is lifted onto the other mesh. In this case, the `"auto"` of `coherence` is 2.
-/// example_sites : int or None, default None
-///     The number of points on `example_mesh`, by default `sites`: more points make its features larger.
-/// example_directions : tuple of array_like or None, default None
-///     (positions, vectors) on `example_mesh`, like `directions`; its texture points down by default.
+/// matching : Matching, dict or None, default None
+///     How neighborhoods are compared; by default Matching(). `method` is not for this function.
 /// progress : callable or None, default None
 ///     As for `synthesize`.
 ///
@@ -171,55 +130,46 @@ impl SitePoints {
 /// >>> import numpy as np, dapple_textures as dp
 /// >>> checker = np.kron([[0, 1], [1, 0]], np.ones((8, 8)))
 /// >>> roof = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]])
-/// >>> model = dp.synthesize_on(roof, checker, texels=64, sites=500, edges="wrap", levels=2)
+/// >>> checker = dp.Exemplar(checker, edges="wrap")
+/// >>> model = dp.synthesize_on(roof, checker, atlas={"texels": 64}, sites=500, matching={"levels": 2})
 /// >>> model.texture.shape, model.uv.shape
 /// ((64, 64), (2, 3, 2))
 #[pyfunction]
-#[pyo3(signature = (mesh, exemplar, *, texels = 1024, sites = 65536, directions = None, down = None, symmetry = 1,
-    scales = None, atlas = "charts", padding = None, crease = None, axes = None, matching = None, seed = SeedArgument::default(), edges = "cut", levels = 3,
-    coherence = None, evenness = None, paper = false, guides = Vec::new(), example_mesh = None, example_sites = None,
-    example_directions = None, progress = None),
-    text_signature = "(mesh, exemplar, *, texels=1024, sites=65536, directions=None, down=None, symmetry=1, scales=None, atlas=\"charts\", \
-    padding=None, crease=30.0, axes=None, matching=None, seed=0, edges=\"cut\", levels=3, coherence=None, evenness=None, paper=False, \
-    guides=(), example_mesh=None, example_sites=None, example_directions=None, progress=None)")]
+#[pyo3(signature = (mesh, exemplar, *, sites = 65536, directions = None, atlas = None, seed = SeedArgument::default(),
+    matching = None, progress = None),
+    text_signature = "(mesh, exemplar, *, sites=65536, directions=None, atlas=None, seed=0, matching=None, progress=None)")]
 pub(crate) fn synthesize_on<'py>(
     py: Python<'py>,
     mesh: &Bound<'py, PyAny>,
     exemplar: &Bound<'py, PyAny>,
-    texels: u32,
     sites: usize,
-    directions: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
-    down: Option<[f64; 3]>,
-    symmetry: u8,
-    scales: Option<&Bound<'py, PyAny>>,
-    atlas: &str,
-    padding: Option<u32>,
-    crease: Option<f64>,
-    axes: Option<&str>,
-    matching: Option<&str>,
+    directions: Option<&Bound<'py, PyAny>>,
+    atlas: Option<&Bound<'py, PyAny>>,
     seed: SeedArgument,
-    edges: &str,
-    levels: usize,
-    coherence: Option<Coherence>,
-    evenness: Option<f32>,
-    paper: bool,
-    guides: Vec<Guide<'py>>,
-    example_mesh: Option<&Bound<'py, PyAny>>,
-    example_sites: Option<usize>,
-    example_directions: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
+    matching: Option<&Bound<'py, PyAny>>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> Result<Model> {
-    let atlas = data::named("atlas", atlas)?;
+    let options::Atlas {
+        texels,
+        kind,
+        padding,
+        crease,
+    } = options::read(py, "Atlas", "atlas", atlas)?;
+    let atlas = data::named("kind", &kind)?;
+    let directions: options::Directions<'_> =
+        options::read(py, "Directions", "directions", directions)?;
+    let matching = Matching::read(py, matching, &["method"])?;
     // Mipmaps of triangle atlases would mix faces that are far apart.
     let has_mipmaps = matches!(atlas, AtlasKind::Charts | AtlasKind::Uv);
     let (mesh, is_blender) = crate::meshes::plain(mesh)?;
     let mesh = &mesh;
     // Blender's vertical axis is z.
-    let down = down.unwrap_or(match is_blender {
+    let down = directions.down.unwrap_or(match is_blender {
         true => [0.0, 0.0, -1.0],
         false => [0.0, -1.0, 0.0],
     });
-    let guides = SurfaceGuides::read(&guides)?;
+    let guides = SurfaceGuides::read(matching.guides())?;
+    let scales = directions.scales.as_ref();
     let scales = scales.map(SurfaceScales::read).transpose()?;
     let needs_uvs = atlas == AtlasKind::Uv
         || guides.have_images()
@@ -231,34 +181,25 @@ pub(crate) fn synthesize_on<'py>(
     let mesh = crate::meshes::mesh(mesh)?;
     guides.check(&mesh)?;
     scales.iter().try_for_each(|scales| scales.check(&mesh))?;
-    let (layout, maps) = pictures::read("exemplar", exemplar)?;
-    check_sizes(&maps)?;
-    refuse_alpha(&layout)?;
-    let example = guides.of_example(self::exemplar(&maps, edges)?)?;
-    let example_mesh = ExampleMesh::read(example_mesh, example_sites, example_directions)?;
-    let options = Matching {
-        seed,
-        levels,
-        coherence,
-        evenness,
-        axes: axes
-            .map(|axes| data::named::<Axes>("axes", axes))
-            .transpose()?,
-        matching: matching
-            .map(|matching| data::named("matching", matching))
-            .transpose()?,
-        paper,
-    };
+    let exemplar = Exemplar::read("exemplar", exemplar)?;
+    refuse_alpha(&exemplar.layout)?;
+    let example = guides.of_example(exemplar.matched(None)?)?;
+    let Exemplar {
+        layout,
+        maps,
+        given,
+    } = exemplar;
+    let example_mesh = ExampleMesh::of(given)?;
     let [hierarchy, sites_of_example] = ["sites", "example sites"].map(|name| HierarchyOptions {
         n_sites: sites,
-        n_levels: levels,
+        n_levels: matching.n_levels(),
         seed: seed.0.child(name, 0),
         ..HierarchyOptions::default()
     });
-    let options = options.options()?;
-    let directions = self::directions(directions)?;
-    let symmetry: Symmetry = data::named("symmetry", &symmetry.to_string())?;
-    let crease = crease.map_or(CREASE, f64::to_radians);
+    let options = matching.options(seed)?;
+    let symmetry: Symmetry = data::named("symmetry", &directions.symmetry.to_string())?;
+    let directions = self::directions(directions.field)?;
+    let crease = crease.to_radians();
     let is_charted = atlas == AtlasKind::Charts;
     let cover = move |heard: watch::Heard<'_>, _: &Stop| -> Result<Model> {
         let (repaired, repair) = mesh.repair();
@@ -357,7 +298,7 @@ fn refuse_alpha(layout: &Layout) -> Result<()> {
 }
 
 /// Reads the texture directions and their positions.
-fn directions(directions: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>) -> Result<Vec<Direction>> {
+fn directions(directions: Option<Vectors<'_>>) -> Result<Vec<Direction>> {
     let Some((positions, at_each)) = directions else {
         return Ok(Vec::new());
     };

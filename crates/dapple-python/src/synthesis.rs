@@ -4,20 +4,21 @@ use crate::arrays;
 use crate::data;
 use crate::error::{Error, Result};
 use crate::grid::size;
+use crate::options::{self, Coherence, Guide};
 use crate::pictures::{self, Layout};
 use crate::seed::SeedArgument;
 use crate::tiles::flags;
 use crate::watch;
 use dapple::raster::Raster;
 use dapple::synth::{
-    Axes, Edges, Endless, EndlessOptions, Exemplar, Options, PlaneTexture, SynthError,
-    SynthErrorKind, synthesize_plane_guided, synthesize_plane_with,
+    self, Edges, Endless, EndlessOptions, Options, PlaneTexture, SynthError, SynthErrorKind,
+    synthesize_plane_guided, synthesize_plane_with,
 };
 use dapple::tile::Map;
 use pyo3::prelude::*;
 
 dapple::raster::named! {
-    /// The argument `method`.
+    /// The field `method` of the matching.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     enum Method {
         /// A window of a texture without ends.
@@ -27,83 +28,177 @@ dapple::raster::named! {
     }
 }
 
-/// The argument `coherence`.
-#[derive(FromPyObject)]
-pub(crate) enum Coherence {
-    /// A number of at least 0.
-    Factor(f32),
-    /// The word `auto`.
-    Word(String),
-}
+/// Comparison of neighborhoods, shared by synthesis in the plane and on meshes.
+pub(crate) struct Matching<'py>(options::Matching<'py>);
 
-/// Matching options, shared by synthesis in the plane and on meshes.
-pub(crate) struct Matching {
-    pub(crate) seed: SeedArgument,
-    pub(crate) levels: usize,
-    pub(crate) coherence: Option<Coherence>,
-    pub(crate) evenness: Option<f32>,
-    pub(crate) axes: Option<Axes>,
-    pub(crate) matching: Option<dapple::synth::Matching>,
-    pub(crate) paper: bool,
-}
-
-impl Matching {
-    /// Returns the options for a repair.
-    pub(crate) fn of_repair(
-        seed: SeedArgument,
-        levels: usize,
-        coherence: Option<Coherence>,
-    ) -> Self {
-        Self {
-            seed,
-            levels,
-            coherence,
-            evenness: None,
-            axes: None,
-            matching: None,
-            paper: false,
+impl<'py> Matching<'py> {
+    /// Reads the argument `matching`. Fields in `without` have no effect in the function, and are refused.
+    pub(crate) fn read(
+        py: Python<'py>,
+        given: Option<&Bound<'py, PyAny>>,
+        without: &[&str],
+    ) -> Result<Self> {
+        let matching: options::Matching<'_> = options::read(py, "Matching", "matching", given)?;
+        let set = [
+            ("evenness", matching.evenness.is_some()),
+            ("guides", !matching.guides.is_empty()),
+            ("method", matching.method.is_some()),
+            ("space", matching.space.is_some()),
+            ("axes", matching.axes.is_some()),
+        ];
+        for (name, is_set) in set {
+            if is_set && without.contains(&name) {
+                let message = format!("matching: {name} has no effect in this function");
+                return Err(Error::new("conflict", message));
+            }
         }
+        Ok(Self(matching))
+    }
+
+    /// Returns the number of levels.
+    pub(crate) fn n_levels(&self) -> usize {
+        let default = Options::default().n_levels;
+        self.0.levels.map_or(default, |levels| levels as usize)
+    }
+
+    pub(crate) fn guides(&self) -> &[Guide<'py>] {
+        &self.0.guides
     }
 
     /// Converts the options to the options of the library, with the defaults of the command.
-    pub(crate) fn options(self) -> Result<Options> {
-        let default = match self.paper {
+    pub(crate) fn options(&self, seed: SeedArgument) -> Result<Options> {
+        let default = match self.0.paper {
             true => Options::paper(),
             false => Options::default(),
         };
-        let coherence = match self.coherence {
+        let coherence = match &self.0.coherence {
             None => default.coherence,
-            Some(Coherence::Factor(factor)) => dapple::synth::Coherence::Factor(factor),
+            Some(Coherence::Factor(factor)) => synth::Coherence::Factor(*factor),
             Some(Coherence::Word(word)) => word.parse().map_err(|_| {
                 let message = format!("the coherence is `{word}`, but it must be auto or a number");
                 Error::new("name", message)
             })?,
         };
+        let axes = self.0.axes.as_ref();
+        let space = self.0.space.as_ref();
         Ok(Options {
-            seed: self.seed.0,
-            n_levels: self.levels,
+            seed: seed.0,
+            n_levels: self.n_levels(),
             schedule: None,
             coherence,
-            evenness: self.evenness.unwrap_or(default.evenness),
-            axes: self.axes.unwrap_or(default.axes),
+            evenness: self.0.evenness.unwrap_or(default.evenness),
+            axes: axes.map_or(Ok(default.axes), |name| data::named("axes", name))?,
             center: default.center,
-            matching: self.matching.unwrap_or(default.matching),
+            matching: space.map_or(Ok(default.matching), |name| data::named("space", name))?,
             sources: default.sources,
+        })
+    }
+
+    /// Returns the requested method, or the method that other options require. `None` means endless synthesis, or a
+    /// sweep if the period does not fit the levels.
+    fn method(&self, at: Option<[i64; 2]>) -> Result<Option<Method>> {
+        let Self(given) = self;
+        let asked = given.method.as_ref();
+        let asked = asked.map(|name| data::named("method", name)).transpose()?;
+        let asked = match (asked, at) {
+            (None, Some(_)) => Some(Method::Endless),
+            (Some(Method::Sweep), Some(_)) => {
+                let message = "at has no effect with the method sweep";
+                return Err(Error::new("conflict", message));
+            }
+            _ => asked,
+        };
+        let is_for_sweeps = given.coherence.is_some()
+            || given.evenness.is_some()
+            || given.paper
+            || !given.guides.is_empty();
+        if is_for_sweeps && asked == Some(Method::Endless) {
+            let message =
+                "coherence, evenness, paper and guides have no effect on an endless texture";
+            return Err(Error::new("conflict", message));
+        }
+        Ok(if is_for_sweeps {
+            Some(Method::Sweep)
+        } else {
+            asked
         })
     }
 }
 
-/// Builds the exemplar from the first map, which is matched. The other maps are transferred.
-pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
-    let edges: Edges = data::named("edges", edges)?;
-    match maps {
-        [Map::Color(colors), ..] => Ok(Exemplar::new(colors, edges)?),
-        [Map::Value(values), ..] => Ok(Exemplar::from_planes(&[(values, 1.0)], edges)?),
-        _ => {
-            let message = "normals are no example: let colors or heights be the first map";
-            Err(Error::new("channels", message))
+/// The argument `exemplar`: maps of one size, and their options.
+pub(crate) struct Exemplar<'py> {
+    pub(crate) layout: Layout,
+    pub(crate) maps: Vec<Map>,
+    pub(crate) given: options::Exemplar<'py>,
+}
+
+impl<'py> Exemplar<'py> {
+    /// Reads maps, or an `Exemplar` of Python. `what` names the argument in error messages.
+    pub(crate) fn read(what: &str, given: &Bound<'py, PyAny>) -> Result<Self> {
+        let module = given.py().import("dapple_textures._options")?;
+        let given: options::Exemplar<'_> = module.call_method1("exemplar", (given,))?.extract()?;
+        let (layout, maps) = pictures::read(what, &given.maps)?;
+        for map in &maps {
+            if map.size() != maps[0].size() {
+                let message = format!(
+                    "the maps of an example have one size, but one has {:?} columns and rows, and the first {:?}",
+                    map.size(),
+                    maps[0].size()
+                );
+                return Err(Error::new("size", message));
+            }
         }
+        Ok(Self {
+            layout,
+            maps,
+            given,
+        })
     }
+
+    /// Reads maps that are not the texture of a mesh.
+    pub(crate) fn read_image(what: &str, given: &Bound<'py, PyAny>) -> Result<Self> {
+        let image = Self::read(what, given)?;
+        let given = &image.given;
+        if given.mesh.is_some() || given.sites.is_some() || given.directions.is_some() {
+            let message = format!(
+                "{what}: mesh, sites and directions have no effect here; `synthesize_on` takes them"
+            );
+            return Err(Error::new("conflict", message));
+        }
+        Ok(image)
+    }
+
+    /// Builds the exemplar from the first map, which is matched. The other maps are transferred. Nothing is copied from
+    /// `hole`, nor from outside of the mask.
+    pub(crate) fn matched(&self, hole: Option<&Raster<bool>>) -> Result<synth::Exemplar> {
+        let edges: Edges = data::named("edges", &self.given.edges)?;
+        let exemplar = match &self.maps[..] {
+            [Map::Color(colors), ..] => synth::Exemplar::new(colors, edges)?,
+            [Map::Value(values), ..] => synth::Exemplar::from_planes(&[(values, 1.0)], edges)?,
+            _ => {
+                let message = "normals are no example: let colors or heights be the first map";
+                return Err(Error::new("channels", message));
+            }
+        };
+        let mask = self.given.mask.as_ref();
+        let mask = mask.map(|mask| is_set("mask", mask)).transpose()?;
+        let usable = match (mask, hole) {
+            (mask, None) => mask,
+            (None, Some(hole)) => Some(hole.map(|is_made| !is_made)),
+            (Some(mask), Some(hole)) => {
+                Some(mask.zip_map(hole, |&is_usable, &is_made| is_usable && !is_made)?)
+            }
+        };
+        Ok(match usable {
+            Some(usable) => exemplar.with_mask(&usable)?,
+            None => exemplar,
+        })
+    }
+}
+
+/// Reads a mask: pixels of at least 0.5 are set.
+pub(crate) fn is_set(what: &str, mask: &Bound<'_, PyAny>) -> Result<Raster<bool>> {
+    Ok(pictures::numbers(what, mask)?.map(|&value| value >= 0.5))
 }
 
 /// Synthesizes a texture of any size that looks like an example, after Lefebvre and Hoppe (2005, 2006) or Turk
@@ -113,9 +208,10 @@ pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
 ///
 /// Parameters
 /// ----------
-/// exemplar : dict of array_like or array_like
+/// exemplar : dict of array_like, array_like or Exemplar
 ///     (rows, columns), or (rows, columns, 3 or 4) in linear light, ideally 64 to 256 pixels wide; or a dictionary of
-///     maps, of which the first is matched (color in sRGB, scalars unchanged) and the others follow it.
+///     maps, of which the first is matched (color in sRGB, scalars unchanged) and the others follow it. An `Exemplar`
+///     adds a mask, or edges that repeat.
 /// size : int or tuple of int
 ///     (rows, columns), or one number for both; at most 2**26 pixels.
 /// seed : int, default 0
@@ -123,35 +219,14 @@ pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
 /// wrap : bool or tuple of bool, default False
 ///     Whether the texture repeats along each axis, x first; one value for both. A side that repeats must be a
 ///     multiple of 2**levels if the method is `"endless"`, and of 2**(levels - 1) otherwise.
-/// edges : {"cut", "wrap"}, default "cut"
-///     How the edges of the example are treated: `"cut"`, or `"wrap"` if the example repeats.
-/// levels : int or None, default None
-///     1 to 16 levels, each with half the resolution of the next finer one: more levels capture larger features. By
-///     default 3, or as many as fit the example if the method is `"endless"`.
-/// coherence : float, {"auto"} or None, default None
-///     The tolerance for worse matches that continue the adjacent pixels: `"auto"` or a number of at least 0; higher
-///     values copy larger pieces.
-/// evenness : float or None, default None
-///     How evenly the pixels of the example are used, 0 to 1000; 1 by default.
-/// paper : bool, default False
-///     Whether to match as in the paper, where the smallest difference wins.
-/// mask : array_like or None, default None
-///     (rows, columns) of the example, at least 0.5 where it may be used; nothing is copied from elsewhere.
-/// guides : sequence of tuple of (array_like, float), default ()
-///     A list of (of_example, of_texture, weight): scalar images of the same size as the example and as the texture.
-///     Parts of the example are placed where both have similar values. With weight 1 a guide counts as much as one
-///     channel; with weight 3 a guide of zeros and ones is followed nearly everywhere. With guides, `evenness` has no
-///     effect.
-/// sources : bool, default False
-///     Whether to return (texture, sources), where `sources` has the (column, row) of each pixel's source in the
-///     example, (rows, columns, 2).
-/// method : {"endless", "sweep"} or None, default None
-///     `"endless"`, a window of an infinite texture, which is fast and preserves large or regular features; or
-///     `"sweep"`, pixel by pixel. By default `"endless"`, unless `coherence`, `evenness`, `paper` or `guides` are
-///     given or the length of a side that wraps is not the required multiple.
 /// at : tuple of int or None, default None
 ///     The position (x, y), that is, column and row, of the result in an endless texture, from -2**52 to 2**52; by
 ///     default (0, 0). Adjacent windows fit together.
+/// matching : Matching, dict or None, default None
+///     How neighborhoods are compared; by default Matching(). `space` and `axes` are for meshes.
+/// sources : bool, default False
+///     Whether to return (texture, sources), where `sources` has the (column, row) of each pixel's source in the
+///     example, (rows, columns, 2).
 /// progress : callable or None, default None
 ///     Called with the completed fraction of the work, from 0 to 1. Ctrl-C stops the call.
 ///
@@ -170,59 +245,35 @@ pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
 /// --------
 /// >>> import numpy as np, dapple_textures as dp
 /// >>> checker = np.kron([[0, 1], [1, 0]], np.ones((8, 8)))
-/// >>> texture, sources = dp.synthesize(checker, (24, 20), edges="wrap", levels=2, sources=True)
+/// >>> exemplar = dp.Exemplar(checker, edges="wrap")
+/// >>> texture, sources = dp.synthesize(exemplar, (24, 20), matching={"levels": 2}, sources=True)
 /// >>> bool((texture == checker[sources[..., 1], sources[..., 0]]).all())
 /// True
 #[pyfunction]
-#[pyo3(signature = (exemplar, size, *, seed = SeedArgument::default(), wrap = None, edges = "cut", levels = None, coherence = None,
-    evenness = None, paper = false, mask = None, guides = Vec::new(), sources = false, method = None, at = None,
-    progress = None),
-    text_signature = "(exemplar, size, *, seed=0, wrap=False, edges=\"cut\", levels=None, coherence=None, evenness=None, \
-    paper=False, mask=None, guides=(), sources=False, method=None, at=None, progress=None)")]
+#[pyo3(signature = (exemplar, size, *, seed = SeedArgument::default(), wrap = None, at = None, matching = None,
+    sources = false, progress = None),
+    text_signature = "(exemplar, size, *, seed=0, wrap=False, at=None, matching=None, sources=False, progress=None)")]
 pub(crate) fn synthesize<'py>(
     py: Python<'py>,
     exemplar: &Bound<'py, PyAny>,
     size: &Bound<'py, PyAny>,
     seed: SeedArgument,
     wrap: Option<&Bound<'py, PyAny>>,
-    edges: &str,
-    levels: Option<u32>,
-    coherence: Option<Coherence>,
-    evenness: Option<f32>,
-    paper: bool,
-    mask: Option<&Bound<'py, PyAny>>,
-    guides: Vec<(Bound<'py, PyAny>, Bound<'py, PyAny>, f32)>,
-    sources: bool,
-    method: Option<&str>,
     at: Option<[i64; 2]>,
+    matching: Option<&Bound<'py, PyAny>>,
+    sources: bool,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> Result<Bound<'py, PyAny>> {
-    let (layout, maps) = pictures::read("exemplar", exemplar)?;
-    check_sizes(&maps)?;
-    let mut exemplar = self::exemplar(&maps, edges)?;
-    if let Some(mask) = mask {
-        exemplar =
-            exemplar.with_mask(&pictures::numbers("mask", mask)?.map(|&value| value >= 0.5))?;
-    }
+    let given = Exemplar::read_image("exemplar", exemplar)?;
+    let matching = Matching::read(py, matching, &["space", "axes"])?;
     let size = self::size(size)?;
-    let (exemplar, targets) = guided(exemplar, size, &guides)?;
-    let is_for_sweeps = coherence.is_some() || evenness.is_some() || paper || !targets.is_empty();
-    let method = self::method(method, at, is_for_sweeps)?;
-    let default = Options::default().n_levels;
-    let matching = Matching {
-        seed,
-        levels: levels.map_or(default, |levels| levels as usize),
-        coherence,
-        evenness,
-        axes: None,
-        matching: None,
-        paper,
-    };
-    let options = matching.options()?;
+    let (exemplar, targets) = guided(given.matched(None)?, size, matching.guides())?;
+    let method = matching.method(at)?;
+    let options = matching.options(seed)?;
     let wrap = flags(wrap, false)?.map(|wraps| if wraps { Edges::Wrap } else { Edges::Cut });
     let endless = EndlessOptions {
         seed: seed.0,
-        n_levels: levels,
+        n_levels: matching.0.levels,
         period: [0, 1].map(|axis| (wrap[axis] == Edges::Wrap).then_some(size[axis])),
     };
     let texture = watch::run(py, progress, move |heard, _| {
@@ -243,45 +294,16 @@ pub(crate) fn synthesize<'py>(
             _ => synthesize_plane_guided(&exemplar, &targets, wrap, &options, heard),
         }
     })??;
-    followed(py, layout, &maps, &texture, sources)
-}
-
-/// Returns the requested method, or the method that other options require. `None` means endless synthesis, or a sweep
-/// if the period does not fit the levels.
-fn method(
-    asked: Option<&str>,
-    at: Option<[i64; 2]>,
-    is_for_sweeps: bool,
-) -> Result<Option<Method>> {
-    let asked = asked.map(|name| data::named("method", name)).transpose()?;
-    let asked = match (asked, at) {
-        (None, Some(_)) => Some(Method::Endless),
-        (Some(Method::Sweep), Some(_)) => {
-            return Err(Error::new(
-                "conflict",
-                "at has no effect with the method sweep",
-            ));
-        }
-        _ => asked,
-    };
-    if is_for_sweeps && asked == Some(Method::Endless) {
-        let message = "coherence, evenness, paper and guides have no effect on an endless texture";
-        return Err(Error::new("conflict", message));
-    }
-    Ok(if is_for_sweeps {
-        Some(Method::Sweep)
-    } else {
-        asked
-    })
+    followed(py, given, &texture, sources)
 }
 
 /// Adds the guides to an exemplar, and returns it with the texture's guides, which must be the same size as the
 /// texture.
 fn guided(
-    exemplar: Exemplar,
+    exemplar: synth::Exemplar,
     size: [u32; 2],
-    guides: &[(Bound<'_, PyAny>, Bound<'_, PyAny>, f32)],
-) -> Result<(Exemplar, Vec<Raster<f32>>)> {
+    guides: &[Guide<'_>],
+) -> Result<(synth::Exemplar, Vec<Raster<f32>>)> {
     let mut planes = Vec::new();
     let mut targets = Vec::new();
     for (of_example, of_texture, weight) in guides {
@@ -301,19 +323,15 @@ fn guided(
 ///
 /// Parameters
 /// ----------
-/// image : dict of array_like or array_like
-///     (rows, columns), or (rows, columns, 3 or 4) in linear light; or a dictionary of maps, of which the first is
-///     matched (color in sRGB, scalars unchanged) and the others follow it.
+/// image : dict of array_like, array_like or Exemplar
+///     The photograph, in the form of the `exemplar` of `synthesize`.
 /// hole : array_like
 ///     (rows, columns), at least 0.5 where the image is re-synthesized; nothing is copied from there.
 /// seed : int, default 0
 ///     As for `synthesize`.
-/// edges : {"cut", "wrap"}, default "cut"
-///     As for `synthesize`.
-/// levels : int, default 3
-///     As for `synthesize`; more levels fill larger holes.
-/// coherence : float, {"auto"} or None, default None
-///     As for `synthesize`.
+/// matching : Matching, dict or None, default None
+///     How neighborhoods are compared; by default Matching(). More levels fill larger holes. Only `levels`, `coherence`
+///     and `paper` have an effect.
 /// sources : bool, default False
 ///     Whether to return (image, sources), as for `synthesize`.
 /// progress : callable or None, default None
@@ -340,43 +358,39 @@ fn guided(
 /// >>> bool((dp.repair(stained, hole) == checker).all())
 /// True
 #[pyfunction]
-#[pyo3(signature = (image, hole, *, seed = SeedArgument::default(), edges = "cut", levels = 3, coherence = None, sources = false,
-    progress = None),
-    text_signature = "(image, hole, *, seed=0, edges=\"cut\", levels=3, coherence=None, sources=False, progress=None)")]
+#[pyo3(signature = (image, hole, *, seed = SeedArgument::default(), matching = None, sources = false, progress = None),
+    text_signature = "(image, hole, *, seed=0, matching=None, sources=False, progress=None)")]
 pub(crate) fn repair<'py>(
     py: Python<'py>,
     image: &Bound<'py, PyAny>,
     hole: &Bound<'py, PyAny>,
     seed: SeedArgument,
-    edges: &str,
-    levels: usize,
-    coherence: Option<Coherence>,
+    matching: Option<&Bound<'py, PyAny>>,
     sources: bool,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> Result<Bound<'py, PyAny>> {
-    let (layout, maps) = pictures::read("image", image)?;
-    check_sizes(&maps)?;
-    let hole = pictures::numbers("hole", hole)?.map(|&value| value >= 0.5);
-    let usable = hole.map(|is_made| !is_made);
-    let exemplar = self::exemplar(&maps, edges)?.with_mask(&usable)?;
-    let options = Matching::of_repair(seed, levels, coherence).options()?;
+    let image = Exemplar::read_image("image", image)?;
+    let without = ["evenness", "guides", "method", "space", "axes"];
+    let options = Matching::read(py, matching, &without)?.options(seed)?;
+    let hole = is_set("hole", hole)?;
+    let exemplar = image.matched(Some(&hole))?;
     let texture = watch::run(py, progress, move |heard, _| {
         PlaneTexture::identity(&exemplar)?.repair(&exemplar, &hole, &options, heard)
     })??;
-    followed(py, layout, &maps, &texture, sources)
+    followed(py, image, &texture, sources)
 }
 
 /// Transfers the example's maps to a texture, and returns them in the layout of the example; with `sources`, also the
 /// source of each pixel.
 fn followed<'py>(
     py: Python<'py>,
-    layout: Layout,
-    maps: &[Map],
+    exemplar: Exemplar<'py>,
     texture: &PlaneTexture,
     sources: bool,
 ) -> Result<Bound<'py, PyAny>> {
-    let transferred = maps.iter().map(|map| transfer(texture, map));
-    let picture = layout.python(py, transferred.collect::<core::result::Result<_, _>>()?)?;
+    let transferred = exemplar.maps.iter().map(|map| transfer(texture, map));
+    let transferred = transferred.collect::<core::result::Result<_, _>>()?;
+    let picture = exemplar.layout.python(py, transferred)?;
     if !sources {
         return Ok(picture);
     }
@@ -385,21 +399,6 @@ fn followed<'py>(
     let [width, height] = texture.sources().size().map(|side| side as usize);
     let places = arrays::array(py, places, &[height, width, 2])?;
     Ok((picture, places).into_pyobject(py)?.into_any())
-}
-
-/// Checks that the maps have the same size.
-pub(crate) fn check_sizes(maps: &[Map]) -> Result<()> {
-    for map in maps {
-        if map.size() != maps[0].size() {
-            let message = format!(
-                "the maps of an example have one size, but one has {:?} columns and rows, and the first {:?}",
-                map.size(),
-                maps[0].size()
-            );
-            return Err(Error::new("size", message));
-        }
-    }
-    Ok(())
 }
 
 /// Transfers one of the example's maps to the texture.

@@ -168,7 +168,7 @@ def test_a_synthesized_model_arrives_with_its_texture(tmp_path):
     trimesh = pytest.importorskip("trimesh")
     rng = np.random.default_rng(1)
     exemplar = np.repeat(np.repeat(rng.random((6, 6, 3)), 4, 0), 4, 1).astype(np.float32)
-    model = dp.synthesize_on(trimesh.creation.torus(1.0, 0.4), exemplar, texels=512, sites=400, seed=1)
+    model = dp.synthesize_on(trimesh.creation.torus(1.0, 0.4), exemplar, atlas={"texels": 512}, sites=400, seed=1)
     model.export(tmp_path / "torus.glb")
     for source in (model, str(tmp_path / "torus.glb")):
         bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -182,7 +182,7 @@ def test_a_synthesized_model_arrives_with_its_texture(tmp_path):
 def test_a_synthesized_model_arrives_with_all_its_maps():
     trimesh = pytest.importorskip("trimesh")
     maps = dp.Recipe.builtin("rock").plan().bake(24, ["albedo", "normal", "orm"])
-    model = dp.synthesize_on(trimesh.creation.torus(1.0, 0.4), maps, texels=512, sites=400, seed=1)
+    model = dp.synthesize_on(trimesh.creation.torus(1.0, 0.4), maps, atlas={"texels": 512}, sites=400, seed=1)
     [thing] = [thing for thing in blender.import_model(model) if thing.type == "MESH"]
     material = thing.data.materials[0]
     separate = node_of(material, "Roughness")
@@ -269,7 +269,7 @@ def test_a_mesh_of_blender_comes_back_where_it_was():
         (cone.data, before - [1, 2, 3]),
         ((before, faces), before),
     ]:
-        model = dp.synthesize_on(mesh, example, texels=64, sites=300, levels=1)
+        model = dp.synthesize_on(mesh, example, atlas={"texels": 64}, sites=300, matching={"levels": 1})
         [thing] = [thing for thing in blender.import_model(model) if thing.type == "MESH"]
         bpy.context.view_layer.update()
         after = np.array([thing.matrix_world @ vertex.co for vertex in thing.data.vertices])
@@ -284,7 +284,7 @@ def triangles(thing):
 
 def test_the_coordinates_of_other_programs_are_turned_if_asked(tmp_path):
     high = np.array([[0.0, 0, 0], [1, 0, 0], [0, 3, 0], [0, 0, 1]]), np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
-    model = dp.synthesize_on(high, np.eye(16), texels=64, sites=300, levels=1)
+    model = dp.synthesize_on(high, np.eye(16), atlas={"texels": 64}, sites=300, matching={"levels": 1})
     model.export(tmp_path / "high.glb")
     for thing in [*blender.import_model(model, up="y"), *blender.import_model(tmp_path / "high.glb")]:
         if thing.type == "MESH":

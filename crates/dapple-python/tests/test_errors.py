@@ -35,7 +35,7 @@ def test_images_of_recipes_and_written_files(tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(OSError):
         dp.write_maps(tmp_path / "file/maps", {"height": np.zeros((2, 2))})
-    model = dp.synthesize_on(ROOF, np.eye(16), texels=16, sites=50, levels=1)
+    model = dp.synthesize_on(ROOF, np.eye(16), atlas={"texels": 16}, sites=50, matching={"levels": 1})
     with pytest.raises(FileNotFoundError):
         model.export(tmp_path / "nowhere/a.glb")
 

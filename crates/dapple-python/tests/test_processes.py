@@ -159,7 +159,7 @@ def test_models_are_pickled_with_all_that_they_write(tmp_path):
     roof = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]])
     maps = dp.Recipe.builtin("rock").plan().bake(16, ["albedo", "normal", "orm"])
     for example in (maps, maps["albedo"], maps["orm"][..., 1]):
-        model = dp.synthesize_on(roof, example, texels=64, sites=300, levels=1)
+        model = dp.synthesize_on(roof, example, atlas={"texels": 64}, sites=300, matching={"levels": 1})
         copy = pickle.loads(pickle.dumps(model))
         for name in ("vertices", "faces", "uv", "normals", "texture"):
             assert np.array_equal(getattr(copy, name), getattr(model, name)), name

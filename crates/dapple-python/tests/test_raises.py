@@ -54,7 +54,7 @@ def steep():
 
 
 def model():
-    return dp.synthesize_on(ROOF, np.eye(16), texels=16, sites=50, levels=1)
+    return dp.synthesize_on(ROOF, np.eye(16), atlas={"texels": 16}, sites=50, matching={"levels": 1})
 
 
 def recipe(node):
@@ -211,12 +211,12 @@ CALLS = [
     ("mesh_report", "dp.mesh_report((np.eye(3), [[0, 1, 9]]))", "DappleError", "face 0 names vertex 9, but there are only 3, from 0"),
     ("synthesize_on", "dp.synthesize_on((np.zeros((3, 3)), [[0, 1, 2]]), np.eye(16))", "DappleError", "no face of the mesh has an area"),
     ("synthesize_on", "dp.synthesize_on(ROOF, {'a': np.eye(16), 'b': np.eye(8)})", "DappleError", "the maps of an example have one size, but one has [8, 8] columns and rows, and the first [16, 16]"),
-    ("synthesize_on", "dp.synthesize_on(ROOF, np.eye(16), levels=99)", "DappleError", "there are 99 levels, but 1 to 16 are needed"),
+    ("synthesize_on", "dp.synthesize_on(ROOF, np.eye(16), matching={'levels': 99})", "DappleError", "there are 99 levels, but 1 to 16 are needed"),
     ("Model.export", "model().export(path('a.xyz'))", "DappleError", "no mesh format is named `xyz`; there are obj, ply, glb, stl to write"),
     ("Model.export", "model().export(path('nowhere/a.glb'))", "FileNotFoundError", "No such file or directory"),
     ("synthesize_along", "dp.synthesize_along(np.ones((2, 2)), np.zeros((32, 32)))", "DappleError", "level 2 of the exemplar has 1 x 1 pixels, too few for a neighborhood of side 7"),
     ("synthesize_along", "dp.synthesize_along(np.eye(32), np.zeros((32, 32)), np.ones((3, 3)))", "DappleError", "the raster has 32 × 32 pixels, but 3 × 3 are needed"),
-    ("synthesize_along", "dp.synthesize_along(np.eye(32), np.zeros((32, 32)), levels=99)", "DappleError", "there are 99 levels, but 1 to 16 are needed"),
+    ("synthesize_along", "dp.synthesize_along(np.eye(32), np.zeros((32, 32)), matching={'levels': 99})", "DappleError", "there are 99 levels, but 1 to 16 are needed"),
     ("repair_on", "dp.repair_on(ROOF, np.eye(32), np.eye(32))", "DappleError", "the mesh has no attribute uv"),
     ("Domain", "dp.Domain(0)", "DappleError", "the domain from [0, 0] has size [0, 0], but both sides must be above 0 and at most 1e300, and the origin between -1e300"),
     ("Domain", "dp.Domain(np.nan)", "DappleError", "the domain from [0, 0] has size [NaN, NaN], but both sides must be above 0 and at most 1e300, and the origin between"),
@@ -301,10 +301,10 @@ CALLS = [
     ("shards", "dp.shards(0, 4)", "DappleError", "the size is 0, but it must be a whole number of at least 1, or 2 numbers, rows before columns"),
     ("shards", "dp.shards(4, (1, 2, 3))", "DappleError", "the size is (1, 2, 3), but it must be a whole number of at least 1, or 2 numbers, rows before columns"),
     ("synthesize", "dp.synthesize({'a': np.eye(16), 'b': np.eye(8)}, 32)", "DappleError", "the maps of an example have one size, but one has [8, 8] columns and rows, and the first [16, 16]"),
-    ("synthesize", "dp.synthesize(np.eye(16), 32, levels=99)", "DappleError", "the number of levels is 99, but it must be from 1 to 16, and none wider than the exemplar"),
+    ("synthesize", "dp.synthesize(np.eye(16), 32, matching={'levels': 99})", "DappleError", "the number of levels is 99, but it must be from 1 to 16, and none wider than the exemplar"),
     ("repair", "dp.repair(np.eye(32), np.eye(16))", "DappleError", "the raster has 32 × 32 pixels, but 16 × 16 are needed"),
     ("repair", "dp.repair(np.eye(32), np.ones((32, 32)))", "DappleError", "the mask leaves no neighborhood on level 2 of the exemplar"),
-    ("repair", "dp.repair(np.eye(32), np.eye(32), levels=99)", "DappleError", "the number of levels is 99, but it must be from 1 to 16"),
+    ("repair", "dp.repair(np.eye(32), np.eye(32), matching={'levels': 99})", "DappleError", "the number of levels is 99, but it must be from 1 to 16"),
     ("set_threads", "dp.set_threads(-1)", "DappleError", "the number of threads is -1, but it must be a whole number from 0 to 1024"),
     ("set_threads", "dp.set_threads(1025)", "DappleError", "the number of threads is 1025, but it must be a whole number from 0 to 1024"),
     ("make_tile", "dp.make_tile({'a': np.eye(16), 'b': np.eye(8)})", "DappleError", "the raster has 8 × 8 pixels, but 16 × 16 are needed"),

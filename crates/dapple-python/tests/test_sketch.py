@@ -48,7 +48,7 @@ def test_the_whole_package(tmp_path):
     assert normal.shape == (512, 512, 3)
 
     # Meshes.
-    model = dp.synthesize_on(trimesh.creation.icosphere(2), exemplar=photo, texels=512, sites=600, seed=1)
+    model = dp.synthesize_on(trimesh.creation.icosphere(2), exemplar=photo, atlas={"texels": 512}, sites=600, seed=1)
     model.export(tmp_path / "ball.glb")
     mesh = model.to_trimesh()
     assert mesh.visual.uv.shape[1] == 2

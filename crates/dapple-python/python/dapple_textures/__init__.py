@@ -86,7 +86,7 @@ from ._native import (
 )
 from ._coats import cow, cow_progression, giraffe_progression, space_giraffe
 from ._meshes import MeshFile
-from ._options import Net
+from ._options import Atlas, Directions, Exemplar, Matching, Net
 from ._pictures import Bands, SeamReport
 from ._recipes import read_recipe, read_recipe_images
 from ._textures import (
@@ -104,18 +104,22 @@ from ._textures import (
 from ._types import Axes, EmptyCircle, Features, MapInfo, Spectrum, Weights
 
 __all__ = [
+    "Atlas",
     "Axes",
     "Bands",
     "ColorField",
     "CornerTiles",
     "DappleError",
     "DappleWarning",
+    "Directions",
     "Domain",
     "EmptyCircle",
+    "Exemplar",
     "Features",
     "Field",
     "Graph",
     "MapInfo",
+    "Matching",
     "MeshFile",
     "Model",
     "Net",

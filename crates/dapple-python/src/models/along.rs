@@ -5,7 +5,7 @@ use super::surface_guides::bounds;
 use crate::error::Result;
 use crate::pictures;
 use crate::seed::SeedArgument;
-use crate::synthesis::{Coherence, Matching, check_sizes, exemplar};
+use crate::synthesis::{Exemplar, Matching};
 use crate::watch;
 use dapple::mesh::CREASE;
 use dapple::synth::{PlaneAlong, PlaneScales, SynthError, synthesize_plane_along};
@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 ///
 /// Parameters
 /// ----------
-/// exemplar : dict of array_like or array_like
+/// exemplar : dict of array_like, array_like or Exemplar
 ///     As for `synthesize`, without alpha.
 /// directions : array_like
 ///     (rows, columns), angles in radians: at 0 the example's downward axis points down, at pi / 2 it points to the
@@ -26,16 +26,8 @@ use pyo3::prelude::*;
 ///     they converge.
 /// seed : int, default 0
 ///     As for `synthesize`.
-/// edges : {"cut", "wrap"}, default "cut"
-///     As for `synthesize`.
-/// levels : int, default 3
-///     As for `synthesize`.
-/// coherence : float, {"auto"} or None, default None
-///     As for `synthesize`.
-/// evenness : float or None, default None
-///     As for `synthesize`.
-/// paper : bool, default False
-///     As for `synthesize`.
+/// matching : Matching, dict or None, default None
+///     How neighborhoods are compared; by default Matching(). `guides` and `method` are not for this function.
 /// progress : callable or None, default None
 ///     As for `synthesize`.
 ///
@@ -54,46 +46,32 @@ use pyo3::prelude::*;
 /// >>> import numpy as np, dapple_textures as dp
 /// >>> stripes = np.kron([[0], [1], [0], [1]], np.ones((4, 16)))
 /// >>> rows, columns = np.indices((40, 30))
-/// >>> dp.synthesize_along(stripes, np.arctan2(columns - 15, rows - 20), edges="wrap", levels=2).shape
+/// >>> angles = np.arctan2(columns - 15, rows - 20)
+/// >>> dp.synthesize_along(dp.Exemplar(stripes, edges="wrap"), angles, matching={"levels": 2}).shape
 /// (40, 30)
 #[pyfunction]
-#[pyo3(signature = (exemplar, directions, scales = None, *, seed = SeedArgument::default(), edges = "cut", levels = 3,
-    coherence = None, evenness = None, paper = false, progress = None),
-    text_signature = "(exemplar, directions, scales=None, *, seed=0, edges=\"cut\", levels=3, coherence=None, evenness=None, \
-    paper=False, progress=None)")]
+#[pyo3(signature = (exemplar, directions, scales = None, *, seed = SeedArgument::default(), matching = None, progress = None),
+    text_signature = "(exemplar, directions, scales=None, *, seed=0, matching=None, progress=None)")]
 pub(crate) fn synthesize_along<'py>(
     py: Python<'py>,
     exemplar: &Bound<'py, PyAny>,
     directions: &Bound<'py, PyAny>,
     scales: Option<&Bound<'py, PyAny>>,
     seed: SeedArgument,
-    edges: &str,
-    levels: usize,
-    coherence: Option<Coherence>,
-    evenness: Option<f32>,
-    paper: bool,
+    matching: Option<&Bound<'py, PyAny>>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> Result<Bound<'py, PyAny>> {
-    let (layout, maps) = pictures::read("exemplar", exemplar)?;
-    check_sizes(&maps)?;
-    super::refuse_alpha(&layout)?;
-    let example = self::exemplar(&maps, edges)?;
+    let exemplar = Exemplar::read_image("exemplar", exemplar)?;
+    super::refuse_alpha(&exemplar.layout)?;
+    let example = exemplar.matched(None)?;
+    let options = Matching::read(py, matching, &["guides", "method"])?.options(seed)?;
+    let Exemplar { layout, maps, .. } = exemplar;
     let directions = pictures::numbers("directions", directions)?;
     let plane = scales.filter(|scales| bounds(scales).is_none());
     let plane = plane
         .map(|scales| pictures::numbers("scales", scales))
         .transpose()?;
     let bounds = scales.and_then(bounds).unwrap_or([1.0; 2]);
-    let matching = Matching {
-        seed,
-        levels,
-        coherence,
-        evenness,
-        axes: None,
-        matching: None,
-        paper,
-    };
-    let options = matching.options()?;
     let baked = watch::run(py, progress, move |heard, _| {
         let scales = match &plane {
             Some(plane) => PlaneScales::Plane(plane),

@@ -3,6 +3,7 @@
 use super::{directions, own_uvs, uvs_of};
 use crate::error::{Error, Result};
 use crate::meshes::{mesh, plain};
+use crate::options::{self, Vectors};
 use dapple::mesh::glam::DVec2;
 use dapple::mesh::{Mesh, Surface};
 use dapple::synth::{Direction, Exemplar, HierarchyOptions, MeshExemplar, Synthesizer};
@@ -17,21 +18,17 @@ pub(super) struct ExampleMesh {
 }
 
 impl ExampleMesh {
-    /// Reads the arguments that describe the mesh; `None` if there is no mesh.
-    pub(super) fn read(
-        example_mesh: Option<&Bound<'_, PyAny>>,
-        n_sites: Option<usize>,
-        directions: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>,
-    ) -> Result<Option<Self>> {
-        let Some(example_mesh) = example_mesh else {
+    /// Reads the mesh of an exemplar; `None` if it has none.
+    pub(super) fn of(exemplar: options::Exemplar<'_>) -> Result<Option<Self>> {
+        let (n_sites, directions) = (exemplar.sites, exemplar.directions);
+        let Some(mesh) = exemplar.mesh else {
             if n_sites.is_some() || directions.is_some() {
-                let message =
-                    "example_sites and example_directions have no effect without example_mesh";
+                let message = "exemplar: sites and directions have no effect without mesh";
                 return Err(Error::new("conflict", message));
             }
             return Ok(None);
         };
-        Self::new(example_mesh, "example_mesh", n_sites, directions).map(Some)
+        Self::new(&mesh, "mesh of the exemplar", n_sites, directions).map(Some)
     }
 
     /// Reads a mesh and its texture directions. `name` is the caller's argument name, for error messages.
@@ -39,7 +36,7 @@ impl ExampleMesh {
         of: &Bound<'_, PyAny>,
         name: &str,
         n_sites: Option<usize>,
-        directions: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>,
+        directions: Option<Vectors<'_>>,
     ) -> Result<Self> {
         let (of, _) = plain(of)?;
         Ok(Self {

@@ -3,9 +3,9 @@
 use super::example_mesh::ExampleMesh;
 use super::{bake, refuse_alpha};
 use crate::error::Result;
-use crate::pictures;
+use crate::options::Vectors;
 use crate::seed::SeedArgument;
-use crate::synthesis::{Coherence, Matching, check_sizes, exemplar};
+use crate::synthesis::{Exemplar, Matching, is_set};
 use crate::watch;
 use dapple::mesh::CREASE;
 use dapple::raster::Raster;
@@ -20,7 +20,7 @@ use pyo3::prelude::*;
 /// mesh : mesh
 ///     Any object with `.vertices` (n, 3), `.faces` (m, 3) and `.uv` (m, 3, 2), v down, such as a `MeshFile` or a
 ///     `Model`.
-/// texture : dict of array_like or array_like
+/// texture : dict of array_like, array_like or Exemplar
 ///     (rows, columns), or (rows, columns, 3) in linear light, at the texture coordinates of the mesh; or a dictionary
 ///     of maps, of which the first is matched and the others follow it.
 /// hole : array_like
@@ -32,10 +32,9 @@ use pyo3::prelude::*;
 ///     interpolated; by default the texture points down.
 /// seed : int, default 0
 ///     As for `synthesize`.
-/// levels : int, default 3
-///     As for `synthesize`; more levels fill larger holes.
-/// coherence : float, {"auto"} or None, default None
-///     As for `synthesize`.
+/// matching : Matching, dict or None, default None
+///     How neighborhoods are compared; by default Matching(). More levels fill larger holes. Only `levels`,
+///     `coherence`, `paper` and `axes` have an effect.
 /// progress : callable or None, default None
 ///     As for `synthesize`.
 ///
@@ -55,41 +54,42 @@ use pyo3::prelude::*;
 /// >>> import numpy as np, dapple_textures as dp
 /// >>> checker = np.kron([[0, 1], [1, 0]], np.ones((8, 8)))
 /// >>> roof = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]])
-/// >>> model = dp.synthesize_on(roof, checker, texels=64, sites=500, edges="wrap", levels=2)
+/// >>> checker = dp.Exemplar(checker, edges="wrap")
+/// >>> few = {"sites": 500, "matching": {"levels": 2}}
+/// >>> model = dp.synthesize_on(roof, checker, atlas={"texels": 64}, **few)
 /// >>> hole = np.hypot(*(np.indices((64, 64)) - 32)) < 8
-/// >>> clean = dp.repair_on(model, np.where(hole, 0.5, model.texture), hole, sites=500, levels=2)
+/// >>> clean = dp.repair_on(model, np.where(hole, 0.5, model.texture), hole, **few)
 /// >>> bool((clean == model.texture)[~hole].all())
 /// True
 #[pyfunction]
-#[pyo3(signature = (mesh, texture, hole, *, sites = 65536, directions = None, seed = SeedArgument::default(), levels = 3,
-    coherence = None, progress = None),
-    text_signature = "(mesh, texture, hole, *, sites=65536, directions=None, seed=0, levels=3, coherence=None, progress=None)")]
+#[pyo3(signature = (mesh, texture, hole, *, sites = 65536, directions = None, seed = SeedArgument::default(),
+    matching = None, progress = None),
+    text_signature = "(mesh, texture, hole, *, sites=65536, directions=None, seed=0, matching=None, progress=None)")]
 pub(crate) fn repair_on<'py>(
     py: Python<'py>,
     mesh: &Bound<'py, PyAny>,
     texture: &Bound<'py, PyAny>,
     hole: &Bound<'py, PyAny>,
     sites: usize,
-    directions: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
+    directions: Option<Vectors<'py>>,
     seed: SeedArgument,
-    levels: usize,
-    coherence: Option<Coherence>,
+    matching: Option<&Bound<'py, PyAny>>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> Result<Bound<'py, PyAny>> {
     let source = ExampleMesh::new(mesh, "mesh", None, directions)?;
-    let (layout, maps) = pictures::read("texture", texture)?;
-    check_sizes(&maps)?;
-    refuse_alpha(&layout)?;
-    let hole = pictures::numbers("hole", hole)?.map(|&value| value >= 0.5);
-    let usable = hole.map(|is_made| !is_made);
-    let example = exemplar(&maps, "cut")?.with_mask(&usable)?;
+    let texture = Exemplar::read_image("texture", texture)?;
+    refuse_alpha(&texture.layout)?;
+    let matching = Matching::read(py, matching, &["evenness", "guides", "method", "space"])?;
+    let hole = is_set("hole", hole)?;
+    let example = texture.matched(Some(&hole))?;
+    let Exemplar { layout, maps, .. } = texture;
     let sites = HierarchyOptions {
         n_sites: sites,
-        n_levels: levels,
+        n_levels: matching.n_levels(),
         seed: seed.0.child("example sites", 0),
         ..HierarchyOptions::default()
     };
-    let options = Matching::of_repair(seed, levels, coherence).options()?;
+    let options = matching.options(seed)?;
     let mended = watch::run(py, progress, move |heard, _| -> Result<Vec<Map>> {
         let (exemplar, uvs) = source.textured(&sites, &example)?;
         let repaired = exemplar.repair(&options, heard)?;

@@ -1,7 +1,8 @@
-//! The arguments `guides` and `scales` of synthesis on a mesh, which vary over the surface.
+//! The options `guides` and `scales` of synthesis on a mesh, which vary over the surface.
 
 use super::at_corners;
 use crate::error::{Error, Result};
+use crate::options::Guide;
 use crate::pictures;
 use dapple::mesh::glam::DVec2;
 use dapple::mesh::{FaceIdx, Mesh, Repair};
@@ -10,16 +11,13 @@ use dapple::synth::{Exemplar, Synthesizer};
 use numpy::{AllowTypeChange, PyArrayLike1, PyArrayLikeDyn};
 use pyo3::prelude::*;
 
-/// A guide argument: its values in the example, its values on the mesh, and its weight.
-pub(super) type Guide<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, f32);
-
 /// The guides, with their values in the example and on the mesh.
 pub(super) struct SurfaceGuides {
     of_example: Vec<(Raster<f32>, f32)>,
     of_mesh: Vec<OfMesh>,
 }
 
-/// The argument `scales`.
+/// The option `scales`.
 pub(super) enum SurfaceScales {
     /// Scales between two bounds, derived from the directions.
     Conformal([f32; 2]),

@@ -113,16 +113,6 @@ pub(crate) struct Partition {
     pups: Pups,
 }
 
-/// The fields of the option object `Net`.
-#[derive(FromPyObject)]
-struct Net<'py> {
-    axis_scale: f64,
-    weight: Bound<'py, PyAny>,
-    orientations: Option<Bound<'py, PyAny>>,
-    strength: f64,
-    fade: f64,
-}
-
 /// Reads the orientation vectors; `seed` is the seed of the net.
 fn vectors(
     orientations: Option<Bound<'_, PyAny>>,
@@ -190,7 +180,7 @@ impl Partition {
             let message = "the graph is of other points than those that are given";
             return Err(Error::new("different_points", message));
         }
-        let options: Net<'_> = options::read(py, "Net", "net", net)?;
+        let options: options::Net<'_> = options::read(py, "Net", "net", net)?;
         let vectors = vectors(options.orientations, &points, seed.0)?;
         let net = Shared::new(NetMade {
             domain: *points.domain(),
