@@ -88,15 +88,16 @@ def bake(workers, side, shard, planes=("height",), what=None):
     """Processor time of workers and of the rest, wall time, and memory of the workers."""
     from distributed import Client
 
-    from dapple_textures.dask import bake_to_zarr
+    from dapple_textures import jobs
+    from dapple_textures.dask import bake_job
 
     with tempfile.TemporaryDirectory() as folder, cluster(workers) as them, Client(them) as client:
         pids = list(client.run(os.getpid).values())
         # Workers import what they need with their first shard.
-        bake_to_zarr(dp.constant(0), (2 * workers, 64), ["value"], f"{folder}/first.zarr", shard=(1, 64), client=client)
+        bake_job(jobs.create(dp.constant(0), (2 * workers, 64), ["value"], f"{folder}/first.zarr", shard=(1, 64)), client=client)
         idle = [peak(pid) for pid in pids]
         before, mine, started = sum(map(cpu, pids)), cpu(), time.perf_counter()
-        bake_to_zarr(what or dp.Recipe.builtin(RECIPE), side, planes, f"{folder}/a.zarr", shard=shard, client=client)
+        bake_job(jobs.create(what or dp.Recipe.builtin(RECIPE), side, planes, f"{folder}/a.zarr", shard=shard), client=client)
         wall = time.perf_counter() - started
         return {
             "workers": sum(map(cpu, pids)) - before,
@@ -157,7 +158,7 @@ def kills(options):
     from distributed import Client, Status
 
     from dapple_textures import jobs
-    from dapple_textures.dask import bake_to_zarr
+    from dapple_textures.dask import bake_job
 
     recipe, shape, planes = dp.Recipe.builtin(RECIPE), (1024, 1024), ["height", "normal"]
     whole = recipe.plan().bake(shape, planes)
@@ -184,7 +185,7 @@ def kills(options):
             killer.start()
             place = f"{folder}/{number}.zarr"
             client.wait_for_workers(1, timeout=60)
-            bake_to_zarr(recipe, shape, planes, place, shard=64, client=client)
+            bake_job(jobs.create(recipe, shape, planes, place, shard=64), client=client)
             done.set()
             killer.join()
             assert digest(place) == expected, f"run {number} has other bits"
@@ -198,10 +199,10 @@ def kills(options):
             while True:
                 program = (
                     "import sys; from distributed import Client, LocalCluster\n"
-                    "import dapple_textures as dp; from dapple_textures.dask import bake_to_zarr\n"
+                    "import dapple_textures as dp; from dapple_textures import jobs; from dapple_textures.dask import bake_job\n"
                     "if __name__ == '__main__':\n"
                     "    c = LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)\n"
-                    f"    bake_to_zarr(dp.Recipe.builtin({RECIPE!r}), {shape}, {planes}, {place!r}, shard=64, client=Client(c))\n"
+                    f"    bake_job(jobs.create(dp.Recipe.builtin({RECIPE!r}), {shape}, {planes}, {place!r}, shard=64), client=Client(c))\n"
                 )
                 script = Path(folder) / "run.py"
                 script.write_text(program)

@@ -23,7 +23,7 @@ from dask import config  # noqa: E402
 from distributed import Client, Future, LocalCluster, WorkerPlugin  # noqa: E402
 
 from dapple_textures import jobs  # noqa: E402
-from dapple_textures.dask import bake, bake_to_zarr  # noqa: E402
+from dapple_textures.dask import bake, bake_job  # noqa: E402
 
 RECIPE = dp.Recipe.builtin("rock")
 SHAPE = (1000, 1200)
@@ -57,7 +57,7 @@ def test_samples_on_corners_are_those_of_a_plan(tmp_path):
     lazy = bake(RECIPE, (65, 33), "normal", chunks=20, samples="corners")
     assert np.array_equal(lazy.compute(), corners["normal"])
     with cluster(1) as workers, Client(workers):
-        report = bake_to_zarr(RECIPE, (65, 33), PLANES, tmp_path / "a.zarr", shard=20, samples="corners")
+        report = bake_job(jobs.create(RECIPE, (65, 33), PLANES, tmp_path / "a.zarr", shard=20, samples="corners"))
     assert_whole(report.job, corners)
 
 
@@ -104,25 +104,25 @@ def test_two_of_three_workers_are_killed(tmp_path, whole):
 
         killer = threading.Thread(target=kill, args=([20, 50],))
         killer.start()
-        report = bake_to_zarr(RECIPE, SHAPE, PLANES, str(tmp_path / "a.zarr"), shard=100, client=client)
+        report = bake_job(jobs.create(RECIPE, SHAPE, PLANES, str(tmp_path / "a.zarr"), shard=100), client=client)
         killer.join()
         assert report.baked == 120 and report.restarted >= 2
         assert_whole(report.job, whole)
-        again = bake_to_zarr(RECIPE, SHAPE, PLANES, str(tmp_path / "a.zarr"), shard=100, client=client)
+        again = bake_job(jobs.create(RECIPE, SHAPE, PLANES, str(tmp_path / "a.zarr"), shard=100), client=client)
         assert again.baked == 0
         with pytest.raises(dp.DappleError, match="already"):
-            bake_to_zarr(RECIPE, SHAPE, PLANES, str(tmp_path / "a.zarr"), shard=100, client=client, resume=False)
+            bake_job(jobs.create(RECIPE, SHAPE, PLANES, str(tmp_path / "a.zarr"), shard=100), client=client, resume=False)
 
 
 def test_one_job_in_two_places(tmp_path):
     with cluster(1) as workers, Client(workers) as client:
         for place in ("a.zarr", "b.zarr"):
-            report = bake_to_zarr(dp.constant(0.5), 64, "value", str(tmp_path / place), shard=32, client=client)
+            report = bake_job(jobs.create(dp.constant(0.5), 64, "value", str(tmp_path / place), shard=32), client=client)
             assert (report.job.array("value")[:] == 0.5).all()
             assert [record.index for record in sorted(report.records, key=lambda record: record.index)] == [0, 1, 2, 3]
         # What is in a place may be another layout the next time.
         shutil.rmtree(tmp_path / "a.zarr")
-        report = bake_to_zarr(dp.constant(0.5), 64, "value", str(tmp_path / "a.zarr"), shard=32, chunk=16, client=client)
+        report = bake_job(jobs.create(dp.constant(0.5), 64, "value", str(tmp_path / "a.zarr"), shard={"shape": 32, "chunk": 16}), client=client)
         assert (report.job.array("value")[:] == 0.5).all()
 
 
@@ -136,7 +136,7 @@ def test_a_cluster_that_is_restarted_goes_on(tmp_path):
 
         restarter = threading.Thread(target=restart)
         restarter.start()
-        report = bake_to_zarr(RECIPE, (600, 600), "height", str(tmp_path / "a.zarr"), shard=16, client=client)
+        report = bake_job(jobs.create(RECIPE, (600, 600), "height", str(tmp_path / "a.zarr"), shard=16), client=client)
         restarter.join()
         assert report.restarted > 0 and jobs.Job(report.job.store).missing() == []
 
@@ -152,7 +152,7 @@ def test_a_result_may_be_lost_while_it_is_fetched(tmp_path, monkeypatch):
 
     monkeypatch.setattr(Future, "result", restart_first)
     with cluster(2) as workers, Client(workers) as client:
-        report = bake_to_zarr(RECIPE, (300, 300), "height", str(tmp_path / "a.zarr"), shard=100, client=client)
+        report = bake_job(jobs.create(RECIPE, (300, 300), "height", str(tmp_path / "a.zarr"), shard=100), client=client)
         assert fetched[0].status == "cancelled"
         assert jobs.Job(report.job.store).missing() == [] and len(report.records) < 9
 
@@ -161,7 +161,7 @@ def test_workers_may_come_late_and_the_client_need_not_be_the_default(tmp_path):
     with cluster(0) as workers, Client(workers, set_as_default=False) as client:
         grow = threading.Timer(0.5, lambda: workers.scale(2))
         grow.start()
-        report = bake_to_zarr(RECIPE, (300, 300), "height", str(tmp_path / "a.zarr"), shard=100, client=client)
+        report = bake_job(jobs.create(RECIPE, (300, 300), "height", str(tmp_path / "a.zarr"), shard=100), client=client)
         assert report.baked == 9
 
 
@@ -174,7 +174,7 @@ def test_a_scheduler_that_is_gone_is_an_error(tmp_path):
             # Nobody works: it waits for workers until there is no scheduler.
             threading.Timer(1, scheduler.kill).start()
             with pytest.raises(dp.DappleError) as caught:
-                bake_to_zarr(RECIPE, 64, "height", str(tmp_path / "a.zarr"), client=client)
+                bake_job(jobs.create(RECIPE, 64, "height", str(tmp_path / "a.zarr")), client=client)
             assert caught.value.kind == "cluster"
             client.close(timeout=1)
     finally:
@@ -187,7 +187,7 @@ def test_a_lost_worker_that_the_scheduler_gives_up_is_tried_again(tmp_path, whol
     (deaths / "one").touch()
     with config.set({"distributed.scheduler.allowed-failures": 0}), cluster(2) as workers, Client(workers) as client:
         client.register_plugin(DieInside(str(deaths)))
-        report = bake_to_zarr(RECIPE, SHAPE, PLANES, str(tmp_path / "a.zarr"), shard=400, client=client)
+        report = bake_job(jobs.create(RECIPE, SHAPE, PLANES, str(tmp_path / "a.zarr"), shard=400), client=client)
         assert report.restarted > 0
         assert_whole(report.job, whole)
 
@@ -198,11 +198,11 @@ def test_tasks_have_the_threads_of_their_worker(tmp_path):
             bake(RECIPE, (64, 64), chunks=32).compute()
             assert list(client.run(dp.threads).values()) == [2]
         with cluster(1) as workers, Client(workers) as client:
-            bake_to_zarr(RECIPE, 64, "height", str(tmp_path / "a.zarr"), client=client)
+            bake_job(jobs.create(RECIPE, 64, "height", str(tmp_path / "a.zarr")), client=client)
             assert list(client.run(dp.threads).values()) == [1]
     before = dp.threads()
     with LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None) as workers, Client(workers):
-        bake_to_zarr(RECIPE, 64, "height", str(tmp_path / "b.zarr"))
+        bake_job(jobs.create(RECIPE, 64, "height", str(tmp_path / "b.zarr")))
     assert dp.threads() == before
 
 
@@ -237,7 +237,7 @@ def test_workers_that_die_inside_of_a_shard(tmp_path, whole):
         (deaths / str(number)).touch()
     with cluster(2) as workers, Client(workers) as client:
         client.register_plugin(DieInside(str(deaths)))
-        report = bake_to_zarr(RECIPE, SHAPE, PLANES, str(tmp_path / "a.zarr"), shard=200, client=client)
+        report = bake_job(jobs.create(RECIPE, SHAPE, PLANES, str(tmp_path / "a.zarr"), shard=200), client=client)
         assert not os.listdir(deaths)
         assert_whole(report.job, whole)
 
@@ -256,14 +256,14 @@ def test_a_whole_cluster_is_killed_and_the_job_resumed(tmp_path, whole):
     missing = jobs.Job(place).missing()
     assert 60 <= len(missing) < 120
     with cluster(2) as workers, Client(workers) as client:
-        report = bake_to_zarr(RECIPE, SHAPE, PLANES, place, shard=100, client=client)
+        report = bake_job(jobs.create(RECIPE, SHAPE, PLANES, place, shard=100), client=client)
     assert report.baked == len(missing)
     assert_whole(report.job, whole)
 
 
 def test_the_current_client_is_taken_and_errors_come_through(tmp_path):
     with cluster(1) as workers, Client(workers):
-        report = bake_to_zarr(dp.worley(), (100, 100), "value", str(tmp_path / "a.zarr"), shard=64, extent=9.0)
+        report = bake_job(jobs.create(dp.worley(), (100, 100), "value", str(tmp_path / "a.zarr"), shard=64, extent=9.0))
         assert np.array_equal(report.job.array("value")[:], dp.worley().render(100, extent=9))
         with pytest.raises(dp.DappleError, match="hieght"):
-            bake_to_zarr(RECIPE, 100, ["hieght"], str(tmp_path / "b.zarr"))
+            bake_job(jobs.create(RECIPE, 100, ["hieght"], str(tmp_path / "b.zarr")))

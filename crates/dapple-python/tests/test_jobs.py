@@ -36,7 +36,7 @@ def assert_whole(job, whole):
 
 @pytest.mark.parametrize("chunk", [None, 32])
 def test_shards_in_any_order_make_the_whole(tmp_path, whole, chunk):
-    job = jobs.create(RECIPE, SHAPE, PLANES, str(tmp_path / "a.zarr"), shard=64, chunk=chunk)
+    job = jobs.create(RECIPE, SHAPE, PLANES, str(tmp_path / "a.zarr"), shard=dp.Shard(shape=64, chunk=chunk))
     assert len(job) == 20 and job.missing() == list(range(20))
     assert job.array("normal").shape == (200, 300, 3)
     for index in np.random.default_rng(1).permutation(20):
@@ -142,7 +142,8 @@ def test_parts_share_all_shards(tmp_path):
     [
         ({"shard": 0}, "shape"),
         ({"shard": (1, 2, 3)}, "count"),
-        ({"shard": 64, "chunk": 48}, "shape"),
+        ({"shard": {"shape": 64, "chunk": 48}}, "shape"),
+        ({"shard": {"shap": 64}}, "options"),
         ({"extent": 2.0}, "conflict"),
         ({"origin": 2.0}, "conflict"),
         ({"shape": (1, 2, 3, 4)}, "shape"),
@@ -199,7 +200,7 @@ def test_a_creation_that_was_killed_is_finished(tmp_path, monkeypatch):
             jobs.create(RECIPE, SHAPE, PLANES, place, shard=64)
     assert len(jobs.create(RECIPE, SHAPE, PLANES, place, shard=64).missing()) == 20
     with pytest.raises(dp.DappleError, match="another job"):
-        jobs.create(RECIPE, SHAPE, PLANES, place, shard=64, chunk=32)
+        jobs.create(RECIPE, SHAPE, PLANES, place, shard={"shape": 64, "chunk": 32})
 
 
 def test_many_processes_create_one_job(tmp_path):

@@ -1,14 +1,45 @@
-"""Option objects, for which a dict works, too."""
+"""Functions have few parameters: what travels together is an option object, for which a dict works, too."""
 
 from __future__ import annotations
 
 import dataclasses
+import inspect
 import pickle
 
 import numpy as np
 import pytest
 
 import dapple_textures as dp
+
+#: More parameters than this are no longer read.
+MOST = 8
+
+
+def callables():
+    """All public functions, classes and methods, with the names of their parameters."""
+    things = {f"dp.{name}": getattr(dp, name) for name in dp.__all__}
+    for module in ("blender", "dask", "jobs"):
+        module = pytest.importorskip(f"dapple_textures.{module}")
+        own = {name: thing for name, thing in vars(module).items() if getattr(thing, "__module__", "") == module.__name__}
+        things |= {f"{module.__name__}.{name}": thing for name, thing in own.items() if not name.startswith("_")}
+    for name, thing in list(things.items()):
+        if inspect.isclass(thing):
+            things |= {f"{name}.{key}": getattr(thing, key) for key in vars(thing) if not key.startswith("_")}
+    for name, thing in things.items():
+        # Tuples with names are results, which functions of the package make.
+        if callable(thing) and not hasattr(thing, "_fields"):
+            try:
+                parameters = inspect.signature(thing).parameters
+            except ValueError:
+                continue
+            yield name, [parameter for parameter in parameters if parameter != "self"]
+
+
+def test_no_function_has_more_than_eight_parameters() -> None:
+    found = dict(callables())
+    assert len(found) > 150
+    assert {name: parameters for name, parameters in found.items() if len(parameters) > MOST} == {}
+
 
 OPTIONS = [thing for name in dp.__all__ if dataclasses.is_dataclass(thing := getattr(dp, name))]
 

@@ -86,7 +86,7 @@ from ._native import (
 )
 from ._coats import cow, cow_progression, giraffe_progression, space_giraffe
 from ._meshes import MeshFile
-from ._options import Atlas, Directions, Exemplar, Matching, Net
+from ._options import Atlas, Directions, Exemplar, Matching, Net, Shard
 from ._pictures import Bands, SeamReport
 from ._recipes import read_recipe, read_recipe_images
 from ._textures import (
@@ -128,6 +128,7 @@ __all__ = [
     "Points",
     "Recipe",
     "SeamReport",
+    "Shard",
     "ShardList",
     "Spectrum",
     "Weights",

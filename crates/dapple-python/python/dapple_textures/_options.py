@@ -221,3 +221,23 @@ class Atlas:
     kind: Literal["charts", "area", "uniform", "uv"] = "charts"
     padding: int | None = None
     crease: float = 30.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shard:
+    """How the arrays of a Zarr store are split into files or objects.
+
+    Parameters
+    ----------
+    shape : int or sequence of int, default 2048
+        The shape of the part that a worker writes as one file or object; a number is both rows and columns, with 1
+        along further axes.
+    chunk : int, sequence of int or None, default None
+        The shape of the part that a reader loads at once; by default the whole shard. It must divide the shard.
+    compressors : object, default "auto"
+        Compressors of Zarr; by default Zarr's own choice.
+    """
+
+    shape: int | Sequence[int] = 2048
+    chunk: int | Sequence[int] | None = None
+    compressors: Any = "auto"

@@ -128,45 +128,36 @@ class Report:
     records: list[jobs.Record] = field(repr=False)
 
 
-def bake_to_zarr(
-    what: Recipe | Plan | Field | ColorField,
-    shape: int | Sequence[int],
-    planes: str | Sequence[str],
-    store: Any,
-    *,
-    shard: int | Sequence[int] = 2048,
-    chunk: int | Sequence[int] | None = None,
-    compressors: Any = "auto",
-    extent: float | Sequence[float] | None = None,
-    origin: float | Sequence[float] | None = None,
-    samples: _sources.Samples = "centers",
-    resume: bool = True,
-    client: Client | None = None,
-) -> Report:
-    """Bakes arrays of any size into a Zarr store, on all workers of a cluster.
+def bake_job(job: jobs.Job, *, resume: bool = True, client: Client | None = None) -> Report:
+    """Bakes the shards of a job that are missing, on all workers of a cluster.
 
     A worker writes a shard and returns its hash. If a worker dies, only its unfinished shards are lost, and another worker
-    bakes them again. After the loss of the whole cluster, the same call continues where it stopped. The other arguments
-    are those of `jobs.create`; with `resume=False` a job that has shards already is refused. `client` is the current
-    client by default, and workers may come and go.
+    bakes them again. After the loss of the whole cluster, the same call continues where it stopped.
+
+    Parameters
+    ----------
+    job : Job
+        A job of `jobs.create`, in a store that all workers see.
+    resume : bool, default True
+        Whether the job may have shards already; if not, it is refused.
+    client : Client or None, default None
+        The client of the cluster, by default the current one. Workers may come and go.
+
+    Returns
+    -------
+    Report
+        What was baked.
+
+    Raises
+    ------
+    DappleError
+        If the store is in the memory of this process, or the job has shards and `resume` is False.
     """
     client = client or get_client()
-    jobs.check_shared(store)
-    job = jobs.create(
-        what,
-        shape,
-        planes,
-        store,
-        shard=shard,
-        chunk=chunk,
-        compressors=compressors,
-        extent=extent,
-        origin=origin,
-        samples=samples,
-    )
+    jobs.check_shared(job.store)
     missing = job.missing()
     if not resume and len(missing) < len(job):
-        raise refusal("store", f"{store} holds shards of this job already", "pass `resume=True`")
+        raise refusal("store", f"{job.store} holds shards of this job already", "pass `resume=True`")
     run, baked = _Run(client, job), len(missing)
     while missing:
         run.bake(missing)

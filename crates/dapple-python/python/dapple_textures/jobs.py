@@ -20,7 +20,7 @@ import operator
 import os
 import sys
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args
@@ -33,6 +33,7 @@ from zarr.storage import LocalStore, MemoryStore, StorePath, ZipStore
 
 from . import _sources
 from ._native import ColorField, Field, Plan, Recipe, __version__
+from ._options import Shard, read
 from ._recipes import read_recipe, read_recipe_images
 from ._types import refusal
 
@@ -221,9 +222,7 @@ def create(
     planes: str | Sequence[str],
     store: Any,
     *,
-    shard: int | Sequence[int] = 2048,
-    chunk: int | Sequence[int] | None = None,
-    compressors: Any = "auto",
+    shard: int | Sequence[int] | Shard | Mapping[str, Any] = 2048,
     extent: float | Sequence[float] | None = None,
     origin: float | Sequence[float] | None = None,
     samples: _sources.Samples = "centers",
@@ -241,13 +240,9 @@ def create(
         The names of the maps.
     store : object
         A path, the address of an object store (with fsspec), or a Zarr store.
-    shard : int or sequence of int, default 2048
+    shard : int, sequence of int, Shard or dict, default 2048
         The shape of the part that a worker writes as one file or object; a number is both rows and columns, with 1
-        along further axes.
-    chunk : int, sequence of int or None, default None
-        The shape of the part that a reader loads at once; by default the whole shard. It must divide the shard.
-    compressors : object, default "auto"
-        Compressors of Zarr; by default Zarr's own choice.
+        along further axes. A `Shard` also has chunks and compressors.
     extent : float, sequence of float or None, default None
         As in `Field.render`, for fields only.
     origin : float, sequence of float or None, default None
@@ -274,8 +269,9 @@ def create(
     if not planes or len(set(planes)) < len(planes):
         raise refusal("planes", "at least one plane is needed, and each once")
     channels = {plane: source.channels(plane) for plane in planes}
-    shard = shard_sides(shard, shape)
-    chunk = shard if chunk is None else shard_sides(chunk, shape)
+    layout = read(Shard, "shard", shard) if isinstance(shard, (Shard, Mapping)) else Shard(shape=shard)
+    shard = shard_sides(layout.shape, shape)
+    chunk = shard if layout.chunk is None else shard_sides(layout.chunk, shape)
     if any(side < 1 for side in (*shape, *shard, *chunk)) or any(s % c for s, c in zip(shard, chunk)):
         message = f"the shape is {shape}, a shard {shard} and a chunk {chunk}, but sides must be at least 1, and a chunk divides a shard"
         raise refusal("shape", message)
@@ -285,7 +281,7 @@ def create(
         "planes": list(planes),
         "shape": list(shape),
         "shard": list(shard),
-        "layout": {"chunk": list(chunk), "compressors": repr(compressors)},
+        "layout": {"chunk": list(chunk), "compressors": repr(layout.compressors)},
     }
     store = place_of(store)
     # Convert the data to the form in which JSON is read.
@@ -312,7 +308,7 @@ def create(
                 chunks=(*chunk, *last),
                 dtype=np.float32,
                 fill_value=np.nan,
-                compressors=compressors,
+                compressors=layout.compressors,
                 dimension_names=(*_axes(len(shape), source), *(["channel"] if last else [])),
                 attributes={**source.attributes(plane), "version": __version__},
             )
@@ -488,8 +484,7 @@ def _create(options: argparse.Namespace) -> Job:
         shape,
         options.maps.split(","),
         options.store,
-        shard=options.shard,
-        chunk=options.chunk,
+        shard=Shard(shape=options.shard, chunk=options.chunk),
         samples=options.samples,
     )
 
