@@ -32,7 +32,7 @@ fn assert_same(plan: &Plan, field: &impl Field) {
                 .map(|value| value.to_bits())
                 .collect()
         };
-        assert_eq!(bits(&found), bits(&expected));
+        assert_eq!(bits(&found), bits(&expected), "{window:?}");
         for (column, row) in [(0, 0), (36, 22), (5, 17)] {
             let position = window.position(column, row);
             let at = found.row(row)[column as usize].to_bits();
