@@ -58,12 +58,19 @@ pub(crate) fn command() -> ClapCommand {
 
 #[cfg(test)]
 mod tests {
-    use super::command;
+    use clap::Command;
     use clap::error::ErrorKind;
+
+    /// Returns the command line with the options of all subcommands, which are defined when they are needed.
+    fn command() -> Command {
+        let mut command = super::command();
+        command.build();
+        command
+    }
 
     #[test]
     fn the_command_line_is_consistent() {
-        command().debug_assert();
+        super::command().debug_assert();
     }
 
     #[test]
@@ -119,6 +126,8 @@ mod tests {
                 assert!(n_words <= 25, "{name} {}: {n_words} words", arg.get_id());
             }
         }
+        // Count the options of the subcommand alone, without those that every subcommand has.
+        let command = super::command();
         let synth = command.find_subcommand("synth").expect("it is there");
         let shown = synth.get_arguments().filter(|arg| {
             !arg.is_hide_short_help_set() && arg.get_help_heading() != Some("Output")

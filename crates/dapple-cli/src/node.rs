@@ -1,11 +1,11 @@
-//! Options of subcommands that come from a node of recipes. Their names, help texts, types, ranges and defaults are those
-//! of the node's schema, so that a new option of a node needs no line here.
+//! Options of subcommands that come from a node of recipes. The node's schema gives their names, help texts, types, ranges
+//! and defaults, so a new option of a node needs no line here.
 //!
 //! A table of [`Flag`]s lists what differs: other names, values inside of tables, and options without a flag.
 
 use crate::args::numbers_of;
 use crate::error::usage;
-use crate::words::{unknown, with_dashes, with_underscores};
+use crate::words::{first_sentence, unknown, with_dashes, with_underscores};
 use anyhow::Result;
 use clap::builder::{PossibleValue, RangedI64ValueParser, StringValueParser, TypedValueParser};
 use clap::parser::ValueSource;
@@ -18,7 +18,7 @@ use std::ffi::OsStr;
 use std::marker::PhantomData;
 use std::sync::OnceLock;
 
-/// A kind of node whose options are those of a subcommand.
+/// A kind of node whose options become flags of a subcommand.
 pub(crate) trait NodeFlags: Send + Sync + 'static {
     /// Name of the kind in recipes.
     const KIND: &'static str;
@@ -36,18 +36,18 @@ pub(crate) trait NodeFlags: Send + Sync + 'static {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flag {
     /// Path of the option in the node, such as `scatter/jittered/jitter`.
-    pub(crate) path: &'static str,
+    path: &'static str,
     /// Name of the flag, without dashes; `None` for an option without a flag.
-    pub(crate) name: Option<&'static str>,
-    pub(crate) default: FlagDefault,
+    name: Option<&'static str>,
+    default: FlagDefault,
     /// Help text instead of the schema's description.
-    pub(crate) help: Option<&'static str>,
+    help: Option<&'static str>,
     /// Whether the flag takes the numbers of an option that may be a name or a list of numbers.
-    pub(crate) is_list: bool,
+    is_list: bool,
     /// Flags that must not be given together with this one.
-    pub(crate) conflicts: &'static [&'static str],
+    conflicts: &'static [&'static str],
     /// Flag that must be given, too.
-    pub(crate) requires: Option<&'static str>,
+    requires: Option<&'static str>,
 }
 
 /// Value of an option whose flag is not given.
@@ -143,7 +143,7 @@ pub(crate) struct NodeValue {
     /// Name of the flag, without dashes.
     pub(crate) flag: String,
     pub(crate) value: Value,
-    /// Whether the value replaces that of the node's default.
+    /// Whether the value replaces the node's default.
     is_set: bool,
 }
 
@@ -192,7 +192,7 @@ impl NodeValue {
     }
 }
 
-/// Sets a value inside of a table. A table of another variant is replaced.
+/// Sets a value inside of a table. Missing tables on the path are created.
 fn set(table: &mut Value, path: &str, value: Value) {
     let Some((first, rest)) = path.split_once('/') else {
         table[path] = value;
@@ -216,8 +216,11 @@ impl<K> Serialize for NodeArgs<K> {
 
 impl<K: NodeFlags> clap::Args for NodeArgs<K> {
     fn augment_args(command: Command) -> Command {
-        let options = K::options().into_iter();
-        command.args(options.map(|option| option.arg()))
+        // Generate the schema only if the subcommand is invoked, since every start of the command defines all of them.
+        command.defer(|command| {
+            let options = K::options().into_iter();
+            command.args(options.map(|option| option.arg()))
+        })
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -231,14 +234,7 @@ impl<K: NodeFlags> FromArgMatches for NodeArgs<K> {
             let value = matches.get_one::<Value>(&option.flag)?.clone();
             let is_given = matches.value_source(&option.flag) == Some(ValueSource::CommandLine);
             Some(NodeValue {
-                is_set: is_given
-                    || matches!(
-                        option.entry,
-                        Flag {
-                            default: FlagDefault::Value(_),
-                            ..
-                        }
-                    ),
+                is_set: is_given || matches!(option.entry.default, FlagDefault::Value(_)),
                 path: option.path,
                 flag: option.flag,
                 value,
@@ -270,7 +266,7 @@ pub(crate) struct NodeOption {
     pub(crate) flag: String,
     schema: &'static Value,
     pub(crate) help: String,
-    /// Default of the schema; null if there is none.
+    /// Default of the schema; null for an option without a default.
     default: Value,
     /// Entry of the table; empty for an option without one.
     entry: Flag,
@@ -278,8 +274,8 @@ pub(crate) struct NodeOption {
     any_length: bool,
 }
 
-/// Returns the options of a kind of node that have flags: those of the table in its order, then the other options at the
-/// top of the node.
+/// Returns the options of a kind of node that have flags: first the entries of the table in its order, then the other
+/// options at the top of the node.
 fn options(kind: &str, flags: &'static [Flag]) -> Vec<NodeOption> {
     let kinds = variants(&schema()["$defs"]["Node"]);
     let mut kinds = kinds.filter_map(|variant| variant["properties"].get(kind));
@@ -299,7 +295,7 @@ fn options(kind: &str, flags: &'static [Flag]) -> Vec<NodeOption> {
 }
 
 /// Returns the description of a value.
-pub(crate) fn description(schema: &'static Value) -> Option<&'static str> {
+fn description(schema: &'static Value) -> Option<&'static str> {
     let own = schema["description"].as_str();
     own.or_else(|| followed(schema)["description"].as_str())
 }
@@ -451,17 +447,17 @@ fn length(list: &Value) -> Option<usize> {
 }
 
 /// Returns the names that a value may have, with their help texts.
-fn names(value: &'static Value) -> Vec<(&'static str, &'static str)> {
+fn names(value: &'static Value) -> Vec<(&'static str, String)> {
     let named = |variant: &'static Value| {
-        let name = variant["const"].as_str()?;
         let about = variant["description"].as_str().unwrap_or_default();
-        let about = about.split_once(". ").map_or(about, |(first, _)| first);
-        Some((name, about.trim_end_matches('.')))
+        Some((variant["const"].as_str()?, first_sentence(about)))
     };
     let listed = variants(value)
         .filter_map(|variant| variant["enum"].as_array())
         .flatten();
-    let listed = listed.filter_map(Value::as_str).map(|name| (name, ""));
+    let listed = listed
+        .filter_map(Value::as_str)
+        .map(|name| (name, String::new()));
     variants(value).filter_map(named).chain(listed).collect()
 }
 
@@ -469,7 +465,7 @@ fn names(value: &'static Value) -> Vec<(&'static str, &'static str)> {
 #[derive(Clone, Debug)]
 enum ValueParser {
     /// A name, with its help text.
-    Name(Vec<(&'static str, &'static str)>),
+    Name(Vec<(&'static str, String)>),
     /// A whole number in a range.
     Integer(i64, i64),
     Number,
@@ -539,11 +535,11 @@ impl TypedValueParser for ValueParser {
 
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
         let Self::Name(names) = self else { return None };
-        let value = |(name, about): &(&'static str, &'static str)| {
+        let value = |(name, about): &(&'static str, String)| {
             let value = PossibleValue::new(with_dashes(name)).alias(*name);
             match about.is_empty() {
                 true => value,
-                false => value.help(about.replace('`', "")),
+                false => value.help(about.clone()),
             }
         };
         Some(Box::new(names.iter().map(value)))

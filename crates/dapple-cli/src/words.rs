@@ -113,7 +113,7 @@ impl<T: Clone + Send + Sync + 'static> TypedValueParser for NamedValueParser<T> 
 }
 
 /// Returns the first sentence of a documentation text in Markdown, without backticks and without its period.
-fn first_sentence(documentation: &str) -> String {
+pub(crate) fn first_sentence(documentation: &str) -> String {
     let words: Vec<_> = documentation.split_whitespace().collect();
     let text = words.join(" ");
     let sentence = text
