@@ -144,6 +144,9 @@ pub(crate) struct Args {
     files: OutputArgs,
 }
 
+/// The hint of errors about an output that must be a directory.
+const FOLDER_HINT: &str = "let -o end with a slash, as in -o out/";
+
 /// A recipe to bake, with its options, the directory of its images and, for a shard, its list.
 struct Work {
     /// The options, with a single seed.
@@ -209,9 +212,9 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let progress = Progress::bar("baking", rows * works.len() as u64, context);
     for (index, (name, work)) in (0..).zip(&works) {
         let baked = work.bake(&files, context, &progress);
-        let is_baked = batch.checked(name, baked)?.is_some();
-        if let Some(sheet) = sheet.as_mut().filter(|_| is_baked) {
-            sheet.add(&work.preview()?)?;
+        let preview = batch.checked(name, baked)?.flatten();
+        if let (Some(sheet), Some(preview)) = (&mut sheet, preview) {
+            sheet.add(&preview)?;
         }
         progress.set(rows * (index + 1));
     }
@@ -253,7 +256,7 @@ pub(super) fn bake_with(
         folder,
         list,
     };
-    work.bake(&files, context, &progress)
+    work.bake(&files, context, &progress).map(drop)
 }
 
 /// Returns the names of the presets, with a sentence about each.
@@ -305,41 +308,41 @@ impl Work {
     }
 
     /// Bakes all frames of a looping animation, or a single image. Nodes that do not change with time are evaluated
-    /// once.
-    fn bake(&self, files: &OutputArgs, context: &Context, progress: &Progress) -> Result<()> {
+    /// once. Returns the lit preview of the first frame if the options need one.
+    fn bake(
+        &self,
+        files: &OutputArgs,
+        context: &Context,
+        progress: &Progress,
+    ) -> Result<Option<Raster<LinearRgb>>> {
+        let mut preview = None;
         let mut made = Made {
             images: None,
             cache: self.args.frames.map(|_| PlanCache::new(MEMORY)),
         };
         for args in self.args.pictures() {
             let job = Job::new(context, "bake", files);
-            self.bake_picture(&args, job, &mut made, progress)?;
+            let of_frame = self.bake_picture(&args, job, &mut made, progress)?;
+            preview = preview.or(of_frame);
         }
-        Ok(())
+        Ok(preview)
     }
 
-    /// Renders the lit preview of the recipe for the contact sheet.
-    fn preview(&self) -> Result<Raster<LinearRgb>> {
-        let images = read_images(&self.recipe, &self.folder, self.args.material.finite)?;
-        let time = self.args.frame.map_or(0.0, Frame::time);
-        let thing = self.args.preview.unwrap_or(Thing::Sphere);
-        preview::picture(&self.recipe, &images, time, thing)
-    }
-
+    /// Bakes a single image, and returns its lit preview if the options need one.
     fn bake_picture(
         &self,
         args: &Args,
         mut job: Job<'_>,
         made: &mut Made,
         progress: &Progress,
-    ) -> Result<()> {
+    ) -> Result<Option<Raster<LinearRgb>>> {
         let recipe = &self.recipe;
         let claimed = claim(args, job.args(), self, &mut job)?;
         for target in &claimed.finished {
             job.note_work(&format!("{target} is there already"));
         }
         if claimed.images.is_empty() {
-            return Ok(());
+            return Ok(None);
         }
         let time = args.frame.map_or(0.0, Frame::time);
         let images = match &mut made.images {
@@ -366,11 +369,19 @@ impl Work {
         progress.check()?;
         let bake = bake.map_err(|error| refused(error).wrong_value())?;
         claimed.write(&mut job, bake, recipe, progress)?;
-        if let (Some((output, format)), Some(thing)) = (claimed.preview, args.preview) {
-            let picture = preview::picture(recipe, images, time, thing)?;
-            job.write_map(output, &Map::Color(picture), format)?;
+        // The contact sheet shows the first frame.
+        let is_first = args.frames.is_none() || args.frame.is_none_or(Frame::is_first);
+        let preview = if args.preview.is_some() || (args.contact_sheet && is_first) {
+            let thing = args.preview.unwrap_or(Thing::Sphere);
+            Some(preview::picture(recipe, images, time, thing)?)
+        } else {
+            None
+        };
+        if let (Some((output, format)), Some(preview)) = (claimed.preview, &preview) {
+            job.write_map(output, &Map::Color(preview.clone()), format)?;
         }
-        job.finish(&BakeSidecar { args, recipe }, report(recipe))
+        job.finish(&BakeSidecar { args, recipe }, report(recipe))?;
+        Ok(preview)
     }
 }
 
@@ -485,10 +496,10 @@ impl Args {
         }
         // Append a slash, so that the output is a directory for the files of each recipe.
         let folder = files.folder(n_recipes).map(|folder| folder.join(""));
-        files.output = Some(folder.ok_or_else(|| {
-            usage("several recipes or seeds need a folder")
-                .hint("let -o end with a slash, as in -o out/")
-        })?);
+        files.output =
+            Some(folder.ok_or_else(|| {
+                usage("several recipes or seeds need a folder").hint(FOLDER_HINT)
+            })?);
         Ok(files)
     }
 
