@@ -3,7 +3,7 @@
 use super::NodeKind;
 use crate::plan::{Builder, Moved, Positions, Step};
 use crate::{Input, RecipeError, RecipeErrorKind};
-use dapple_raster::{FractalShape, Range, range};
+use dapple_raster::{Fractal, FractalShape, Range, range};
 use serde::{Deserialize, Serialize};
 
 /// Fractal sum of a node: the node plus weaker copies of it at higher frequencies.
@@ -63,13 +63,10 @@ impl NodeKind for FractalOf {
                 rule: "where the recipe repeats, the `lacunarity` of `fractal` must be a whole number",
             }));
         }
-        let (mut frequency, mut weight) = (1.0, 1.0);
-        let octaves = (0..self.octaves).map(|_| {
-            let octave = (frequency, weight as f32);
-            frequency *= self.lacunarity;
-            weight *= self.gain;
-            octave
-        });
+        let octaves = core::iter::repeat_n((), self.octaves as usize);
+        let sum = Fractal::new(octaves, self.gain, self.lacunarity, self.shape)?;
+        let octaves = sum.octaves();
+        let octaves = octaves.map(|(_, frequency, weight)| (frequency, weight));
         let octaves = octaves.collect();
         Ok(Step::Moved(Moved {
             input: plan.number(&self.input)?,
