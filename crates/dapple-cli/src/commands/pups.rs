@@ -264,7 +264,7 @@ fn put(data: &mut Value, kind: Kind, flag: &str, name: &str, value: Value) -> Re
     }
 }
 
-/// Returns the JSON pointer to the option called `name` in a texture's options; `None` if there is no such option.
+/// Returns the JSON pointer to the option called `name` in a texture's options; `None` if the texture lacks the option.
 fn path(data: &Value, kind: Kind, name: &str) -> Option<String> {
     let kind = kind.in_recipes();
     let parts = ["", "/options", "/net", "/options/net"];

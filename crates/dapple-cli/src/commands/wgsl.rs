@@ -25,7 +25,7 @@ With --naga-oil, as for Bevy, a file is one module; print those that it imports,
 #[derive(clap::Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// Modules to print; each file contains what they need.
+    /// Modules to print, with all modules that they use.
     #[arg(required = true, value_name = "MODULE", value_parser = NamedValueParser::of(Module::ALL.iter().map(|module| (with_dashes(module.name()), *module))))]
     modules: Vec<Module>,
 

@@ -4,7 +4,7 @@ use super::{KINDS, Kind};
 use crate::node::{Flag, NodeFlags, NodeOption, followed, schema, variants};
 use serde_json::Value;
 
-/// Options without a flag of their own, which the command sets otherwise.
+/// Options without a flag. The command sets them in other ways, such as from `--frames`.
 const WITHOUT_FLAG: [&str; 9] = [
     "alpha", "cells", "domain", "file", "motion", "net", "options", "points", "wrap",
 ];
@@ -15,7 +15,7 @@ const SHARED: [(&str, &[&str]); 2] = [
     ("spacings", &["distances"]),
 ];
 
-/// Help of the option `spacing`, of which the command takes the form of a distance alone.
+/// Help of the option `spacing`. The command takes a distance, not a density or a count.
 const SPACING: &str =
     "Minimum distance of control points in units of the plane [default: the texture's]";
 
