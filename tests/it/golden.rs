@@ -244,7 +244,7 @@ fn tile_soft_cut() -> anyhow::Result<Vec<u8>> {
     let cells = Worley2::new(Seed(6)).combine(Combination::F1);
     let crop = Window::new(DVec2::ZERO, DVec2::splat(4.0), [64; 2])?;
     let cut = SoftCut {
-        margin: 16,
+        margin: Some(16),
         ..SoftCut::default()
     };
     let tile = Seamless::new(Method::SoftCut(cut)).apply(&cells.to_raster(&crop)?)?;

@@ -41,7 +41,7 @@ struct Means {
 #[test]
 fn soft_cuts_leave_no_seam_and_keep_detail() -> Result<()> {
     let cut = SoftCut {
-        margin: 32,
+        margin: Some(32),
         ..SoftCut::default()
     };
     for (name, image) in sources()? {

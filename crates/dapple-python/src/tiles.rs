@@ -11,7 +11,7 @@ use crate::watch::{self, Stop};
 use dapple::raster::Raster;
 use dapple::tile::{
     BorderSource, ChannelReport, CornerTiles as Corners, Disturbance, Map, MatchBorders, Method,
-    SeamOptions, SeamReports, Seamless, SoftCut, TileError,
+    SeamOptions, SeamReports, Seamless, TileError,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString};
@@ -88,7 +88,6 @@ fn extend(whole: &mut [Map], maps: Vec<Map>) -> Result<()> {
 fn method(
     name: &Bound<'_, PyAny>,
     options: Option<&Bound<'_, PyDict>>,
-    size: [u32; 2],
 ) -> Result<Method> {
     let options = options.map_or(Ok(Value::Null), |options| data::value(options.as_any()))?;
     let given = match options {
@@ -100,8 +99,7 @@ fn method(
     };
     let name = name.to_str()?;
     let data = match name {
-        "soft_cut" => json!({ name: soft_cut(given, size) }),
-        "spline_project" | "periodic_then_project" => json!({ name: given }),
+        "soft_cut" | "spline_project" | "periodic_then_project" => json!({ name: given }),
         "feather" if !given.is_empty() => json!({ name: { "margin": given } }),
         "feather" => json!({ name: "half_shift" }),
         "poisson" if given.keys().all(|option| option == "wrap_gradient") => {
@@ -111,20 +109,6 @@ fn method(
         _ => json!({ name: given }),
     };
     data::read(&format!("method {name}"), data)
-}
-
-/// Reads the options of a soft cut; the default margin is at most a quarter of the shorter side, as in the command.
-fn soft_cut(mut options: Object<String, Value>, size: [u32; 2]) -> Object<String, Value> {
-    let default = SoftCut::default();
-    let room = (size[0].min(size[1]) / 4).max(1);
-    let margin = options
-        .entry("margin")
-        .or_insert(default.margin.min(room).into());
-    let half = margin.as_f64().unwrap_or_default() as f32 / 2.0;
-    options
-        .entry("half_width")
-        .or_insert(default.half_width.min(half).into());
-    options
 }
 
 /// Makes an image tile seamlessly, or all maps of a material along the same cut.
@@ -137,8 +121,9 @@ fn soft_cut(mut options: Object<String, Value>, size: [u32; 2]) -> Object<String
 /// method : str or dict, default "soft_cut"
 ///     The method, with its options as keywords, or a dictionary as in a recipe.
 ///
-///     * `"soft_cut"` cuts along the path with the smallest difference, and the result is smaller by the margin:
-///       `margin`, `half_width`, `crossfade`.
+///     * `"soft_cut"` cuts along the path with the smallest difference, and the result is smaller by the `margin`, by
+///       default an eighth of the shorter side (at least 32 pixels, at most a quarter): `margin`, `half_width`,
+///       `crossfade`.
 ///     * `"periodic"` preserves all detail and the size (Moisan 2011); so does `"poisson"`, with `wrap_gradient`.
 ///     * `"spline_project"` is the tile of Du, Wang and Meng, which smooths the image, and
 ///       `"periodic_then_project"` applies both methods: `levels`, `phase`, `basis`, `pixels`.
@@ -180,7 +165,7 @@ pub(crate) fn make_tile<'py>(
     let default = PyString::new(py, "soft_cut");
     let method = method.unwrap_or(default.as_any());
     let seamless = Seamless {
-        method: self::method(method, options, maps[0].size())?,
+        method: self::method(method, options)?,
         axes: flags(axes, true)?,
     };
     let tile = threads::run(py, move || seamless.apply_maps(&maps))??;

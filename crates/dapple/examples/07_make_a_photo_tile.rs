@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // side, and cut it where the cut is least visible.
     let even = Seamless::new(Method::Periodic).apply_color(&photo)?;
     let cut = SoftCut {
-        margin: 48,
+        margin: Some(48),
         ..SoftCut::default()
     };
     let tile = Seamless::new(Method::SoftCut(cut)).apply_color(&even)?;

@@ -350,7 +350,23 @@ fn reports(
             "map": name, "method": made.candidate.name, "source": seams_json(&before), "tile": seams_json(&after),
         }));
     }
+    if !passes && (args.report || args.check) {
+        job.say(next_step(&made.candidate, args.method.is_auto()))?;
+    }
     Ok((Value::Array(all), passes))
+}
+
+/// Returns what to try if a tile does not pass.
+fn next_step(made: &Candidate, is_auto: bool) -> &'static str {
+    match &made.how {
+        _ if is_auto => {
+            "no method passes: look at the tile with --sheet, or cut out a more even part with --region"
+        }
+        How::Synth(_) => {
+            "try another --seed or a wider --margin, or cut out a more even part with --region"
+        }
+        How::Seamless(_) => "try --method synth, or --method auto",
+    }
 }
 
 /// Builds a sheet of 2 × 2 copies of a map.

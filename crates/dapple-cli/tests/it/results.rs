@@ -25,7 +25,7 @@ fn tile_is_what_the_library_makes() {
     ];
     assert_done(&folder.run(&arguments), "tile");
     let cut = SoftCut {
-        margin: 16,
+        margin: Some(16),
         ..SoftCut::default()
     };
     let source = read_gray(&folder, "height.exr");
@@ -83,11 +83,9 @@ fn tile_cuts_by_default_with_a_margin_that_fits() {
         "tile",
     );
     let source = read_gray(&folder, "height.exr");
+    let cut = SoftCut::default();
     let side = source.width().min(source.height());
-    let cut = SoftCut {
-        margin: 32.min(side / 4),
-        ..SoftCut::default()
-    };
+    assert_eq!(cut.margin_of(source.size()), 32.min(side / 4));
     let expected = Seamless::new(Method::SoftCut(cut)).apply(&source).unwrap();
     assert_eq!(read_gray(&folder, "out.exr"), expected);
 }

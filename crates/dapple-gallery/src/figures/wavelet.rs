@@ -72,8 +72,8 @@ fn tile_side(size: u32) -> u32 {
 fn cut(side: u32) -> (u32, Method) {
     let margin = side / 4;
     let cut = SoftCut {
-        margin,
-        half_width: margin as f32 / 8.0,
+        margin: Some(margin),
+        half_width: Some(margin as f32 / 8.0),
         ..SoftCut::default()
     };
     (margin, Method::SoftCut(cut))

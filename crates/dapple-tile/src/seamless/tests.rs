@@ -26,8 +26,8 @@ fn methods() -> [Method; 3] {
 /// Returns all methods, with margins of one pixel.
 fn every_method() -> Vec<Method> {
     let cut = SoftCut {
-        margin: 1,
-        half_width: 0.0,
+        margin: Some(1),
+        half_width: Some(0.0),
         ..SoftCut::default()
     };
     let margin = Feather::Margin {
@@ -267,8 +267,8 @@ fn mirrored_normals_are_those_of_the_mirrored_heights() {
 fn steep_normals_of_every_method_lean_as_the_tiled_heights_do() {
     let height = fbm(5, [96, 80], false);
     let cut = SoftCut {
-        margin: 16,
-        half_width: 4.0,
+        margin: Some(16),
+        half_width: Some(4.0),
         ..SoftCut::default()
     };
     let margin = Feather::Margin {

@@ -18,8 +18,8 @@ struct Row {
     about: &'static str,
     /// The options of the method, without `--`.
     options: &'static [&'static str],
-    /// Builds the method from the options, for images of the given size.
-    make: fn(&MethodArgs, [u32; 2]) -> How,
+    /// Builds the method from the options.
+    make: fn(&MethodArgs) -> How,
 }
 
 /// The table of all methods.
@@ -28,49 +28,49 @@ const METHODS: [Row; 8] = [
         name: "periodic",
         about: "Keeps all detail and the size; spreads the step across the wrap over the image, which shows as a stain where it is large",
         options: &[],
-        make: |_, _| How::Seamless(Method::Periodic),
+        make: |_| How::Seamless(Method::Periodic),
     },
     Row {
         name: "poisson",
         about: "The same with another gradient across the wrap",
         options: &["wrap-gradient"],
-        make: |args, _| How::Seamless(Method::Poisson(args.wrap_gradient.unwrap_or_default())),
+        make: |args| How::Seamless(Method::Poisson(args.wrap_gradient.unwrap_or_default())),
     },
     Row {
         name: SOFT_CUT,
         about: "Cuts along the line of least difference, smaller by the margin: for photographs",
         options: &["margin", "half-width", "crossfade"],
-        make: |args, size| How::Seamless(Method::SoftCut(args.soft_cut(size))),
+        make: |args| How::Seamless(Method::SoftCut(args.soft_cut())),
     },
     Row {
         name: "spline",
         about: "The blend tile of Du, Wang and Meng; smooths, and hides a seam only in part",
         options: PROJECT_OPTIONS,
-        make: |args, _| How::Seamless(Method::SplineProject(args.project())),
+        make: |args| How::Seamless(Method::SplineProject(args.project())),
     },
     Row {
         name: "periodic-spline",
         about: "First periodic, then spline",
         options: PROJECT_OPTIONS,
-        make: |args, _| How::Seamless(Method::PeriodicThenProject(args.project())),
+        make: |args| How::Seamless(Method::PeriodicThenProject(args.project())),
     },
     Row {
         name: "feather",
         about: "A crossfade, the usual baseline",
         options: &["margin", "crossfade"],
-        make: |args, _| How::Seamless(Method::Feather(args.feather())),
+        make: |args| How::Seamless(Method::Feather(args.feather())),
     },
     Row {
         name: "mirror",
         about: "The image beside its mirror image, twice as large",
         options: &[],
-        make: |_, _| How::Seamless(Method::Mirror),
+        make: |_| How::Seamless(Method::Mirror),
     },
     Row {
         name: SYNTH,
         about: "Looks for the size that repeats best, and synthesizes a strip along the seam from the rest: for bricks, planks and weave; takes seconds",
         options: &["margin", "seed"],
-        make: |args, _| {
+        make: |args| {
             How::Synth(Resynthesis {
                 margin: args.margin,
                 seed: Seed(args.seed.unwrap_or(0)),
@@ -154,12 +154,6 @@ fn basis() -> NamedValueParser<Basis> {
     splines.or("sines", "Sines and cosines", Basis::Sines)
 }
 
-/// Returns the default margin in pixels, which is that of the library, but at most a quarter of the shorter side.
-fn default_margin(size: [u32; 2]) -> u32 {
-    let shorter = size[0].min(size[1]);
-    SoftCut::default().margin.min((shorter / 4).max(1))
-}
-
 /// Options of the method.
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "Method")]
@@ -170,18 +164,20 @@ pub(super) struct MethodArgs {
 
     /// soft-cut, feather: width in pixels of the overlap of both sides; synth: width of the new strip.
     ///
-    /// From 1 to half of the side. The default for soft-cut is 32, or a quarter of the shorter side if that is less;
-    /// without it, feather mixes the image with itself moved by half. For synth it is 3/16 of the shorter side.
+    /// From 1 to half of the side. The default for soft-cut is an eighth of the shorter side, but at least 32, and at
+    /// most a quarter of it; for synth it is 3/16. Without it, feather mixes the image with itself moved by half.
     #[arg(long, value_name = "PX")]
     margin: Option<u32>,
 
-    /// soft-cut: half of the blend width along the cut, in pixels, up to half of the margin [default: 4].
+    /// soft-cut: half of the blend width along the cut, in pixels, up to half of the margin.
     ///
-    /// The default is half of the margin where that is less.
+    /// The default is a sixteenth of the margin, but at least 4, and at most half of it.
     #[arg(long, value_name = "PX")]
     half_width: Option<f32>,
 
-    /// soft-cut, feather with a margin: blend of both sides [default: keep-variance].
+    /// soft-cut, feather with a margin: blend of both sides.
+    ///
+    /// The default is linear for soft-cut and keep-variance for feather.
     #[arg(long, value_name = "HOW", value_parser = NamedValueParser::<Crossfade>::all())]
     crossfade: Option<Crossfade>,
 
@@ -217,7 +213,7 @@ impl MethodArgs {
         let candidates_of = |is_wanted: &dyn Fn(&str) -> bool| -> Vec<Candidate> {
             let wanted = METHODS.iter().filter(|row| is_wanted(row.name));
             wanted
-                .map(|row| Candidate::new(row.name.to_owned(), (row.make)(self, size)))
+                .map(|row| Candidate::new(row.name.to_owned(), (row.make)(self)))
                 .collect()
         };
         if !self.is_auto() {
@@ -227,7 +223,7 @@ impl MethodArgs {
         // a margin, which superimpose two images over the whole tile; a report of the seam does not see this.
         let mut candidates =
             candidates_of(&|name| ![SYNTH, "poisson", "feather", "mirror"].contains(&name));
-        let margin = default_margin(size);
+        let margin = SoftCut::default().margin_of(size);
         let crossfade = Crossfade::default();
         candidates.push(Candidate::new(
             "poisson --wrap-gradient extrapolate".to_owned(),
@@ -252,24 +248,17 @@ impl MethodArgs {
             None => Feather::HalfShift,
             Some(margin) => Feather::Margin {
                 margin,
-                crossfade: self.crossfade(),
+                crossfade: self.crossfade.unwrap_or_default(),
             },
         }
     }
 
-    fn soft_cut(&self, size: [u32; 2]) -> SoftCut {
-        let default = SoftCut::default();
-        let margin = self.margin.unwrap_or(default_margin(size));
-        let most = margin as f32 / 2.0;
+    fn soft_cut(&self) -> SoftCut {
         SoftCut {
-            margin,
-            half_width: self.half_width.unwrap_or(default.half_width.min(most)),
-            crossfade: self.crossfade(),
+            margin: self.margin,
+            half_width: self.half_width,
+            crossfade: self.crossfade.unwrap_or(SoftCut::default().crossfade),
         }
-    }
-
-    fn crossfade(&self) -> Crossfade {
-        self.crossfade.unwrap_or_default()
     }
 
     fn project(&self) -> SplineProject {

@@ -43,8 +43,8 @@ pub(super) const SOFT_CUT: Strip = Strip {
     caption: CAPTION,
     render: || {
         let cut = SoftCut {
-            margin: MARGIN,
-            half_width: 2.0,
+            margin: Some(MARGIN),
+            half_width: Some(2.0),
             ..SoftCut::default()
         };
         let crop = pebbles(5, TILE + MARGIN, false, Seed(8))?;

@@ -100,8 +100,8 @@ pub(super) fn methods(margin: u32) -> [(&'static str, Option<Method>); 12] {
         (
             "SoftCut",
             Some(Method::SoftCut(SoftCut {
-                margin,
-                half_width: margin as f32 / 8.0,
+                margin: Some(margin),
+                half_width: Some(margin as f32 / 8.0),
                 ..SoftCut::default()
             })),
         ),
