@@ -88,6 +88,8 @@
 mod error;
 mod map;
 
+mod photo;
+
 mod seamless;
 
 mod axis;
@@ -133,6 +135,7 @@ pub use gauss::blur;
 pub use map::Map;
 pub use match_borders::{BorderSource, MatchBorders};
 pub use pyramid::Pyramid;
+pub use photo::{even_out, resize};
 pub use rank::rank_equalize;
 pub use repeat::{repeat, repeat_into};
 pub use report::{

@@ -11,9 +11,12 @@ use crate::input::{self, Kind, Loaded};
 use crate::job::{Context, Job};
 use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
-use anyhow::{Context as _, Error, Result};
-use dapple::raster::Raster;
-use dapple::tile::{Map, SeamOptions, SeamReports, Seamless, TileError, TileErrorKind, repeat};
+use anyhow::{Context as _, Error, Result, bail};
+use dapple::color::LinearRgb;
+use dapple::raster::{Raster, Wrap};
+use dapple::tile::{
+    self, Map, SeamOptions, SeamReports, Seamless, TileError, TileErrorKind, even_out, repeat,
+};
 use method::{Candidate, How, MethodArgs};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -25,6 +28,7 @@ Examples:
   dapple tile photo.png --margin 24 --sheet -o cut.png
   dapple tile photo.png --method auto --report -o best.png
   dapple tile albedo.png height.png --normal normal.png -o tiles/
+  dapple tile photo.png --even --size 2048 -o ground.png
   dapple tile photo.png --wrap x -o wall.exr
   dapple tile photo.png --report
 
@@ -45,6 +49,12 @@ pub(crate) struct Args {
     /// Use only this part of the images, in pixels.
     #[arg(long, value_name = "X,Y,W,H")]
     region: Option<Region>,
+
+    /// Remove changes of light over more than PX pixels, such as vignettes [default: a sixth of the shorter side].
+    ///
+    /// Each channel is evened out on its own; normals are unchanged.
+    #[arg(long, value_name = "PX", num_args = 0..=1, require_equals = true)]
+    even: Option<Option<f64>>,
 
     #[command(flatten)]
     #[serde(flatten)]
@@ -75,6 +85,10 @@ pub(crate) struct Args {
     /// Compare the seam with every n-th pixel boundary only [default: 2^levels for spline, else 1].
     #[arg(long, value_name = "N[xN]", help_heading = "Quality")]
     lattice: Option<Size>,
+
+    /// Resample the tile to this size: each pixel is the mean of its area, in linear light.
+    #[arg(long, value_name = "N[xN]", help_heading = "Output")]
+    size: Option<Size>,
 
     /// Also write 2 x 2 copies of each tile, as `NAME_2x2`.
     #[arg(long, help_heading = "Output")]
@@ -110,7 +124,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let maps: Vec<Map> = maps.chain(alphas.map(Map::Value)).collect();
     let candidates = args.method.candidates(maps[0].size());
     let mut made = best(args, &maps, candidates)?;
-    let mut alphas = made.tiles.split_off(sources.len()).into_iter();
+    let mut alphas = made.tiles.split_off(sources.len());
     drop(progress);
     if args.method.is_auto() && !context.quiet {
         job.say(&format!("auto takes {}", made.candidate.name))?;
@@ -119,6 +133,20 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let wraps = args.wrap.flags();
     let clear = Clear::Bleed { wraps };
     let (report, passes) = reports(args, &sources, &mut made, &job)?;
+    if let Some(Size(size)) = args.size {
+        let from = made.tiles[0].size();
+        if !context.quiet
+            && u64::from(from[0]) * u64::from(size[1]) != u64::from(from[1]) * u64::from(size[0])
+        {
+            let [width, height] = from;
+            let text = format!(
+                "the tile of {width} × {height} pixels is stretched: cut out another part with --region to keep the shape"
+            );
+            job.say(&text)?;
+        }
+        resize(&sources, &mut made.tiles, &mut alphas, size, wraps)?;
+    }
+    let mut alphas = alphas.into_iter();
     for (source, map) in sources.iter().zip(made.tiles) {
         let has_alpha = source.loaded.alpha.is_some();
         let alpha = match has_alpha.then(|| alphas.next()).flatten() {
@@ -162,8 +190,14 @@ fn sources(args: &Args, job: &mut Job<'_>) -> Result<Vec<Source>> {
     let mut sources: Vec<Source> = Vec::new();
     for (path, kind) in inputs {
         let outputs = outputs.next();
-        let loaded = input::map_with_alpha(path, kind, args.region, args.alpha.alpha, &args.read)?;
+        let mut loaded =
+            input::map_with_alpha(path, kind, args.region, args.alpha.alpha, &args.read)?;
         let size = loaded.map.size();
+        if let Some(radius) = args.even {
+            let shorter = size[0].min(size[1]);
+            let radius = radius.unwrap_or_else(|| (f64::from(shorter) / 6.0).max(1.0));
+            loaded.map = even_out(&loaded.map, radius).map_err(advise)?;
+        }
         let first = sources.first().map(|source| source.loaded.map.size());
         input::check_size(path, size, paths[0], first.unwrap_or(size))
             .hint("maps that are cut together must have the same size")?;
@@ -367,6 +401,51 @@ fn next_step(made: &Candidate, is_auto: bool) -> &'static str {
         }
         How::Seamless(_) => "try --method synth, or --method auto",
     }
+}
+
+/// Resamples all tiles and their alpha channels.
+fn resize(
+    sources: &[Source],
+    tiles: &mut [Map],
+    alphas: &mut [Map],
+    size: [u32; 2],
+    wraps: [bool; 2],
+) -> Result<()> {
+    let wrap = wraps.map(|repeats| if repeats { Wrap::Repeat } else { Wrap::Clamp });
+    let resized = |map: &Map| tile::resize(map, size, wrap).map_err(advise);
+    let mut alphas = alphas.iter_mut();
+    for (source, map) in sources.iter().zip(tiles) {
+        let alpha = match source.loaded.alpha {
+            Some(_) => alphas.next(),
+            None => None,
+        };
+        *map = match (&*map, alpha) {
+            // Colors count by their alpha, so that hidden colors do not bleed in.
+            (Map::Color(colors), Some(alpha)) if !source.loaded.is_associated => {
+                let Map::Value(weights) = &*alpha else {
+                    bail!("alpha has one channel");
+                };
+                let weighted = colors.zip_map(weights, |&color, &weight| color * weight)?;
+                let new = resized(&Map::Color(weighted))?;
+                *alpha = resized(alpha)?;
+                let (Map::Color(sums), Map::Value(weights)) = (&new, &*alpha) else {
+                    bail!("resampling keeps the kind");
+                };
+                let color = |&sum: &LinearRgb, &weight: &f32| match weight > 0.0 {
+                    true => sum * (1.0 / weight),
+                    false => sum,
+                };
+                Map::Color(sums.zip_map(weights, color)?)
+            }
+            (map, alpha) => {
+                if let Some(alpha) = alpha {
+                    *alpha = resized(alpha)?;
+                }
+                resized(map)?
+            }
+        };
+    }
+    Ok(())
 }
 
 /// Builds a sheet of 2 × 2 copies of a map.
