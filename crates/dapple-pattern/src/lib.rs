@@ -2,6 +2,11 @@
 
 #![forbid(unsafe_code)]
 
+mod bricks;
 mod error;
+mod lattice;
 
+pub use bricks::{Bond, BrickField, BrickOptions, BrickValue, Bricks};
+pub use dapple_hash as hash;
+pub use dapple_raster as raster;
 pub use error::{PatternError, PatternErrorKind};
