@@ -3,6 +3,7 @@
 use crate::words::similar_words;
 use core::fmt;
 use dapple_color::ColorError;
+use dapple_pattern::PatternError;
 use dapple_pups::PupsError;
 use dapple_raster::{Range, RasterError};
 use dapple_synth::SynthError;
@@ -107,6 +108,20 @@ pub enum RecipeErrorKind {
         /// The rule, as a sentence without a full stop.
         rule: &'static str,
     },
+    /// A node has no value of this name.
+    UnknownOutput {
+        /// The name.
+        value: String,
+        /// The names of the node's values.
+        outputs: &'static [&'static str],
+    },
+    /// An `output` node needs a node with several values.
+    SingleOutput {
+        /// The node with a single value, as written in the recipe.
+        node: String,
+        /// The kinds of nodes with several values.
+        kinds: Vec<&'static str>,
+    },
     /// An image was not passed with the recipe.
     NoImage {
         /// The name of the file.
@@ -121,6 +136,8 @@ pub enum RecipeErrorKind {
     Cancelled,
     /// An error from the cellular basis.
     Worley(WorleyError),
+    /// An error from a pattern.
+    Pattern(PatternError),
     /// An error from a partition-of-unity texture.
     Pups(PupsError),
     /// An error from wavelet noise.
@@ -274,12 +291,23 @@ impl fmt::Display for RecipeErrorKind {
                 )
             }
             Self::Conflict { rule } => f.write_str(rule),
+            Self::UnknownOutput { value, outputs } => write!(
+                f,
+                "the node has no value `{value}`, but {}",
+                outputs.join(", ")
+            ),
+            Self::SingleOutput { node, kinds } => write!(
+                f,
+                "{node} has a single value; nodes with several are {}",
+                kinds.join(", ")
+            ),
             Self::NoImage { file } => write!(f, "there is no image `{file}`"),
             Self::Global { during } => {
                 write!(f, "it sees the whole tile, which is not at hand {during}")
             }
             Self::Cancelled => f.write_str("the callback asked to stop"),
             Self::Worley(error) => error.fmt(f),
+            Self::Pattern(error) => error.fmt(f),
             Self::Pups(error) => error.fmt(f),
             Self::Wavelet(error) => error.fmt(f),
             Self::Tile(error) => error.fmt(f),
@@ -294,6 +322,7 @@ impl core::error::Error for RecipeError {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
         match self.kind() {
             RecipeErrorKind::Worley(error) => Some(error),
+            RecipeErrorKind::Pattern(error) => Some(error),
             RecipeErrorKind::Pups(error) => Some(error),
             RecipeErrorKind::Wavelet(error) => Some(error),
             RecipeErrorKind::Tile(error) => Some(error),
@@ -316,4 +345,4 @@ macro_rules! from {
     };
 }
 
-from!(WorleyError => Worley, PupsError => Pups, WaveletError => Wavelet, TileError => Tile, SynthError => Synth, ColorError => Color, RasterError => Raster);
+from!(WorleyError => Worley, PatternError => Pattern, PupsError => Pups, WaveletError => Wavelet, TileError => Tile, SynthError => Synth, ColorError => Color, RasterError => Raster);

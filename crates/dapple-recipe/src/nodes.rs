@@ -6,6 +6,7 @@ mod alpha;
 mod arithmetic;
 mod blend;
 mod blend_map;
+mod bricks;
 mod clamp;
 mod color;
 mod coordinate;
@@ -18,6 +19,7 @@ mod levels;
 mod match_borders;
 mod mix;
 mod noise;
+mod output;
 mod power;
 mod profile;
 mod pups;
@@ -35,6 +37,7 @@ pub use alpha::ImageAlpha;
 pub use arithmetic::{Absolute, Add, Divide, Maximum, Minimum, Multiply, Subtract};
 pub use blend::{Blended, BlendedLayer};
 pub use blend_map::BlendMapOf;
+pub use bricks::BricksNode;
 pub use clamp::Clamp;
 pub use color::ColorOf;
 pub use coordinate::Coordinate;
@@ -48,6 +51,7 @@ pub use levels::{Levels, LevelsCurve};
 pub use match_borders::Framed;
 pub use mix::Mix;
 pub use noise::{FractalBasis, FractalNode};
+pub use output::Output;
 pub use power::Power;
 pub use profile::ProfileOf;
 pub use pups::{ControlNets, PupsNode, Referenced};
@@ -91,6 +95,17 @@ pub(crate) trait NodeKind {
 
     /// Returns the partition-of-unity texture of a `pups` node; `None` for other kinds.
     fn pups(&self) -> Option<&dyn pups::Texture> {
+        None
+    }
+
+    /// Returns the names of the values that the node `output` can take from this node; none if it has a single value.
+    fn outputs(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// Returns a copy of the node with another value, one of [`outputs`](Self::outputs); `None` if there is none of
+    /// this name.
+    fn with_output(&self, _value: &str) -> Option<Box<dyn NodeKind>> {
         None
     }
 
@@ -144,6 +159,10 @@ nodes! {
     "wavelet" Wavelet(WaveletNode) in "cells and noise" as "{}",
     /// Fractal noise from 0 to 1: octaves of PUPs, gradient noise or wavelet noise.
     "noise" Noise(FractalNode) in "cells and noise" as "{}",
+    /// Bricks, tiles or planks in a regular bond.
+    "bricks" Bricks(BricksNode) in "patterns" as "{}",
+    /// Another value of a node that has several, such as the random number of a brick.
+    "output" Output(Output) in "patterns" as r#"{"of":0.5}"#,
     /// Coordinate of a position along a direction.
     "coordinate" Coordinate(Coordinate) in "position" as r#"{"along":[1.0,0.0]}"#,
     /// Distance of a position from a center.

@@ -94,6 +94,20 @@ impl Default for WorleyValue {
 }
 
 impl NodeKind for WorleyNode {
+    fn outputs(&self) -> &'static [&'static str] {
+        &WORLEY_VALUES
+    }
+
+    fn with_output(&self, value: &str) -> Option<Box<dyn NodeKind>> {
+        let value = WorleyValue::from_name(value)?;
+        // A range belongs to the value for which it was chosen.
+        Some(Box::new(Self {
+            value,
+            range: None,
+            ..self.clone()
+        }))
+    }
+
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let seed = plan.seed(self.seed.as_ref());
         let [x, y] = plan.periods(self.frequency.0)?;

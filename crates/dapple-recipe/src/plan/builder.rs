@@ -216,6 +216,33 @@ impl<'a> Builder<'a> {
         Ok(periods)
     }
 
+    /// Returns the name and the node of an input; `None` for a constant.
+    pub(crate) fn node_of(
+        &self,
+        input: &Input,
+    ) -> Result<Option<(&'a str, &'a Node)>, RecipeError> {
+        let Some(name) = input.node() else {
+            return Ok(None);
+        };
+        let found = self.recipe.nodes.get_key_value(name);
+        let (name, node) = found.ok_or_else(|| order::unknown(self.recipe, name))?;
+        Ok(Some((name, node)))
+    }
+
+    /// Builds as if the node called `name` were the current one, with its seed.
+    pub(crate) fn as_node<T>(&mut self, name: &'a str, build: impl FnOnce(&mut Self) -> T) -> T {
+        let own = core::mem::replace(&mut self.node, name);
+        let built = build(self);
+        self.node = own;
+        built
+    }
+
+    /// Returns the step of an input that is a number or a color.
+    pub(crate) fn constant(&mut self, input: &Input) -> Result<Step, RecipeError> {
+        let index = self.any(input)?;
+        Ok(self.local(vec![index], |inputs| Ok(inputs[0].clone())))
+    }
+
     /// Returns the index of an input's step, which may have numbers or colors. Adds a step if the input is a constant.
     pub(crate) fn any(&mut self, input: &Input) -> Result<usize, RecipeError> {
         let step = match input {

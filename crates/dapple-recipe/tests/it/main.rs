@@ -5,6 +5,7 @@ mod copies;
 mod corners;
 mod memory;
 mod moved;
+mod patterns;
 mod pictures;
 mod points;
 mod program;
