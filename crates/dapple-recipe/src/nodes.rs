@@ -6,11 +6,13 @@ mod alpha;
 mod arithmetic;
 mod blend;
 mod blend_map;
+mod blur;
 mod bricks;
 mod clamp;
 mod color;
 mod coordinate;
 mod corner_tiles;
+mod curvature;
 mod distance;
 mod disturb;
 mod fractal;
@@ -19,12 +21,14 @@ mod levels;
 mod match_borders;
 mod mix;
 mod noise;
+mod occlusion;
 mod output;
 mod power;
 mod profile;
 mod pups;
 mod ramp;
 mod seed;
+mod slope;
 mod synth;
 mod tile;
 mod transform;
@@ -37,11 +41,13 @@ pub use alpha::ImageAlpha;
 pub use arithmetic::{Absolute, Add, Divide, Maximum, Minimum, Multiply, Subtract};
 pub use blend::{Blended, BlendedLayer};
 pub use blend_map::BlendMapOf;
+pub use blur::Blur;
 pub use bricks::BricksNode;
 pub use clamp::Clamp;
 pub use color::ColorOf;
 pub use coordinate::Coordinate;
 pub use corner_tiles::CornerTilesOf;
+pub use curvature::Curvature;
 pub use dapple_pups::{Cells, ControlPoint, ControlPoints};
 pub use distance::Distance;
 pub use disturb::Disturbed;
@@ -51,12 +57,14 @@ pub use levels::{Levels, LevelsCurve};
 pub use match_borders::Framed;
 pub use mix::Mix;
 pub use noise::{FractalBasis, FractalNode};
+pub use occlusion::Occlusion;
 pub use output::Output;
 pub use power::Power;
 pub use profile::ProfileOf;
 pub use pups::{ControlNets, PupsNode, Referenced};
 pub use ramp::Ramped;
 pub use seed::NodeSeed;
+pub use slope::Slope;
 pub use synth::SynthNode;
 pub use tile::Tiled;
 pub use transform::Transform;
@@ -109,6 +117,11 @@ pub(crate) trait NodeKind {
         None
     }
 
+    /// Returns whether the node reads the relief of the material.
+    fn reads_relief(&self) -> bool {
+        false
+    }
+
     /// Estimates the work of building the node's step. The estimate is rather too high than too low.
     fn work(&self, _plan: &Builder<'_>) -> Result<Work, RecipeError> {
         Ok(Work::default())
@@ -125,7 +138,7 @@ macro_rules! nodes {
         ///
         /// Most nodes compute a number at every position. `ramp`, `color`, `image` and `synth` with a color image, and
         /// `pups = { color_noise = … }` compute a color. `add`, `multiply`, `mix`, `tile`, `disturb`, `match_borders`,
-        /// `corner_tiles`, `warp` and `blend` compute a color if an input is a color; numbers among their inputs are
+        /// `corner_tiles`, `warp`, `blur` and `blend` compute a color if an input is a color; numbers among their inputs are
         /// then grays.
         #[derive(Clone, Debug, Serialize, Deserialize)]
         #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -207,6 +220,14 @@ nodes! {
     "fractal" Fractal(FractalOf) in "shape" as r#"{"input":0.5}"#,
     /// Color for each number, from a color ramp.
     "ramp" Ramp(Ramped) in "color and images" as r##"{"input":0.5,"colors":["#202020","#f0f0f0"]}"##,
+    /// Gaussian blur, in all directions or along one.
+    "blur" Blur(Blur) in "neighborhood" as r#"{"input":0.5,"radius":0.02}"#,
+    /// Steepness of a height, from 0 where it is level to 1 where it is vertical.
+    "slope" Slope(Slope) in "neighborhood" as r#"{"input":0.5}"#,
+    /// Curvature of a height: ½ where it is flat, more on edges, less in grooves.
+    "curvature" Curvature(Curvature) in "neighborhood" as r#"{"input":0.5}"#,
+    /// Ambient occlusion of a height: the visible fraction of the sky.
+    "occlusion" Occlusion(Occlusion) in "neighborhood" as r#"{"input":0.5}"#,
     /// Texture made to repeat seamlessly.
     "tile" Tile(Tiled) in "whole tile" as r#"{"input":0.5}"#,
     /// Copies of a tile with equal borders and different interiors.

@@ -1,13 +1,15 @@
 //! Plans: recipes prepared for evaluation, with names resolved, seeds derived and fields built.
 //!
 //! Nodes become steps in topological order: the inputs of a step come before it. To evaluate a window or a list of
-//! positions, each step runs once for all of it. The value of a pixel depends on its position alone, except for steps
-//! that depend on the whole tile. [`Plan::whole`] evaluates those beforehand, for all pixels of the tile.
+//! positions, each step runs once for all of it. The value of a pixel depends on its position alone, except for two
+//! kinds of steps. A neighborhood depends on the pixels around it; its inputs are evaluated in a larger window. A global
+//! step depends on the whole tile; [`Plan::whole`] evaluates it beforehand, for all pixels of the tile.
 
 mod builder;
 mod cache;
 mod evaluate;
 mod field;
+mod neighborhood;
 mod order;
 mod samples;
 mod step;
@@ -15,11 +17,15 @@ mod watch;
 mod whole;
 mod work;
 
+#[cfg(feature = "schema")]
+pub(crate) use builder::RADIUS;
 pub(crate) use builder::{Builder, FREQUENCY};
 pub use cache::PlanCache;
 use cache::StepId;
+use evaluate::Grid;
 pub(crate) use evaluate::Known;
 pub use field::{NodeColors, NodeField};
+pub(crate) use neighborhood::{Neighborhood, Surroundings};
 pub(crate) use order::order;
 pub use samples::Samples;
 pub(crate) use samples::TileSamples;
@@ -39,7 +45,7 @@ use glam::DVec2;
 use indexmap::IndexMap;
 use std::cell::RefCell;
 use std::sync::Arc;
-use step::ancestors;
+use step::needed_wholes;
 use work::check_steps;
 
 /// An image that a recipe reads, or that a plan renders.
@@ -390,7 +396,8 @@ impl Plan {
         })
     }
 
-    /// Returns the material's height as a field.
+    /// Returns the material's height as a field. If it depends on the neighborhood of pixels, as a blur does, the field
+    /// has values in windows and none at single positions.
     ///
     /// # Errors
     ///
@@ -463,8 +470,7 @@ impl Plan {
 
     /// Returns an error if a step depends on the whole tile, directly or through an input.
     fn local(&self, step: usize) -> Result<(), RecipeError> {
-        let is_global = |&index: &usize| matches!(self.steps[index], Step::Global(_));
-        let Some(global) = ancestors(&self.steps, &[step]).into_iter().find(is_global) else {
+        let Some(&global) = needed_wholes(&self.steps, &[step]).first() else {
             return Ok(());
         };
         let during = "at single positions";
@@ -481,7 +487,7 @@ impl Plan {
         known: &Known,
     ) -> Result<Vec<Values>, RecipeError> {
         match &self.cache {
-            None => evaluate::window(&self.steps, whole, window, wanted, known),
+            None => neighborhood::window(&self.steps, Some(whole), grid(window), wanted, known),
             Some(cache) => self.values_with(cache, whole, window, wanted, known),
         }
     }
@@ -522,10 +528,11 @@ impl Plan {
             |index: &usize| is_kept(*index) && !known.iter().any(|(known, _)| known == index);
         let fresh: Vec<_> = order.into_iter().filter(is_new).collect();
         if !cache.has_room(fresh.len(), window) {
-            return evaluate::window(&self.steps, whole, window, wanted, &known);
+            return neighborhood::window(&self.steps, Some(whole), grid(window), wanted, &known);
         }
         let all = [wanted, &fresh].concat();
-        let mut values = evaluate::window(&self.steps, whole, window, &all, &known)?;
+        let mut values =
+            neighborhood::window(&self.steps, Some(whole), grid(window), &all, &known)?;
         for (&index, values) in fresh.iter().zip(values.drain(wanted.len()..)) {
             cache.keep(self.ids[index], window, Arc::new(values));
         }
@@ -543,10 +550,8 @@ impl Plan {
     /// Extrapolation is needed if the recipe does not repeat along the axis and the height depends on an image, which
     /// ends at the sides of the tile. Heights computed from functions alone are known everywhere.
     pub(crate) fn continues_heights(&self) -> [bool; 2] {
-        let mut above = ancestors(&self.steps, &[self.channels.height]).into_iter();
-        let is_picture =
-            above.any(|index| matches!(self.steps[index], Step::Image(_) | Step::Global(_)));
-        self.wrap.map(|repeats| is_picture && !repeats)
+        let ends = step::reads_images(&self.steps, self.channels.height);
+        self.wrap.map(|repeats| ends && !repeats)
     }
 
     /// Returns a copy of the plan's callback with separate progress, for new work.
@@ -564,6 +569,14 @@ impl Plan {
 
     pub(crate) fn steps(&self) -> &Arc<[Step]> {
         &self.steps
+    }
+}
+
+/// Returns the pixels of a window as a bake evaluates them, with images averaged over each pixel.
+fn grid(window: &Window) -> Grid<'_> {
+    Grid {
+        window,
+        averages: true,
     }
 }
 

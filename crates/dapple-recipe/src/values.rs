@@ -73,6 +73,39 @@ impl Values {
         }
     }
 
+    /// Concatenates the values at several ranges of the positions.
+    pub(crate) fn parts(&self, ranges: impl Iterator<Item = Range<usize>>) -> Self {
+        fn join<T: Copy>(values: &[T], ranges: impl Iterator<Item = Range<usize>>) -> Vec<T> {
+            let mut joined = Vec::new();
+            for range in ranges {
+                joined.extend_from_slice(&values[range]);
+            }
+            joined
+        }
+        match self {
+            Self::Numbers(numbers) => Self::Numbers(join(numbers, ranges)),
+            Self::Colors(colors) => Self::Colors(join(colors, ranges)),
+        }
+    }
+
+    /// Applies a function to the numbers, or separately to the three channels of the colors.
+    pub(crate) fn each_channel(&self, change: impl Fn(&[f32]) -> Vec<f32>) -> Self {
+        let colors = match self {
+            Self::Numbers(numbers) => return Self::Numbers(change(numbers)),
+            Self::Colors(colors) => colors,
+        };
+        let channel = |channel: usize| -> Vec<f32> {
+            colors
+                .iter()
+                .map(|color| color.to_array()[channel])
+                .collect()
+        };
+        let [red, green, blue] = [0, 1, 2].map(|index| change(&channel(index)));
+        let rest = green.into_iter().zip(blue);
+        let colors = red.into_iter().zip(rest);
+        Self::Colors(colors.map(|(r, (g, b))| LinearRgb::new(r, g, b)).collect())
+    }
+
     /// Concatenates `parts`, which must be all numbers or all colors.
     pub(crate) fn joined(parts: &[&Self]) -> Self {
         let n_values = parts.iter().map(|part| part.len()).sum();

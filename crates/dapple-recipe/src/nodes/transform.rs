@@ -63,7 +63,7 @@ impl NodeKind for Transform {
 }
 
 /// Returns the cosine and the sine of an angle in degrees; exact for multiples of 90.
-fn direction(degrees: f64) -> [f64; 2] {
+pub(super) fn direction(degrees: f64) -> [f64; 2] {
     let degrees = degrees % 360.0;
     match (degrees + 360.0) % 360.0 {
         0.0 => [1.0, 0.0],

@@ -1,9 +1,10 @@
 //! Builds the steps of nodes, and gives the nodes access to the tile, the seed and their inputs.
 
 use super::cache::{PlanCache, StepId};
-use super::step::{Global, Local, Step, Tile};
+use super::neighborhood::{Neighborhood, Surroundings};
+use super::step::{Global, Local, Step, Tile, reads_images};
 use super::work::{Work, WorkSum};
-use super::{ImageSource, Images, Picture, PlanLimits, Watch, not_a_number, order};
+use super::{ImageSource, Images, Picture, PlanLimits, RELIEF, Watch, not_a_number, order};
 use crate::text::is_data;
 use crate::{Input, Node, NodeSeed, Recipe, RecipeError, RecipeErrorKind, Values};
 use dapple_color::LinearRgb;
@@ -11,6 +12,7 @@ use dapple_hash::Seed;
 use dapple_points::Domain;
 use dapple_raster::{Parts, Wrap};
 use dapple_raster::{Range, range};
+use glam::DVec2;
 use indexmap::IndexMap;
 use std::cell::Cell;
 use std::fmt::Write as _;
@@ -39,6 +41,9 @@ pub(crate) struct Builder<'a> {
 
 /// The allowed range of a frequency, in cells or bumps per unit of the plane.
 pub(crate) const FREQUENCY: Range = range!(above 0 to 1e6);
+
+/// The allowed range of a radius, in units of the plane. It is also at most the longer side of the tile.
+pub(crate) const RADIUS: Range = range!(above 0 to 1e6);
 
 impl<'a> Builder<'a> {
     pub(crate) fn new(
@@ -118,6 +123,9 @@ impl<'a> Builder<'a> {
             let picture = source.picture(self.images)?;
             write!(text, "image {} ", cache.picture_id(picture)).ok()?;
         }
+        if node.kind().reads_relief() {
+            write!(text, "relief {:?} ", self.recipe.material.relief).ok()?;
+        }
         write!(text, "{node:?}").ok()?;
         let id = cache.id(text);
         Some(match cache.is_timed(id) {
@@ -163,7 +171,7 @@ impl<'a> Builder<'a> {
     /// Returns the tile as a domain.
     pub(crate) fn domain(&self) -> Domain {
         Domain {
-            origin: glam::DVec2::ZERO,
+            origin: DVec2::ZERO,
             size: self.recipe.extent.into(),
             wrap: self.recipe.wrap,
         }
@@ -303,6 +311,63 @@ impl<'a> Builder<'a> {
             copies,
             apply: Box::new(apply),
         })
+    }
+
+    /// Builds a step that combines the inputs within a halo around each pixel. It has colors if any input has colors.
+    /// `halo` gives the columns and rows of the halo for a width and height of pixels in units of the plane.
+    ///
+    /// Past the sides of a tile that does not repeat, images repeat their outermost pixels.
+    pub(crate) fn neighborhood(
+        &self,
+        inputs: Vec<usize>,
+        halo: impl Fn(DVec2) -> [u32; 2] + Send + Sync + 'static,
+        apply: impl Fn(&Surroundings<'_>) -> Result<Values, RecipeError> + Send + Sync + 'static,
+    ) -> Step {
+        Step::Neighborhood(Neighborhood {
+            color: inputs.iter().any(|&input| self.is_color(input)),
+            inputs,
+            node: self.node.to_owned(),
+            ends: [None; 2],
+            limits: *self.work.limits,
+            halo: Box::new(halo),
+            apply: Box::new(apply),
+        })
+    }
+
+    /// Builds a step that computes numbers from the heights within a halo around each pixel. Past the sides of a tile
+    /// that does not repeat, the heights of images are extrapolated, as in the maps of a bake.
+    pub(crate) fn neighborhood_of_heights(
+        &self,
+        input: usize,
+        halo: impl Fn(DVec2) -> [u32; 2] + Send + Sync + 'static,
+        apply: impl Fn(&Surroundings<'_>) -> Result<Values, RecipeError> + Send + Sync + 'static,
+    ) -> Step {
+        let Recipe { extent, wrap, .. } = self.recipe;
+        let mut step = self.neighborhood(vec![input], halo, apply);
+        if let Step::Neighborhood(neighborhood) = &mut step
+            && reads_images(&self.steps, input)
+        {
+            neighborhood.ends = [0, 1].map(|axis| (!wrap[axis]).then_some(extent[axis]));
+        }
+        step
+    }
+
+    /// Returns a radius, or by default a fraction of the tile's shorter side. Fails unless it is above 0 and at most the
+    /// longer side of the tile.
+    pub(crate) fn radius(&self, radius: Option<f64>, part: f64) -> Result<f64, RecipeError> {
+        let extent = DVec2::from(self.recipe.extent);
+        let radius = radius.unwrap_or(part * extent.min_element());
+        let range = "above 0 and at most the longer side of the tile";
+        let holds = RADIUS.holds(radius) && radius <= extent.max_element();
+        RecipeError::check(holds, "radius", radius, range)?;
+        Ok(radius)
+    }
+
+    /// Returns `relief`, or by default the relief of the material.
+    pub(crate) fn relief(&self, relief: Option<f64>) -> Result<f64, RecipeError> {
+        let relief = relief.unwrap_or(self.recipe.material.relief);
+        RecipeError::check_in(RELIEF, "relief", relief)?;
+        Ok(relief)
     }
 
     /// Builds a step that applies a function to the numbers of an input.

@@ -1,5 +1,6 @@
 //! Evaluates steps at many positions.
 
+use super::neighborhood::cropped;
 use super::step::{LinearMap, Moved, Positions, Step, StretchedImage, needed};
 use super::{Picture, Values, Whole};
 use crate::{RecipeError, RecipeErrorKind};
@@ -27,7 +28,7 @@ pub(super) enum At<'a> {
 
 impl<'a> Places<'a> {
     /// Creates the positions of a window's pixel centers, each with the area of its pixel.
-    pub(super) fn pixels(window: &'a Window) -> Self {
+    fn pixels(window: &'a Window) -> Self {
         Self {
             at: At::Window(window),
             area: (DVec2::from(window.pixel) * DVec2::from(window.scale)).abs(),
@@ -35,7 +36,7 @@ impl<'a> Places<'a> {
     }
 
     /// Creates the positions of a window's pixel centers, without an area.
-    pub(super) fn centers(window: &'a Window) -> Self {
+    fn centers(window: &'a Window) -> Self {
         Self {
             at: At::Window(window),
             area: DVec2::ZERO,
@@ -128,17 +129,36 @@ const CHUNK_PIXELS: [u32; 2] = [1 << 16, 1 << 11];
 /// Number of positions that are evaluated at a time. Their values fit in the processor's cache.
 const CHUNK_POSITIONS: usize = 1 << 12;
 
-/// Computes the values of the steps `wanted` at the pixels of a window, on all cores if the feature `rayon` is on.
-pub(super) fn window(
+/// The pixels at which steps are evaluated.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grid<'a> {
+    pub(super) window: &'a Window,
+    /// Whether images are averaged over the area of each pixel, instead of sampled at its center.
+    pub(super) averages: bool,
+}
+
+impl<'a> Grid<'a> {
+    fn places(self) -> Places<'a> {
+        match self.averages {
+            true => Places::pixels(self.window),
+            false => Places::centers(self.window),
+        }
+    }
+}
+
+/// Computes the values of the steps `wanted` at the pixels of a window, a chunk of rows at a time, on all cores if the
+/// feature `rayon` is on. `known` holds values in windows that contain the window.
+pub(super) fn chunks(
     steps: &[Step],
-    whole: &Whole,
-    window: &Window,
+    whole: Option<&Whole>,
+    grid: Grid<'_>,
     wanted: &[usize],
-    known: &Known,
+    known: &[(usize, (Window, Arc<Values>))],
 ) -> Result<Vec<Values>, RecipeError> {
     if wanted.is_empty() {
         return Ok(Vec::new());
     }
+    let window = grid.window;
     let [width, height] = window.size;
     // Choose the number of rows of a chunk, so that small windows have work for all threads, too.
     let share = window.n_pixels() / (2 * parallel::n_threads());
@@ -155,15 +175,17 @@ pub(super) fn window(
             size: [width, rows.min(height - first)],
             ..*window
         };
-        let pixels =
-            first as usize * width as usize..(first + part.size[1]) as usize * width as usize;
         let known = known
             .iter()
-            .map(|(index, values)| (*index, Arc::new(values.part(pixels.clone()))));
+            .map(|(index, (made_in, values))| (*index, cropped(values, made_in, &part)));
+        let grid = Grid {
+            window: &part,
+            ..grid
+        };
         evaluate(
             steps,
-            Some(whole),
-            Places::pixels(&part),
+            whole,
+            grid.places(),
             wanted,
             &known.collect::<Vec<_>>(),
         )
@@ -231,7 +253,8 @@ fn step(
             (local.apply)(&inputs)
         }
         Step::Moved(moved) => self::moved(steps, whole, places, moved, values),
-        Step::Global(_) => match whole {
+        // Neighborhoods of the pixels of a window are known; at other positions they are read from an image.
+        Step::Neighborhood(_) | Step::Global(_) => match whole {
             Some(whole) => whole.at(index, places),
             None => Err(RecipeError::new(RecipeErrorKind::Global {
                 during: "at single positions",

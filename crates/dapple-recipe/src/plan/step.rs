@@ -1,6 +1,6 @@
 //! The steps of a plan. A step computes the values of a node or of a constant.
 
-use super::{Picture, Watch};
+use super::{Neighborhood, Picture, Watch};
 use crate::{RecipeError, Values};
 use dapple_color::LinearRgb;
 use dapple_pups::VectorTexture;
@@ -19,6 +19,7 @@ pub(crate) enum Step {
     Image(StretchedImage),
     Local(Local),
     Moved(Moved),
+    Neighborhood(Neighborhood),
     Global(Global),
 }
 
@@ -170,6 +171,7 @@ impl fmt::Debug for Step {
             Self::Image(_) => "Image",
             Self::Local(_) => "Local",
             Self::Moved(_) => "Moved",
+            Self::Neighborhood(_) => "Neighborhood",
             Self::Global(_) => "Global",
         };
         f.debug_tuple(name).field(&self.inputs()).finish()
@@ -193,7 +195,10 @@ impl Step {
     }
 
     fn with_color(mut self, makes_color: bool) -> Self {
-        if let Self::Local(Local { color, .. }) | Self::Global(Global { color, .. }) = &mut self {
+        if let Self::Local(Local { color, .. })
+        | Self::Neighborhood(Neighborhood { color, .. })
+        | Self::Global(Global { color, .. }) = &mut self
+        {
             *color = makes_color;
         }
         self
@@ -207,16 +212,26 @@ impl Step {
             Self::Image(laid) => matches!(laid.picture, Picture::Colors(_)),
             Self::Local(Local { color, .. })
             | Self::Moved(Moved { color, .. })
+            | Self::Neighborhood(Neighborhood { color, .. })
             | Self::Global(Global { color, .. }) => *color,
+        }
+    }
+
+    /// Returns the inputs that are evaluated at pixels of the same grid as the step.
+    pub(super) fn inputs_at_pixels(&self) -> Vec<usize> {
+        match self {
+            Self::Moved(moved) => moved.at_same_positions(),
+            Self::Global(_) => Vec::new(),
+            step => step.inputs(),
         }
     }
 
     /// Returns the indices of the inputs of the step.
     pub(crate) fn inputs(&self) -> Vec<usize> {
         match self {
-            Self::Local(Local { inputs, .. }) | Self::Global(Global { inputs, .. }) => {
-                inputs.clone()
-            }
+            Self::Local(Local { inputs, .. })
+            | Self::Neighborhood(Neighborhood { inputs, .. })
+            | Self::Global(Global { inputs, .. }) => inputs.clone(),
             Self::Moved(moved) => {
                 let mut inputs = vec![moved.input];
                 inputs.extend(moved.at_same_positions());
@@ -229,8 +244,9 @@ impl Step {
 
 /// Returns the steps to evaluate at the positions of `wanted`, in order.
 ///
-/// Three kinds of inputs are excluded: the inputs of moved steps, which are evaluated at other positions; the
-/// inputs of steps that depend on the whole tile, which are evaluated beforehand; and the inputs of known steps.
+/// Four kinds of inputs are excluded: the inputs of moved steps, which are evaluated at other positions; the inputs of
+/// neighborhoods, which are evaluated in a larger window; the inputs of steps that depend on the whole tile, which are
+/// evaluated beforehand; and the inputs of known steps.
 pub(super) fn needed(
     steps: &[Step],
     wanted: &[usize],
@@ -238,15 +254,56 @@ pub(super) fn needed(
 ) -> Vec<usize> {
     reached(steps, wanted, |index| match &steps[index] {
         _ if is_known(index) => Vec::new(),
-        Step::Moved(moved) => moved.at_same_positions(),
-        Step::Global(_) => Vec::new(),
-        step => step.inputs(),
+        Step::Neighborhood(_) => Vec::new(),
+        step => step.inputs_at_pixels(),
     })
 }
 
-/// Returns the steps that `wanted` depend on, including `wanted` themselves, in order.
-pub(super) fn ancestors(steps: &[Step], wanted: &[usize]) -> Vec<usize> {
-    reached(steps, wanted, |index| steps[index].inputs())
+/// Returns the steps whose values are read from images of the whole tile, in order: steps that depend on the whole
+/// tile, and neighborhoods at positions that are not pixels, which are those below a moved step.
+pub(super) fn needed_wholes(steps: &[Step], wanted: &[usize]) -> Vec<usize> {
+    let mut at_pixels = vec![false; steps.len()];
+    let mut at_positions = vec![false; steps.len()];
+    let mut wholes = Vec::new();
+    wanted.iter().for_each(|&index| at_pixels[index] = true);
+    for index in (0..steps.len()).rev() {
+        if !at_pixels[index] && !at_positions[index] {
+            continue;
+        }
+        let step = &steps[index];
+        let is_image = match step {
+            Step::Global(_) => true,
+            Step::Neighborhood(_) => at_positions[index],
+            _ => false,
+        };
+        if is_image {
+            wholes.push(index);
+        }
+        if let Step::Moved(moved) = step {
+            at_positions[moved.input] = true;
+        }
+        let inputs = match step {
+            Step::Moved(moved) => moved.at_same_positions(),
+            step => step.inputs(),
+        };
+        // The inputs of an image are evaluated at its pixels.
+        let is_at_pixels = at_pixels[index] || is_image;
+        let is_at_positions = at_positions[index] && !is_image;
+        for input in inputs {
+            at_pixels[input] |= is_at_pixels;
+            at_positions[input] |= is_at_positions;
+        }
+    }
+    wholes.reverse();
+    wholes
+}
+
+/// Returns whether a step depends on an image, which ends at the sides of the tile: on an image file, on a step that
+/// depends on the whole tile, or on a neighborhood that is read between pixels.
+pub(super) fn reads_images(steps: &[Step], step: usize) -> bool {
+    let mut ancestors = reached(steps, &[step], |index| steps[index].inputs()).into_iter();
+    ancestors.any(|index| matches!(steps[index], Step::Image(_)))
+        || !needed_wholes(steps, &[step]).is_empty()
 }
 
 /// Returns the steps reachable from `wanted` by `leads_to`, in order. Each step leads to earlier steps only.

@@ -2,14 +2,16 @@
 
 use super::builder::wrap;
 use super::evaluate::{At, Places};
-use super::step::{Global, Step, StretchedImage, Tile, ancestors};
+use super::neighborhood::check_halos;
+use super::step::{Global, Step, StretchedImage, Tile, needed_wholes};
 use super::{OF_NODE, Pass, Picture, Plan, Samples, TileSamples, Watch};
 use crate::{RecipeError, RecipeErrorKind, Region, Values};
 use dapple_raster::{Raster, Window, Wrap};
 use glam::DVec2;
 use std::sync::Arc;
 
-/// The values of all steps that depend on the whole tile, at one size. Each such step has one image.
+/// The values of all steps that depend on the whole tile, at one size. Each such step has one image, and so does a
+/// neighborhood that is read between pixels.
 #[derive(Clone, Debug, Default)]
 pub struct Whole {
     /// The tile as a window; `None` if no step depends on the whole tile.
@@ -22,20 +24,11 @@ pub struct Whole {
 }
 
 impl Plan {
-    /// Returns whether a map of the material depends on the whole tile and so cannot be baked in bands.
+    /// Returns whether a map of the material depends on the whole tile and so cannot be baked in bands. A neighborhood,
+    /// such as a blur, does so below a `warp`, `transform` or `fractal`, which read it at positions that are not pixels.
     #[must_use]
     pub fn sees_whole(&self) -> bool {
-        !self.needed_globals(&self.channels().steps()).is_empty()
-    }
-
-    /// Returns the steps that depend on the whole tile and that `wanted` need, in order.
-    fn needed_globals(&self, wanted: &[usize]) -> Vec<(usize, &Global)> {
-        let needed = ancestors(self.steps(), wanted).into_iter();
-        let global = |index: usize| match &self.steps()[index] {
-            Step::Global(global) => Some((index, global)),
-            _ => None,
-        };
-        needed.filter_map(global).collect()
+        !needed_wholes(self.steps(), &self.channels().steps()).is_empty()
     }
 
     /// Checks that the material does not depend on the whole tile.
@@ -44,8 +37,8 @@ impl Plan {
     ///
     /// [`Global`](RecipeErrorKind::Global), with the node, if it does.
     pub fn check_local(&self) -> Result<(), RecipeError> {
-        let globals = self.needed_globals(&self.channels().steps());
-        let Some(&(index, _)) = globals.first() else {
+        let wholes = needed_wholes(self.steps(), &self.channels().steps());
+        let Some(&index) = wholes.first() else {
             return Ok(());
         };
         let error = RecipeError::new(RecipeErrorKind::Global {
@@ -86,8 +79,9 @@ impl Plan {
         wanted: &[usize],
         watch: Watch,
     ) -> Result<Whole, RecipeError> {
-        let globals = self.needed_globals(wanted);
-        let Some(&(first, _)) = globals.first() else {
+        check_halos(self.steps(), &tile.window, wanted)?;
+        let wholes = needed_wholes(self.steps(), wanted);
+        let Some(&first) = wholes.first() else {
             return Ok(Whole {
                 watch,
                 ..Whole::default()
@@ -95,7 +89,7 @@ impl Plan {
         };
         let window = tile.window;
         self.limits
-            .check_pixels(globals.len(), window.size)
+            .check_pixels(wholes.len(), window.size)
             .map_err(|error| self.within(first, error))?;
         // Check that the window has no more pixels than a raster can have.
         Window::unit(window.size)?;
@@ -107,11 +101,11 @@ impl Plan {
             watch,
         };
         // Evaluate the steps in order; each may read the images of earlier ones.
-        whole.watch.begin(Pass::Whole, OF_NODE * globals.len());
-        for (number, (index, global)) in globals.into_iter().enumerate() {
+        whole.watch.begin(Pass::Whole, OF_NODE * wholes.len());
+        for (number, index) in wholes.into_iter().enumerate() {
             whole.watch.reach(OF_NODE * number);
             whole.watch.check()?;
-            let picture = self.known_picture(&whole, &window, index, global);
+            let picture = self.known_picture(&whole, &window, index);
             let picture = picture.map_err(|error| whole.watch.reason(self.within(index, error)))?;
             whole.pictures[index] = Some(picture);
         }
@@ -145,14 +139,21 @@ impl Plan {
         )
     }
 
-    /// Returns the image of a step that depends on the whole tile, from the cache if it is stored there.
+    /// Returns the image of a step, from the cache if it is stored there.
     fn known_picture(
         &self,
         whole: &Whole,
         window: &Window,
         index: usize,
-        step: &Global,
     ) -> Result<Picture, RecipeError> {
+        let Step::Global(step) = &self.steps()[index] else {
+            // A neighborhood is cached like all steps that are evaluated in windows.
+            let values = self.values(whole, window, &[index], &[])?;
+            let values = values.into_iter().next();
+            return values
+                .unwrap_or(Values::Numbers(Vec::new()))
+                .picture(window.size);
+        };
         let Some(cache) = &self.cache else {
             return self.picture(whole, window, step)?.picture(window.size);
         };

@@ -40,7 +40,8 @@ pub struct PlanLimits {
     /// default.
     pub warps: u64,
     /// Maximum total number of pixels in the images stored for nodes that depend on the whole tile, at the size of a
-    /// bake; 2^29 by default.
+    /// bake; 2^29 by default. It also bounds the pixels of a band together with the halos of its neighborhoods, such as
+    /// the radii of nested blurs.
     pub pixels: u64,
 }
 
@@ -90,7 +91,7 @@ pub(crate) struct Work {
 
 /// The work of all nodes so far, with its limits.
 pub(super) struct WorkSum<'a> {
-    limits: &'a PlanLimits,
+    pub(super) limits: &'a PlanLimits,
     sum: Work,
 }
 

@@ -5,6 +5,7 @@ mod copies;
 mod corners;
 mod memory;
 mod moved;
+mod neighborhoods;
 mod patterns;
 mod pictures;
 mod points;

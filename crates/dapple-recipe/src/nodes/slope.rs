@@ -1,0 +1,99 @@
+//! Steepness of a height.
+
+use super::NodeKind;
+use crate::plan::{Builder, Step};
+use crate::{Input, RecipeError, Values};
+use core::f64::consts::FRAC_2_PI;
+use dapple_raster::parallel;
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+/// Steepness of a height: 0 where it is level, ½ at 45 degrees, and 1 where it is vertical.
+///
+/// It is the angle of the surface as a part of a right angle, from central differences. It is 0 where a height is not
+/// finite.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Slope {
+    /// Height: a number.
+    pub input: Input,
+    /// Height of the value 1, in units of the plane [default: the material's relief].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(transform = { crate::plan::RELIEF }))]
+    pub relief: Option<f64>,
+    /// Radius of the differences, in units of the plane [default: one pixel]. It is rounded to whole pixels and is at
+    /// least one pixel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(transform = { crate::plan::RADIUS }))]
+    pub radius: Option<f64>,
+}
+
+impl NodeKind for Slope {
+    fn inputs(&self) -> Vec<&Input> {
+        vec![&self.input]
+    }
+
+    fn reads_relief(&self) -> bool {
+        self.relief.is_none()
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        let relief = plan.relief(self.relief)?;
+        let radius = match self.radius {
+            None => 0.0,
+            radius => plan.radius(radius, 0.0)?,
+        };
+        let input = plan.number(&self.input)?;
+        let halo = move |pixel| spans(radius, pixel);
+        Ok(plan.neighborhood_of_heights(input, halo, move |around| {
+            let span = around.pixel * DVec2::from(around.halo.map(f64::from));
+            let scale = relief / (2.0 * span);
+            let numbers = gradients(
+                around.inputs[0].numbers(),
+                around.size,
+                around.halo,
+                |[x, y]| {
+                    let rise = [x * scale.x, y * scale.y];
+                    let steepness = (rise[0] * rise[0] + rise[1] * rise[1]).sqrt();
+                    match steepness.is_finite() {
+                        true => (libm::atan(steepness) * FRAC_2_PI) as f32,
+                        false => 0.0,
+                    }
+                },
+            );
+            Ok(Values::Numbers(numbers))
+        }))
+    }
+}
+
+/// Returns a radius in whole columns and rows, at least 1.
+pub(super) fn spans(radius: f64, pixel: DVec2) -> [u32; 2] {
+    // The small term makes exact half pixels round up, whatever the rounding error of the pixel size.
+    [pixel.x, pixel.y].map(|pixel| ((radius / pixel + 0.5 + 1e-9) as u32).max(1))
+}
+
+/// Computes a number from the differences along x and y between the values at both ends of the halo.
+pub(super) fn gradients(
+    values: &[f32],
+    size: [u32; 2],
+    halo: [u32; 2],
+    number: impl Fn([f64; 2]) -> f32 + Sync,
+) -> Vec<f32> {
+    let [width, height] = size.map(|side| side as usize);
+    let [left, above] = halo.map(|side| side as usize);
+    let wide = width + 2 * left;
+    let mut numbers = vec![0.0; width * height];
+    parallel::for_each_chunk(&mut numbers, width, |row, out| {
+        let line = |row: usize, column: usize| &values[row * wide + column..][..width];
+        let [before, after] = [line(row + above, 0), line(row + above, 2 * left)];
+        let [over, under] = [line(row, left), line(row + 2 * above, left)];
+        for (column, out) in out.iter_mut().enumerate() {
+            *out = number([
+                f64::from(after[column]) - f64::from(before[column]),
+                f64::from(under[column]) - f64::from(over[column]),
+            ]);
+        }
+    });
+    numbers
+}
