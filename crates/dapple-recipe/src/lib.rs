@@ -77,8 +77,11 @@
 //! * A recipe has at most 1024 nodes and 4 MiB of text ([`MAX_TEXT`]). The parser does not panic on any text.
 //! * A recipe may ask for any amount of work. [`PlanLimits`] bound it: if the estimated work exceeds a limit,
 //!   [`Plan::new`] returns an error that names the node, before the work is done.
-//! * Nodes that depend on the whole tile (`tile`, `disturb`, `match_borders`, `corner_tiles`, `blend_map`, most
-//!   `blend`s) cannot be baked under [`BakeMemory::Banded`], and have no value at a single position.
+//! * Nodes that depend on the whole tile (`tile`, `disturb`, `match_borders`, `corner_tiles`, `equalize`, `flood_fill`,
+//!   `blend_map`, most `blend`s) cannot be baked under [`BakeMemory::Banded`], and have no value at a single position.
+//! * Nodes that depend on the neighborhood of a pixel (`blur`, `slope`, `curvature`, `occlusion`, …) can be baked under
+//!   [`BakeMemory::Banded`], and have values in windows, but none at a single position. The sum of their halos is at
+//!   most 2^15 pixels. Below a `warp`, `transform` or `fractal` they depend on the whole tile.
 //! * The crate opens no files. Read images yourself, and pass them by name as [`Images`].
 //! * A recipe of another format version than [`SCHEMA`] is an error.
 //! * An error has the line and the column, or the node, and the nearest valid word.

@@ -13,8 +13,13 @@ mod color;
 mod coordinate;
 mod corner_tiles;
 mod curvature;
+mod dilate;
 mod distance;
+mod distance_to;
 mod disturb;
+mod edges;
+mod equalize;
+mod flood_fill;
 mod fractal;
 mod image;
 mod levels;
@@ -28,7 +33,9 @@ mod profile;
 mod pups;
 mod ramp;
 mod seed;
+mod sharpen;
 mod slope;
+mod slope_blur;
 mod synth;
 mod tile;
 mod transform;
@@ -49,8 +56,13 @@ pub use coordinate::Coordinate;
 pub use corner_tiles::CornerTilesOf;
 pub use curvature::Curvature;
 pub use dapple_pups::{Cells, ControlPoint, ControlPoints};
+pub use dilate::{Dilate, Erode};
 pub use distance::Distance;
+pub use distance_to::DistanceTo;
 pub use disturb::Disturbed;
+pub use edges::Edges;
+pub use equalize::Equalize;
+pub use flood_fill::{FloodFill, RegionValue};
 pub use fractal::FractalOf;
 pub use image::ImageNode;
 pub use levels::{Levels, LevelsCurve};
@@ -64,7 +76,9 @@ pub use profile::ProfileOf;
 pub use pups::{ControlNets, PupsNode, Referenced};
 pub use ramp::Ramped;
 pub use seed::NodeSeed;
+pub use sharpen::Sharpen;
 pub use slope::Slope;
+pub use slope_blur::SlopeBlur;
 pub use synth::SynthNode;
 pub use tile::Tiled;
 pub use transform::Transform;
@@ -138,7 +152,7 @@ macro_rules! nodes {
         ///
         /// Most nodes compute a number at every position. `ramp`, `color`, `image` and `synth` with a color image, and
         /// `pups = { color_noise = … }` compute a color. `add`, `multiply`, `mix`, `tile`, `disturb`, `match_borders`,
-        /// `corner_tiles`, `warp`, `blur` and `blend` compute a color if an input is a color; numbers among their inputs are
+        /// `corner_tiles`, `warp`, `blur`, `slope_blur`, `sharpen`, `dilate`, `erode` and `blend` compute a color if an input is a color; numbers among their inputs are
         /// then grays.
         #[derive(Clone, Debug, Serialize, Deserialize)]
         #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -222,12 +236,28 @@ nodes! {
     "ramp" Ramp(Ramped) in "color and images" as r##"{"input":0.5,"colors":["#202020","#f0f0f0"]}"##,
     /// Gaussian blur, in all directions or along one.
     "blur" Blur(Blur) in "neighborhood" as r#"{"input":0.5,"radius":0.02}"#,
+    /// Blur along the slope of a height: values run downhill.
+    "slope_blur" SlopeBlur(SlopeBlur) in "neighborhood" as r#"{"input":0.5,"height":0.5,"radius":0.05}"#,
+    /// Input sharpened by an unsharp mask.
+    "sharpen" Sharpen(Sharpen) in "neighborhood" as r#"{"input":0.5,"radius":0.02}"#,
+    /// Where the input changes: the length of its gradient.
+    "edges" Edges(Edges) in "neighborhood" as r#"{"input":0.5,"radius":0.02}"#,
+    /// Maximum of the input within a radius.
+    "dilate" Dilate(Dilate) in "neighborhood" as r#"{"input":0.5,"radius":0.02}"#,
+    /// Minimum of the input within a radius.
+    "erode" Erode(Erode) in "neighborhood" as r#"{"input":0.5,"radius":0.02}"#,
+    /// Distance to where a mask is above ½, up to a radius.
+    "distance_to" DistanceTo(DistanceTo) in "neighborhood" as r#"{"input":0.5,"radius":0.1}"#,
     /// Steepness of a height, from 0 where it is level to 1 where it is vertical.
     "slope" Slope(Slope) in "neighborhood" as r#"{"input":0.5}"#,
     /// Curvature of a height: ½ where it is flat, more on edges, less in grooves.
     "curvature" Curvature(Curvature) in "neighborhood" as r#"{"input":0.5}"#,
     /// Ambient occlusion of a height: the visible fraction of the sky.
     "occlusion" Occlusion(Occlusion) in "neighborhood" as r#"{"input":0.5}"#,
+    /// Number spread evenly from 0 to 1 over the tile.
+    "equalize" Equalize(Equalize) in "whole tile" as r#"{"input":0.5}"#,
+    /// Number for each connected region of a mask.
+    "flood_fill" FloodFill(FloodFill) in "whole tile" as r#"{"input":0.5}"#,
     /// Texture made to repeat seamlessly.
     "tile" Tile(Tiled) in "whole tile" as r#"{"input":0.5}"#,
     /// Copies of a tile with equal borders and different interiors.

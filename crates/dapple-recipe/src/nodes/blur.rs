@@ -76,7 +76,7 @@ pub(super) fn gaussian_halo(radius: f64, pixel: DVec2) -> [u32; 2] {
 
 /// Returns the weights of the pixels at distances of 1 to `reach` pixels on one side; those on `sides` sides and the
 /// center sum to 1.
-fn weights(radius: f64, pixel: f64, reach: u32, sides: f64) -> Vec<f32> {
+pub(super) fn weights(radius: f64, pixel: f64, reach: u32, sides: f64) -> Vec<f32> {
     let weight = |distance: u32| {
         let part = f64::from(distance) * pixel / radius;
         libm::exp(-0.5 * part * part)

@@ -66,6 +66,13 @@ impl Surroundings<'_> {
         self.inputs[input].each_channel(change)
     }
 
+    /// Returns a row of the window, given the numbers in the window and its halo.
+    pub(crate) fn line<'a>(&self, values: &'a [f32], row: usize) -> &'a [f32] {
+        let [width, wide] = [self.size[0], self.input_size()[0]].map(|side| side as usize);
+        let [left, above] = self.halo.map(|side| side as usize);
+        &values[(row + above) * wide + left..][..width]
+    }
+
     /// Returns the numbers of an input as a raster. Colors are converted to their luminance.
     pub(crate) fn raster(&self, input: usize) -> Result<Raster<f32>, RecipeError> {
         Ok(self.inputs[input].raster(self.input_size())?)

@@ -2,8 +2,11 @@
 //! compared with a naive formula.
 
 mod blur;
+mod extremes;
+mod flow;
 mod heights;
 mod slope;
+mod whole;
 
 use crate::bakes::{bake, crop, options, plan};
 use dapple_raster::glam::DVec2;
@@ -26,6 +29,13 @@ fn numbers(plan: &Plan, node: &str, size: [u32; 2]) -> Raster<f32> {
 fn with_image(text: &str, image: Raster<f32>) -> Plan {
     let images = Images::from([("a.png".into(), Picture::Numbers(Arc::new(image)))]);
     Plan::new(&Recipe::from_toml(text).unwrap(), &images, 0.0).unwrap()
+}
+
+/// Returns a number from 0 to 1 that follows no pattern.
+fn random(x: u32, y: u32) -> f32 {
+    let bits = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77);
+    let bits = (bits ^ bits >> 15).wrapping_mul(0xC2B2_AE3D);
+    (bits >> 16) as f32 / 65_535.0
 }
 
 /// Checks that all numbers differ by at most `tolerance`.
@@ -57,8 +67,14 @@ wide = { slope = { input = "photo", radius = 0.2, relief = 0.5 } }
 wide_steep = { slope = { input = "wide", radius = 0.3 } }
 worn = { curvature = { input = "height", relief = 0.1, radius = 0.1 } }
 dirt = { occlusion = { input = "steep" } }
-dirty = { multiply = ["dirt", "worn"] }
-again = { mix = { from = "runs", to = "wide_steep", by = "steep" } }
+dirty = { multiply = ["dirt", "worn", "large", "far"] }
+grown = { dilate = { input = "height", radius = 0.13 } }
+shrunk = { erode = { input = "grown", radius = 0.09 } }
+large = { edges = { input = "shrunk", radius = 0.05 } }
+far = { distance_to = { input = "large", radius = 0.4 } }
+flow = { slope_blur = { input = "grown", height = "soft", radius = 0.08 } }
+sharp = { sharpen = { input = "flow", radius = 0.06 } }
+again = { mix = { from = "runs", to = "wide_steep", by = "sharp" } }
 twice = { blur = { input = "again", radius = 0.07, along = -20.0 } }
 colors = { ramp = { input = "twice", palette = "lagoon" } }
 soft_colors = { blur = { input = "colors", radius = 0.05 } }
@@ -288,6 +304,24 @@ fn radii_out_of_range_are_refused_with_the_node() {
             Recipe::from_toml(&text).and_then(|recipe| Plan::new(&recipe, &Images::new(), 0.0));
         plan.map(|_| ()).unwrap_err()
     };
+    let kinds = [
+        "blur",
+        "sharpen",
+        "edges",
+        "dilate",
+        "erode",
+        "distance_to",
+        "slope",
+        "curvature",
+        "occlusion",
+    ];
+    for kind in kinds {
+        let error = refused(&format!("{kind} = {{ input = 0.5, radius = 2.1 }}"));
+        assert!(
+            error.to_string().contains("at most the longer side"),
+            "{kind}: {error}"
+        );
+    }
     for radius in ["0", "-0.1", "2.1", "nan", "inf"] {
         let error = refused(&format!("blur = {{ input = 0.5, radius = {radius} }}"));
         let is_radius = matches!(error.kind(), RecipeErrorKind::Range { what: "radius", .. });

@@ -29,7 +29,7 @@ fn blurred(
         (-reach[0]..=reach[0]).flat_map(|dx| (-reach[1]..=reach[1]).map(move |dy| (dx, dy)))
     {
         let [u, v] = [dx as f64 / per_unit[0], dy as f64 / per_unit[1]];
-        let weight = (-(u * u + v * v) / (2.0 * radius * radius)).exp();
+        let weight = libm::exp(-(u * u + v * v) / (2.0 * radius * radius));
         sum += weight * f64::from(*values.at(x + dx, y + dy, wrap));
         total += weight;
     }
@@ -98,7 +98,7 @@ fn directional_blur_smears_forward_along_its_direction() {
         );
         numbers(&with_image(&text, image.clone()), "b", [16, 16])
     };
-    let gauss = |distance: f64| (-distance * distance / 8.0).exp();
+    let gauss = |distance: f64| libm::exp(-distance * distance / 8.0);
     let total =
         |from: i32, step: f64| -> f64 { (from..=6).map(|k| gauss(f64::from(k) * step)).sum() };
     // The radius is two pixels, so that six pixels are reached.
