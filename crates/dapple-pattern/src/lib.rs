@@ -5,8 +5,10 @@
 mod bricks;
 mod error;
 mod lattice;
+mod scatter;
 
 pub use bricks::{Bond, BrickField, BrickOptions, BrickValue, Bricks};
 pub use dapple_hash as hash;
 pub use dapple_raster as raster;
 pub use error::{PatternError, PatternErrorKind};
+pub use scatter::{StampField, StampOverlap, StampShape, StampValue, Stamps};

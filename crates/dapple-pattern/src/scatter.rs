@@ -1,0 +1,729 @@
+//! Shapes stamped at the points of a jittered lattice: gravel, leaves, grass, rivets, scales, scratches.
+//!
+//! Each cell of the lattice has a few points, and each point a stamp: a shape with a height profile and random size,
+//! rotation and height. What covers a position is decided by the heights, by a random order or by the rows of the
+//! lattice. This is the "tile sampler" of texturing programs, and the texture bombing of R. S. Glanville, "Texture Bombing",
+//! GPU Gems, chapter 20, 2004, with exact periods.
+//!
+//! A position depends on the stamps of the cells within reach alone. Stamps are placed relative to the cell of the
+//! position, so that a period is exact, and positions far from the origin have the same precision as near ones. They
+//! are visited row by row of cells, and then in the order of columns and indices; later stamps win ties.
+//!
+//! Positions are in cells. Lengths are in widths of a cell.
+
+mod shape;
+
+#[cfg(test)]
+mod tests;
+
+pub use shape::StampShape;
+
+use crate::PatternError;
+use dapple_hash::{CellHash, Seed, unit_f32};
+use dapple_raster::{Field, Range, RasterError, RasterViewMut, Window, range};
+use shape::Outline;
+
+dapple_raster::named! {
+    /// Rule for positions that several stamps cover.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum StampOverlap {
+        /// The highest stamp at the position.
+        #[default]
+        Highest = "highest",
+        /// The last stamp of a random order, such as fallen leaves.
+        Order = "order",
+        /// The stamp of the upper row, and within a row the right one, such as roof slates.
+        Rows = "rows",
+        /// The sum of all heights; other values are those of the highest stamp.
+        Add = "add",
+    }
+}
+
+dapple_raster::named! {
+    /// Value of stamps at a position. All values are 0 where there is no stamp.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum StampValue {
+        /// Height of the stamp, from 0 to 1; with the overlap `add`, the sum of heights.
+        #[default]
+        Height = "height",
+        /// 1 on a stamp.
+        Mask = "mask",
+        /// Random number of the stamp, from 0 to below 1.
+        Random = "random",
+        /// Second random number of the stamp, from 0 to below 1.
+        Random2 = "random2",
+        /// Third random number of the stamp, from 0 to below 1.
+        Random3 = "random3",
+        /// Coordinate along the stamp, from 0 to 1.
+        U = "u",
+        /// Coordinate across the stamp, from 0 to 1.
+        V = "v",
+        /// Distance from the outline relative to the middle of the stamp, from 0 at the outline to 1.
+        EdgeDistance = "edge_distance",
+        /// Rotation of the stamp in turns, from 0 to below 1.
+        Angle = "angle",
+    }
+}
+
+const SIZE: Range = range!(from 0.001 to 8);
+const ASPECT: Range = range!(from 0.01 to 1);
+const ROTATION: Range = range!(from -360 to 360);
+const CELL_HEIGHT: Range = range!(from 0.01 to 100);
+
+/// Maximum reach of a stamp beyond the cell of its point, in cells along an axis.
+const MAX_REACH: f64 = 8.0;
+
+/// Maximum number of stamps in the cells within reach of a position.
+const MAX_NEAR: f64 = 1024.0;
+
+/// Side of a block of pixels whose candidates are selected together.
+const BLOCK: usize = 16;
+
+/// Stamps at the points of a jittered lattice.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_hash::Seed;
+/// use dapple_pattern::{StampShape, StampValue, Stamps};
+/// use dapple_raster::{Field as _, FieldExt as _};
+///
+/// let pebbles = Stamps::new(Seed(7))
+///     .with_period([Some(8), Some(8)])?
+///     .with_shape(StampShape::Pebble)
+///     .with_size([0.6, 1.2])?;
+/// let (height, random) = (pebbles.field(StampValue::Height)?, pebbles.field(StampValue::Random)?);
+/// assert_eq!(height.sample([0.25, 3.5]), height.sample([8.25, -4.5]));
+/// let tile = height.tile_raster([64, 64])?;
+/// assert!(tile.pixels().iter().all(|height| (0.0..=1.0).contains(height)));
+/// assert!((0.0..1.0).contains(&random.sample([0.25, 3.5])));
+/// # Ok::<(), dapple_pattern::PatternError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stamps {
+    seed: Seed,
+    period: [Option<u32>; 2],
+    cell_height: f64,
+    density: f64,
+    jitter: f64,
+    row_offset: f64,
+    shape: StampShape,
+    size: [f64; 2],
+    aspect: [f64; 2],
+    rotation: [f64; 2],
+    height: [f64; 2],
+    bevel: f64,
+    lift: f64,
+    tilt: f64,
+    overlap: StampOverlap,
+}
+
+/// Ranges of options, for the schema of recipes.
+#[doc(hidden)]
+impl Stamps {
+    pub const DENSITY: Range = range!(above 0 to 16);
+    pub const FRACTION: Range = range!(from 0 to 1);
+    pub const SIGNED: Range = range!(from -1 to 1);
+}
+
+impl Stamps {
+    /// Creates round stamps, one per cell, with a diameter of half a cell to a whole cell.
+    #[must_use]
+    pub fn new(seed: Seed) -> Self {
+        Self {
+            seed: seed.child("stamps", 0),
+            period: [None; 2],
+            cell_height: 1.0,
+            density: 1.0,
+            jitter: 1.0,
+            row_offset: 0.0,
+            shape: StampShape::default(),
+            size: [0.5, 1.0],
+            aspect: [1.0; 2],
+            rotation: [0.0, 360.0],
+            height: [1.0; 2],
+            bevel: 0.2,
+            lift: 0.0,
+            tilt: 0.0,
+            overlap: StampOverlap::default(),
+        }
+    }
+
+    /// Makes the stamps repeat exactly after a number of cells along each axis; `None` for an axis without a period.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PatternErrorKind::Range) if a period is 0.
+    pub fn with_period(self, period: [Option<u32>; 2]) -> Result<Self, PatternError> {
+        let holds = !period.contains(&Some(0));
+        PatternError::check(holds, "period", 0.0, "at least 1 cell")?;
+        Ok(Self { period, ..self })
+    }
+
+    /// Sets the height of a cell relative to its width, from 0.01 to 100; by default 1. Shapes are not stretched.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PatternErrorKind::Range) if the height is out of range.
+    pub fn with_cell_height(self, cell_height: f64) -> Result<Self, PatternError> {
+        PatternError::check_in(CELL_HEIGHT, "height of a cell", cell_height)?;
+        Ok(Self {
+            cell_height,
+            ..self
+        })
+    }
+
+    /// Sets the mean number of stamps per cell, above 0 and at most 16; by default 1. The whole part is in every cell,
+    /// and the fraction is the chance of one more.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PatternErrorKind::Range) if the number is out of range.
+    pub fn with_density(self, density: f64) -> Result<Self, PatternError> {
+        PatternError::check_in(Self::DENSITY, "number of stamps per cell", density)?;
+        Ok(Self { density, ..self })
+    }
+
+    /// Sets the maximum offset of a point from the center of its cell, from 0 (a regular lattice) to 1 (anywhere in
+    /// the cell, the default).
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PatternErrorKind::Range) if the jitter is out of range.
+    pub fn with_jitter(self, jitter: f64) -> Result<Self, PatternError> {
+        PatternError::check_in(Self::FRACTION, "jitter", jitter)?;
+        Ok(Self { jitter, ..self })
+    }
+
+    /// Sets the shift of each row of cells relative to the row above, in cells, from −1 to 1; by default 0.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PatternErrorKind::Range) if the offset is out of range.
+    pub fn with_row_offset(self, row_offset: f64) -> Result<Self, PatternError> {
+        PatternError::check_in(Self::SIGNED, "offset of a row", row_offset)?;
+        Ok(Self { row_offset, ..self })
+    }
+
+    /// Sets the shape of the stamps.
+    #[must_use]
+    pub fn with_shape(self, shape: StampShape) -> Self {
+        Self { shape, ..self }
+    }
+
+    /// Sets the range of the length of a stamp, in widths of a cell, from 0.001 to 8.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PatternErrorKind::Range) if a length is out of range, or the second is below the first.
+    pub fn with_size(self, size: [f64; 2]) -> Result<Self, PatternError> {
+        check_range(SIZE, "size of a stamp", size)?;
+        Ok(Self { size, ..self })
+    }
+
+    /// Sets the range of the width of a stamp relative to its length, from 0.01 to 1; by default 1.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PatternErrorKind::Range) if an aspect is out of range, or the second is below the first.
+    pub fn with_aspect(self, aspect: [f64; 2]) -> Result<Self, PatternError> {
+        check_range(ASPECT, "aspect of a stamp", aspect)?;
+        Ok(Self { aspect, ..self })
+    }
+
+    /// Sets the range of the clockwise rotation of a stamp in degrees, from −360 to 360; by default 0 to 360. At 0,
+    /// the length of a stamp is along the x axis.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PatternErrorKind::Range) if an angle is out of range, or the second is below the first.
+    pub fn with_rotation(self, rotation: [f64; 2]) -> Result<Self, PatternError> {
+        check_range(ROTATION, "rotation of a stamp", rotation)?;
+        Ok(Self { rotation, ..self })
+    }
+
+    /// Sets the range of the height of a stamp, from 0 to 1; by default 1.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PatternErrorKind::Range) if a height is out of range, or the second is below the first.
+    pub fn with_height(self, height: [f64; 2]) -> Result<Self, PatternError> {
+        check_range(Self::FRACTION, "height of a stamp", height)?;
+        Ok(Self { height, ..self })
+    }
+
+    /// Sets the width of the bevel of flat shapes relative to half of their width, from 0 to 1; by default 0.2.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PatternErrorKind::Range) if the bevel is out of range.
+    pub fn with_bevel(self, bevel: f64) -> Result<Self, PatternError> {
+        PatternError::check_in(Self::FRACTION, "bevel", bevel)?;
+        Ok(Self { bevel, ..self })
+    }
+
+    /// Sets the part of a stamp's height, from 0 to 1, that is its random place in the order of stamps instead of its
+    /// profile; by default 0. Stamps that lie on others are then higher.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PatternErrorKind::Range) if the lift is out of range.
+    pub fn with_lift(self, lift: f64) -> Result<Self, PatternError> {
+        PatternError::check_in(Self::FRACTION, "lift", lift)?;
+        Ok(Self { lift, ..self })
+    }
+
+    /// Sets the slope of the profile along a stamp, from −1 to 1; by default 0. At 1, the height rises from 0 at its
+    /// start to that of the profile at its end.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PatternErrorKind::Range) if the tilt is out of range.
+    pub fn with_tilt(self, tilt: f64) -> Result<Self, PatternError> {
+        PatternError::check_in(Self::SIGNED, "tilt", tilt)?;
+        Ok(Self { tilt, ..self })
+    }
+
+    /// Sets the rule for positions that several stamps cover.
+    #[must_use]
+    pub fn with_overlap(self, overlap: StampOverlap) -> Self {
+        Self { overlap, ..self }
+    }
+
+    /// Returns the field of a value of the stamps, over positions in cells.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PatternErrorKind::Range) if stamps reach farther than 8 cells along an axis, if more than 1024
+    /// stamps are in the cells within reach, or if the offsets of all rows of a period do not add up to a whole number
+    /// of cells.
+    pub fn field(&self, value: StampValue) -> Result<StampField, PatternError> {
+        let half = 0.5 * self.size[1];
+        // Corners of the bounding box, whose half width is the half length times the aspect.
+        let aspect = self.aspect[1];
+        let radius = half * (1.0 + aspect * aspect).sqrt();
+        let reach = [radius, radius / self.cell_height];
+        for reach in reach {
+            PatternError::check(
+                reach <= MAX_REACH,
+                "reach of a stamp in cells",
+                reach,
+                "at most 8 along each axis",
+            )?;
+        }
+        let near = self.density * (2.0 * reach[0] + 1.0) * (2.0 * reach[1] + 1.0);
+        PatternError::check(
+            near <= MAX_NEAR,
+            "number of stamps within reach of a position",
+            near,
+            "at most 1024 (by the density and the largest size)",
+        )?;
+        if let Some(rows) = self.period[1] {
+            let shift = f64::from(rows) * self.row_offset;
+            PatternError::check(
+                // Offsets such as 0.333 are meant as whole parts of a cell.
+                (shift - shift.round()).abs() <= 0.01,
+                "total offset of the rows of a period",
+                shift,
+                "a whole number of cells (rows times offset)",
+            )?;
+        }
+        let stamps = self.clone();
+        Ok(StampField {
+            stamps,
+            value,
+            reach,
+        })
+    }
+
+    /// Returns the points of a cell, relative to the corner of the cell.
+    fn points(&self, cell: [i64; 2]) -> impl Iterator<Item = Point> {
+        let wrapped = [0, 1].map(|axis| match self.period[axis] {
+            Some(period) => cell[axis].rem_euclid(period.into()),
+            None => cell[axis],
+        });
+        let shift = wrapped[1] as f64 * self.row_offset;
+        let shift = shift - shift.floor();
+        let hash = CellHash::new(self.seed, wrapped);
+        let whole = self.density.floor();
+        let has_one_more = f64::from(halves(hash.at(0))[0]) < self.density - whole;
+        let count = whole as u32 + u32::from(has_one_more);
+        (0..count).map(move |index| {
+            let first = 1 + DRAWS * index;
+            let [x, y] =
+                halves(hash.at(first)).map(|part| 0.5 + (f64::from(part) - 0.5) * self.jitter);
+            Point {
+                position: [x + shift, y],
+                hash,
+                first,
+            }
+        })
+    }
+
+    /// Draws the stamp of a point.
+    fn stamp(&self, point: &Point) -> Stamp {
+        let draw = |number: u32| halves(point.hash.at(point.first + number));
+        let between = |[from, to]: [f64; 2], part: f32| from + (to - from) * f64::from(part);
+        let [size, aspect] = draw(1);
+        let [rotation, height] = draw(2);
+        let [random, random2] = draw(3);
+        let [random3, order] = draw(4);
+        let [a, b] = draw(5);
+        let [c, d] = draw(6);
+        let half = 0.5 * between(self.size, size);
+        let aspect = between(self.aspect, aspect);
+        let degrees = between(self.rotation, rotation);
+        let [cos, sin] = direction(degrees);
+        let turns = degrees / 360.0;
+        Stamp {
+            center: point.position,
+            u_axis: [cos / half, sin * self.cell_height / half],
+            v_axis: [
+                -sin / (half * aspect),
+                cos * self.cell_height / (half * aspect),
+            ],
+            outline: Outline {
+                aspect: aspect as f32,
+                bevel: self.bevel as f32,
+                random: [a, b, c, d],
+            },
+            height: between(self.height, height) as f32,
+            order,
+            randoms: [random, random2, random3],
+            angle: (turns - turns.floor()) as f32,
+        }
+    }
+
+    /// Returns the height of a stamp where its profile has the value `profile`.
+    fn height_of(&self, stamp: &Stamp, u: f32, profile: f32) -> f32 {
+        let (lift, tilt) = (self.lift as f32, self.tilt as f32);
+        let tilted = profile * (1.0 + tilt * u) / (1.0 + tilt.abs());
+        stamp.height * (lift * stamp.order + (1.0 - lift) * tilted)
+    }
+}
+
+/// Refuses a pair of numbers outside of `range`, or in descending order.
+fn check_range(range: Range, what: &'static str, ends: [f64; 2]) -> Result<(), PatternError> {
+    for end in ends {
+        PatternError::check_in(range, what, end)?;
+    }
+    let what = "upper end of a range";
+    PatternError::check(ends[0] <= ends[1], what, ends[1], "at least the lower end")
+}
+
+/// Converts 64 random bits to two numbers from 0 to below 1.
+fn halves(bits: u64) -> [f32; 2] {
+    [(bits >> 32) as u32, bits as u32].map(unit_f32)
+}
+
+/// Returns the cosine and the sine of an angle in degrees; exact for multiples of 90.
+fn direction(degrees: f64) -> [f64; 2] {
+    match (degrees % 360.0 + 360.0) % 360.0 {
+        0.0 => [1.0, 0.0],
+        90.0 => [0.0, 1.0],
+        180.0 => [-1.0, 0.0],
+        270.0 => [0.0, -1.0],
+        _ => {
+            let (sin, cos) = libm::sincos(degrees.to_radians());
+            [cos, sin]
+        }
+    }
+}
+
+/// Number of hashes that are reserved for a point: one for its position, and those of its stamp.
+const DRAWS: u32 = 8;
+
+/// A point of a cell.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    position: [f64; 2],
+    /// Hash of the cell.
+    hash: CellHash,
+    /// Index of the first hash of the point.
+    first: u32,
+}
+
+/// A stamp at a point.
+#[derive(Clone, Copy, Debug)]
+struct Stamp {
+    /// Position of the center in cells.
+    center: [f64; 2],
+    /// Gradient of the coordinate along the stamp, which is −1 and 1 at its ends, per cell.
+    u_axis: [f64; 2],
+    /// Gradient of the coordinate across the stamp, which is −1 and 1 at its sides, per cell.
+    v_axis: [f64; 2],
+    outline: Outline,
+    height: f32,
+    /// Place in the random order, from 0 to below 1.
+    order: f32,
+    randoms: [f32; 3],
+    /// Rotation in turns.
+    angle: f32,
+}
+
+impl Stamp {
+    /// Returns the coordinates along and across the stamp.
+    #[inline(always)]
+    fn local(&self, position: [f64; 2]) -> [f64; 2] {
+        let [x, y] = [position[0] - self.center[0], position[1] - self.center[1]];
+        [
+            x * self.u_axis[0] + y * self.u_axis[1],
+            x * self.v_axis[0] + y * self.v_axis[1],
+        ]
+    }
+
+    /// Returns whether the bounding box of the stamp may meet a box around `center`.
+    fn meets(&self, center: [f64; 2], half: [f64; 2]) -> bool {
+        // Rounding must not leave out a stamp whose outline touches the box.
+        const MARGIN: f64 = 1e-6;
+        let local = self.local(center);
+        let axes = [self.u_axis, self.v_axis];
+        local.iter().zip(axes).all(|(local, [x, y])| {
+            local.abs() <= 1.0 + MARGIN + x.abs() * half[0] + y.abs() * half[1]
+        })
+    }
+}
+
+/// A stamp that covers a position.
+#[derive(Clone, Copy)]
+struct Hit<'a> {
+    stamp: &'a Stamp,
+    /// Coordinates along and across the stamp, from −1 to 1.
+    local: [f32; 2],
+    height: f32,
+    /// Distance from the outline, from 0 to 1.
+    edge: f32,
+}
+
+/// A value of [`Stamps`] as a field over positions in cells.
+///
+/// At a position that is not finite, the value is NaN.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StampField {
+    stamps: Stamps,
+    value: StampValue,
+    /// Maximum distance from the center of a stamp to a position that it covers, in cells along each axis.
+    reach: [f64; 2],
+}
+
+impl StampField {
+    /// Lists the stamps that may cover a box in a cell, in the order in which they are stamped. The box and the stamps
+    /// are relative to the corner of the cell.
+    fn near(&self, cell: [i64; 2], center: [f64; 2], half: [f64; 2], near: &mut Vec<Stamp>) {
+        near.clear();
+        let stamps = &self.stamps;
+        let has_offset = i64::from(stamps.row_offset != 0.0);
+        let first = [0, 1].map(|axis| {
+            let low = center[axis] - half[axis] - self.reach[axis];
+            low.floor() as i64 - if axis == 0 { has_offset } else { 0 }
+        });
+        let last = [0, 1].map(|axis| (center[axis] + half[axis] + self.reach[axis]).floor() as i64);
+        for y in first[1]..=last[1] {
+            for x in first[0]..=last[0] {
+                let other = [cell[0].wrapping_add(x), cell[1].wrapping_add(y)];
+                near.extend(stamps.points(other).filter_map(|mut point| {
+                    point.position[0] += x as f64;
+                    point.position[1] += y as f64;
+                    // Most points are too far for any stamp.
+                    let is_far = (0..2).any(|axis| {
+                        let distance = (point.position[axis] - center[axis]).abs();
+                        distance > half[axis] + 1.001 * self.reach[axis]
+                    });
+                    let stamp = (!is_far).then(|| stamps.stamp(&point))?;
+                    stamp.meets(center, half).then_some(stamp)
+                }));
+            }
+        }
+    }
+
+    /// Returns the value at a position relative to the corner of the cell for which `near` was listed.
+    fn value_of(&self, near: &[Stamp], position: [f64; 2]) -> f32 {
+        let mut top: Option<Hit<'_>> = None;
+        let mut sum = 0.0;
+        for stamp in near {
+            let local = stamp.local(position);
+            if local[0].abs() > 1.0 || local[1].abs() > 1.0 {
+                continue;
+            }
+            let [u, v] = local.map(|local| local as f32);
+            let Some((edge, profile)) = self.stamps.shape.at(&stamp.outline, u, v) else {
+                continue;
+            };
+            let height = self.stamps.height_of(stamp, u, profile);
+            sum += height;
+            let hit = Hit {
+                stamp,
+                local: [u, v],
+                height,
+                edge,
+            };
+            let is_covered = top.is_some_and(|top| match self.stamps.overlap {
+                StampOverlap::Highest | StampOverlap::Add => height < top.height,
+                StampOverlap::Order => stamp.order < top.stamp.order,
+                // Stamps come from the upper rows to the lower ones, and from the left to the right.
+                StampOverlap::Rows => stamp.center[1].floor() > top.stamp.center[1].floor(),
+            });
+            if !is_covered {
+                top = Some(hit);
+            }
+        }
+        let Some(hit) = top else {
+            return 0.0;
+        };
+        let [random, random2, random3] = hit.stamp.randoms;
+        match self.value {
+            StampValue::Height if self.stamps.overlap == StampOverlap::Add => sum,
+            StampValue::Height => hit.height,
+            StampValue::Mask => 1.0,
+            StampValue::Random => random,
+            StampValue::Random2 => random2,
+            StampValue::Random3 => random3,
+            StampValue::U => 0.5 + 0.5 * hit.local[0],
+            StampValue::V => 0.5 + 0.5 * hit.local[1],
+            StampValue::EdgeDistance => hit.edge,
+            StampValue::Angle => hit.stamp.angle,
+        }
+    }
+
+    /// Renders a window whose columns have these cells and offsets in the cell.
+    fn render_band(
+        &self,
+        window: &Window,
+        columns: &[(i64, f64)],
+        mut out: RasterViewMut<'_, f32>,
+    ) {
+        let rows: Vec<_> = (0..window.size[1])
+            .map(|row| place(window.row_y(row)))
+            .collect();
+        let (mut of_cell, mut of_block) = (Vec::new(), Vec::new());
+        for (first_row, rows) in runs(&rows, usize::MAX) {
+            for (first_column, columns) in runs(columns, usize::MAX) {
+                let cell = [columns[0].0, rows[0].0];
+                let bounds = |columns: &[(i64, f64)], rows: &[(i64, f64)]| {
+                    let [x, y] = [extent(columns), extent(rows)];
+                    ([x.0, y.0], [x.1, y.1])
+                };
+                let (center, half) = bounds(columns, rows);
+                self.near(cell, center, half, &mut of_cell);
+                // Select the candidates of each block of pixels from those of the cell.
+                for (row, rows) in runs(rows, BLOCK) {
+                    for (column, columns) in runs(columns, BLOCK) {
+                        let (center, half) = bounds(columns, rows);
+                        of_block.clear();
+                        let meeting = of_cell.iter().filter(|stamp| stamp.meets(center, half));
+                        of_block.extend(meeting.copied());
+                        let at = [first_column + column, first_row + row];
+                        self.render_block(&of_block, columns, rows, at, &mut out);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Renders a block of pixels of one cell, whose first column and row are `at`.
+    fn render_block(
+        &self,
+        near: &[Stamp],
+        columns: &[(i64, f64)],
+        rows: &[(i64, f64)],
+        at: [usize; 2],
+        out: &mut RasterViewMut<'_, f32>,
+    ) {
+        for (row, &(_, y)) in (at[1]..).zip(rows) {
+            let pixels = &mut out.row_mut(row as u32)[at[0]..at[0] + columns.len()];
+            for (pixel, &(_, x)) in pixels.iter_mut().zip(columns) {
+                *pixel = match x.is_finite() && y.is_finite() {
+                    true => self.value_of(near, [x, y]),
+                    false => f32::NAN,
+                };
+            }
+        }
+    }
+}
+
+/// Number of pixel rows in a band, the unit of parallel work.
+const BAND_ROWS: u32 = 64;
+
+impl Field for StampField {
+    fn value(&self, position: [f64; 2]) -> f32 {
+        let [(column, x), (row, y)] = position.map(place);
+        if !x.is_finite() || !y.is_finite() {
+            return f32::NAN;
+        }
+        let mut near = Vec::new();
+        self.near([column, row], [x, y], [0.0; 2], &mut near);
+        self.value_of(&near, [x, y])
+    }
+
+    fn values(&self, positions: &[[f64; 2]], values: &mut [f32]) -> Result<(), RasterError> {
+        RasterError::check_length(values.len(), positions.len())?;
+        // Positions that follow each other are often in the same few cells.
+        let mut cells: Vec<Option<([i64; 2], Vec<Stamp>)>> = vec![None; 64];
+        for (value, &position) in values.iter_mut().zip(positions) {
+            let [(column, x), (row, y)] = position.map(place);
+            if !x.is_finite() || !y.is_finite() {
+                *value = f32::NAN;
+                continue;
+            }
+            let cell = [column, row];
+            let slot = &mut cells[(column & 7 | (row & 7) << 3) as usize];
+            let near = match slot {
+                Some((known, near)) if *known == cell => near,
+                slot => {
+                    let mut near = Vec::new();
+                    self.near(cell, [0.5; 2], [0.5; 2], &mut near);
+                    &mut slot.insert((cell, near)).1
+                }
+            };
+            *value = self.value_of(near, [x, y]);
+        }
+        Ok(())
+    }
+
+    fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        window.check_size(out.size())?;
+        let columns: Vec<_> = (0..window.size[0])
+            .map(|column| place(window.column_x(column)))
+            .collect();
+        out.for_each_band(BAND_ROWS, |row, band| {
+            let part = Window {
+                first: [window.first[0], window.first[1].saturating_add(row.into())],
+                size: band.size(),
+                ..*window
+            };
+            self.render_band(&part, &columns, band);
+        });
+        Ok(())
+    }
+
+    fn period(&self) -> [Option<f64>; 2] {
+        self.stamps.period.map(|period| period.map(f64::from))
+    }
+}
+
+/// Splits a coordinate into its cell and the offset in the cell.
+fn place(coordinate: f64) -> (i64, f64) {
+    let cell = coordinate.floor();
+    (cell as i64, coordinate - cell)
+}
+
+/// Splits pixels into runs in the same cell, of at most `most` pixels, each with the index of its first pixel.
+fn runs(pixels: &[(i64, f64)], most: usize) -> impl Iterator<Item = (usize, &[(i64, f64)])> {
+    let mut first = 0;
+    let same = pixels.chunk_by(|a, b| a.0 == b.0);
+    let runs = same.flat_map(move |run| run.chunks(most.min(run.len())));
+    runs.map(move |run| {
+        let at = first;
+        first += run.len();
+        (at, run)
+    })
+}
+
+/// Returns the center and half of the length of the range of offsets; not-a-numbers are left out.
+fn extent(pixels: &[(i64, f64)]) -> (f64, f64) {
+    let offsets = pixels.iter().map(|&(_, offset)| offset);
+    let (low, high) = offsets.fold((1.0_f64, 0.0_f64), |(low, high), offset| {
+        (low.min(offset), high.max(offset))
+    });
+    (0.5 * (low + high), (0.5 * (high - low)).max(0.0))
+}

@@ -1,0 +1,376 @@
+//! Tests of stamps: an oracle that visits all stamps of a tile and of its copies, and shapes and limits.
+
+use super::shape::Outline;
+use super::{Stamp, StampOverlap, StampShape, StampValue, Stamps};
+use crate::{PatternError, PatternErrorKind};
+use dapple_hash::Seed;
+use dapple_raster::{Field, FieldExt as _, Named as _, Raster, Window};
+
+const PERIOD: u32 = 4;
+
+fn tile() -> Stamps {
+    let stamps = Stamps::new(Seed(7));
+    stamps.with_period([Some(PERIOD), Some(PERIOD)]).unwrap()
+}
+
+/// Options of all kinds, with whose numbers positions in cells are computed without rounding.
+fn examples() -> Vec<Stamps> {
+    let mut examples = Vec::new();
+    for (index, &shape) in StampShape::ALL.iter().enumerate() {
+        let overlap = StampOverlap::ALL[index % 4];
+        examples.push(
+            tile()
+                .with_shape(shape)
+                .with_overlap(overlap)
+                .with_size([0.5, 2.5])
+                .unwrap()
+                .with_aspect([0.25, 1.0])
+                .unwrap()
+                .with_density([1.0, 2.5, 0.25][index % 3])
+                .unwrap()
+                .with_lift(0.25)
+                .unwrap()
+                .with_tilt([-0.5, 0.0, 1.0][index % 3])
+                .unwrap()
+                .with_row_offset([0.0, 0.5, -0.25][index % 3])
+                .unwrap()
+                .with_cell_height([1.0, 0.5, 2.0][index % 3])
+                .unwrap()
+                .with_height([0.25, 1.0])
+                .unwrap(),
+        );
+    }
+    // Long stamps reach over the whole tile.
+    examples.push(
+        tile()
+            .with_shape(StampShape::Capsule)
+            .with_size([4.0, 8.0])
+            .unwrap()
+            .with_aspect([0.02, 0.05])
+            .unwrap(),
+    );
+    examples
+}
+
+/// All stamps of the tile and its copies around it, in the order in which they are stamped.
+fn all_stamps(stamps: &Stamps) -> Vec<Stamp> {
+    let mut all = Vec::new();
+    let reach = 3 * i64::from(PERIOD);
+    for y in -reach..reach {
+        for x in -reach..reach {
+            let home = [x, y].map(|cell| cell.rem_euclid(PERIOD.into()));
+            for mut point in stamps.points(home) {
+                point.position[0] += x as f64;
+                point.position[1] += y as f64;
+                all.push(stamps.stamp(&point));
+            }
+        }
+    }
+    all
+}
+
+/// Computes a value from all stamps.
+fn oracle(stamps: &Stamps, all: &[Stamp], value: StampValue, position: [f64; 2]) -> f32 {
+    let mut hits = Vec::new();
+    for stamp in all {
+        let [u, v] = stamp.local(position);
+        let inside = u.abs() <= 1.0 && v.abs() <= 1.0;
+        let at = |()| stamps.shape.at(&stamp.outline, u as f32, v as f32);
+        if let Some((edge, profile)) = inside.then_some(()).and_then(at) {
+            let height = stamps.height_of(stamp, u as f32, profile);
+            hits.push((stamp, u as f32, v as f32, edge, height));
+        }
+    }
+    let sum = hits.iter().map(|hit| hit.4).sum();
+    // The last of equal stamps is on top.
+    let Some((stamp, u, v, edge, height)) = hits.into_iter().max_by(|a, b| match stamps.overlap {
+        StampOverlap::Highest | StampOverlap::Add => a.4.total_cmp(&b.4),
+        StampOverlap::Order => a.0.order.total_cmp(&b.0.order),
+        StampOverlap::Rows => b.0.center[1].floor().total_cmp(&a.0.center[1].floor()),
+    }) else {
+        return 0.0;
+    };
+    match value {
+        StampValue::Height if stamps.overlap == StampOverlap::Add => sum,
+        StampValue::Height => height,
+        StampValue::Mask => 1.0,
+        StampValue::Random => stamp.randoms[0],
+        StampValue::Random2 => stamp.randoms[1],
+        StampValue::Random3 => stamp.randoms[2],
+        StampValue::U => 0.5 + 0.5 * u,
+        StampValue::V => 0.5 + 0.5 * v,
+        StampValue::EdgeDistance => edge,
+        StampValue::Angle => stamp.angle,
+    }
+}
+
+fn bits(values: &[f32]) -> Vec<u32> {
+    values.iter().map(|value| value.to_bits()).collect()
+}
+
+#[test]
+fn values_equal_those_of_all_stamps_of_the_tile_and_its_copies() {
+    // The position and the size of a pixel are powers of two, so that the oracle does not round.
+    let window = Window::new([-0.5, -0.25], [4.0, 4.0], [64, 64]).unwrap();
+    let positions: Vec<_> = (0..64 * 64)
+        .map(|pixel| window.position(pixel % 64, pixel / 64))
+        .collect();
+    for stamps in examples() {
+        let all = all_stamps(&stamps);
+        for &value in StampValue::ALL {
+            let expected: Vec<_> = positions
+                .iter()
+                .map(|&position| oracle(&stamps, &all, value, position))
+                .collect();
+            assert!(expected.iter().any(|&value| value > 0.0), "{stamps:?}");
+            let field = stamps.field(value).unwrap();
+            let raster = field.to_raster(&window).unwrap();
+            assert_eq!(bits(raster.pixels()), bits(&expected), "{value} {stamps:?}");
+            let mut values = vec![0.0; positions.len()];
+            field.values(&positions, &mut values).unwrap();
+            assert_eq!(bits(&values), bits(&expected), "{value} {stamps:?}");
+            for (&position, &expected) in positions.iter().zip(&expected).step_by(7) {
+                assert_eq!(
+                    field.value(position).to_bits(),
+                    expected.to_bits(),
+                    "{value} {stamps:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn windows_are_crops_and_equal_single_positions() {
+    for stamps in examples() {
+        let field = stamps.field(StampValue::Height).unwrap();
+        // A pixel larger than a cell, one as in a bake, and one that mirrors the plane
+        for extent in [[70.0, 90.0], [3.3, 2.9], [-0.7, 1.9]] {
+            let window = Window::new([-1.3, 1e6 + 0.2], extent, [70, 90]).unwrap();
+            let whole = field.to_raster(&window).unwrap();
+            let part = field
+                .to_raster(&window.crop([13, 21], [31, 66]).unwrap())
+                .unwrap();
+            let crop = whole.crop([13, 21], [31, 66]).unwrap();
+            assert_eq!(bits(part.pixels()), bits(crop.pixels()), "{stamps:?}");
+            for (column, row) in [(0, 0), (69, 89), (33, 40), (5, 71)] {
+                let value = field.value(window.position(column, row));
+                let pixel = whole.row(row)[column as usize];
+                assert_eq!(value.to_bits(), pixel.to_bits(), "{stamps:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn periods_are_exact() {
+    for stamps in examples() {
+        for value in [StampValue::Height, StampValue::Random, StampValue::U] {
+            let field = stamps.field(value).unwrap();
+            assert_eq!(field.period(), [Some(4.0); 2]);
+            let window = |x, y| Window::new([x, y], [4.0, 4.0], [32, 32]).unwrap();
+            let render = |x, y| -> Raster<f32> { field.to_raster(&window(x, y)).unwrap() };
+            let expected = render(0.0, 0.0);
+            for (x, y) in [(4.0, 0.0), (0.0, 4.0), (-4.0, 8.0), (4e6, -4e9)] {
+                assert_eq!(
+                    bits(render(x, y).pixels()),
+                    bits(expected.pixels()),
+                    "{stamps:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_regular_lattice_has_known_heights() {
+    let stamps = Stamps::new(Seed(1)).with_jitter(0.0).unwrap();
+    let stamps = stamps.with_size([0.5; 2]).unwrap();
+    let stamps = stamps.with_rotation([0.0; 2]).unwrap();
+    let height = stamps.field(StampValue::Height).unwrap();
+    // A half ball with a radius of a quarter of a cell
+    assert_eq!(height.sample([3.5, -2.5]), 1.0);
+    assert_eq!(height.sample([3.625, -2.5]), 0.75_f32.sqrt());
+    assert_eq!(height.sample([3.76, -2.5]), 0.0);
+    let [u, v] = [StampValue::U, StampValue::V].map(|value| stamps.field(value).unwrap());
+    assert_eq!(
+        [u.sample([0.625, 0.375]), v.sample([0.625, 0.375])],
+        [0.75, 0.25]
+    );
+    // A quarter turn leads from x to y.
+    let turned = stamps.clone().with_rotation([90.0; 2]).unwrap();
+    let [u, v] = [StampValue::U, StampValue::V].map(|value| turned.field(value).unwrap());
+    assert_eq!(
+        [u.sample([0.625, 0.375]), v.sample([0.625, 0.375])],
+        [0.25, 0.25]
+    );
+    let angle = turned.field(StampValue::Angle).unwrap();
+    assert_eq!(angle.sample([0.5, 0.5]), 0.25);
+    // Rows are shifted by half a cell.
+    let shifted = stamps.with_row_offset(0.5).unwrap();
+    let height = shifted.field(StampValue::Height).unwrap();
+    assert_eq!(
+        [height.sample([0.5, 0.5]), height.sample([1.0, 1.5])],
+        [1.0; 2]
+    );
+    assert_eq!(height.sample([0.5, 1.5]), 0.0);
+}
+
+#[test]
+fn the_overlap_decides_which_stamp_is_on_top() {
+    // Disks of two cells cover their neighbors.
+    let stamps = tile()
+        .with_shape(StampShape::Disk)
+        .with_jitter(0.0)
+        .unwrap();
+    let stamps = stamps.with_size([2.0; 2]).unwrap();
+    let stamps = stamps.with_height([0.1, 1.0]).unwrap();
+    let at = [1.5, 1.0];
+    let read = |overlap: StampOverlap, value: StampValue| {
+        let stamps = stamps.clone().with_overlap(overlap);
+        stamps.field(value).unwrap().sample(at)
+    };
+    let upper = stamps.field(StampValue::Height).unwrap();
+    let all = all_stamps(&stamps);
+    let covering: Vec<_> = all
+        .iter()
+        .filter(|stamp| {
+            let [u, v] = stamp.local(at).map(|local| local as f32);
+            stamps.shape.at(&stamp.outline, u, v).is_some()
+        })
+        .collect();
+    assert_eq!(covering.len(), 2, "one above, one below");
+    let height = |index: usize| {
+        let stamp = covering[index];
+        let [u, v] = stamp.local(at).map(|local| local as f32);
+        let (_, profile) = stamps.shape.at(&stamp.outline, u, v).unwrap();
+        stamp.height * profile
+    };
+    let [above, below] = [height(0), height(1)];
+    assert_eq!(upper.sample(at), above.max(below));
+    assert_eq!(read(StampOverlap::Rows, StampValue::Height), above);
+    assert_eq!(read(StampOverlap::Add, StampValue::Height), above + below);
+    let last = usize::from(covering[1].order >= covering[0].order);
+    assert_eq!(read(StampOverlap::Order, StampValue::Height), height(last));
+    let random = read(StampOverlap::Order, StampValue::Random);
+    assert_eq!(random, covering[last].randoms[0]);
+}
+
+#[test]
+fn the_density_is_the_mean_number_of_stamps() {
+    for density in [0.25, 1.0, 2.5] {
+        let stamps = Stamps::new(Seed(3)).with_density(density).unwrap();
+        let side = 64;
+        let cells = (0..side * side).map(|cell| [cell % side, cell / side]);
+        let count: usize = cells.map(|cell| stamps.points(cell).count()).sum();
+        // The standard deviation of the mean of 4096 coins is at most 0.008.
+        let mean = count as f64 / f64::from(4096);
+        assert!((mean - density).abs() < 0.03, "{density}: {mean}");
+    }
+}
+
+#[test]
+fn shapes_are_inside_of_their_box_and_their_profile_is_a_height() {
+    let steps = 200;
+    for &shape in StampShape::ALL {
+        for seed in 0..20_u8 {
+            let random = [3, 5, 7, 11].map(|prime| f32::from(seed * prime % 20) / 20.0);
+            let outline = Outline {
+                aspect: 0.4,
+                bevel: 0.3,
+                random,
+            };
+            let mut covered = 0;
+            for step in 0..(steps + 1) * (steps + 1) {
+                let [u, v] = [step % (steps + 1), step / (steps + 1)]
+                    .map(|at| (2 * at - steps) as f32 / steps as f32);
+                let Some((edge, height)) = shape.at(&outline, u, v) else {
+                    continue;
+                };
+                covered += 1;
+                assert!((0.0..=1.0).contains(&height), "{shape}: {height}");
+                assert!((0.0..=2.5).contains(&edge), "{shape}: {edge}");
+                // The sides of the box do not cut the shape, but for the root of a blade.
+                let is_root = shape == StampShape::Blade && u == -1.0;
+                let is_side = !is_root && (u.abs() == 1.0 || v.abs() == 1.0);
+                assert!(!is_side || edge <= 0.03, "{shape} at {u}, {v}: {edge}");
+            }
+            let part = f64::from(covered) / f64::from((steps + 1) * (steps + 1));
+            assert!((0.1..=1.0).contains(&part), "{shape} covers {part}");
+        }
+    }
+}
+
+/// Checks that a result is the error for a number out of its range, which is called `expected`.
+fn assert_refused<T: core::fmt::Debug>(result: Result<T, PatternError>, expected: &str) {
+    let error = result.expect_err(expected);
+    match error.kind() {
+        PatternErrorKind::Range { what, .. } => assert_eq!(*what, expected, "{error}"),
+        kind => panic!("{expected}: {kind:?}"),
+    }
+}
+
+#[test]
+fn options_out_of_range_are_refused_with_the_limit() {
+    assert_refused(tile().with_size([0.0, 1.0]), "size of a stamp");
+    assert_refused(tile().with_size([1.0, 9.0]), "size of a stamp");
+    assert_refused(tile().with_size([1.0, 0.5]), "upper end of a range");
+    assert_refused(tile().with_aspect([0.0, 1.0]), "aspect of a stamp");
+    assert_refused(tile().with_jitter(1.5), "jitter");
+    assert_refused(tile().with_density(0.0), "number of stamps per cell");
+    assert_refused(tile().with_rotation([0.0, f64::NAN]), "rotation of a stamp");
+    assert_refused(tile().with_height([-0.1, 1.0]), "height of a stamp");
+    assert_refused(tile().with_bevel(-0.1), "bevel");
+    assert_refused(tile().with_lift(2.0), "lift");
+    assert_refused(tile().with_tilt(-2.0), "tilt");
+    assert_refused(tile().with_row_offset(2.0), "offset of a row");
+    assert_refused(tile().with_cell_height(0.0), "height of a cell");
+    assert_refused(tile().with_period([Some(0), None]), "period");
+}
+
+#[test]
+fn stamps_that_reach_too_far_or_break_the_period_are_refused() {
+    let large = tile().with_size([1.0, 2.0]).unwrap();
+    let flat = large.clone().with_cell_height(0.1).unwrap();
+    assert_refused(flat.field(StampValue::Height), "reach of a stamp in cells");
+    let larger = large.with_size([1.0, 8.0]).unwrap();
+    let many = larger.with_density(16.0).unwrap();
+    let what = "number of stamps within reach of a position";
+    assert_refused(many.field(StampValue::Height), what);
+    let shifted = tile().with_row_offset(0.3).unwrap();
+    let what = "total offset of the rows of a period";
+    assert_refused(shifted.field(StampValue::Height), what);
+    let shifted = tile().with_row_offset(0.25).unwrap();
+    assert!(shifted.field(StampValue::Height).is_ok());
+}
+
+#[test]
+fn positions_that_are_not_finite_have_no_value() {
+    let field = tile().field(StampValue::Mask).unwrap();
+    for position in [
+        [f64::NAN, 0.0],
+        [0.0, f64::INFINITY],
+        [f64::NEG_INFINITY, 1.0],
+    ] {
+        let mut values = [0.0];
+        field.values(&[position], &mut values).unwrap();
+        assert!(values[0].is_nan() && field.value(position).is_nan());
+    }
+    // The farthest positions have one.
+    assert!(field.value([1e300, -1e300]).is_finite());
+}
+
+#[test]
+fn value_stability_stamps() {
+    let stamps = tile().with_shape(StampShape::Pebble);
+    let height = stamps.field(StampValue::Height).unwrap();
+    let random = stamps.field(StampValue::Random).unwrap();
+    let at = [[0.5, 0.5], [1.25, 2.75], [3.5, 1.5]];
+    let found = at.map(|at| [height.sample(at).to_bits(), random.sample(at).to_bits()]);
+    let expected = [
+        [0, 0],
+        [1_056_927_906, 1_060_541_530],
+        [1_063_532_844, 1_043_514_312],
+    ];
+    assert_eq!(found, expected);
+}
