@@ -136,12 +136,12 @@ pub enum RecipeErrorKind {
     Cancelled,
     /// An error from the cellular basis.
     Worley(WorleyError),
-    /// An error from a pattern.
-    Pattern(PatternError),
     /// An error from a partition-of-unity texture.
     Pups(PupsError),
     /// An error from wavelet noise.
     Wavelet(WaveletError),
+    /// An error from a pattern.
+    Pattern(PatternError),
     /// An error from a tiling or blending method.
     Tile(TileError),
     /// An error from a synthesis.
@@ -307,9 +307,9 @@ impl fmt::Display for RecipeErrorKind {
             }
             Self::Cancelled => f.write_str("the callback asked to stop"),
             Self::Worley(error) => error.fmt(f),
-            Self::Pattern(error) => error.fmt(f),
             Self::Pups(error) => error.fmt(f),
             Self::Wavelet(error) => error.fmt(f),
+            Self::Pattern(error) => error.fmt(f),
             Self::Tile(error) => error.fmt(f),
             Self::Synth(error) => error.fmt(f),
             Self::Color(error) => error.fmt(f),
@@ -322,9 +322,9 @@ impl core::error::Error for RecipeError {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
         match self.kind() {
             RecipeErrorKind::Worley(error) => Some(error),
-            RecipeErrorKind::Pattern(error) => Some(error),
             RecipeErrorKind::Pups(error) => Some(error),
             RecipeErrorKind::Wavelet(error) => Some(error),
+            RecipeErrorKind::Pattern(error) => Some(error),
             RecipeErrorKind::Tile(error) => Some(error),
             RecipeErrorKind::Synth(error) => Some(error),
             RecipeErrorKind::Color(error) => Some(error),

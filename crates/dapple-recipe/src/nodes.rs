@@ -32,6 +32,7 @@ mod power;
 mod profile;
 mod pups;
 mod ramp;
+mod scatter;
 mod seed;
 mod sharpen;
 mod slope;
@@ -75,6 +76,7 @@ pub use power::Power;
 pub use profile::ProfileOf;
 pub use pups::{ControlNets, PupsNode, Referenced};
 pub use ramp::Ramped;
+pub use scatter::ScatterNode;
 pub use seed::NodeSeed;
 pub use sharpen::Sharpen;
 pub use slope::Slope;
@@ -190,6 +192,8 @@ nodes! {
     "bricks" Bricks(BricksNode) in "patterns" as "{}",
     /// Another value of a node that has several, such as the random number of a brick.
     "output" Output(Output) in "patterns" as r#"{"of":0.5}"#,
+    /// Shapes stamped at scattered points, such as gravel, leaves, rivets or scratches.
+    "scatter" Scatter(ScatterNode) in "patterns" as "{}",
     /// Coordinate of a position along a direction.
     "coordinate" Coordinate(Coordinate) in "position" as r#"{"along":[1.0,0.0]}"#,
     /// Distance of a position from a center.

@@ -1,0 +1,101 @@
+//! Shapes stamped at scattered points.
+
+use super::{Frequency, NodeKind, NodeSeed};
+use crate::RecipeError;
+use crate::plan::{Builder, Step};
+use dapple_pattern::{StampOverlap, StampShape, StampValue, Stamps};
+use dapple_raster::FieldExt as _;
+use serde::{Deserialize, Serialize};
+
+/// Shapes stamped at scattered points: gravel, leaves, grass, rivets, scales, scratches.
+///
+/// Points are those of a lattice of cells. Lengths are in widths of a cell; shapes are not stretched. Along an axis on
+/// which the recipe repeats, the tile must have a whole number of cells. All values are 0 where there is no stamp.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct ScatterNode {
+    /// Frequency, in cells per unit of the plane: one number, or one for each axis.
+    pub frequency: Frequency,
+    /// Value at a position.
+    pub value: StampValue,
+    /// Shape of the stamps.
+    pub shape: StampShape,
+    /// Number of stamps per cell; the fraction is the chance of one more.
+    #[cfg_attr(feature = "schema", schemars(transform = { Stamps::DENSITY }))]
+    pub density: f64,
+    /// Maximum offset of a point from the center of its cell: 0 is a regular lattice, 1 is anywhere in the cell.
+    #[cfg_attr(feature = "schema", schemars(transform = { Stamps::FRACTION }))]
+    pub jitter: f64,
+    /// Shift of each row of cells relative to the row above, in cells.
+    #[cfg_attr(feature = "schema", schemars(transform = { Stamps::SIGNED }))]
+    pub row_offset: f64,
+    /// Minimum and maximum length of a stamp, in widths of a cell, at most 8.
+    pub size: [f64; 2],
+    /// Minimum and maximum width of a stamp relative to its length, from 0.01 to 1.
+    pub aspect: [f64; 2],
+    /// Minimum and maximum clockwise rotation in degrees; at 0, the length of a stamp is along the x axis.
+    pub rotation: [f64; 2],
+    /// Minimum and maximum height of a stamp, from 0 to 1.
+    pub height: [f64; 2],
+    /// Width of the bevel of flat shapes relative to half of their width.
+    #[cfg_attr(feature = "schema", schemars(transform = { Stamps::FRACTION }))]
+    pub bevel: f64,
+    /// Fraction of a stamp's height that is its random place in the order instead of its profile.
+    #[cfg_attr(feature = "schema", schemars(transform = { Stamps::FRACTION }))]
+    pub lift: f64,
+    /// Slope of the profile along a stamp; at 1, it rises from 0 at the start to its full height at the end.
+    #[cfg_attr(feature = "schema", schemars(transform = { Stamps::SIGNED }))]
+    pub tilt: f64,
+    /// Rule for positions that several stamps cover.
+    pub overlap: StampOverlap,
+    /// Seed, or the name of the node whose random numbers are used [default: this node's name].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seed: Option<NodeSeed>,
+}
+
+impl Default for ScatterNode {
+    fn default() -> Self {
+        Self {
+            frequency: Frequency([8.0; 2]),
+            value: StampValue::default(),
+            shape: StampShape::default(),
+            density: 1.0,
+            jitter: 1.0,
+            row_offset: 0.0,
+            size: [0.5, 1.0],
+            aspect: [1.0; 2],
+            rotation: [0.0, 360.0],
+            height: [1.0; 2],
+            bevel: 0.2,
+            lift: 0.0,
+            tilt: 0.0,
+            overlap: StampOverlap::default(),
+            seed: None,
+        }
+    }
+}
+
+impl NodeKind for ScatterNode {
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        let frequency = self.frequency.0;
+        let period = plan.periods(frequency)?;
+        let stamps = Stamps::new(plan.seed(self.seed.as_ref()))
+            .with_period(period)?
+            .with_cell_height(frequency[0] / frequency[1])?
+            .with_density(self.density)?
+            .with_jitter(self.jitter)?
+            .with_row_offset(self.row_offset)?
+            .with_shape(self.shape)
+            .with_size(self.size)?
+            .with_aspect(self.aspect)?
+            .with_rotation(self.rotation)?
+            .with_height(self.height)?
+            .with_bevel(self.bevel)?
+            .with_lift(self.lift)?
+            .with_tilt(self.tilt)?
+            .with_overlap(self.overlap);
+        let field = stamps.field(self.value)?;
+        Ok(Step::field(field.frequency_per_axis(frequency)))
+    }
+}
