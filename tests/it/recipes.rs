@@ -68,8 +68,11 @@ fn readme_examples_of_nodes_bake() {
 }
 
 #[test]
-fn readme_recipe_bakes() {
-    assert_eq!(bake(block("toml")).err(), None, "the recipe of the README");
+fn readme_recipes_bake() {
+    let blocks = README.split("```toml\n").skip(1);
+    for recipe in blocks.filter_map(|block| block.split("```").next()) {
+        assert_eq!(bake(recipe).err(), None, "{recipe}");
+    }
 }
 
 #[test]

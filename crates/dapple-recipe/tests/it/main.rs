@@ -12,6 +12,7 @@ mod points;
 mod program;
 mod progress;
 mod refusals;
+mod scatter;
 #[cfg(feature = "schema")]
 mod schema;
 mod synth;
