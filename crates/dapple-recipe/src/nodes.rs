@@ -22,16 +22,20 @@ mod equalize;
 mod flood_fill;
 mod fractal;
 mod image;
+mod kaleidoscope;
 mod levels;
 mod match_borders;
+mod mirror;
 mod mix;
 mod noise;
 mod occlusion;
 mod output;
+mod polar;
 mod power;
 mod profile;
 mod pups;
 mod ramp;
+mod sample;
 mod scatter;
 mod seed;
 mod sharpen;
@@ -66,16 +70,20 @@ pub use equalize::Equalize;
 pub use flood_fill::{FloodFill, RegionValue};
 pub use fractal::FractalOf;
 pub use image::ImageNode;
+pub use kaleidoscope::Kaleidoscope;
 pub use levels::{Levels, LevelsCurve};
 pub use match_borders::Framed;
+pub use mirror::MirroredNode;
 pub use mix::Mix;
 pub use noise::{FractalBasis, FractalNode};
 pub use occlusion::Occlusion;
 pub use output::Output;
+pub use polar::Polar;
 pub use power::Power;
 pub use profile::ProfileOf;
 pub use pups::{ControlNets, PupsNode, Referenced};
 pub use ramp::Ramped;
+pub use sample::SampleAt;
 pub use scatter::ScatterNode;
 pub use seed::NodeSeed;
 pub use sharpen::Sharpen;
@@ -156,6 +164,9 @@ macro_rules! nodes {
         /// `pups = { color_noise = … }` compute a color. `add`, `multiply`, `mix`, `tile`, `disturb`, `match_borders`,
         /// `corner_tiles`, `warp`, `blur`, `slope_blur`, `sharpen`, `dilate`, `erode` and `blend` compute a color if an input is a color; numbers among their inputs are
         /// then grays.
+        /// `pups = { color_noise = … }` compute a color. `add`, `multiply`, `mix`, `tile`, `disturb`,
+        /// `match_borders`, `corner_tiles`, `blend` and nodes that evaluate another node elsewhere, such as `warp`, compute
+        /// a color if an input is a color; numbers among their inputs are then grays.
         #[derive(Clone, Debug, Serialize, Deserialize)]
         #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
         #[non_exhaustive]
@@ -234,6 +245,14 @@ nodes! {
     "warp" Warp(Warp) in "shape" as r#"{"input":0.5,"x":0.0,"y":0.0}"#,
     /// Another node, rotated, repeated more often and shifted.
     "transform" Transform(Transform) in "shape" as r#"{"input":0.5}"#,
+    /// Another node, evaluated at the positions that two numbers give.
+    "sample" SampleAt(SampleAt) in "shape" as r#"{"input":0.5,"x":0.0,"y":0.0}"#,
+    /// Another node, mirrored at a center.
+    "mirror" Mirror(MirroredNode) in "shape" as r#"{"input":0.5}"#,
+    /// Another node, bent around a center.
+    "polar" Polar(Polar) in "shape" as r#"{"input":0.5}"#,
+    /// Sector of another node, repeated around a center.
+    "kaleidoscope" Kaleidoscope(Kaleidoscope) in "shape" as r#"{"input":0.5}"#,
     /// Fractal sum of a node at several scales.
     "fractal" Fractal(FractalOf) in "shape" as r#"{"input":0.5}"#,
     /// Color for each number, from a color ramp.

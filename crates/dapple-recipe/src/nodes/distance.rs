@@ -1,11 +1,11 @@
-//! Nodes whose value is the distance from a center.
+//! Nodes whose value is the distance from a center, and offsets from a center for other nodes.
 
 use super::NodeKind;
 use crate::RecipeError;
 use crate::plan::{Builder, Step};
+use dapple_points::Domain;
 use dapple_raster::field_fn;
 use dapple_raster::{Range, range};
-use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 /// Distance of a position from a center, in units of the plane.
@@ -23,19 +23,34 @@ const CENTER: Range = range!(finite);
 
 impl NodeKind for Distance {
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
-        for number in self.center {
-            RecipeError::check_in(CENTER, "center", number)?;
-        }
-        let (center, tile) = (DVec2::from(self.center), plan.domain());
+        let (center, tile) = (center(plan, Some(self.center))?, plan.domain());
         Ok(Step::field(field_fn(move |position: [f64; 2]| {
-            let mut offset = DVec2::from(position) - center;
-            for axis in 0..2 {
-                if tile.wrap[axis] {
-                    let repeats = (offset[axis] / tile.size[axis] + 0.5).floor();
-                    offset[axis] -= repeats * tile.size[axis];
-                }
-            }
-            (offset.x * offset.x + offset.y * offset.y).sqrt() as f32
+            let [x, y] = offset(position, center, &tile);
+            (x * x + y * y).sqrt() as f32
         })))
     }
+}
+
+/// Returns a center; the middle of the tile unless one is given.
+pub(super) fn center(
+    plan: &Builder<'_>,
+    center: Option<[f64; 2]>,
+) -> Result<[f64; 2], RecipeError> {
+    let center = center.unwrap_or_else(|| (0.5 * plan.domain().size).into());
+    for number in center {
+        RecipeError::check_in(CENTER, "center", number)?;
+    }
+    Ok(center)
+}
+
+/// Returns the vector to a position from the nearest copy of a center.
+pub(super) fn offset(position: [f64; 2], center: [f64; 2], tile: &Domain) -> [f64; 2] {
+    [0, 1].map(|axis| {
+        let offset = position[axis] - center[axis];
+        if !tile.wrap[axis] {
+            return offset;
+        }
+        let repeats = (offset / tile.size[axis] + 0.5).floor();
+        offset - repeats * tile.size[axis]
+    })
 }

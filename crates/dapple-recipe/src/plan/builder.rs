@@ -2,7 +2,7 @@
 
 use super::cache::{PlanCache, StepId};
 use super::neighborhood::{Neighborhood, Surroundings};
-use super::step::{Global, Local, Step, Tile, reads_images};
+use super::step::{Global, Local, Moved, Positions, Step, Tile, reads_images};
 use super::work::{Work, WorkSum};
 use super::{ImageSource, Images, Picture, PlanLimits, RELIEF, Watch, not_a_number, order};
 use crate::text::is_data;
@@ -368,6 +368,20 @@ impl<'a> Builder<'a> {
         let relief = relief.unwrap_or(self.recipe.material.relief);
         RecipeError::check_in(RELIEF, "relief", relief)?;
         Ok(relief)
+    }
+
+    /// Builds a step that evaluates an input at the positions that a map returns.
+    pub(crate) fn folded(
+        &mut self,
+        input: &Input,
+        map: impl Fn([f64; 2]) -> [f64; 2] + Send + Sync + 'static,
+    ) -> Result<Step, RecipeError> {
+        let input = self.any(input)?;
+        Ok(Step::Moved(Moved {
+            input,
+            color: self.is_color(input),
+            positions: Positions::Folded(Box::new(map)),
+        }))
     }
 
     /// Builds a step that applies a function to the numbers of an input.

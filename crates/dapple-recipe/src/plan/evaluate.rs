@@ -278,6 +278,20 @@ fn moved(
             let shifted = shifted(places.positions(), x, y, *amount);
             at_positions(steps, whole, input, &shifted, places.area)
         }
+        Positions::Given { by, scale } => {
+            let [x, y] = by.map(|by| values[by].as_deref().expect("inputs come before"));
+            let given = x.numbers().iter().zip(y.numbers());
+            let given = given.map(|(&x, &y)| DVec2::new(x.into(), y.into()) * DVec2::from(*scale));
+            let given: Vec<_> = given.collect();
+            at_positions(steps, whole, input, &given, places.area)
+        }
+        Positions::Folded(map) => {
+            let mut positions = places.positions();
+            for position in &mut positions {
+                *position = map((*position).into()).into();
+            }
+            at_positions(steps, whole, input, &positions, places.area)
+        }
         Positions::Linear(map) => mapped(steps, whole, places, input, map),
         Positions::Octaves { octaves, shape } => {
             let mut sum = vec![0.0; places.count()];

@@ -34,8 +34,12 @@ pub(crate) struct Moved {
 pub(crate) enum Positions {
     /// Positions displaced by `amount` times the numbers of two steps.
     Displaced { by: [usize; 2], amount: f64 },
+    /// Positions whose coordinates are the numbers of two steps times a scale.
+    Given { by: [usize; 2], scale: [f64; 2] },
     /// Positions after a linear map.
     Linear(LinearMap),
+    /// Positions after a map that folds or bends the plane.
+    Folded(Box<PositionMap>),
     /// Positions times the frequency of each octave, whose values are summed.
     Octaves {
         /// Frequency and weight of each octave.
@@ -43,6 +47,9 @@ pub(crate) enum Positions {
         shape: FractalShape,
     },
 }
+
+/// Maps a position to the position at which the input is evaluated.
+pub(crate) type PositionMap = dyn Fn([f64; 2]) -> [f64; 2] + Send + Sync;
 
 /// A linear map of positions: a rotation about the origin, then a scale for each axis, then an offset.
 #[derive(Clone, Copy, Debug)]
@@ -135,16 +142,16 @@ impl Moved {
     /// Returns the steps that are evaluated at the positions of this step.
     fn at_same_positions(&self) -> Vec<usize> {
         match self.positions {
-            Positions::Displaced { by, .. } => by.to_vec(),
-            Positions::Linear(_) | Positions::Octaves { .. } => Vec::new(),
+            Positions::Displaced { by, .. } | Positions::Given { by, .. } => by.to_vec(),
+            Positions::Linear(_) | Positions::Folded(_) | Positions::Octaves { .. } => Vec::new(),
         }
     }
 
     /// Returns how often the input is evaluated for a position.
     pub(super) fn times(&self) -> usize {
         match &self.positions {
-            Positions::Displaced { .. } | Positions::Linear(_) => 1,
             Positions::Octaves { octaves, .. } => octaves.len(),
+            _ => 1,
         }
     }
 }

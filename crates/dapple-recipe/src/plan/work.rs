@@ -36,8 +36,8 @@ pub struct PlanLimits {
     /// each number or color that is an input. Inputs of a node that evaluates them at other positions, or that depends
     /// on the whole tile, count once more for each such node and octave, together with all that they depend on.
     pub values: u64,
-    /// Maximum depth of nested nodes that evaluate their input at other positions (`warp`, `transform`, `fractal`); 32 by
-    /// default.
+    /// Maximum depth of nested nodes that evaluate their input at other positions, such as `warp`, `transform` and
+    /// `fractal`; 32 by default.
     pub warps: u64,
     /// Maximum total number of pixels in the images stored for nodes that depend on the whole tile, at the size of a
     /// bake; 2^29 by default. It also bounds the pixels of a band together with the halos of its neighborhoods, such as

@@ -119,6 +119,164 @@ fn a_node_that_sees_the_whole_tile_is_averaged_where_it_is_repeated() {
     }
 }
 
+/// Returns the values of the node at 500 positions, and of its input at the expected positions.
+fn moved(head: &str, b: &str, expected: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<[f32; 2]> {
+    let plan = plan_of(head, b);
+    let [a, b] = ["a", "b"].map(|node| plan.field(node).unwrap());
+    let positions = (0..500).map(|step| {
+        [
+            f64::from(step) * 0.0137 - 1.7,
+            f64::from(step) * -0.0091 + 2.3,
+        ]
+    });
+    positions
+        .map(|position| [b.sample(position), a.sample(expected(position))])
+        .collect()
+}
+
+/// Checks that values are equal where positions are computed in another way: the noise changes by less than 50 per
+/// unit, and positions are rounded to 2^-50.
+fn assert_near(values: &[[f32; 2]]) {
+    for [found, expected] in values {
+        assert!((found - expected).abs() < 1e-6, "{found}, {expected}");
+    }
+}
+
+#[test]
+fn samples_are_at_the_given_positions() {
+    let text = "dapple = 1\n[nodes]\na = { noise = { octaves = 2 } }\nx = { worley = {} }\ny = { noise = {} }\n\
+        b = { sample = { input = \"a\", x = \"x\", y = \"y\", scale = [0.5, -2.0] } }\n[material]\n";
+    let plan = plan(text);
+    let [a, b, x, y] = ["a", "b", "x", "y"].map(|node| plan.field(node).unwrap());
+    for step in 0..500 {
+        let position = [f64::from(step) * 0.0137, f64::from(step) * -0.0091];
+        let at = [
+            0.5 * f64::from(x.sample(position)),
+            -2.0 * f64::from(y.sample(position)),
+        ];
+        assert_eq!(b.sample(position).to_bits(), a.sample(at).to_bits());
+    }
+}
+
+#[test]
+fn mirrors_fold_the_tile_at_the_center_and_half_a_tile_away() {
+    let folded = |x: f64, center: f64| {
+        let offset = (x - center).rem_euclid(1.0);
+        center + offset.min(1.0 - offset)
+    };
+    assert_near(&moved(
+        "",
+        "mirror = { input = \"a\", center = [0.25, 0.5] }",
+        |[x, y]| [folded(x, 0.25), folded(y, 0.5)],
+    ));
+    assert_near(&moved(
+        "",
+        "mirror = { input = \"a\", axes = [false, true] }",
+        |[x, y]| [x, folded(y, 0.0)],
+    ));
+    let open = "wrap = [false, false]";
+    assert_near(&moved(
+        open,
+        "mirror = { input = \"a\", center = [0.25, 0.5] }",
+        |[x, y]| [0.25 + (x - 0.25).abs(), 0.5 + (y - 0.5).abs()],
+    ));
+}
+
+#[test]
+fn polar_positions_are_the_angle_and_the_distance() {
+    let open = "wrap = [false, false]\nextent = [2, 1]";
+    assert_near(&moved(
+        open,
+        "polar = { input = \"a\", repeat = 3 }",
+        |[x, y]| {
+            let [x, y] = [x - 1.0, y - 0.5];
+            let turns = libm::atan2(y, x) / core::f64::consts::TAU;
+            [6.0 * turns.rem_euclid(1.0), (x * x + y * y).sqrt()]
+        },
+    ));
+    // Right, below, left of and above the center
+    let plan = plan_of("", "polar = { input = \"a\", center = [0.5, 0.5] }");
+    let [a, b] = ["a", "b"].map(|node| plan.field(node).unwrap());
+    for (at, turns) in [
+        ([0.75, 0.5], 0.0),
+        ([0.5, 0.75], 0.25),
+        ([0.25, 0.5], 0.5),
+        ([0.5, 0.25], 0.75),
+    ] {
+        assert_eq!(b.sample(at), a.sample([turns, 0.25]), "{at:?}");
+    }
+}
+
+#[test]
+fn a_kaleidoscope_has_the_symmetries_of_its_sectors() {
+    let plan = plan_of(
+        "wrap = [false, false]",
+        "kaleidoscope = { input = \"a\", sectors = 5 }",
+    );
+    let [a, b] = ["a", "b"].map(|node| plan.field(node).unwrap());
+    let at = |radius: f64, turns: f64| {
+        let angle = turns * core::f64::consts::TAU;
+        [
+            0.5 + radius * libm::cos(angle),
+            0.5 + radius * libm::sin(angle),
+        ]
+    };
+    for step in 0..200 {
+        let (radius, turns) = (0.01 * f64::from(step), 0.0005 * f64::from(step));
+        // The first half of a sector is that of the input; the others are its copies.
+        let expected = a.sample(at(radius, turns));
+        for sector in 0..5 {
+            for turns in [turns, -turns] {
+                let found = b.sample(at(radius, turns + f64::from(sector) / 5.0));
+                assert!(
+                    (found - expected).abs() < 1e-5,
+                    "{radius}, {turns}: {found}, {expected}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn folded_nodes_repeat_with_the_tile() {
+    let head = "extent = [2, 1]";
+    for node in [
+        "mirror = { input = \"a\", center = [0.3, 0.1] }",
+        "polar = { input = \"a\", repeat = 2 }",
+        "kaleidoscope = { input = \"a\", sectors = 7, center = [0.25, 0.75] }",
+        "sample = { input = \"a\", x = \"a\", y = \"a\" }",
+    ] {
+        let b = plan_of(head, node).field("b").unwrap();
+        let window = |x, y| Window::new([x, y], [2.0, 1.0], [64, 32]).unwrap();
+        let [here, there] =
+            [window(0.0, 0.0), window(-6.0, 3.0)].map(|at| b.to_raster(&at).unwrap());
+        for (here, there) in here.pixels().iter().zip(there.pixels()) {
+            // Positions in other tiles are rounded to 2^-50.
+            assert!((here - there).abs() < 1e-6, "{node}: {here}, {there}");
+        }
+    }
+}
+
+#[test]
+fn options_of_folds_are_refused_with_their_range() {
+    for node in [
+        "mirror = { input = \"a\", center = [nan, 0] }",
+        "polar = { input = \"a\", repeat = 0 }",
+        "polar = { input = \"a\", center = [0, inf] }",
+        "kaleidoscope = { input = \"a\", sectors = 0 }",
+        "sample = { input = \"a\", x = 0, y = 0, scale = [1, inf] }",
+    ] {
+        let text =
+            format!("dapple = 1\n[nodes]\na = {{ noise = {{}} }}\nb = {{ {node} }}\n[material]\n");
+        let error = Plan::new(&Recipe::from_toml(&text).unwrap(), &Images::new(), 0.0).unwrap_err();
+        assert!(
+            matches!(error.kind(), RecipeErrorKind::Range { .. }),
+            "{error}"
+        );
+        assert_eq!(error.node(), Some("b"));
+    }
+}
+
 #[test]
 fn maps_that_break_the_period_are_refused() {
     let refused = |head: &str, b: &str| {
@@ -181,7 +339,11 @@ sum = { fractal = { input = "a", octaves = 3, lacunarity = 3.0, shape = "ridged"
 held = { clamp = { input = "sum", low = 0.25, high = 1.5 } }
 turned = { transform = { input = "held", frequency = [2.0, 1.0], offset = [0.3, 0.1], rotation = 180.0 } }
 colors = { ramp = { input = "turned", palette = "lagoon" } }
-repeated = { transform = { input = "colors", frequency = 3.0 } }
+repeated = { transform = { input = "inside", frequency = 3.0 } }
+folded = { mirror = { input = "colors", center = [0.3, 0.2] } }
+around = { polar = { input = "folded" } }
+star = { kaleidoscope = { input = "around", sectors = 5 } }
+inside = { sample = { input = "star", x = "held", y = "turned" } }
 [material]
 height = "turned"
 albedo = "repeated"

@@ -1,0 +1,53 @@
+//! Bends a node around a center.
+
+use super::{NodeKind, distance};
+use crate::plan::{Builder, Step};
+use crate::{Input, RecipeError};
+use dapple_raster::{Range, range};
+use serde::{Deserialize, Serialize};
+
+/// Another node, bent around a center: its width runs around the center, and its height outward.
+///
+/// The input is evaluated at `x = angle · repeat · width of the tile` and `y = distance from the center`. The angle is
+/// clockwise in turns, and 0 to the right. Along axes on which the recipe repeats, the center is the nearest of its
+/// copies; halfway between two copies, the angle jumps. Where the recipe does not repeat along x, the input must, or
+/// there is a seam at the angle 0.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Polar {
+    /// Node that is bent. A node that depends on the whole tile is interpolated between its pixels.
+    pub input: Input,
+    /// Position of the center, in units of the plane [default: the middle of the tile].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub center: Option<[f64; 2]>,
+    /// Number of times that the width of the tile fits around the center.
+    #[serde(default = "one")]
+    #[cfg_attr(feature = "schema", schemars(transform = { REPEAT }))]
+    pub repeat: u32,
+}
+
+fn one() -> u32 {
+    1
+}
+
+const REPEAT: Range = range!(from 1 to 1024);
+
+impl NodeKind for Polar {
+    fn inputs(&self) -> Vec<&Input> {
+        vec![&self.input]
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        RecipeError::check_in(REPEAT, "number of repeats", self.repeat.into())?;
+        let (center, tile) = (distance::center(plan, self.center)?, plan.domain());
+        let around = f64::from(self.repeat) * tile.size.x;
+        plan.folded(&self.input, move |position| {
+            let [x, y] = distance::offset(position, center, &tile);
+            let turns = libm::atan2(y, x) / core::f64::consts::TAU;
+            // From 0 to below 1, like the tile
+            let turns = turns - turns.floor();
+            [turns * around, (x * x + y * y).sqrt()]
+        })
+    }
+}
