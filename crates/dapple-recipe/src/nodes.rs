@@ -8,11 +8,13 @@ mod blend;
 mod blend_map;
 mod blur;
 mod bricks;
+mod channel;
 mod clamp;
 mod color;
 mod coordinate;
 mod corner_tiles;
 mod curvature;
+mod curve;
 mod dilate;
 mod distance;
 mod distance_to;
@@ -21,7 +23,9 @@ mod edges;
 mod equalize;
 mod flood_fill;
 mod fractal;
+mod hsl;
 mod image;
+mod invert;
 mod kaleidoscope;
 mod levels;
 mod match_borders;
@@ -34,14 +38,17 @@ mod polar;
 mod power;
 mod profile;
 mod pups;
+mod quantize;
 mod ramp;
 mod sample;
 mod scatter;
 mod seed;
+mod select;
 mod sharpen;
 mod slope;
 mod slope_blur;
 mod synth;
+mod threshold;
 mod tile;
 mod transform;
 mod warp;
@@ -55,11 +62,13 @@ pub use blend::{Blended, BlendedLayer};
 pub use blend_map::BlendMapOf;
 pub use blur::Blur;
 pub use bricks::BricksNode;
+pub use channel::{ChannelOf, ColorChannel};
 pub use clamp::Clamp;
 pub use color::ColorOf;
 pub use coordinate::Coordinate;
 pub use corner_tiles::CornerTilesOf;
 pub use curvature::Curvature;
+pub use curve::SplineCurve;
 pub use dapple_pups::{Cells, ControlPoint, ControlPoints};
 pub use dilate::{Dilate, Erode};
 pub use distance::Distance;
@@ -69,7 +78,9 @@ pub use edges::Edges;
 pub use equalize::Equalize;
 pub use flood_fill::{FloodFill, RegionValue};
 pub use fractal::FractalOf;
+pub use hsl::HslChange;
 pub use image::ImageNode;
+pub use invert::Invert;
 pub use kaleidoscope::Kaleidoscope;
 pub use levels::{Levels, LevelsCurve};
 pub use match_borders::Framed;
@@ -82,14 +93,17 @@ pub use polar::Polar;
 pub use power::Power;
 pub use profile::ProfileOf;
 pub use pups::{ControlNets, PupsNode, Referenced};
+pub use quantize::Quantize;
 pub use ramp::Ramped;
 pub use sample::SampleAt;
 pub use scatter::ScatterNode;
 pub use seed::NodeSeed;
+pub use select::Select;
 pub use sharpen::Sharpen;
 pub use slope::Slope;
 pub use slope_blur::SlopeBlur;
 pub use synth::SynthNode;
+pub use threshold::Threshold;
 pub use tile::Tiled;
 pub use transform::Transform;
 pub use warp::Warp;
@@ -165,6 +179,8 @@ macro_rules! nodes {
         /// `corner_tiles`, `warp`, `blur`, `slope_blur`, `sharpen`, `dilate`, `erode` and `blend` compute a color if an input is a color; numbers among their inputs are
         /// then grays.
         /// `pups = { color_noise = … }` compute a color. `add`, `multiply`, `mix`, `tile`, `disturb`,
+        /// Most nodes compute a number at every position. `ramp`, `color`, `hsl`, `image` and `synth` with a color image, and
+        /// `pups = { color_noise = … }` compute a color. `add`, `multiply`, `mix`, `select`, `invert`, `tile`, `disturb`,
         /// `match_borders`, `corner_tiles`, `blend` and nodes that evaluate another node elsewhere, such as `warp`, compute
         /// a color if an input is a color; numbers among their inputs are then grays.
         #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -235,6 +251,16 @@ nodes! {
     "wave" Wave(Wave) in "shape" as r#"{"input":0.5}"#,
     /// Number mapped from one range to another.
     "levels" Levels(Levels) in "shape" as r#"{"input":0.5}"#,
+    /// Number mapped by a smooth curve through points.
+    "curve" Curve(SplineCurve) in "shape" as r#"{"input":0.5,"points":[[0.0,0.0],[0.5,0.6],[1.0,1.0]]}"#,
+    /// 1 where a number is above a threshold, 0 where it is below.
+    "threshold" Threshold(Threshold) in "shape" as r#"{"input":0.5}"#,
+    /// Number rounded to the nearest of evenly spaced values.
+    "quantize" Quantize(Quantize) in "shape" as r#"{"input":0.5}"#,
+    /// 1 minus a number or a color.
+    "invert" Invert(Invert) in "arithmetic" as "0.0",
+    /// One of several inputs, chosen by a number.
+    "select" Select(Select) in "shape" as r#"{"inputs":[0.0,1.0],"by":0.5}"#,
     /// Cross-section of a bump, such as a spot or a channel, as a function of a number.
     "profile" Profile(ProfileOf) in "shape" as r#"{"input":0.5,"shape":{"spots":{"radius":0.5}}}"#,
     /// Interpolation between two inputs.
@@ -281,6 +307,10 @@ nodes! {
     "equalize" Equalize(Equalize) in "whole tile" as r#"{"input":0.5}"#,
     /// Number for each connected region of a mask.
     "flood_fill" FloodFill(FloodFill) in "whole tile" as r#"{"input":0.5}"#,
+    /// Component of a color as a number, such as its luminance or hue.
+    "channel" Channel(ChannelOf) in "color and images" as r##"{"input":"#808080"}"##,
+    /// Color with another hue, saturation and lightness.
+    "hsl" Hsl(HslChange) in "color and images" as r##"{"input":"#808080"}"##,
     /// Texture made to repeat seamlessly.
     "tile" Tile(Tiled) in "whole tile" as r#"{"input":0.5}"#,
     /// Copies of a tile with equal borders and different interiors.

@@ -3,6 +3,7 @@
 mod bakes;
 mod copies;
 mod corners;
+mod local;
 mod memory;
 mod moved;
 mod neighborhoods;

@@ -1,0 +1,40 @@
+//! Rounds a number to steps.
+
+use super::NodeKind;
+use crate::plan::{Builder, Step};
+use crate::{Input, RecipeError};
+use dapple_raster::{Range, range};
+use serde::{Deserialize, Serialize};
+
+/// Number rounded to the nearest of a few evenly spaced values, such as terraces.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Quantize {
+    /// Number to round.
+    pub input: Input,
+    /// Number of values from 0 to 1, both included; past the ends they go on with the same spacing.
+    #[serde(default = "steps")]
+    #[cfg_attr(feature = "schema", schemars(transform = { STEPS }))]
+    pub steps: u32,
+}
+
+fn steps() -> u32 {
+    4
+}
+
+const STEPS: Range = range!(from 2 to 65536);
+
+impl NodeKind for Quantize {
+    fn inputs(&self) -> Vec<&Input> {
+        vec![&self.input]
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        RecipeError::check_in(STEPS, "number of steps", self.steps.into())?;
+        let last = (self.steps - 1) as f32;
+        plan.each(&self.input, move |value| {
+            (value * last + 0.5).floor() / last
+        })
+    }
+}

@@ -1,0 +1,64 @@
+//! Chooses one of several inputs by a number.
+
+use super::NodeKind;
+use crate::plan::{Builder, Step};
+use crate::{Input, RecipeError, RecipeErrorKind, Values};
+use serde::{Deserialize, Serialize};
+
+/// One of several inputs, chosen by a number from 0 to 1, such as the random number of a brick.
+///
+/// The range from 0 to 1 is divided evenly; numbers outside of it choose the first or the last input.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Select {
+    /// Numbers or colors, at least one.
+    pub inputs: Vec<Input>,
+    /// Number that chooses an input.
+    pub by: Input,
+}
+
+impl NodeKind for Select {
+    fn inputs(&self) -> Vec<&Input> {
+        self.inputs.iter().chain([&self.by]).collect()
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        if self.inputs.is_empty() {
+            return Err(RecipeError::new(RecipeErrorKind::Count {
+                what: "inputs",
+                count: 0,
+                needed: "at least 1",
+            }));
+        }
+        let mut inputs = vec![plan.number(&self.by)?];
+        for input in &self.inputs {
+            inputs.push(plan.any(input)?);
+        }
+        Ok(plan.local(inputs, |inputs| {
+            Ok(selected(inputs[0].numbers(), &inputs[1..]))
+        }))
+    }
+}
+
+/// Returns, for each number, the value of the input that it chooses.
+fn selected(by: &[f32], inputs: &[&Values]) -> Values {
+    let last = inputs.len() - 1;
+    // Numbers below 0 and not-a-numbers become 0.
+    let choices = by
+        .iter()
+        .map(|by| ((by * inputs.len() as f32) as usize).min(last));
+    let choices = choices.enumerate();
+    if inputs
+        .iter()
+        .all(|input| matches!(input, Values::Numbers(_)))
+    {
+        return Values::Numbers(
+            choices
+                .map(|(at, input)| inputs[input].numbers()[at])
+                .collect(),
+        );
+    }
+    let colors: Vec<_> = inputs.iter().map(|input| input.colors()).collect();
+    Values::Colors(choices.map(|(at, input)| colors[input][at]).collect())
+}
