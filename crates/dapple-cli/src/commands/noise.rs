@@ -6,7 +6,7 @@ use crate::field::{Field, FieldArgs, check_whole_cells, draw, extent_of};
 use crate::job::{Context, eprintln_if_possible};
 use crate::node::{Flag, NodeArgs, NodeFlags};
 use anyhow::Result;
-use dapple::recipe::{FractalBasis, FractalNode, Images, Node};
+use dapple::recipe::{FractalBasis, FractalNode, Frequency, Images, Node};
 use serde::Serialize;
 
 const EXAMPLES: &str = "\
@@ -69,7 +69,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let node = match args.node.node()? {
         Node::Noise(node) => FractalNode {
             basis: FractalBasis::Gradient,
-            frequency: 1.0,
+            frequency: Frequency([1.0; 2]),
             ..node
         },
         _ => FractalNode::default(),

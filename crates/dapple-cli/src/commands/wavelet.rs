@@ -6,7 +6,7 @@ use crate::field::{Field, FieldArgs, draw, extent_of};
 use crate::job::Context;
 use crate::node::{Flag, NodeArgs, NodeFlags};
 use anyhow::Result;
-use dapple::recipe::{Images, Node, WaveletNode};
+use dapple::recipe::{Frequency, Images, Node, WaveletNode};
 use serde::Serialize;
 
 const EXAMPLES: &str = "\
@@ -96,7 +96,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     check_cells(extent, args.field.wrap.flags(), spaces)?;
     let reach = (3.0 * variance.sqrt()) as f32;
     let node = WaveletNode {
-        frequency: 1.0,
+        frequency: Frequency([1.0; 2]),
         weights,
         seed: None,
     };

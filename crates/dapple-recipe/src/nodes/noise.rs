@@ -1,8 +1,8 @@
 //! Sums octaves of noise to fractal noise with values from 0 to 1.
 
-use super::{NodeKind, NodeSeed, wavelet};
-use crate::RecipeError;
+use super::{Frequency, NodeKind, NodeSeed, wavelet};
 use crate::plan::{Builder, FREQUENCY, Step, Work};
+use crate::{RecipeError, RecipeErrorKind};
 use dapple_noise::GradientNoise2;
 use dapple_pups::{NetOptions, OctavesOptions, PupsRecipe as _, Spacing, octaves};
 use dapple_raster::{FieldExt, FractalShape};
@@ -16,12 +16,11 @@ use serde::{Deserialize, Serialize};
 pub struct FractalNode {
     /// Noise of each octave.
     pub basis: FractalBasis,
-    /// Frequency of the first octave, in bumps or cells per unit of the plane.
+    /// Frequency of the first octave, in bumps or cells per unit of the plane: one number, or one for each axis.
     ///
-    /// For PUPs, the frequency is the approximate number of bumps. For gradient and wavelet noise, it is the number of
-    /// cells.
-    #[cfg_attr(feature = "schema", schemars(transform = { FREQUENCY }))]
-    pub frequency: f64,
+    /// For PUPs, the frequency is the approximate number of bumps, and the same along both axes. For gradient and
+    /// wavelet noise, it is the number of cells.
+    pub frequency: Frequency,
     /// Number of octaves, from 1 to 16; each octave has twice the frequency of the previous one.
     #[cfg_attr(feature = "schema", schemars(transform = { OCTAVES }))]
     pub octaves: u32,
@@ -38,7 +37,7 @@ impl Default for FractalNode {
     fn default() -> Self {
         Self {
             basis: FractalBasis::Pups,
-            frequency: 8.0,
+            frequency: Frequency([8.0; 2]),
             octaves: 4,
             gain: 0.5,
             seed: None,
@@ -74,13 +73,20 @@ impl NodeKind for FractalNode {
                 ..Work::default()
             }),
             FractalBasis::Gradient => Ok(Work::default()),
-            FractalBasis::Wavelet => wavelet::work(plan, self.frequency),
+            FractalBasis::Wavelet => wavelet::work(plan, self.frequency.0),
         }
     }
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
-        let (seed, frequency) = (plan.seed(self.seed.as_ref()), self.frequency);
-        RecipeError::check_in(FREQUENCY, "frequency", frequency)?;
+        let (seed, frequency) = (plan.seed(self.seed.as_ref()), self.frequency.0);
+        for frequency in frequency {
+            RecipeError::check_in(FREQUENCY, "frequency", frequency)?;
+        }
+        if self.basis == FractalBasis::Pups && frequency[0] != frequency[1] {
+            return Err(RecipeError::new(RecipeErrorKind::Conflict {
+                rule: "the basis `pups` has the same `frequency` along both axes; `gradient` and `wavelet` can have two",
+            }));
+        }
         RecipeError::check_in(OCTAVES, "number of octaves", self.octaves.into())?;
         RecipeError::check_in(GAIN, "gain", self.gain)?;
         Ok(match self.basis {
@@ -90,10 +96,10 @@ impl NodeKind for FractalNode {
                 Step::field(noise.map(about_half))
             }
             FractalBasis::Gradient => {
-                let noise = GradientNoise2::new(seed).with_period(plan.periods([frequency; 2])?)?;
+                let noise = GradientNoise2::new(seed).with_period(plan.periods(frequency)?)?;
                 let octaves = noise.fractal(self.octaves, self.gain, 2.0, FractalShape::Sum)?;
                 let scale = self.weights(GradientNoise2::VARIANCE.into())[0];
-                let noise = octaves.frequency(frequency);
+                let noise = octaves.frequency_per_axis(frequency);
                 Step::field(noise.map(move |sum| about_half(scale * sum)))
             }
         })
@@ -105,7 +111,7 @@ impl FractalNode {
     fn pups(&self, plan: &Builder<'_>) -> OctavesOptions {
         OctavesOptions {
             domain: plan.domain(),
-            spacing: Spacing::from(1.0 / self.frequency),
+            spacing: Spacing::from(1.0 / self.frequency.0[0]),
             octaves: self.octaves,
             gain: self.gain,
             net: NetOptions {

@@ -1,6 +1,6 @@
 //! Wavelet noise.
 
-use super::{NodeKind, NodeSeed};
+use super::{Frequency, NodeKind, NodeSeed};
 use crate::RecipeError;
 use crate::plan::{Builder, Step, Work};
 use dapple_hash::Seed;
@@ -13,10 +13,9 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct WaveletNode {
-    /// Frequency of the coarsest band, in cells per unit of the plane. Along an axis on which the recipe repeats, the
-    /// tile must have an even number of cells, at least 4.
-    #[cfg_attr(feature = "schema", schemars(transform = { crate::plan::FREQUENCY }))]
-    pub frequency: f64,
+    /// Frequency of the coarsest band, in cells per unit of the plane: one number, or one for each axis. Along an axis
+    /// on which the recipe repeats, the tile must have an even number of cells, at least 4.
+    pub frequency: Frequency,
     /// Weight of each band, coarsest first; each band has twice the frequency of the previous one.
     pub weights: Vec<f32>,
     /// Seed, or the name of the node whose random numbers are used [default: this node's name].
@@ -27,7 +26,7 @@ pub struct WaveletNode {
 impl Default for WaveletNode {
     fn default() -> Self {
         Self {
-            frequency: 8.0,
+            frequency: Frequency([8.0; 2]),
             weights: vec![1.0],
             seed: None,
         }
@@ -39,7 +38,7 @@ const UNBOUND_TILE: u32 = 128;
 
 impl NodeKind for WaveletNode {
     fn work(&self, plan: &Builder<'_>) -> Result<Work, RecipeError> {
-        work(plan, self.frequency)
+        work(plan, self.frequency.0)
     }
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
@@ -47,7 +46,7 @@ impl NodeKind for WaveletNode {
         Ok(Step::field(noise(
             plan,
             seed,
-            self.frequency,
+            self.frequency.0,
             &self.weights,
         )?))
     }
@@ -57,7 +56,7 @@ impl NodeKind for WaveletNode {
 pub(super) fn noise(
     plan: &Builder<'_>,
     seed: Seed,
-    frequency: f64,
+    frequency: [f64; 2],
     weights: &[f32],
 ) -> Result<dapple_raster::Scaled<WaveletNoise2>, RecipeError> {
     let size = cells(plan, frequency)?;
@@ -69,7 +68,7 @@ pub(super) fn noise(
         },
     )?;
     let noise = tile.noise.clone().with_weights(weights)?;
-    Ok(noise.frequency(frequency))
+    Ok(noise.frequency_per_axis(frequency))
 }
 
 /// Wavelet noise with a single band, stored with its seed for reuse with other weights.
@@ -79,7 +78,7 @@ struct Tile {
 }
 
 /// Estimates the work of building wavelet noise. `frequency` is in cells per unit of the plane.
-pub(super) fn work(plan: &Builder<'_>, frequency: f64) -> Result<Work, RecipeError> {
+pub(super) fn work(plan: &Builder<'_>, frequency: [f64; 2]) -> Result<Work, RecipeError> {
     let [across, down] = cells(plan, frequency)?.map(f64::from);
     Ok(Work {
         wavelet_cells: across * down,
@@ -89,8 +88,8 @@ pub(super) fn work(plan: &Builder<'_>, frequency: f64) -> Result<Work, RecipeErr
 
 /// Returns the number of cells of the wavelet noise tile along each axis. Fails if it is odd or below 4 along an axis
 /// that repeats.
-fn cells(plan: &Builder<'_>, frequency: f64) -> Result<[u32; 2], RecipeError> {
-    let periods = plan.periods([frequency; 2])?;
+fn cells(plan: &Builder<'_>, frequency: [f64; 2]) -> Result<[u32; 2], RecipeError> {
+    let periods = plan.periods(frequency)?;
     for cells in periods.into_iter().flatten() {
         let holds = cells >= 4 && cells.is_multiple_of(2);
         let range = "even, at least 4 (extent times frequency, since the recipe repeats)";

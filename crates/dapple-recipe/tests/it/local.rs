@@ -139,6 +139,39 @@ fn inverted_numbers_and_colors_are_one_minus_them() {
 }
 
 #[test]
+fn noise_may_have_a_frequency_for_each_axis() {
+    let field = |node: &str| {
+        let text = format!("dapple = 1\nextent = [2, 3]\n[nodes]\na = {{ {node} }}\n[material]\n");
+        plan(&text).field("a").unwrap()
+    };
+    for basis in [
+        "noise = { basis = \"gradient\", octaves = 3, frequency = ",
+        "noise = { basis = \"wavelet\", frequency = ",
+        "wavelet = { frequency = ",
+    ] {
+        let [one, two, wide] =
+            ["4", "[4, 4]", "[2, 8]"].map(|frequency| field(&format!("{basis}{frequency} }}")));
+        let mut differs = false;
+        for step in 0..200 {
+            let [x, y] = [f64::from(step) * 0.0137, f64::from(step) * 0.0091];
+            assert_eq!(one.sample([x, y]).to_bits(), two.sample([x, y]).to_bits());
+            differs |= one.sample([x, y]) != wide.sample([x, y]);
+            // Rounding positions in the next tile changes the noise by less than 1e-5.
+            let there = wide.sample([x + 2.0, y - 3.0]);
+            assert!((wide.sample([x, y]) - there).abs() < 1e-5, "{basis}");
+        }
+        assert!(differs, "{basis}");
+    }
+    // Gradient noise with the same seed, stretched
+    let [stretched, plain] = ["[2, 8]", "2"].map(|frequency| {
+        field(&format!(
+            "noise = {{ basis = \"gradient\", octaves = 1, frequency = {frequency} }}"
+        ))
+    });
+    assert_eq!(stretched.sample([0.3, 0.2]), plain.sample([0.3, 0.8]));
+}
+
+#[test]
 fn options_out_of_range_are_refused_with_the_limit() {
     let kind = |node: &str| {
         let text = format!("dapple = 1\n[nodes]\na = {{ {node} }}\n[material]\n");
@@ -152,6 +185,8 @@ fn options_out_of_range_are_refused_with_the_limit() {
         "threshold = { input = 1, width = -1 }",
         "curve = { input = 1, points = [[0, 0], [0, 1]] }",
         "curve = { input = 1, points = [[0, 0], [1, inf]] }",
+        "noise = { basis = \"gradient\", frequency = [0, 1] }",
+        "noise = { basis = \"gradient\", frequency = [1, 1.5] }",
     ] {
         assert!(
             matches!(kind(node), RecipeErrorKind::Range { .. }),
@@ -180,4 +215,6 @@ fn options_out_of_range_are_refused_with_the_limit() {
             kind(node)
         );
     }
+    let pups = kind("noise = { frequency = [4, 8] }");
+    assert!(matches!(pups, RecipeErrorKind::Conflict { .. }), "{pups:?}");
 }
