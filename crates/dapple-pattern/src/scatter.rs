@@ -375,6 +375,7 @@ impl Stamps {
         let degrees = between(self.rotation, rotation);
         let [cos, sin] = direction(degrees);
         let turns = degrees / 360.0;
+        let (full, lift) = (between(self.height, height) as f32, self.lift as f32);
         Stamp {
             center: point.position,
             u_axis: [cos / half, sin * self.cell_height / half],
@@ -387,7 +388,8 @@ impl Stamps {
                 bevel: self.bevel as f32,
                 random: [a, b, c, d],
             },
-            height: between(self.height, height) as f32,
+            height: full,
+            highest: full * (lift * order + (1.0 - lift)),
             order,
             randoms: [random, random2, random3],
             angle: (turns - turns.floor()) as f32,
@@ -454,6 +456,8 @@ struct Stamp {
     v_axis: [f64; 2],
     outline: Outline,
     height: f32,
+    /// Upper bound of the height, where the profile is 1.
+    highest: f32,
     /// Place in the random order, from 0 to below 1.
     order: f32,
     randoms: [f32; 3],
@@ -507,8 +511,8 @@ pub struct StampField {
 }
 
 impl StampField {
-    /// Lists the stamps that may cover a box in a cell, in the order in which they are stamped. The box and the stamps
-    /// are relative to the corner of the cell.
+    /// Lists the stamps that may cover a box in a cell. The box and the stamps are relative to the corner of the cell.
+    /// They are in the order in which they are stamped or, where that order decides, from the last one to the first.
     fn near(&self, cell: [i64; 2], center: [f64; 2], half: [f64; 2], near: &mut Vec<Stamp>) {
         near.clear();
         let stamps = &self.stamps;
@@ -534,13 +538,30 @@ impl StampField {
                 }));
             }
         }
+        match stamps.overlap {
+            StampOverlap::Highest | StampOverlap::Add => {}
+            StampOverlap::Order => {
+                near.reverse();
+                near.sort_by(|a, b| b.order.total_cmp(&a.order));
+            }
+            StampOverlap::Rows => {
+                near.reverse();
+                near.sort_by(|a, b| a.center[1].floor().total_cmp(&b.center[1].floor()));
+            }
+        }
     }
 
     /// Returns the value at a position relative to the corner of the cell for which `near` was listed.
     fn value_of(&self, near: &[Stamp], position: [f64; 2]) -> f32 {
         let mut top: Option<Hit<'_>> = None;
         let mut sum = 0.0;
+        let overlap = self.stamps.overlap;
         for stamp in near {
+            // A stamp that is nowhere as high as the top so far does not matter.
+            if overlap == StampOverlap::Highest && top.is_some_and(|top| stamp.highest < top.height)
+            {
+                continue;
+            }
             let local = stamp.local(position);
             if local[0].abs() > 1.0 || local[1].abs() > 1.0 {
                 continue;
@@ -557,14 +578,16 @@ impl StampField {
                 height,
                 edge,
             };
-            let is_covered = top.is_some_and(|top| match self.stamps.overlap {
-                StampOverlap::Highest | StampOverlap::Add => height < top.height,
-                StampOverlap::Order => stamp.order < top.stamp.order,
-                // Stamps come from the upper rows to the lower ones, and from the left to the right.
-                StampOverlap::Rows => stamp.center[1].floor() > top.stamp.center[1].floor(),
-            });
-            if !is_covered {
-                top = Some(hit);
+            match overlap {
+                StampOverlap::Highest | StampOverlap::Add => {
+                    if top.is_none_or(|top| height >= top.height) {
+                        top = Some(hit);
+                    }
+                }
+                StampOverlap::Order | StampOverlap::Rows => {
+                    top = Some(hit);
+                    break;
+                }
             }
         }
         let Some(hit) = top else {
