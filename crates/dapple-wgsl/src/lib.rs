@@ -92,6 +92,14 @@ pub enum Module {
     Worley2d,
     /// Worley's basis in three dimensions: the two nearest feature points.
     Worley3d,
+    /// Arithmetic of single numbers, with correctly rounded quotients.
+    Number,
+    /// Sums and products of numbers of 64 bits.
+    Double,
+    /// Positions in the plane, in numbers of 64 bits.
+    Position2d,
+    /// Mixtures of colors in Oklab.
+    Oklab,
 }
 
 /// Description of a module.
@@ -141,6 +149,10 @@ entries! {
     WorleyParts = "worley_parts" [Hash],
     Worley2d = "worley_2d" [Exact, Hash, Place2d, Root, CellId, WorleyParts],
     Worley3d = "worley_3d" [Exact, Hash, Place3d, Root, CellId, WorleyParts],
+    Number = "number" [],
+    Double = "double" [],
+    Position2d = "position_2d" [Place2d, Double],
+    Oklab = "oklab" [Exact],
 }
 
 impl Module {
@@ -232,4 +244,48 @@ fn mentions(text: &str, name: &str) -> bool {
 
 fn is_name(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '_'
+}
+
+/// Returns the parameters of gradient noise as a constructor of WGSL: `GradientNoise(…)`. The words are those of
+/// `GradientNoise::shader_words` of `dapple-noise`.
+#[must_use]
+pub fn gradient_noise_value(words: &[u32; 16]) -> String {
+    let [keys, period, offset] = [0, 4, 8].map(|at| vector(&words[at..at + 4]));
+    let weight = number_value(f32::from_bits(words[12]));
+    alloc::format!("GradientNoise({keys}, {period}, {offset}, {weight})")
+}
+
+/// Returns the parameters of Worley's basis as a constructor of WGSL: `Worley(…)`. The words are those of
+/// `Worley::shader_words` of `dapple-worley`.
+#[must_use]
+pub fn worley_value(words: &[u32; 24]) -> String {
+    let [first, second, period, low, high] = [0, 4, 8, 12, 16].map(|at| vector(&words[at..at + 4]));
+    let [least, jitter] = [words[20], words[21]];
+    alloc::format!(
+        "Worley(array({first}, {second}), {period}, array({low}, {high}), {least}u, {jitter}u)"
+    )
+}
+
+/// Returns a finite number as a literal of WGSL that has the same bits, except for the sign of zero.
+#[must_use]
+pub fn number_value(number: f32) -> String {
+    let short = alloc::format!("{number:?}");
+    // Compilers read decimals as numbers of 64 bits, and round these.
+    match short.parse::<f64>() {
+        Ok(read) if read as f32 == number => short,
+        _ => alloc::format!("{:?}", f64::from(number)),
+    }
+}
+
+/// Returns a number of 64 bits as the two words of the module [`Double`](Module::Double).
+#[must_use]
+pub fn double_value(number: f64) -> String {
+    let bits = number.to_bits();
+    alloc::format!("vec2({:#x}u, {:#x}u)", bits >> 32, bits & 0xffff_ffff)
+}
+
+/// Returns four words as a vector of WGSL.
+fn vector(words: &[u32]) -> String {
+    let words: Vec<_> = words.iter().map(|word| alloc::format!("{word}u")).collect();
+    alloc::format!("vec4({})", words.join(", "))
 }

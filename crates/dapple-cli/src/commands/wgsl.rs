@@ -8,7 +8,7 @@ use anyhow::Result;
 use dapple::hash::Seed;
 use dapple::noise::{GradientNoise, GradientNoise2, GradientNoise3, GradientNoise4};
 use dapple::worley::{Dimensions, Scatter, Space, Worley, Worley2, Worley3};
-use dapple_wgsl::{Module, source};
+use dapple_wgsl::{Module, gradient_noise_value, source, worley_value};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -83,10 +83,8 @@ fn constant(module: Module, seed: Seed, args: &Args) -> Result<String> {
 
 fn noise<const N: usize>(name: &str, noise: GradientNoise<N>, args: &Args) -> Result<String> {
     let words = noise.with_period([args.period; N])?.shader_words(1.0)?;
-    let [keys, period, offset] = [0, 4, 8].map(|at| vector(&words[at..at + 4]));
-    Ok(format!(
-        "\nconst {name} = GradientNoise({keys}, {period}, {offset}, 1.0);\n"
-    ))
+    let value = gradient_noise_value(&words);
+    Ok(format!("\nconst {name} = {value};\n"))
 }
 
 fn worley<const N: usize>(name: &str, worley: Worley<N>, args: &Args) -> Result<String>
@@ -98,15 +96,6 @@ where
         worley = worley.with_scatter(Scatter::Jittered { jitter })?;
     }
     let words = worley.shader_words()?;
-    let [first, second, period, low, high] = [0, 4, 8, 12, 16].map(|at| vector(&words[at..at + 4]));
-    let [least, jitter] = [words[20], words[21]];
-    Ok(format!(
-        "\nconst {name} = Worley(\n    array({first}, {second}),\n    {period},\n    array({low}, {high}),\n    {least}u,\n    {jitter}u,\n);\n"
-    ))
-}
-
-/// Returns four words as a vector of WGSL.
-fn vector(words: &[u32]) -> String {
-    let words: Vec<_> = words.iter().map(|word| format!("{word}u")).collect();
-    format!("vec4({})", words.join(", "))
+    let value = worley_value(&words);
+    Ok(format!("\nconst {name} = {value};\n"))
 }
