@@ -132,6 +132,11 @@ pub enum RecipeErrorKind {
         /// The operation that has only a part of the tile, as the end of a sentence.
         during: &'static str,
     },
+    /// No shader computes some nodes.
+    NotInShader {
+        /// For each node, its name and the reason as a phrase.
+        nodes: Vec<(String, String)>,
+    },
     /// The caller's progress callback asked to stop.
     Cancelled,
     /// An error from the cellular basis.
@@ -304,6 +309,13 @@ impl fmt::Display for RecipeErrorKind {
             Self::NoImage { file } => write!(f, "there is no image `{file}`"),
             Self::Global { during } => {
                 write!(f, "it sees the whole tile, which is not at hand {during}")
+            }
+            Self::NotInShader { nodes } => {
+                f.write_str("no shader computes these nodes, which can be baked to textures:")?;
+                for (name, reason) in nodes {
+                    write!(f, "\n  `{name}`: {reason}")?;
+                }
+                Ok(())
             }
             Self::Cancelled => f.write_str("the callback asked to stop"),
             Self::Worley(error) => error.fmt(f),

@@ -103,6 +103,7 @@ mod recipe;
 mod rust;
 #[cfg(feature = "schema")]
 mod schema;
+mod shader;
 mod text;
 mod values;
 mod words;
@@ -123,6 +124,7 @@ pub use plan::{
     Whole,
 };
 pub use recipe::{Material, Recipe, SCHEMA};
+pub use shader::{MaterialShader, ShaderOptions};
 pub use text::{MAX_TEXT, read_options};
 pub use values::Values;
 pub use words::similar_words;

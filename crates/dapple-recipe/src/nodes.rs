@@ -112,6 +112,7 @@ pub use wavelet::WaveletNode;
 pub use worley::{Frequency, Motion, WorleyNode, WorleyValue};
 
 use crate::plan::{Builder, ImageSource, Step, Work};
+use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError};
 use serde::{Deserialize, Serialize};
 
@@ -167,6 +168,12 @@ pub(crate) trait NodeKind {
 
     /// Builds the step of the node. The steps of its inputs must be in the plan already.
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError>;
+
+    /// Writes the node as an expression of WGSL, with the bits of the step. The plan of the recipe has been built, so
+    /// all options are valid. Refusals come before the node's inputs at the same position are read.
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        Err(shader.no_shader())
+    }
 }
 
 /// Defines the enum of all kinds, their names in recipes, and access to a node as a [`NodeKind`].
@@ -200,6 +207,13 @@ macro_rules! nodes {
             pub(crate) fn kind(&self) -> &dyn NodeKind {
                 match self {
                     $(Self::$variant(node) => node,)*
+                }
+            }
+
+            /// Returns the name of the node's kind in recipes.
+            pub(crate) fn kind_name(&self) -> &'static str {
+                match self {
+                    $(Self::$variant(_) => $name,)*
                 }
             }
         }

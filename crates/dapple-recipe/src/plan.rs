@@ -19,7 +19,7 @@ mod work;
 
 #[cfg(feature = "schema")]
 pub(crate) use builder::RADIUS;
-pub(crate) use builder::{Builder, FREQUENCY};
+pub(crate) use builder::{Builder, FREQUENCY, seed_of};
 pub use cache::PlanCache;
 use cache::StepId;
 use evaluate::Grid;

@@ -2,6 +2,7 @@
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError};
 use dapple_color::LinearRgb;
 use dapple_raster::PairOperation;
@@ -50,6 +51,10 @@ impl NodeKind for Add {
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         plan.fold_any(&self.0, |a, b| a + b, |a, b| a + b)
     }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        fold(shader, &self.0, "add")
+    }
 }
 
 impl NodeKind for Subtract {
@@ -59,6 +64,10 @@ impl NodeKind for Subtract {
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         plan.fold(&self.0, |a, b| a - b)
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        fold(shader, &self.0, "sub")
     }
 }
 
@@ -72,6 +81,10 @@ impl NodeKind for Multiply {
             |a: LinearRgb, b: LinearRgb| LinearRgb::new(a.r * b.r, a.g * b.g, a.b * b.b);
         plan.fold_any(&self.0, |a, b| a * b, of_colors)
     }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        fold(shader, &self.0, "mul")
+    }
 }
 
 impl NodeKind for Divide {
@@ -81,6 +94,14 @@ impl NodeKind for Divide {
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         plan.fold(&self.0, |a, b| if b == 0.0 { 0.0 } else { a / b })
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let [a, b] = [shader.number(&self.0[0])?, shader.number(&self.0[1])?];
+        let b = shader.name("divisor", b);
+        Ok(Code::number(format!(
+            "select(number_div({a}, {b}, zero), 0.0, {b} == 0.0)"
+        )))
     }
 }
 
@@ -92,6 +113,10 @@ impl NodeKind for Minimum {
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         plan.fold(&self.0, |a, b| PairOperation::Minimum.apply(a, b))
     }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        fold(shader, &self.0, "min")
+    }
 }
 
 impl NodeKind for Maximum {
@@ -101,6 +126,10 @@ impl NodeKind for Maximum {
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         plan.fold(&self.0, |a, b| PairOperation::Maximum.apply(a, b))
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        fold(shader, &self.0, "max")
     }
 }
 
@@ -112,4 +141,22 @@ impl NodeKind for Absolute {
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         plan.each(&self.0, f32::abs)
     }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        Ok(Code::number(format!("abs({})", shader.number(&self.0)?)))
+    }
+}
+
+/// Writes an operation on the inputs, pairwise, from the first to the last.
+fn fold(
+    shader: &mut NodeShader<'_, '_>,
+    inputs: &[Input],
+    operation: &str,
+) -> Result<Code, Refusal> {
+    let (inputs, is_color) = shader.alike(inputs)?;
+    let prefix = if is_color { "exact" } else { "number" };
+    let inputs = inputs.into_iter();
+    let text = inputs.reduce(|a, b| format!("{prefix}_{operation}({a}, {b}, zero)"));
+    let text = text.unwrap_or_default();
+    Ok(Code { text, is_color })
 }

@@ -2,8 +2,10 @@
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError};
 use dapple_raster::{Range, range};
+use dapple_wgsl::number_value;
 use serde::{Deserialize, Serialize};
 
 /// Number clamped to a range.
@@ -44,5 +46,13 @@ impl NodeKind for Clamp {
             "at least the lower bound",
         )?;
         plan.each(&self.input, move |value| value.clamp(low, high))
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let input = shader.number(&self.input)?;
+        let [low, high] = [self.low, self.high].map(number_value);
+        Ok(Code::number(format!(
+            "number_clamp({input}, {low}, {high}, zero)"
+        )))
     }
 }

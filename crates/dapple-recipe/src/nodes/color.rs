@@ -4,6 +4,7 @@ use super::NodeKind;
 use crate::RecipeError;
 use crate::input::hex_from_color;
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal, color_literal};
 use dapple_color::LinearRgb;
 use serde::de::{Deserialize, Deserializer, Error};
 use serde::ser::{Serialize, Serializer};
@@ -17,6 +18,10 @@ pub struct ColorOf(pub LinearRgb);
 impl NodeKind for ColorOf {
     fn build(&self, _: &mut Builder<'_>) -> Result<Step, RecipeError> {
         Ok(Step::Color(self.0))
+    }
+
+    fn shader(&self, _: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        Ok(Code::color(color_literal(self.0)))
     }
 }
 

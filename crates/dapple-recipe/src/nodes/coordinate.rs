@@ -3,8 +3,10 @@
 use super::NodeKind;
 use crate::RecipeError;
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal};
 use dapple_raster::field_fn;
 use dapple_raster::{Range, range};
+use dapple_wgsl::double_value;
 use serde::{Deserialize, Serialize};
 
 /// Coordinate of a position along a direction: `(position − center) · along`.
@@ -38,5 +40,20 @@ impl NodeKind for Coordinate {
         Ok(Step::field(field_fn(move |[x, y]| {
             ((x - center[0]) * along[0] + (y - center[1]) * along[1]) as f32
         })))
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let at = shader.position([1.0; 2]);
+        let [x, y] = [("x", 0), ("y", 1)].map(|(axis, index)| {
+            let [center, along] = [self.center[index], self.along[index]];
+            let from_center = match center == 0.0 {
+                true => format!("{at}.{axis}"),
+                false => format!("double_sub({at}.{axis}, {})", double_value(center)),
+            };
+            format!("double_mul({from_center}, {})", double_value(along))
+        });
+        Ok(Code::number(format!(
+            "double_to_float(double_add({x}, {y}))"
+        )))
     }
 }

@@ -2,8 +2,10 @@
 
 use super::NodeKind;
 use crate::plan::{Builder, Moved, Positions, Step};
+use crate::shader::{Code, NodeShader, Refusal, literal};
 use crate::{Input, RecipeError, RecipeErrorKind};
 use dapple_raster::{Fractal, FractalShape, Range, range};
+use dapple_wgsl::Module;
 use serde::{Deserialize, Serialize};
 
 /// Fractal sum of a node: the node plus weaker copies of it at higher frequencies.
@@ -76,5 +78,26 @@ impl NodeKind for FractalOf {
                 shape: self.shape,
             },
         }))
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let input = shader.moved(&self.input)?;
+        shader.needs(Module::Fractal);
+        let octaves = core::iter::repeat_n((), self.octaves as usize);
+        let fractal = Fractal::new(octaves, self.gain, self.lacunarity, self.shape)?;
+        let mut sum = literal(0.0);
+        for (_, frequency, weight) in fractal.octaves() {
+            let at = shader.position([frequency; 2]);
+            let value = input(&at).text;
+            let value = match self.shape {
+                FractalShape::Sum => value,
+                FractalShape::Ridged => format!("ridge({value}, zero)"),
+                FractalShape::Billow => format!("abs({value})"),
+                _ => return Err(Refusal::new("this shape of octaves has no shader")),
+            };
+            let weight = literal(weight);
+            sum = shader.name("sum", format!("add_octave({sum}, {weight}, {value}, zero)"));
+        }
+        Ok(Code::number(sum))
     }
 }

@@ -2,6 +2,7 @@
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal, literal, quotient};
 use crate::{Input, RecipeError};
 use dapple_raster::{Range, range};
 use serde::{Deserialize, Serialize};
@@ -65,6 +66,29 @@ impl NodeKind for Levels {
             let t = (value - from[0]) / (from[1] - from[0]);
             to[0] + (to[1] - to[0]) * curve.at(t)
         })
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let input = shader.number(&self.input)?;
+        let [from, to] = [self.from, self.to];
+        let above = match from[0] == 0.0 {
+            true => input,
+            false => format!("number_sub({input}, {}, zero)", literal(from[0])),
+        };
+        let t = quotient(&above, from[1] - from[0]);
+        let t = match self.curve {
+            LevelsCurve::Unclamped => t,
+            LevelsCurve::Linear => format!("number_clamp({t}, 0.0, 1.0, zero)"),
+            LevelsCurve::Smooth => {
+                format!("number_smooth(number_clamp({t}, 0.0, 1.0, zero), zero)")
+            }
+        };
+        let (start, length) = (literal(to[0]), to[1] - to[0]);
+        let part = match length == 1.0 {
+            true => t,
+            false => format!("number_mul({}, {t}, zero)", literal(length)),
+        };
+        Ok(Code::number(format!("number_add({start}, {part}, zero)")))
     }
 }
 

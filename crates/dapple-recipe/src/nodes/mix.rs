@@ -2,6 +2,7 @@
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal, lerp};
 use crate::{Input, RecipeError, Values};
 use serde::{Deserialize, Serialize};
 
@@ -30,6 +31,19 @@ impl NodeKind for Mix {
             plan.number(&self.by)?,
         ];
         Ok(plan.local(inputs, |inputs| Ok(mix(inputs))))
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let [from, to] = [shader.any(&self.from)?, shader.any(&self.to)?];
+        let by = shader.number(&self.by)?;
+        if !from.is_color && !to.is_color {
+            let [from, to] = [from.text, to.text];
+            return Ok(Code::number(format!(
+                "number_mix({from}, {to}, {by}, zero)"
+            )));
+        }
+        let by = shader.name("part", format!("number_clamp({by}, 0.0, 1.0, zero)"));
+        Ok(Code::color(lerp(&from.to_color(), &to.to_color(), &by)))
     }
 }
 

@@ -2,11 +2,13 @@
 
 use super::{Frequency, NodeKind, NodeSeed, wavelet};
 use crate::plan::{Builder, FREQUENCY, Step, Work};
+use crate::shader::{Code, NodeShader, Refusal, literal};
 use crate::{RecipeError, RecipeErrorKind};
 use dapple_noise::GradientNoise2;
 use dapple_pups::{NetOptions, OctavesOptions, PupsRecipe as _, Spacing, octaves};
 use dapple_raster::{FieldExt, FractalShape};
 use dapple_raster::{Range, range};
+use dapple_wgsl::{Module, double_value, gradient_noise_value};
 use serde::{Deserialize, Serialize};
 
 /// Fractal noise with values from 0 to 1.
@@ -103,6 +105,45 @@ impl NodeKind for FractalNode {
                 Step::field(noise.map(move |sum| about_half(scale * sum)))
             }
         })
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        match self.basis {
+            FractalBasis::Gradient => {}
+            FractalBasis::Pups => {
+                return Err(Refusal::new("noise of the basis `pups` has no shader"));
+            }
+            FractalBasis::Wavelet => {
+                return Err(Refusal::new("noise of the basis `wavelet` has no shader"));
+            }
+        }
+        let frequency = self.frequency.0;
+        let noise = GradientNoise2::new(shader.seed(self.seed.as_ref()));
+        let noise = noise.with_period(shader.periods(frequency))?;
+        let octaves = noise.fractal(self.octaves, self.gain, 2.0, FractalShape::Sum)?;
+        shader.needs(Module::GradientNoise2d);
+        shader.needs(Module::Fractal);
+        let first = shader.position(frequency);
+        let mut sum = literal(0.0);
+        for (noise, frequency, weight) in octaves.octaves() {
+            let mut words = noise.shader_words(weight)?;
+            // Add the offset of the octave to the position with 64 bits, as the CPU does.
+            let offset = [8, 9].map(|at| f64::from(words[at]) / f64::from(1 << 24));
+            words[8..12].fill(0);
+            let mut at = shader.scaled(&first, [frequency; 2]);
+            if offset != [0.0; 2] {
+                let [x, y] = offset.map(double_value);
+                at = shader.name("position", format!("shifted_2d({at}, {x}, {y})"));
+            }
+            let noise = shader.constant("NOISE", gradient_noise_value(&words));
+            let value = format!("gradient_noise_2d({noise}, noise_place_2d({at}), zero)");
+            let weight = literal(weight);
+            sum = shader.name("sum", format!("add_octave({sum}, {weight}, {value}, zero)"));
+        }
+        let scale = literal(self.weights(GradientNoise2::VARIANCE.into())[0]);
+        Ok(Code::number(format!(
+            "number_clamp(number_add(0.5, number_mul({scale}, {sum}, zero), zero), 0.0, 1.0, zero)"
+        )))
     }
 }
 

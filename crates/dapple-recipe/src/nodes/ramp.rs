@@ -2,8 +2,11 @@
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal, color_literal, lerp, literal, quotient};
 use crate::{Input, RecipeError, RecipeErrorKind, Values};
+use core::fmt::Write as _;
 use dapple_color::{ColorRamp, ColorStop, Interpolation, LinearRgb, Outside, Palette, RampSpace};
+use dapple_wgsl::{Module, number_value};
 use serde::{Deserialize, Serialize};
 
 /// Color ramp: a color for each number, from a palette or a list of colors.
@@ -56,6 +59,23 @@ impl NodeKind for Ramped {
         });
         Ok(step.with_colors())
     }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let mixes = self.interpolation != Interpolation::Stepped;
+        if mixes && self.space == RampSpace::Srgb {
+            return Err(Refusal::new("ramps that mix in sRGB have no shader"));
+        }
+        if self.outside == Outside::Repeat {
+            return Err(Refusal::new("ramps that repeat have no shader"));
+        }
+        if mixes && self.space == RampSpace::Oklab {
+            shader.needs(Module::Oklab);
+        }
+        let body = self.body(self.ramp()?.stops());
+        let function = shader.function("ramp", &body);
+        let input = shader.number(&self.input)?;
+        Ok(Code::color(format!("{function}({input}, zero)")))
+    }
 }
 
 impl Ramped {
@@ -84,6 +104,69 @@ impl Ramped {
             .with_interpolation(self.interpolation)
             .with_outside(self.outside))
     }
+}
+
+impl Ramped {
+    /// Writes the function of the ramp, after its name: a color for each interval of the stops.
+    fn body(&self, stops: &[ColorStop]) -> String {
+        let mut text = "(value: f32, zero: u32) -> vec4<f32> {\n".to_owned();
+        for (at, after) in stops.iter().enumerate() {
+            let position = number_value(after.position);
+            let Some(before) = at.checked_sub(1).map(|at| stops[at]) else {
+                // NaN gets the color of the first stop, too.
+                let color = color_literal(after.color);
+                let _ = writeln!(text, "    if !(value >= {position}) {{ return {color}; }}");
+                continue;
+            };
+            if after.position > before.position {
+                let mixture = self.mixture(before, *after);
+                let _ = writeln!(text, "    if value < {position} {{ {mixture} }}");
+            }
+        }
+        let last = stops.last().map_or(LinearRgb::BLACK, |stop| stop.color);
+        let _ = write!(text, "    return {};\n}}", color_literal(last));
+        text
+    }
+
+    /// Writes the statements that return the color between two stops.
+    fn mixture(&self, before: ColorStop, after: ColorStop) -> String {
+        let [from, to] = [before.color, after.color].map(color_literal);
+        let is_oklab = self.space == RampSpace::Oklab;
+        if self.interpolation == Interpolation::Stepped || (is_oklab && from == to) {
+            return format!("return {from};");
+        }
+        let [start, end] = [before.position * 0.5, after.position * 0.5];
+        let above = format!(
+            "number_sub(number_mul(value, 0.5, zero), {}, zero)",
+            literal(start)
+        );
+        let t = quotient(&above, end - start);
+        let part = match self.interpolation {
+            Interpolation::Smooth => {
+                format!("let t = {t}; let part = number_smooth(t, zero);")
+            }
+            _ => format!("let part = {t};"),
+        };
+        if !is_oklab {
+            return format!("{part} return {};", lerp(&from, &to, "part"));
+        }
+        // The conversion to Oklab and back rounds; the colors of stops are returned unchanged.
+        let [a, b] = [before.color, after.color].map(cone_roots);
+        let mixed = format!("oklab_mix({a}, {b}, part, zero)");
+        format!("{part} if part == 0.0 {{ return {from}; }} return {mixed};")
+    }
+}
+
+/// Returns the cube roots of a color's cone responses, whose sums are the components of Oklab, as a literal.
+fn cone_roots(color: LinearRgb) -> String {
+    let [r, g, b] = color.to_array().map(f64::from);
+    let [l, m, s] = [
+        0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b,
+        0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b,
+        0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b,
+    ]
+    .map(|cone| number_value(libm::cbrt(cone) as f32));
+    format!("vec4({l}, {m}, {s}, 0.0)")
 }
 
 /// Serializes lists of colors as hexadecimal sRGB.

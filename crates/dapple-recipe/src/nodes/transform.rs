@@ -2,8 +2,10 @@
 
 use super::{Frequency, NodeKind};
 use crate::plan::{Builder, LinearMap, Moved, Positions, Step};
+use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError, RecipeErrorKind};
 use dapple_raster::{Range, range};
+use dapple_wgsl::double_value;
 use serde::{Deserialize, Serialize};
 
 /// Another node, rotated about the origin, repeated more often, and shifted.
@@ -59,6 +61,22 @@ impl NodeKind for Transform {
             color: plan.is_color(input),
             positions: Positions::Linear(map),
         }))
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let input = shader.moved(&self.input)?;
+        let mut at = shader.position([1.0; 2]);
+        let [cos, sin] = direction(self.rotation);
+        if [cos, sin] != [1.0, 0.0] {
+            let [cos, sin] = [cos, sin].map(double_value);
+            at = shader.name("position", format!("rotated_2d({at}, {cos}, {sin})"));
+        }
+        at = shader.scaled(&at, self.frequency.0);
+        if self.offset != [0.0; 2] {
+            let [x, y] = self.offset.map(double_value);
+            at = shader.name("position", format!("shifted_2d({at}, {x}, {y})"));
+        }
+        Ok(input(&at))
     }
 }
 

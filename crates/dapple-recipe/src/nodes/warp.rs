@@ -2,8 +2,10 @@
 
 use super::NodeKind;
 use crate::plan::{Builder, Moved, Positions, Step};
+use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError};
 use dapple_raster::{Range, range};
+use dapple_wgsl::double_value;
 use serde::{Deserialize, Serialize};
 
 /// Another node, sampled at positions displaced by `amount · (x, y)`.
@@ -47,5 +49,19 @@ impl NodeKind for Warp {
                 amount: self.amount,
             },
         }))
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let input = shader.moved(&self.input)?;
+        let [x, y] = [shader.number(&self.x)?, shader.number(&self.y)?].map(|shift| {
+            let shift = format!("double_from({shift})");
+            match self.amount == 1.0 {
+                true => shift,
+                false => format!("double_mul({shift}, {})", double_value(self.amount)),
+            }
+        });
+        let at = shader.position([1.0; 2]);
+        let at = shader.name("position", format!("shifted_2d({at}, {x}, {y})"));
+        Ok(input(&at))
     }
 }

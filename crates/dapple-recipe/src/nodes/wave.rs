@@ -2,8 +2,10 @@
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError};
 use dapple_raster::{Range, range};
+use dapple_wgsl::{Module, double_value};
 use serde::{Deserialize, Serialize};
 
 /// Periodic wave of a number, with values from 0 to 1.
@@ -62,6 +64,35 @@ impl NodeKind for Wave {
         plan.each(&self.input, move |value| {
             form.at(f64::from(value) * frequency + phase) as f32
         })
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        if self.form == Waveform::Sine {
+            return Err(Refusal::new("sines have no shader"));
+        }
+        let input = shader.number(&self.input)?;
+        shader.needs(Module::Double);
+        let mut t = format!("double_from({input})");
+        if self.frequency != 1.0 {
+            t = format!("double_mul({t}, {})", double_value(self.frequency));
+        }
+        if self.phase != 0.0 {
+            t = format!("double_add({t}, {})", double_value(self.phase));
+        }
+        let t = shader.name("phase", t);
+        let t = format!("double_sub({t}, double_floor({t}))");
+        Ok(Code::number(match self.form {
+            Waveform::Sine | Waveform::Sawtooth => format!("double_to_float({t})"),
+            Waveform::Triangle => {
+                // `1 - |2 t - 1|`
+                let one = double_value(1.0);
+                let twice = format!("double_mul({t}, {})", double_value(2.0));
+                let size = format!("double_abs(double_sub({twice}, {one}))");
+                format!("double_to_float(double_sub({one}, {size}))")
+            }
+            // The upper word of ½ is 0x3fe00000.
+            Waveform::Square => format!("select(0.0, 1.0, {t}.x >= 0x3fe00000u)"),
+        }))
     }
 }
 

@@ -2,12 +2,14 @@
 
 use super::{NodeKind, NodeSeed};
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal, literal};
 use crate::{RecipeError, RecipeErrorKind};
 use core::fmt;
 use dapple_raster::{Field, FieldExt};
 use dapple_raster::{Range, range};
+use dapple_wgsl::{Module, worley_value};
 use dapple_worley::{
-    Combination, Dimensions, Metric, Octaves, Scatter, Space, Worley, Worley2, Worley4,
+    Combination, Dimensions, Metric, OctaveSeeds, Octaves, Scatter, Space, Worley, Worley2, Worley4,
 };
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
@@ -124,6 +126,58 @@ impl NodeKind for WorleyNode {
         };
         Ok(Step::field(field.frequency_per_axis(self.frequency.0)))
     }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        if self.motion.is_some() {
+            return Err(Refusal::new(
+                "Worley's basis in four dimensions has no shader",
+            ));
+        }
+        let frequency = self.frequency.0;
+        let worley = Worley2::new(shader.seed(self.seed.as_ref()));
+        let worley = self.basis(worley.with_period(shader.periods(frequency))?)?;
+        let combination = match self.value {
+            WorleyValue::Combination(combination) if combination.depth() > 2 => {
+                return Err(Refusal::new("the distances F3 and F4 have no shader"));
+            }
+            WorleyValue::Combination(combination) => combination,
+            WorleyValue::EdgeDistance => {
+                return Err(Refusal::new("distances to edges have no shader"));
+            }
+            WorleyValue::CellValue => {
+                let features = self.features(shader, &worley, 1.0)?;
+                return Ok(Code::number(format!("cell_value({features}[0].id)")));
+            }
+        };
+        let Some(octaves) = self.octaves else {
+            let features = self.features(shader, &worley, 1.0)?;
+            return Ok(Code::number(tone(&features, combination, self.range)));
+        };
+        // Sum the octaves, each with its own period, and its own seed unless they share one.
+        let mut sum = literal(0.0);
+        let (mut ratio, mut weight) = (1.0, 1.0);
+        for index in 0..octaves.count {
+            let periods = worley.periods();
+            let periods = periods.map(|cells| Some((f64::from(cells?) * ratio) as u32));
+            let mut octave = worley.clone().with_period(periods)?;
+            if octaves.seeds == OctaveSeeds::Own {
+                octave = octave.with_seed(worley.seed().child("octave", index.into()));
+            }
+            let features = self.features(shader, &octave, ratio)?;
+            let value = tone(&features, combination, None);
+            let value = format!("number_mul({value}, {}, zero)", literal(weight as f32));
+            sum = shader.name("sum", format!("number_add({sum}, {value}, zero)"));
+            ratio *= octaves.lacunarity;
+            weight *= octaves.gain;
+        }
+        Ok(Code::number(match self.range {
+            None => sum,
+            Some([low, high]) => {
+                let [scale, shift] = [1.0 / (high - low), -low / (high - low) + 0.0].map(literal);
+                format!("number_add({shift}, number_mul({sum}, {scale}, zero), zero)")
+            }
+        }))
+    }
 }
 
 impl WorleyNode {
@@ -182,6 +236,22 @@ impl WorleyNode {
         Ok(Arc::new(solid.slice(place)))
     }
 
+    /// Writes the two nearest feature points at the position times the node's frequency times `ratio`.
+    fn features(
+        &self,
+        shader: &mut NodeShader<'_, '_>,
+        worley: &Worley2,
+        ratio: f64,
+    ) -> Result<String, Refusal> {
+        let worley = worley_value(&worley.shader_words()?);
+        shader.needs(Module::Worley2d);
+        let at = shader.position(self.frequency.0);
+        let at = shader.scaled(&at, [ratio; 2]);
+        let place = shader.name("place", format!("worley_place_2d({at})"));
+        let worley = shader.constant("WORLEY", worley);
+        Ok(shader.name("features", format!("worley_2d({worley}, {place}, zero)")))
+    }
+
     /// Returns an error if a single value (`cell_value` or `edge_distance`) is combined with options that apply to
     /// combinations of distances only, or with a metric that it does not support.
     fn check_single(&self, has_metric: bool) -> Result<(), RecipeError> {
@@ -197,6 +267,26 @@ impl WorleyNode {
 }
 
 const PLACE: Range = range!(finite);
+
+/// Writes a combination of F1 and F2, mapped from `range` to 0 to 1 if there is one.
+fn tone(features: &str, combination: Combination, range: Option<[f32; 2]>) -> String {
+    let [low, high] = range.unwrap_or([0.0, 1.0]);
+    let weights = combination
+        .coefficients()
+        .map(|weight| weight / (high - low));
+    let mut sum = literal(-low / (high - low) + 0.0);
+    for (index, &weight) in weights.iter().enumerate() {
+        if weight != 0.0 {
+            let distance = format!("{features}[{index}].distance");
+            let part = match weight == 1.0 {
+                true => distance,
+                false => format!("number_mul({distance}, {}, zero)", literal(weight)),
+            };
+            sum = format!("number_add({sum}, {part}, zero)");
+        }
+    }
+    sum
+}
 
 impl Serialize for Frequency {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

@@ -198,11 +198,7 @@ impl<'a> Builder<'a> {
 
     /// Returns the current node's seed, which is derived from its name unless `other` is given.
     pub(crate) fn seed(&self, other: Option<&NodeSeed>) -> Seed {
-        match other {
-            None => self.recipe.seed.child(self.node, 0),
-            Some(NodeSeed::Name(name)) => self.recipe.seed.child(name, 0),
-            Some(NodeSeed::Seed(seed)) => *seed,
-        }
+        seed_of(self.recipe, self.node, other)
     }
 
     /// Returns, for each axis that repeats, the number of cells across the tile at this frequency; `None` for the other
@@ -424,6 +420,15 @@ impl<'a> Builder<'a> {
         Ok(self.local(inputs, move |inputs| {
             Ok(Values::fold(inputs, &combine, &combine_colors))
         }))
+    }
+}
+
+/// Returns the seed of the node called `node`, which is derived from its name unless `other` is given.
+pub(crate) fn seed_of(recipe: &Recipe, node: &str, other: Option<&NodeSeed>) -> Seed {
+    match other {
+        None => recipe.seed.child(node, 0),
+        Some(NodeSeed::Name(name)) => recipe.seed.child(name, 0),
+        Some(NodeSeed::Seed(seed)) => *seed,
     }
 }
 

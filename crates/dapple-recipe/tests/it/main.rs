@@ -16,6 +16,7 @@ mod refusals;
 mod scatter;
 #[cfg(feature = "schema")]
 mod schema;
+mod shader;
 mod synth;
 mod text;
 mod words;

@@ -1,0 +1,98 @@
+//! Generates the material of a recipe as a shader in WGSL.
+//!
+//! A node writes an expression of its inputs. The material is one function, in which each node is a constant. A node that
+//! is evaluated at other positions, as the input of `warp`, becomes a function of the position. Nodes without a shader
+//! become members of a structure, whose values the caller reads from textures.
+//!
+//! The values have the bits of the plan. Sums and products of `f32` pass through the barrier of `dapple-wgsl`, and
+//! positions are computed with the 64 bits of the processor, in `u32`.
+
+mod writer;
+
+pub(crate) use writer::{Code, NodeShader, Refusal, color_literal, lerp, literal, quotient};
+
+use crate::{Images, Plan, Recipe, RecipeError, RecipeErrorKind};
+use writer::Writer;
+
+/// Options of [`Recipe::to_wgsl`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ShaderOptions {
+    /// Whether the shader takes the values of nodes that no shader computes as arguments, which its caller reads from
+    /// textures. Such nodes are an error otherwise.
+    ///
+    /// The default is false.
+    pub textures: bool,
+}
+
+/// The material of a recipe as a shader.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct MaterialShader {
+    /// A module of WGSL without bindings and entry points. It contains all that it uses.
+    pub wgsl: String,
+    /// Names of the nodes whose values the caller reads from textures, in the order of the members of the structure
+    /// `Textures`; empty if the shader computes all nodes.
+    pub textures: Vec<String>,
+}
+
+impl Recipe {
+    /// Generates the material as a function of WGSL, with the same bits as on the CPU:
+    ///
+    /// ```wgsl
+    /// struct Material { height: f32, albedo: vec3<f32>, roughness: f32, metallic: f32 }
+    /// fn material(place: Place2d, zero: u32) -> Material
+    /// ```
+    ///
+    /// `place` is a position in units of the plane, as a cell and a fraction; `place_2d` splits a `vec2<f32>`. The number
+    /// `zero` is 0, and must come from a buffer: it keeps compilers from changing the results.
+    ///
+    /// Colors of ramps in Oklab are computed with `f32`, and differ by less than 4e-6. All other values have the bits of
+    /// [`Plan::height`], [`Plan::field`] and [`Plan::colors`] at the position `cell + fraction`, up to 2^31 cells of each
+    /// node.
+    ///
+    /// # Errors
+    ///
+    /// [`NotInShader`](RecipeErrorKind::NotInShader) if no shader computes a node and
+    /// [`textures`](ShaderOptions::textures) is not set, or the same errors as [`Plan::new`].
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_recipe::{Images, Recipe, ShaderOptions};
+    ///
+    /// let recipe = Recipe::from_toml(
+    ///     r#"
+    ///     dapple = 1
+    ///     [nodes.cracks.worley]
+    ///     frequency = 8.0
+    ///     value = "f2_minus_f1"
+    ///     [material]
+    ///     height = "cracks"
+    ///     "#,
+    /// )?;
+    /// let shader = recipe.to_wgsl(&Images::new(), &ShaderOptions::default())?;
+    /// assert!(shader.wgsl.contains("fn material(place: Place2d, zero: u32) -> Material"));
+    /// # Ok::<(), dapple_recipe::RecipeError>(())
+    /// ```
+    pub fn to_wgsl(
+        &self,
+        images: &Images,
+        options: &ShaderOptions,
+    ) -> Result<MaterialShader, RecipeError> {
+        // The plan checks the recipe, and knows which nodes have colors.
+        let plan = Plan::new(self, images, 0.0)?;
+        let mut writer = Writer::new(self, &plan);
+        let material = writer.material();
+        if !writer.textures().is_empty() && !options.textures {
+            let nodes = writer.textures().iter();
+            let nodes = nodes.map(|(name, texture)| (name.clone(), texture.reason.clone()));
+            return Err(RecipeError::new(RecipeErrorKind::NotInShader {
+                nodes: nodes.collect(),
+            }));
+        }
+        Ok(MaterialShader {
+            wgsl: writer.assemble(&material),
+            textures: writer.textures().keys().cloned().collect(),
+        })
+    }
+}

@@ -1,0 +1,498 @@
+//! Writes the functions of a shader.
+
+use crate::plan::seed_of;
+use crate::{Input, NodeSeed, Plan, Recipe, RecipeError};
+use core::fmt::{self, Write as _};
+use dapple_color::LinearRgb;
+use dapple_hash::Seed;
+use dapple_raster::RasterError;
+use dapple_wgsl::{Module, double_value, number_value, source};
+use dapple_worley::WorleyError;
+use indexmap::IndexMap;
+use std::collections::BTreeMap;
+
+/// An expression: a number (`f32`), or a linear color (`vec4<f32>`, whose last component is not used).
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Code {
+    pub(crate) text: String,
+    pub(crate) is_color: bool,
+}
+
+/// Why no shader computes a node, as a phrase.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Refusal(String);
+
+/// A node whose values the caller reads from a texture.
+#[derive(Clone, Debug)]
+pub(super) struct Texture {
+    pub(super) reason: String,
+    is_color: bool,
+    /// Name of the member of the structure `Textures`.
+    member: String,
+}
+
+/// The parts of a shader.
+pub(super) struct Writer<'a> {
+    recipe: &'a Recipe,
+    plan: &'a Plan,
+    /// For each node, its name in identifiers.
+    identifiers: BTreeMap<&'a str, String>,
+    modules: Vec<Module>,
+    /// For each value of a constant, its name.
+    constants: IndexMap<String, String>,
+    functions: Vec<String>,
+    /// For each node that is evaluated at other positions, its function.
+    moved: BTreeMap<&'a str, Result<Code, Refusal>>,
+    textures: IndexMap<String, Texture>,
+}
+
+/// The body of a function.
+#[derive(Default)]
+struct Scope<'a> {
+    lines: String,
+    /// For each expression that has a name, the name.
+    names: BTreeMap<String, String>,
+    nodes: BTreeMap<&'a str, Code>,
+    /// Whether nodes without a shader may be read from textures.
+    has_textures: bool,
+}
+
+/// Access of a node to the shader that it is written to.
+pub(crate) struct NodeShader<'w, 'a> {
+    writer: &'w mut Writer<'a>,
+    scope: &'w mut Scope<'a>,
+    node: &'a str,
+}
+
+impl Code {
+    pub(crate) fn number(text: impl Into<String>) -> Self {
+        let (text, is_color) = (text.into(), false);
+        Self { text, is_color }
+    }
+
+    pub(crate) fn color(text: impl Into<String>) -> Self {
+        let (text, is_color) = (text.into(), true);
+        Self { text, is_color }
+    }
+
+    /// Returns the expression as a color. A number becomes a gray.
+    pub(crate) fn to_color(&self) -> String {
+        match self.is_color {
+            true => self.text.clone(),
+            false => format!("vec4({})", self.text),
+        }
+    }
+
+    fn kind(&self) -> &'static str {
+        if self.is_color { "vec4<f32>" } else { "f32" }
+    }
+}
+
+impl Refusal {
+    pub(crate) fn new(reason: impl fmt::Display) -> Self {
+        Self(reason.to_string())
+    }
+}
+
+/// Implements the conversion from the errors of parameters that a shader does not have.
+macro_rules! from {
+    ($($error:ident),*) => {
+        $(impl From<$error> for Refusal {
+            fn from(error: $error) -> Self {
+                Self::new(error)
+            }
+        })*
+    };
+}
+
+from!(RecipeError, WorleyError, RasterError);
+
+/// Returns a number as a literal. A compiler that knows a zero may leave out a sum, and with it the sign of the result.
+pub(crate) fn literal(number: f32) -> String {
+    match number == 0.0 {
+        true => "number(0.0, zero)".to_owned(),
+        false => number_value(number),
+    }
+}
+
+/// Returns a linear color as a literal.
+pub(crate) fn color_literal(color: LinearRgb) -> String {
+    let [r, g, b] = color.to_array().map(number_value);
+    format!("vec4({r}, {g}, {b}, 0.0)")
+}
+
+/// Returns the mixture of two colors, `from * (1 - by) + to * by`.
+pub(crate) fn lerp(from: &str, to: &str, by: &str) -> String {
+    let rest = format!("exact_sub(vec4(1.0), vec4({by}), zero)");
+    let [from, to] = [(from, rest), (to, format!("vec4({by})"))]
+        .map(|(color, part)| format!("exact_mul({color}, {part}, zero)"));
+    format!("exact_add({from}, {to}, zero)")
+}
+
+/// Returns the quotient of an expression and a constant.
+pub(crate) fn quotient(text: &str, divisor: f32) -> String {
+    let is_power_of_two = divisor.to_bits() & 0x7f_ffff == 0 && divisor.recip().is_normal();
+    if divisor == 1.0 {
+        text.to_owned()
+    } else if is_power_of_two {
+        format!("number_mul({text}, {}, zero)", literal(divisor.recip()))
+    } else {
+        format!("number_div({text}, {}, zero)", literal(divisor))
+    }
+}
+
+impl<'a> NodeShader<'_, 'a> {
+    /// Returns the seed of the node, which is derived from its name unless `other` is given.
+    pub(crate) fn seed(&self, other: Option<&NodeSeed>) -> Seed {
+        seed_of(self.writer.recipe, self.node, other)
+    }
+
+    /// Returns, for each axis that repeats, the number of cells across the tile. The plan has checked the frequency.
+    pub(crate) fn periods(&self, frequency: [f64; 2]) -> [Option<u32>; 2] {
+        let Recipe { extent, wrap, .. } = self.writer.recipe;
+        [0, 1].map(|axis| wrap[axis].then(|| (extent[axis] * frequency[axis]) as u32))
+    }
+
+    /// Returns the refusal of a kind of node that has no shader.
+    pub(crate) fn no_shader(&self) -> Refusal {
+        if self.writer.plan.is_global(self.node) {
+            return Refusal::new("it depends on the whole tile");
+        }
+        let kind = self.writer.recipe.nodes[self.node].kind_name();
+        Refusal::new(format!("`{kind}` has no shader"))
+    }
+
+    /// Returns the expression of an input, which may be a number or a color.
+    pub(crate) fn any(&mut self, input: &Input) -> Result<Code, Refusal> {
+        self.writer.input(self.scope, input)
+    }
+
+    /// Returns the expression of an input that is a number.
+    pub(crate) fn number(&mut self, input: &Input) -> Result<String, Refusal> {
+        Ok(self.any(input)?.text)
+    }
+
+    /// Returns the expressions of inputs. All of them are colors if any input is.
+    pub(crate) fn alike(&mut self, inputs: &[Input]) -> Result<(Vec<String>, bool), Refusal> {
+        let inputs = inputs.iter().map(|input| self.any(input));
+        let inputs = inputs.collect::<Result<Vec<_>, _>>()?;
+        let is_color = inputs.iter().any(|input| input.is_color);
+        let text = |code: &Code| match is_color {
+            true => code.to_color(),
+            false => code.text.clone(),
+        };
+        Ok((inputs.iter().map(text).collect(), is_color))
+    }
+
+    /// Adds a module with all modules that it uses.
+    pub(crate) fn needs(&mut self, module: Module) {
+        self.writer.needs(module);
+    }
+
+    /// Names an expression, so that it is computed once.
+    pub(crate) fn name(&mut self, kind: &str, expression: String) -> String {
+        if let Some(name) = self.scope.names.get(&expression) {
+            return name.clone();
+        }
+        let name = format!("{kind}_{}", self.scope.names.len());
+        let _ = writeln!(self.scope.lines, "    let {name} = {expression};");
+        self.scope.names.insert(expression, name.clone());
+        name
+    }
+
+    /// Names a constant of the module.
+    pub(crate) fn constant(&mut self, kind: &str, value: String) -> String {
+        let constants = &mut self.writer.constants;
+        let name = format!("{kind}_{}", constants.len());
+        constants.entry(value).or_insert(name).clone()
+    }
+
+    /// Adds a function of the node, and returns its name. `parameters` and the rest follow the name.
+    pub(crate) fn function(&mut self, kind: &str, rest: &str) -> String {
+        let name = format!("{}_{kind}", self.writer.identifiers[self.node]);
+        let text = format!("fn {name}{rest}");
+        if !self.writer.functions.contains(&text) {
+            self.writer.functions.push(text);
+        }
+        name
+    }
+
+    /// Returns the position, or the position times a frequency for each axis.
+    pub(crate) fn position(&mut self, frequency: [f64; 2]) -> String {
+        self.needs(Module::Position2d);
+        self.scaled("at", frequency)
+    }
+
+    /// Returns a position times a frequency for each axis.
+    pub(crate) fn scaled(&mut self, position: &str, frequency: [f64; 2]) -> String {
+        if frequency == [1.0; 2] {
+            return position.to_owned();
+        }
+        let [x, y] = frequency.map(double_value);
+        self.name("position", format!("scaled_2d({position}, {x}, {y})"))
+    }
+
+    /// Returns a node at a position. Fails if no shader computes the node.
+    pub(crate) fn moved(
+        &mut self,
+        input: &Input,
+    ) -> Result<impl Fn(&str) -> Code + use<>, Refusal> {
+        let code = self.writer.moved(input)?;
+        Ok(move |position: &str| Code {
+            text: code.text.replace(POSITION, position),
+            is_color: code.is_color,
+        })
+    }
+}
+
+/// The position in the code of a node at any position.
+const POSITION: &str = "{position}";
+
+impl<'a> Writer<'a> {
+    pub(super) fn new(recipe: &'a Recipe, plan: &'a Plan) -> Self {
+        Self {
+            recipe,
+            plan,
+            identifiers: identifiers(recipe),
+            modules: vec![Module::Number, Module::Exact, Module::Place2d],
+            constants: IndexMap::new(),
+            functions: Vec::new(),
+            moved: BTreeMap::new(),
+            textures: IndexMap::new(),
+        }
+    }
+
+    /// Returns the nodes without a shader.
+    pub(super) fn textures(&self) -> &IndexMap<String, Texture> {
+        &self.textures
+    }
+
+    fn needs(&mut self, module: Module) {
+        if !self.modules.contains(&module) {
+            self.modules.push(module);
+        }
+    }
+
+    /// Returns the expression of an input.
+    fn input(&mut self, scope: &mut Scope<'a>, input: &Input) -> Result<Code, Refusal> {
+        match input {
+            Input::Number(number) => Ok(Code::number(literal(*number as f32))),
+            Input::Color(color) => Ok(Code::color(color_literal(*color))),
+            Input::Node(name) => self.node(scope, name),
+        }
+    }
+
+    /// Returns the name of a node's value, and writes the node unless the scope has it already.
+    fn node(&mut self, scope: &mut Scope<'a>, name: &str) -> Result<Code, Refusal> {
+        if let Some(code) = scope.nodes.get(name) {
+            return Ok(code.clone());
+        }
+        let recipe: &'a Recipe = self.recipe;
+        let known = recipe.nodes.get_key_value(name);
+        let (name, node) =
+            known.ok_or_else(|| Refusal::new(format!("there is no node `{name}`")))?;
+        let written = node.kind().shader(&mut NodeShader {
+            writer: self,
+            scope,
+            node: name,
+        });
+        let code = match written {
+            Ok(code) => code,
+            Err(refusal) if scope.has_textures => self.texture(name, refusal),
+            Err(Refusal(reason)) => return Err(Refusal(format!("`{name}`: {reason}"))),
+        };
+        let variable = format!("node_{}", self.identifiers[name.as_str()]);
+        let _ = writeln!(scope.lines, "    let {variable} = {};", code.text);
+        let code = Code {
+            text: variable,
+            is_color: code.is_color,
+        };
+        scope.nodes.insert(name, code.clone());
+        Ok(code)
+    }
+
+    /// Adds a texture for a node without a shader.
+    fn texture(&mut self, name: &str, Refusal(reason): Refusal) -> Code {
+        let is_color = self.plan.is_color(name);
+        let kind = if is_color { "color" } else { "value" };
+        let member = format!("{}_{kind}", self.identifiers[name]);
+        let text = format!("textures.{member}");
+        self.textures.insert(
+            name.to_owned(),
+            Texture {
+                reason,
+                is_color,
+                member,
+            },
+        );
+        match is_color {
+            true => Code::color(format!("vec4({text}, 0.0)")),
+            false => Code::number(text),
+        }
+    }
+
+    /// Returns the call of an input's function, with [`POSITION`] in the place of the position.
+    fn moved(&mut self, input: &Input) -> Result<Code, Refusal> {
+        let Input::Node(name) = input else {
+            return self.input(&mut Scope::default(), input);
+        };
+        let recipe: &'a Recipe = self.recipe;
+        let Some((name, _)) = recipe.nodes.get_key_value(name) else {
+            return Err(Refusal::new(format!("there is no node `{name}`")));
+        };
+        if let Some(known) = self.moved.get(name.as_str()) {
+            return known.clone();
+        }
+        // A function that is not finished leaves nothing behind.
+        let before = [
+            self.modules.len(),
+            self.constants.len(),
+            self.functions.len(),
+        ];
+        let mut scope = Scope::default();
+        let made = self.node(&mut scope, name).map(|code| {
+            let (kind, lines, value) = (code.kind(), scope.lines, code.text);
+            let function = format!("{}_at", self.identifiers[name.as_str()]);
+            self.functions.push(format!(
+                "fn {function}(at: Position2d, zero: u32) -> {kind} {{\n{lines}    return {value};\n}}"
+            ));
+            Code {
+                text: format!("{function}({POSITION}, zero)"),
+                is_color: code.is_color,
+            }
+        });
+        match made {
+            Ok(_) => self.needs(Module::Position2d),
+            Err(_) => {
+                let [modules, constants, functions] = before;
+                self.modules.truncate(modules);
+                self.constants.truncate(constants);
+                self.functions.truncate(functions);
+            }
+        }
+        self.moved.insert(name, made.clone());
+        made
+    }
+
+    /// Writes the function of the material, without its head.
+    pub(super) fn material(&mut self) -> String {
+        let material = &self.recipe.material;
+        let mut scope = Scope {
+            has_textures: true,
+            ..Scope::default()
+        };
+        let albedo = material.albedo.as_ref().unwrap_or(&material.height);
+        let inputs = [
+            &material.height,
+            albedo,
+            &material.roughness,
+            &material.metallic,
+        ];
+        let [height, albedo, roughness, metallic] = inputs.map(|input| {
+            // The plan has found all nodes, and those without a shader are textures.
+            let code = self.input(&mut scope, input);
+            code.unwrap_or_else(|_| Code::number(literal(0.0)))
+        });
+        format!(
+            "{}    return Material({}, {}.xyz, {}, {});\n",
+            scope.lines,
+            height.text,
+            albedo.to_color(),
+            roughness.text,
+            metallic.text
+        )
+    }
+
+    /// Joins all parts to a module.
+    pub(super) fn assemble(&self, material: &str) -> String {
+        let mut out = self.head();
+        out += "\n";
+        out +=
+            "struct Material { height: f32, albedo: vec3<f32>, roughness: f32, metallic: f32 }\n\n";
+        if !self.textures.is_empty() {
+            out += "// Values of nodes that no shader computes, from textures of the whole tile\nstruct Textures {\n";
+            for (name, texture) in &self.textures {
+                let kind = if texture.is_color { "vec3<f32>" } else { "f32" };
+                let (member, reason) = (&texture.member, &texture.reason);
+                let _ = writeln!(out, "    // {reason}: dapple bake RECIPE --node {name}");
+                let _ = writeln!(out, "    {member}: {kind},");
+            }
+            out += "}\n\n";
+        }
+        let textures = match self.textures.is_empty() {
+            true => "",
+            false => "textures: Textures, ",
+        };
+        let _ = writeln!(
+            out,
+            "fn material(place: Place2d, {textures}zero: u32) -> Material {{"
+        );
+        if self.modules.contains(&Module::Position2d) {
+            out += "    let at = position_2d(place);\n";
+        }
+        out += material;
+        out += "}\n\n";
+        for function in &self.functions {
+            out += function;
+            out += "\n\n";
+        }
+        for (value, name) in &self.constants {
+            let _ = writeln!(out, "const {name} = {value};");
+        }
+        if !self.constants.is_empty() {
+            out += "\n";
+        }
+        out + &source(&self.modules)
+    }
+
+    /// Writes the comment at the beginning.
+    fn head(&self) -> String {
+        let Recipe {
+            name,
+            extent,
+            wrap,
+            material,
+            ..
+        } = self.recipe;
+        let mut out = format!(
+            "// Material `{name}` of dapple, without bindings and entry points: call `material`.\n//\n\
+             // place: position in units of the plane; `place_2d(position)` makes it from a `vec2<f32>`\n"
+        );
+        for (axis, axis_name) in ["x", "y"].into_iter().enumerate() {
+            if wrap[axis] {
+                let period = extent[axis];
+                let _ = writeln!(out, "//     repeats every {period} units along {axis_name}");
+            }
+        }
+        if !self.textures.is_empty() {
+            out += "// textures: values of nodes at this position, which a shader reads from baked textures\n";
+        }
+        out +=
+            "// zero: 0, read from a buffer; with a constant, compilers change the last bits\n//\n";
+        let relief = material.relief;
+        let _ = writeln!(
+            out,
+            "// A height of 1 is {relief} units of the plane. Colors are linear."
+        );
+        out += "// Values have the bits of the CPU at the position `cell + fraction`";
+        out += match self.modules.contains(&Module::Oklab) {
+            true => ";\n// colors that a ramp mixes in Oklab differ by less than 4e-6.\n",
+            false => ".\n",
+        };
+        out
+    }
+}
+
+/// Returns, for each node, its name as a part of identifiers.
+fn identifiers(recipe: &Recipe) -> BTreeMap<&str, String> {
+    let mut identifiers: BTreeMap<&str, String> = BTreeMap::new();
+    for name in recipe.nodes.keys() {
+        // Shaders have no hyphens. `a-b` and `a_b` become different names.
+        let mut identifier = name.replace('-', "_");
+        while identifiers.values().any(|other| *other == identifier) {
+            identifier.push('_');
+        }
+        identifiers.insert(name, identifier);
+    }
+    identifiers
+}

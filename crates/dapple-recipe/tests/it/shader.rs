@@ -1,0 +1,117 @@
+//! Materials as shaders: what they contain. `dapple-wgsl-tests` runs them.
+
+use dapple_recipe::{Images, MaterialShader, Recipe, RecipeErrorKind, ShaderOptions};
+
+const TEXTURES: ShaderOptions = ShaderOptions { textures: true };
+
+fn recipe(text: &str) -> Recipe {
+    Recipe::from_toml(&format!("dapple = 1\nextent = [4.0, 4.0]\n{text}")).expect("a recipe")
+}
+
+fn shader(text: &str, options: &ShaderOptions) -> MaterialShader {
+    let shader = recipe(text).to_wgsl(&Images::new(), options);
+    shader.unwrap_or_else(|error| panic!("{text}: {error}"))
+}
+
+#[test]
+fn a_material_of_local_nodes_needs_no_textures() {
+    let text = "
+        nodes.joint.worley = { value = 'f2_minus_f1' }
+        nodes.stone.worley = { value = 'cell_value', seed = 'joint' }
+        nodes.grain.noise = { basis = 'gradient' }
+        nodes.height.add = ['joint', 'stone', 'grain']
+        material.height = 'height'";
+    let shader = shader(text, &ShaderOptions::default());
+    assert!(shader.textures.is_empty(), "{:?}", shader.textures);
+    let count = |part: &str| shader.wgsl.matches(part).count();
+    assert_eq!(
+        count("fn material(place: Place2d, zero: u32) -> Material {"),
+        1
+    );
+    assert_eq!(count("struct Textures"), 0);
+    // The cells of both nodes are searched once, and a module of the library is there once.
+    assert_eq!(count("= worley_2d("), 1);
+    assert_eq!(count("fn worley_2d("), 1);
+    assert_eq!(count("fn place_2d("), 1);
+    // Four octaves of noise, each with its parameters
+    assert_eq!(count("const NOISE_"), 4);
+}
+
+#[test]
+fn refusals_name_each_node_and_the_reason() {
+    let text = "
+        nodes.cells.pups = { cells = {} }
+        nodes.net.worley = { value = 'f4' }
+        nodes.sum.add = ['cells', 'net', 'cells']
+        material.height = 'sum'";
+    let refused = recipe(text).to_wgsl(&Images::new(), &ShaderOptions::default());
+    let refused = refused.expect_err("two nodes have no shader");
+    let RecipeErrorKind::NotInShader { nodes } = refused.kind() else {
+        panic!("{refused}");
+    };
+    let pair = |name: &str, reason: &str| (name.to_owned(), reason.to_owned());
+    let expected = [
+        pair("cells", "`pups` has no shader"),
+        pair("net", "the distances F3 and F4 have no shader"),
+    ];
+    assert_eq!(nodes[..], expected);
+    let message = refused.to_string();
+    assert!(
+        message.contains("`net`: the distances F3 and F4 have no shader"),
+        "{message}"
+    );
+    let shader = shader(text, &TEXTURES);
+    assert_eq!(shader.textures, ["cells", "net"]);
+    assert!(
+        shader.wgsl.contains("    cells_value: f32,"),
+        "{}",
+        shader.wgsl
+    );
+    assert!(
+        shader.wgsl.contains("textures: Textures, zero: u32"),
+        "{}",
+        shader.wgsl
+    );
+}
+
+#[test]
+fn a_node_without_a_shader_at_other_positions_makes_the_node_that_moves_it_a_texture() {
+    let text = "
+        nodes.cells.pups = { cells = {} }
+        nodes.color.ramp = { input = 'cells', colors = ['#000000', '#ffffff'] }
+        nodes.by.worley = {}
+        nodes.bent.warp = { input = 'color', x = 'by', y = 0.0 }
+        material.albedo = 'bent'";
+    let shader = shader(text, &TEXTURES);
+    // The material does not read `by`, since the texture has its effect.
+    assert_eq!(shader.textures, ["bent"]);
+    assert!(
+        shader.wgsl.contains("    bent_color: vec3<f32>,"),
+        "{}",
+        shader.wgsl
+    );
+    for part in ["worley_2d", "color_ramp", "bent_at"] {
+        assert!(!shader.wgsl.contains(part), "{part}: {}", shader.wgsl);
+    }
+}
+
+#[test]
+fn names_of_nodes_become_different_names_in_a_shader() {
+    // A hyphen is not allowed there, and `fn` and `smooth` are words of WGSL.
+    let text = "
+        nodes.a-b.worley = {}
+        nodes.a_b.worley = {}
+        nodes.fn.pups = { noise = {} }
+        nodes.smooth.add = ['a-b', 'a_b', 'fn']
+        material.height = 'smooth'";
+    let shader = shader(text, &TEXTURES);
+    for name in ["node_a_b", "node_a_b_", "node_fn", "node_smooth"] {
+        let declaration = format!("    let {name} = ");
+        assert_eq!(shader.wgsl.matches(&declaration).count(), 1, "{name}");
+    }
+    assert!(
+        shader.wgsl.contains("    fn_value: f32,"),
+        "{}",
+        shader.wgsl
+    );
+}
