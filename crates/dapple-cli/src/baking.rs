@@ -248,6 +248,11 @@ pub(crate) fn advise(error: RecipeError) -> Error {
                 .wrong_value();
         }
         RecipeErrorKind::UnknownRecipe { .. } => return Error::new(error).wrong_value(),
+        RecipeErrorKind::NotInShader { .. } => {
+            return Error::new(error)
+                .hint("with --textures, the shader takes their values as arguments; bake each with `dapple bake --node`")
+                .wrong_value();
+        }
         RecipeErrorKind::NoImage { .. } => "put the images into the folder of the recipe",
         RecipeErrorKind::Schema { .. } => "see the changelog for what has changed in recipes",
         _ => return error.into(),

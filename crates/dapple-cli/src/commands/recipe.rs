@@ -7,7 +7,7 @@ use crate::error::Exit;
 use crate::job::{Context, Job, put_text, say};
 use anyhow::Result;
 use dapple::hash::Seed;
-use dapple::recipe::{Plan, Recipe};
+use dapple::recipe::{Plan, Recipe, ShaderOptions};
 use serde::Serialize;
 
 const EXAMPLES: &str = "\
@@ -16,15 +16,17 @@ Examples:
   dapple recipe giraffe
   dapple recipe giraffe -o my-giraffe.toml
   dapple recipe flagstone --rust
+  dapple recipe flagstone --wgsl --textures -o flagstone.wgsl
   dapple recipe flagstone -o flagstone.json
   dapple recipe --schema -o recipe.schema.json
 
 A built-in recipe is printed as it was written, with its comments; change it and give the
 file to `dapple bake`. With --rust it becomes a Rust program that holds it as text and bakes it
-with the crate `dapple`. With the first line `#:schema recipe.schema.json` in a recipe, editors that use
+with the crate `dapple`. With --wgsl it becomes a function for shaders, with the same bits: height,
+color, roughness and metalness at a position. With the first line `#:schema recipe.schema.json` in a recipe, editors that use
 Taplo complete and check it.";
 
-/// List the built-in recipes; print a recipe as TOML, JSON or Rust, or the schema of all; check one of your own.
+/// List the built-in recipes; print a recipe as TOML, JSON, Rust or WGSL, or the schema of all; check one of your own.
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
@@ -48,6 +50,14 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with = "to")]
     rust: bool,
 
+    /// Print the material as a function of WGSL, in one file without bindings.
+    #[arg(long, conflicts_with_all = ["to", "rust"])]
+    wgsl: bool,
+
+    /// Let the shader take the values of nodes that it cannot compute as arguments, from baked textures.
+    #[arg(long, requires = "wgsl")]
+    textures: bool,
+
     /// Rewrite the recipe in this format [default: by the extension of the output].
     #[arg(long = "as", value_enum, value_name = "FORMAT")]
     to: Option<Text>,
@@ -61,7 +71,7 @@ pub(crate) struct Args {
     seed: Option<u64>,
 
     /// Only check whether the recipe can be baked.
-    #[arg(long, conflicts_with_all = ["rust", "to", "output"])]
+    #[arg(long, conflicts_with_all = ["rust", "wgsl", "to", "output"])]
     check: bool,
 
     #[command(flatten)]
@@ -116,6 +126,18 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         ))?;
         return Ok(Exit::Done);
     }
+    if args.wgsl {
+        if let Some(seed) = args.seed {
+            recipe.seed = Seed(seed);
+        }
+        let images = read_images(&recipe, folder, args.finite)?;
+        let options = ShaderOptions {
+            textures: args.textures,
+        };
+        let shader = recipe.to_wgsl(&images, &options).map_err(advise)?;
+        let job = Job::new(context, "recipe", &args.files);
+        return put_text(job, &recipe.name, "wgsl", &shader.wgsl, args);
+    }
     let is_as_written =
         !args.rust && args.format().is_none() && args.seed.is_none() && args.set.is_empty();
     if let Some(seed) = args.seed {
@@ -141,7 +163,7 @@ impl Args {
     fn format(&self) -> Option<Text> {
         let is_json = self.files.output.as_deref().is_some_and(is_json);
         self.to
-            .or_else(|| (is_json && !self.rust).then_some(Text::Json))
+            .or_else(|| (is_json && !self.rust && !self.wgsl).then_some(Text::Json))
     }
 }
 

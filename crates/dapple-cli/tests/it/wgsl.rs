@@ -3,10 +3,16 @@
 use crate::support::{Folder, assert_done, assert_refused, stdout};
 use dapple::hash::Seed;
 use dapple::noise::GradientNoise3;
+use dapple::recipe::Recipe;
 
-/// Prints a shader and validates it.
+/// Prints modules of noise and validates them.
 fn valid(folder: &Folder, arguments: &[&str]) -> String {
-    let output = folder.run(&[&["wgsl"], arguments].concat());
+    valid_output(folder, &[&["wgsl"], arguments].concat())
+}
+
+/// Runs a command that prints a shader, and validates it.
+fn valid_output(folder: &Folder, arguments: &[&str]) -> String {
+    let output = folder.run(arguments);
     assert_done(&output, "a shader");
     let text = stdout(&output);
     let module = naga::front::wgsl::parse_str(&text)
@@ -45,7 +51,7 @@ fn shaders_have_their_parameters_as_valid_constants() {
     let keys = format!("NOISE_3D = GradientNoise(vec4({x}u, {y}u, {z}u, 0u), vec4(8u, 8u, 8u, 0u)");
     assert!(text.contains(&keys), "{text}");
     let jittered = valid(&folder, &["worley-2d", "--seed", "7", "--jitter", "0.5"]);
-    assert!(jittered.contains("    1u,\n    512u,\n"), "{jittered}");
+    assert!(jittered.contains(", 1u, 512u);\n"), "{jittered}");
 }
 
 #[test]
@@ -76,4 +82,36 @@ fn shaders_for_naga_oil_are_single_modules() {
         "jitter is 2, but it must be from 0 to 1",
         "jitter",
     );
+}
+
+#[test]
+fn materials_of_builtin_recipes_are_valid_shaders() {
+    let folder = Folder::new("recipe-wgsl");
+    for name in Recipe::builtin_names() {
+        let text = valid_output(&folder, &["recipe", name, "--wgsl", "--textures"]);
+        assert!(text.contains("fn material(place: Place2d, "), "{name}");
+        let parsed = naga::front::wgsl::parse_str(&text).expect("a valid shader");
+        assert!(parsed.global_variables.is_empty(), "{name} has bindings");
+    }
+}
+
+#[test]
+fn nodes_without_a_shader_are_refused_by_name_unless_they_are_textures() {
+    let folder = Folder::new("recipe-wgsl-refused");
+    let refused = folder.run(&["recipe", "flagstone", "--wgsl"]);
+    assert_refused(
+        &refused,
+        2,
+        "`swell`: noise of the basis `pups` has no shader",
+        "the node",
+    );
+    assert_refused(
+        &refused,
+        2,
+        "with --textures, the shader takes their values as arguments",
+        "the way out",
+    );
+    let text = valid_output(&folder, &["recipe", "flagstone", "--wgsl", "--textures"]);
+    assert!(text.contains("fn material(place: Place2d, textures: Textures, zero: u32)"));
+    assert!(text.contains("    swell_value: f32,\n"), "{text}");
 }
