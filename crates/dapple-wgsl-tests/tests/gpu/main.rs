@@ -2,6 +2,7 @@
 
 mod gradient_noise;
 mod naga_oil;
+mod recipes;
 mod worley;
 
 use dapple_hash::Seed;
@@ -24,6 +25,16 @@ impl<const D: usize> Place<D> {
         std::array::from_fn(|axis| {
             f64::from(self.cell[axis]) + f64::from(self.fraction[axis]) / f64::from(1 << 24)
         })
+    }
+
+    /// Splits a position, whose coordinates must be multiples of 2^-24.
+    fn of(position: [f64; D]) -> Self {
+        let place = Self {
+            cell: position.map(|part| part.floor() as i32),
+            fraction: position.map(|part| ((part - part.floor()) * f64::from(1 << 24)) as u32),
+        };
+        assert_eq!(place.position(), position, "the position is exact");
+        place
     }
 
     /// Returns four words for the cell and four for the fraction.

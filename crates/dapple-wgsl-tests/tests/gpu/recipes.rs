@@ -1,0 +1,275 @@
+//! Materials of recipes, as functions of the position.
+
+use super::{Place, differing, places, words};
+use dapple_raster::{Field, Window};
+use dapple_recipe::{Images, Input, Plan, Recipe, ShaderOptions};
+use dapple_wgsl_tests::Gpu;
+
+/// Number of random positions of a recipe, near and far.
+const RANDOM: usize = 1 << 10;
+
+/// Number of pixels along each side of a window.
+const SIDE: u32 = 48;
+
+/// Largest error of a color that is mixed in Oklab, whose components are from 0 to 1.
+const OKLAB_ERROR: f32 = 4e-6;
+
+/// Positions at which a material is compared.
+enum At {
+    Places(Vec<Place<2>>),
+    Window(Window),
+}
+
+impl At {
+    fn places(&self) -> Vec<Place<2>> {
+        match self {
+            Self::Places(places) => places.clone(),
+            Self::Window(window) => {
+                let pixels = (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| (column, row)));
+                let positions = pixels.map(|(column, row)| window.position(column, row));
+                positions.map(|at| Place::of(at.into())).collect()
+            }
+        }
+    }
+
+    /// Returns the numbers of an input on the CPU.
+    fn numbers(&self, plan: &Plan, input: &Input) -> Vec<f32> {
+        let node = match input {
+            Input::Node(node) => node,
+            Input::Number(number) => return vec![*number as f32; self.places().len()],
+            Input::Color(_) => unreachable!("a color is not a number"),
+        };
+        let field = plan.field(node).expect("a number");
+        match self {
+            Self::Window(window) => field.to_raster(window).expect("a raster").into_pixels(),
+            Self::Places(places) => {
+                let positions: Vec<_> = places.iter().map(Place::position).collect();
+                let mut values = vec![0.0; positions.len()];
+                field.values(&positions, &mut values).expect("one length");
+                values
+            }
+        }
+    }
+
+    /// Returns the linear colors of an input on the CPU; numbers are grays.
+    fn colors(&self, plan: &Plan, input: &Input) -> Vec<[f32; 3]> {
+        let node = match input {
+            Input::Node(node) => node,
+            Input::Color(color) => return vec![color.to_array(); self.places().len()],
+            Input::Number(number) => return vec![[*number as f32; 3]; self.places().len()],
+        };
+        let colors = plan.colors(node).expect("a node");
+        match self {
+            Self::Window(window) => {
+                let raster = colors.to_raster(window).expect("a raster");
+                raster
+                    .pixels()
+                    .iter()
+                    .map(|color| color.to_array())
+                    .collect()
+            }
+            Self::Places(places) => {
+                let colors = places.iter().map(|at| colors.sample(at.position()));
+                colors
+                    .map(|color| color.expect("a color").to_array())
+                    .collect()
+            }
+        }
+    }
+}
+
+/// Results of a comparison: numbers of bits of heights, roughness and metalness that differ, numbers of components of
+/// colors that differ, and their largest error.
+#[derive(Debug, Default)]
+struct Difference {
+    numbers: usize,
+    colors: usize,
+    color_error: f32,
+}
+
+/// Compares a material with its plan. The values of nodes without a shader come from the plan.
+fn compare(gpu: &Gpu, recipe: &Recipe, plan: &Plan, at: &[At]) -> Difference {
+    let options = ShaderOptions { textures: true };
+    let shader = recipe.to_wgsl(&Images::new(), &options).expect("a shader");
+    let numbers =
+        |input: &Input| -> Vec<f32> { at.iter().flat_map(|at| at.numbers(plan, input)).collect() };
+    let colors = |input: &Input| -> Vec<[f32; 3]> {
+        at.iter().flat_map(|at| at.colors(plan, input)).collect()
+    };
+    let places: Vec<_> = at.iter().flat_map(At::places).collect();
+    let n = places.len();
+    // The values of textures, position by position
+    let mut columns = Vec::new();
+    let mut members = Vec::new();
+    for node in &shader.textures {
+        let first = columns.len();
+        if plan.is_color(node) {
+            let colors = colors(&Input::from(node.as_str()));
+            columns.extend([0, 1, 2].map(|axis| colors.iter().map(|color| color[axis]).collect()));
+            let parts = [0, 1, 2].map(|axis| format!("values[base + {}u]", first + axis));
+            members.push(format!("vec3({})", parts.join(", ")));
+        } else {
+            columns.push(numbers(&Input::from(node.as_str())));
+            members.push(format!("values[base + {first}u]"));
+        }
+    }
+    let rows = (0..n).flat_map(|row| columns.iter().map(move |column: &Vec<f32>| column[row]));
+    let mut values: Vec<u32> = rows.map(f32::to_bits).collect();
+    values.push(0);
+    let textures = match members.is_empty() {
+        true => String::new(),
+        false => format!("Textures({}), ", members.join(", ")),
+    };
+    let text = shader.wgsl
+        + &format!(
+            "
+@group(0) @binding(0) var<storage> zero: u32;
+@group(0) @binding(1) var<storage> places: array<array<vec4<u32>, 2>>;
+@group(0) @binding(2) var<storage> values: array<f32>;
+@group(0) @binding(3) var<storage, read_write> out: array<f32>;
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
+    let words = places[id.x];
+    let place = Place2d(bitcast<vec4<i32>>(words[0]).xy, bitcast<vec4<f32>>(words[1]).xy);
+    let base = {width}u * id.x + u32(values[0] * 0.0);
+    let result = material(place, {textures}zero);
+    out[6u * id.x] = result.height;
+    out[6u * id.x + 1u] = result.roughness;
+    out[6u * id.x + 2u] = result.metallic;
+    out[6u * id.x + 3u] = result.albedo.x;
+    out[6u * id.x + 4u] = result.albedo.y;
+    out[6u * id.x + 5u] = result.albedo.z;
+}}",
+            width = columns.len()
+        );
+    let on_gpu = gpu.compute(&text, &[&[0], &words(&places), &values], n, 6);
+    let material = &recipe.material;
+    let inputs = [&material.height, &material.roughness, &material.metallic];
+    let mut difference = Difference::default();
+    for (index, input) in inputs.into_iter().enumerate() {
+        let on_cpu = numbers(input).into_iter().map(f32::to_bits);
+        let on_cpu: Vec<u32> = on_cpu.collect();
+        let column: Vec<u32> = on_gpu.chunks_exact(6).map(|row| row[index]).collect();
+        difference.numbers += differing(&on_cpu, &column);
+    }
+    let albedo = material.albedo.as_ref().unwrap_or(&material.height);
+    let colors = colors(albedo);
+    for (row, color) in on_gpu.chunks_exact(6).zip(colors) {
+        for (&bits, on_cpu) in row[3..].iter().zip(color) {
+            let error = (f32::from_bits(bits) - on_cpu).abs();
+            difference.colors += usize::from(bits != on_cpu.to_bits());
+            difference.color_error = difference.color_error.max(error);
+        }
+    }
+    difference
+}
+
+/// Returns positions near and far: pixels of windows, and random ones.
+fn everywhere() -> Vec<At> {
+    let window = |origin: [f64; 2], pixel: f64| {
+        let side = pixel * f64::from(SIDE);
+        At::Window(Window::new(origin, [side; 2], [SIDE; 2]).expect("a window"))
+    };
+    let random = [4, 17].map(|bits| {
+        let mut places = places::<2>(7, bits);
+        places.truncate(RANDOM);
+        At::Places(places)
+    });
+    let windows = [
+        window([-3.5, 1000.25], 1.0 / 32.0),
+        window([100_000.0, -70_000.0], 3.0 / 1024.0),
+    ];
+    random.into_iter().chain(windows).collect()
+}
+
+#[test]
+#[expect(
+    clippy::print_stdout,
+    reason = "the output of a test has the largest errors"
+)]
+fn builtin_recipes_have_the_bits_of_the_cpu() {
+    let Some(gpu) = Gpu::new() else { return };
+    for name in Recipe::builtin_names() {
+        let recipe = Recipe::builtin(name).expect("a recipe");
+        // The values of nodes that depend on the whole tile, which a texture has, are not known at single positions.
+        let plan = Plan::new(&recipe, &Images::new(), 0.0).expect("a plan");
+        if plan.height().is_err() {
+            assert_eq!(
+                name, "stone-and-grass",
+                "the only recipe that blends by height"
+            );
+            continue;
+        }
+        let difference = compare(&gpu, &recipe, &plan, &everywhere());
+        println!("{name}: {difference:?}");
+        assert_eq!(difference.numbers, 0, "{name}");
+        assert!(difference.color_error < OKLAB_ERROR, "{name}");
+    }
+}
+
+/// All nodes with a shader, with options that the built-in recipes do not use.
+const NODES: &str = r##"
+    dapple = 1
+    extent = [5.0, 3.0]
+    wrap = [false, false]
+    [nodes]
+    hills.noise = { basis = "gradient", frequency = 3.7, octaves = 6, gain = 0.6 }
+    cells.worley = { frequency = [0.3, 1.7], value = [0.25, -0.5, 0.0, 0.0], range = [-0.3, 0.2] }
+    first.worley = { scatter = { jittered = { jitter = 0.0 } } }
+    negative.worley = { value = [-1.0, 0.0, 0.0, 0.0], scatter = { jittered = { jitter = 0.0 } } }
+    sum.worley = { value = "f2_minus_f1", octaves = { count = 3, lacunarity = 1.5, gain = -0.7, seeds = "same" }, range = [0.1, 0.8] }
+    stone.worley = { value = "cell_value", scatter = { poisson = { density = 0.5 } } }
+    across.coordinate = { center = [0.1, -2.0], along = [0.7, -1.3] }
+    right.coordinate = {}
+    sawtooth.wave = { input = "across", frequency = 1.3, phase = 0.37, form = "sawtooth" }
+    triangle.wave = { input = "hills", frequency = -9.0, form = "triangle" }
+    square.wave = { input = "right", frequency = 4.0, form = "square" }
+    turned.transform = { input = "cells", frequency = [1.1, 0.6], offset = [0.2, -7.3], rotation = 30.0 }
+    twice.transform = { input = "turned", frequency = 3.0, rotation = 90.0 }
+    ridges.fractal = { input = "cells", octaves = 3, gain = -0.6, lacunarity = 2.3, shape = "ridged" }
+    creases.fractal = { input = "across", shape = "billow" }
+    bent.warp = { input = "sum", x = "hills", y = "across", amount = 0.3 }
+    bent_color.warp = { input = "color", x = "first", y = "twice" }
+    quotient.divide = ["hills", "stone"]
+    by_zero.divide = ["across", "square"]
+    least.minimum = ["across", 0.0, "negative"]
+    most.maximum = ["negative", 0.0, "across"]
+    size.absolute = "across"
+    steep.levels = { input = "size", from = [0.9, 0.2], to = [0.3, -0.4], curve = "unclamped" }
+    soft.levels = { input = "first", from = [0.3, 0.1], to = [0.0, -0.25], curve = "smooth" }
+    low.clamp = { input = "negative", low = -0.3, high = 0.0 }
+    spot.profile = { input = "across", shape = { spots = { radius = 0.7 } } }
+    channel.profile = { input = "negative", shape = { channels = { width = 0.4 } } }
+    parts.multiply = ["quotient", "spot", "channel", -1.5]
+    between.mix = { from = "steep", to = "soft", by = "ridges" }
+    rest.subtract = ["parts", "between"]
+    color.ramp = { input = "hills", colors = ["#a04020", "#a04020", "#20c0f0"], positions = [0.2, 0.4, 0.7], space = "linear", interpolation = "smooth" }
+    steps.ramp = { input = "stone", colors = ["#ff0000", "#00ff00", "#0000ff"], positions = [0.2, 0.5, 0.5], interpolation = "stepped" }
+    tint = { color = "#336699" }
+    all_colors.add = ["color", "steps", "bent_color", "square"]
+    albedo.mix = { from = "all_colors", to = "tint", by = "triangle" }
+    [material]
+    albedo = "albedo"
+    metallic = 1.0
+"##;
+
+#[test]
+fn every_node_with_a_shader_has_the_bits_of_the_cpu() {
+    let Some(gpu) = Gpu::new() else { return };
+    let mut recipe = Recipe::from_toml(NODES).expect("a recipe");
+    let plan = Plan::new(&recipe, &Images::new(), 0.0).expect("a plan");
+    let numbers = plan.node_names().filter(|name| !plan.is_color(name));
+    let numbers: Vec<_> = numbers.map(Input::from).collect();
+    // Three nodes at a time
+    for nodes in numbers.chunks(3) {
+        recipe.material.height = nodes[0].clone();
+        recipe.material.roughness = nodes[nodes.len() / 2].clone();
+        recipe.material.metallic = nodes[nodes.len() - 1].clone();
+        let shader = recipe.to_wgsl(&Images::new(), &ShaderOptions::default());
+        assert!(shader.is_ok(), "{nodes:?}: {shader:?}");
+        let plan = Plan::new(&recipe, &Images::new(), 0.0).expect("a plan");
+        let difference = compare(&gpu, &recipe, &plan, &everywhere());
+        assert_eq!(difference.numbers, 0, "{nodes:?}");
+        assert_eq!(difference.colors, 0, "ramps in linear light are exact");
+    }
+}
