@@ -44,9 +44,11 @@ mod sample;
 mod scatter;
 mod seed;
 mod select;
+mod shape;
 mod sharpen;
 mod slope;
 mod slope_blur;
+mod smooth;
 mod synth;
 mod threshold;
 mod tile;
@@ -54,6 +56,7 @@ mod transform;
 mod warp;
 mod wave;
 mod wavelet;
+mod weave;
 mod worley;
 
 pub use alpha::ImageAlpha;
@@ -99,9 +102,11 @@ pub use sample::SampleAt;
 pub use scatter::ScatterNode;
 pub use seed::NodeSeed;
 pub use select::Select;
+pub use shape::ShapeNode;
 pub use sharpen::Sharpen;
 pub use slope::Slope;
 pub use slope_blur::SlopeBlur;
+pub use smooth::{SmoothMaximum, SmoothMinimum};
 pub use synth::SynthNode;
 pub use threshold::Threshold;
 pub use tile::Tiled;
@@ -109,6 +114,7 @@ pub use transform::Transform;
 pub use warp::Warp;
 pub use wave::{Wave, Waveform};
 pub use wavelet::WaveletNode;
+pub use weave::WeaveNode;
 pub use worley::{Frequency, Motion, WorleyNode, WorleyValue};
 
 use crate::plan::{Builder, ImageSource, Step, Work};
@@ -231,6 +237,10 @@ nodes! {
     "noise" Noise(FractalNode) in "cells and noise" as "{}",
     /// Bricks, tiles or planks in a regular bond.
     "bricks" Bricks(BricksNode) in "patterns" as "{}",
+    /// Woven cloth: plain weave, twill, satin or basket weave.
+    "weave" Weave(WeaveNode) in "patterns" as "{}",
+    /// Simple shape, such as a star, as a signed distance or a mask.
+    "shape" Shape(ShapeNode) in "patterns" as "{}",
     /// Another value of a node that has several, such as the random number of a brick.
     "output" Output(Output) in "patterns" as r#"{"of":0.5}"#,
     /// Shapes stamped at scattered points, such as gravel, leaves, rivets or scratches.
@@ -257,6 +267,10 @@ nodes! {
     "minimum" Minimum(Minimum) in "arithmetic" as "[0.0,1.0]",
     /// Maximum of all inputs.
     "maximum" Maximum(Maximum) in "arithmetic" as "[0.0,1.0]",
+    /// Smooth minimum of all inputs, which joins shapes with a fillet.
+    "smooth_minimum" SmoothMinimum(SmoothMinimum) in "arithmetic" as r#"{"inputs":[0.0,1.0]}"#,
+    /// Smooth maximum of all inputs, which intersects shapes with a fillet.
+    "smooth_maximum" SmoothMaximum(SmoothMaximum) in "arithmetic" as r#"{"inputs":[0.0,1.0]}"#,
     /// Absolute value of a number.
     "absolute" Absolute(Absolute) in "arithmetic" as "0.0",
     /// Number raised to a power.

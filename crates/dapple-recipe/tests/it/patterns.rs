@@ -31,6 +31,19 @@ fn outputs_equal_the_node_with_that_value_and_seed() {
         );
         assert_eq!(rendered(&nodes, "a"), rendered(&nodes, "b"), "{value}");
     }
+    for &value in dapple_pattern::WeaveValue::NAMES {
+        let nodes = format!(
+            "[nodes]\ncloth.weave = {{ draft = \"twill\", jitter = 0.5 }}\n\
+             a.output = {{ of = \"cloth\", value = \"{value}\" }}\n\
+             b.weave = {{ draft = \"twill\", jitter = 0.5, value = \"{value}\", seed = \"cloth\" }}"
+        );
+        assert_eq!(rendered(&nodes, "a"), rendered(&nodes, "b"), "{value}");
+    }
+    let nodes = "[nodes]\n\
+        star.shape = { kind = \"star\", frequency = 2 }\n\
+        a.output = { of = \"star\", value = \"mask\" }\n\
+        b.shape = { kind = \"star\", frequency = 2, value = \"mask\" }";
+    assert_eq!(rendered(nodes, "a"), rendered(nodes, "b"));
     // The range of a Worley node belongs to its own value.
     let nodes = "[nodes]\n\
         cells.worley = { frequency = 4, value = \"f1\", range = [0.0, 1.0] }\n\
@@ -133,6 +146,61 @@ fn patterns_whose_period_does_not_fit_the_tile_are_refused() {
         let error = try_rendered(&recipe(nodes), "a").expect_err(nodes);
         assert_eq!(error.to_string(), message);
     }
+}
+
+#[test]
+fn shapes_repeat_with_the_tile_where_the_recipe_does() {
+    // The circle at the left side continues on the right.
+    let nodes = "[nodes]\na.shape = { center = [0.0, 0.5], size = 0.25 }";
+    let raster = rendered(nodes, "a");
+    let [left, right] = [0, 47].map(|column| raster.row(16)[column]);
+    assert_eq!(left, right);
+    assert!(left < -0.2, "{left}");
+    // Without repeats, there is a single circle.
+    let alone = recipe(&format!("wrap = [false, true]\n{nodes}"));
+    let raster = try_rendered(&alone, "a").unwrap();
+    assert!(raster.row(16)[47] > 0.7, "{}", raster.row(16)[47]);
+    let error = try_rendered(&recipe("[nodes]\na.shape = { frequency = 1.5 }"), "a").unwrap_err();
+    assert!(
+        matches!(error.kind(), RecipeErrorKind::Range { .. }),
+        "{error}"
+    );
+}
+
+#[test]
+fn smooth_minima_equal_the_minimum_past_the_radius_and_are_lower_by_a_quarter_between() {
+    let value = |node: &str| rendered(&format!("[nodes]\na.{node}"), "a").row(0)[0];
+    assert_eq!(
+        value("smooth_minimum = { inputs = [0.25, 0.75], radius = 0.5 }"),
+        0.25
+    );
+    assert_eq!(
+        value("smooth_maximum = { inputs = [0.25, 0.75], radius = 0.5 }"),
+        0.75
+    );
+    assert_eq!(
+        value("smooth_minimum = { inputs = [0.5, 0.5], radius = 0.5 }"),
+        0.375
+    );
+    assert_eq!(
+        value("smooth_maximum = { inputs = [0.5, 0.5], radius = 0.5 }"),
+        0.625
+    );
+    // The overlap is ¼: its square, divided by four times the radius.
+    assert_eq!(
+        value("smooth_minimum = { inputs = [0.75, 0.5], radius = 0.5 }"),
+        0.5 - 0.03125
+    );
+    assert_eq!(
+        value("smooth_minimum = { inputs = [0.5, 0.5], radius = 0.0 }"),
+        0.5
+    );
+    let negative = recipe("[nodes]\na.smooth_minimum = { inputs = [1.0], radius = -1.0 }");
+    let error = try_rendered(&negative, "a").unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "in the node `a`: the radius is -1, but it must be from 0 to 1e6"
+    );
 }
 
 #[test]
