@@ -12,6 +12,7 @@
 //! Positions are in cells. Lengths are in widths of a cell.
 
 mod shape;
+mod spacing;
 
 #[cfg(test)]
 mod tests;
@@ -22,6 +23,7 @@ use crate::PatternError;
 use dapple_hash::{CellHash, Seed, unit_f32};
 use dapple_raster::{Field, Range, RasterError, RasterViewMut, Window, range};
 use shape::Outline;
+use spacing::Spacing;
 
 dapple_raster::named! {
     /// Rule for positions that several stamps cover.
@@ -106,6 +108,7 @@ pub struct Stamps {
     cell_height: f64,
     density: f64,
     jitter: f64,
+    spacing: f64,
     row_offset: f64,
     shape: StampShape,
     size: [f64; 2],
@@ -124,6 +127,7 @@ impl Stamps {
     pub const DENSITY: Range = range!(above 0 to 16);
     pub const FRACTION: Range = range!(from 0 to 1);
     pub const SIGNED: Range = range!(from -1 to 1);
+    pub const SPACING: Range = range!(from 0 to 4);
 }
 
 impl Stamps {
@@ -136,6 +140,7 @@ impl Stamps {
             cell_height: 1.0,
             density: 1.0,
             jitter: 1.0,
+            spacing: 0.0,
             row_offset: 0.0,
             shape: StampShape::default(),
             size: [0.5, 1.0],
@@ -193,6 +198,17 @@ impl Stamps {
     pub fn with_jitter(self, jitter: f64) -> Result<Self, PatternError> {
         PatternError::check_in(Self::FRACTION, "jitter", jitter)?;
         Ok(Self { jitter, ..self })
+    }
+
+    /// Sets the minimum distance between two points, in widths of a cell, from 0 to 4; by default 0. Of points that are
+    /// closer, the ones with the lower random priorities are left out, so that the density becomes lower.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PatternErrorKind::Range) if the distance is out of range.
+    pub fn with_spacing(self, spacing: f64) -> Result<Self, PatternError> {
+        PatternError::check_in(Self::SPACING, "spacing", spacing)?;
+        Ok(Self { spacing, ..self })
     }
 
     /// Sets the shift of each row of cells relative to the row above, in cells, from −1 to 1; by default 0.
@@ -295,8 +311,8 @@ impl Stamps {
     /// # Errors
     ///
     /// [`Range`](crate::PatternErrorKind::Range) if stamps reach farther than 8 cells along an axis, if more than 1024
-    /// stamps are in the cells within reach, or if the offsets of all rows of a period do not add up to a whole number
-    /// of cells.
+    /// stamps are in the cells within reach, if a period is shorter than the spacing or more than 64 points are within
+    /// the spacing, or if the offsets of all rows of a period do not add up to a whole number of cells.
     pub fn field(&self, value: StampValue) -> Result<StampField, PatternError> {
         let half = 0.5 * self.size[1];
         // Corners of the bounding box, whose half width is the half length times the aspect.
@@ -318,6 +334,7 @@ impl Stamps {
             near,
             "at most 1024 (by the density and the largest size)",
         )?;
+        self.check_spacing()?;
         if let Some(rows) = self.period[1] {
             let shift = f64::from(rows) * self.row_offset;
             PatternError::check(
@@ -334,6 +351,24 @@ impl Stamps {
             value,
             reach,
         })
+    }
+
+    /// Refuses a spacing at which a point would meet its copies, or too many other points.
+    fn check_spacing(&self) -> Result<(), PatternError> {
+        for (period, length) in self.period.into_iter().zip([1.0, self.cell_height]) {
+            let length = period.map_or(f64::INFINITY, |cells| f64::from(cells) * length);
+            let (what, range) = ("spacing", "at most the period");
+            PatternError::check(self.spacing <= length, what, self.spacing, range)?;
+        }
+        let area = core::f64::consts::PI * self.spacing * self.spacing / self.cell_height;
+        let near = area * self.density;
+        let range = "at most 64 (by the density and the spacing)";
+        PatternError::check(
+            near <= 64.0,
+            "number of points within the spacing",
+            near,
+            range,
+        )
     }
 
     /// Returns the points of a cell, relative to the corner of the cell.
@@ -432,7 +467,7 @@ fn direction(degrees: f64) -> [f64; 2] {
     }
 }
 
-/// Number of hashes that are reserved for a point: one for its position, and those of its stamp.
+/// Number of hashes that are reserved for a point: one for its position, those of its stamp, and its priority.
 const DRAWS: u32 = 8;
 
 /// A point of a cell.
@@ -521,11 +556,12 @@ impl StampField {
             let low = center[axis] - half[axis] - self.reach[axis];
             low.floor() as i64 - if axis == 0 { has_offset } else { 0 }
         });
+        let mut spacing = Spacing::new(stamps);
         let last = [0, 1].map(|axis| (center[axis] + half[axis] + self.reach[axis]).floor() as i64);
         for y in first[1]..=last[1] {
             for x in first[0]..=last[0] {
                 let other = [cell[0].wrapping_add(x), cell[1].wrapping_add(y)];
-                near.extend(stamps.points(other).filter_map(|mut point| {
+                for (index, mut point) in stamps.points(other).enumerate() {
                     point.position[0] += x as f64;
                     point.position[1] += y as f64;
                     // Most points are too far for any stamp.
@@ -533,9 +569,14 @@ impl StampField {
                         let distance = (point.position[axis] - center[axis]).abs();
                         distance > half[axis] + 1.001 * self.reach[axis]
                     });
-                    let stamp = (!is_far).then(|| stamps.stamp(&point))?;
-                    stamp.meets(center, half).then_some(stamp)
-                }));
+                    if is_far {
+                        continue;
+                    }
+                    let stamp = stamps.stamp(&point);
+                    if stamp.meets(center, half) && spacing.keeps(other, index) {
+                        near.push(stamp);
+                    }
+                }
             }
         }
         match stamps.overlap {

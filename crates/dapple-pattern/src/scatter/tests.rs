@@ -40,6 +40,13 @@ fn examples() -> Vec<Stamps> {
                 .unwrap(),
         );
     }
+    let spaced = tile()
+        .with_density(3.0)
+        .unwrap()
+        .with_spacing(0.75)
+        .unwrap();
+    let spaced = spaced.with_row_offset(0.5).unwrap();
+    examples.push(spaced.with_cell_height(0.5).unwrap());
     // Long stamps reach over the whole tile.
     examples.push(
         tile()
@@ -52,14 +59,57 @@ fn examples() -> Vec<Stamps> {
     examples
 }
 
+/// Cells and indices of the points of the tile that the spacing keeps, by adding them one at a time.
+fn kept_points(stamps: &Stamps) -> Vec<([i64; 2], usize)> {
+    let period = i64::from(PERIOD);
+    let cells = (0..period * period).map(|cell| [cell % period, cell / period]);
+    let mut points: Vec<_> = cells
+        .flat_map(|cell| {
+            let points = stamps.points(cell).enumerate();
+            points.map(move |(index, point)| {
+                let priority = point.hash.at(point.first + 7);
+                let [x, y] = point.position;
+                (
+                    priority,
+                    cell,
+                    index,
+                    [x + cell[0] as f64, y + cell[1] as f64],
+                )
+            })
+        })
+        .collect();
+    points.sort_by_key(|&(priority, ..)| core::cmp::Reverse(priority));
+    let mut kept: Vec<([i64; 2], usize, [f64; 2])> = Vec::new();
+    for (_, cell, index, [x, y]) in points {
+        let is_close = |&(_, _, [other_x, other_y]): &([i64; 2], usize, [f64; 2])| {
+            (0..9).any(|copy| {
+                let dx = x - other_x + f64::from(PERIOD) * f64::from(copy % 3 - 1);
+                let dy = y - other_y + f64::from(PERIOD) * f64::from(copy / 3 - 1);
+                let dy = dy * stamps.cell_height;
+                dx * dx + dy * dy < stamps.spacing * stamps.spacing
+            })
+        };
+        if !kept.iter().any(is_close) {
+            kept.push((cell, index, [x, y]));
+        }
+    }
+    kept.into_iter()
+        .map(|(cell, index, _)| (cell, index))
+        .collect()
+}
+
 /// All stamps of the tile and its copies around it, in the order in which they are stamped.
 fn all_stamps(stamps: &Stamps) -> Vec<Stamp> {
     let mut all = Vec::new();
+    let kept = kept_points(stamps);
     let reach = 3 * i64::from(PERIOD);
     for y in -reach..reach {
         for x in -reach..reach {
             let home = [x, y].map(|cell| cell.rem_euclid(PERIOD.into()));
-            for mut point in stamps.points(home) {
+            for (index, mut point) in stamps.points(home).enumerate() {
+                if !kept.contains(&(home, index)) {
+                    continue;
+                }
                 point.position[0] += x as f64;
                 point.position[1] += y as f64;
                 all.push(stamps.stamp(&point));
@@ -270,6 +320,24 @@ fn the_density_is_the_mean_number_of_stamps() {
 }
 
 #[test]
+fn the_spacing_leaves_out_close_points() {
+    let spaced = tile()
+        .with_density(3.0)
+        .unwrap()
+        .with_spacing(0.75)
+        .unwrap();
+    let kept = kept_points(&spaced).len();
+    // A saturated set has 0.70 points per squared distance, 20 in the tile; there are 48 candidates.
+    assert!((12..=20).contains(&kept), "{kept}");
+    // The stamps are as small as points.
+    let dots = spaced.with_size([0.001; 2]).unwrap();
+    let field = dots.field(StampValue::Mask).unwrap();
+    let mut near = Vec::new();
+    field.near([0, 0], [2.0; 2], [2.0; 2], &mut near);
+    assert_eq!(near.len(), kept);
+}
+
+#[test]
 fn shapes_are_inside_of_their_box_and_their_profile_is_a_height() {
     let steps = 200;
     for &shape in StampShape::ALL {
@@ -320,6 +388,7 @@ fn options_out_of_range_are_refused_with_the_limit() {
     assert_refused(tile().with_density(0.0), "number of stamps per cell");
     assert_refused(tile().with_rotation([0.0, f64::NAN]), "rotation of a stamp");
     assert_refused(tile().with_height([-0.1, 1.0]), "height of a stamp");
+    assert_refused(tile().with_spacing(5.0), "spacing");
     assert_refused(tile().with_bevel(-0.1), "bevel");
     assert_refused(tile().with_lift(2.0), "lift");
     assert_refused(tile().with_tilt(-2.0), "tilt");
@@ -337,6 +406,14 @@ fn stamps_that_reach_too_far_or_break_the_period_are_refused() {
     let many = larger.with_density(16.0).unwrap();
     let what = "number of stamps within reach of a position";
     assert_refused(many.field(StampValue::Height), what);
+    let spaced = tile()
+        .with_period([Some(1), None])
+        .unwrap()
+        .with_spacing(1.5);
+    assert_refused(spaced.unwrap().field(StampValue::Height), "spacing");
+    let spaced = tile().with_density(16.0).unwrap().with_spacing(2.0);
+    let what = "number of points within the spacing";
+    assert_refused(spaced.unwrap().field(StampValue::Height), what);
     let shifted = tile().with_row_offset(0.3).unwrap();
     let what = "total offset of the rows of a period";
     assert_refused(shifted.field(StampValue::Height), what);

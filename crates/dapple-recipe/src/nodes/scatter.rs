@@ -27,6 +27,9 @@ pub struct ScatterNode {
     /// Maximum offset of a point from the center of its cell: 0 is a regular lattice, 1 is anywhere in the cell.
     #[cfg_attr(feature = "schema", schemars(transform = { Stamps::FRACTION }))]
     pub jitter: f64,
+    /// Minimum distance between two points, in widths of a cell: points that are too close to others are left out.
+    #[cfg_attr(feature = "schema", schemars(transform = { Stamps::SPACING }))]
+    pub spacing: f64,
     /// Shift of each row of cells relative to the row above, in cells.
     #[cfg_attr(feature = "schema", schemars(transform = { Stamps::SIGNED }))]
     pub row_offset: f64,
@@ -62,6 +65,7 @@ impl Default for ScatterNode {
             shape: StampShape::default(),
             density: 1.0,
             jitter: 1.0,
+            spacing: 0.0,
             row_offset: 0.0,
             size: [0.5, 1.0],
             aspect: [1.0; 2],
@@ -85,6 +89,7 @@ impl NodeKind for ScatterNode {
             .with_cell_height(frequency[0] / frequency[1])?
             .with_density(self.density)?
             .with_jitter(self.jitter)?
+            .with_spacing(self.spacing)?
             .with_row_offset(self.row_offset)?
             .with_shape(self.shape)
             .with_size(self.size)?

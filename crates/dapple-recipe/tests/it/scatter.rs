@@ -6,7 +6,7 @@ use dapple_pattern::{StampOverlap, StampShape, StampValue, Stamps};
 use dapple_raster::{Field as _, FieldExt as _, Window};
 use dapple_recipe::{BakeMemory, BakeOptions, Images, Plan, Recipe, RecipeErrorKind, Region};
 
-const STAMPS: &str = "shape = \"leaf\", frequency = [3, 6], density = 2.5, jitter = 0.5, row_offset = 0.5, \
+const STAMPS: &str = "shape = \"leaf\", frequency = [3, 6], density = 2.5, jitter = 0.5, spacing = 0.25, row_offset = 0.5, \
     size = [0.8, 1.2], aspect = [0.4, 0.5], rotation = [-30, 30], height = [0.5, 1], bevel = 0.1, lift = 0.6, \
     tilt = 0.2, overlap = \"order\"";
 
@@ -26,6 +26,8 @@ fn the_node_is_the_field_of_the_crate() {
         .with_density(2.5)
         .unwrap()
         .with_jitter(0.5)
+        .unwrap()
+        .with_spacing(0.25)
         .unwrap()
         .with_row_offset(0.5)
         .unwrap()
