@@ -94,6 +94,8 @@ pub enum Module {
     Worley3d,
     /// Arithmetic of single numbers, with correctly rounded quotients.
     Number,
+    /// Powers of numbers.
+    Power,
     /// Sums and products of numbers of 64 bits.
     Double,
     /// Positions in the plane, in numbers of 64 bits.
@@ -150,6 +152,7 @@ entries! {
     Worley2d = "worley_2d" [Exact, Hash, Place2d, Root, CellId, WorleyParts],
     Worley3d = "worley_3d" [Exact, Hash, Place3d, Root, CellId, WorleyParts],
     Number = "number" [],
+    Power = "power" [Number],
     Double = "double" [],
     Position2d = "position_2d" [Place2d, Double],
     Oklab = "oklab" [Exact],

@@ -1,5 +1,7 @@
 //! Raises numbers to a power.
 
+use crate::shader::{Code, NodeShader, Refusal, literal};
+use dapple_wgsl::Module;
 use super::NodeKind;
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError};
@@ -32,5 +34,25 @@ impl NodeKind for Power {
             let positive = if value < 0.0 { 0.0 } else { value };
             libm::powf(positive, exponent)
         })
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        if self.exponent >= 134_217_728.0 {
+            return Err(Refusal::new("exponents of 2^27 and more have no shader"));
+        }
+        let input = shader.number(&self.input)?;
+        let base = shader.name("base", format!("number_max({input}, 0.0, zero)"));
+        // The CPU treats three exponents separately.
+        Ok(Code::number(if self.exponent == 1.0 {
+            base
+        } else if self.exponent == 2.0 {
+            format!("number_mul({base}, {base}, zero)")
+        } else if self.exponent == 0.5 {
+            shader.needs(Module::Root);
+            format!("exact_root({base})")
+        } else {
+            shader.needs(Module::Power);
+            format!("number_power({base}, {}, zero)", literal(self.exponent))
+        }))
     }
 }

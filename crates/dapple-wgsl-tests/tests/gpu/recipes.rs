@@ -235,6 +235,13 @@ const NODES: &str = r##"
     least.minimum = ["across", 0.0, "negative"]
     most.maximum = ["negative", 0.0, "across"]
     size.absolute = "across"
+    power.power = { input = "across", exponent = 1.2 }
+    cube.power = { input = "size", exponent = 3.0 }
+    root.power = { input = "size", exponent = 0.5 }
+    square_power.power = { input = "hills", exponent = 2.0 }
+    flat.power = { input = "hills", exponent = 0.35 }
+    same.power = { input = "across", exponent = 1.0 }
+    far_power.power = { input = "across", exponent = 31.7 }
     steep.levels = { input = "size", from = [0.9, 0.2], to = [0.3, -0.4], curve = "unclamped" }
     soft.levels = { input = "first", from = [0.3, 0.1], to = [0.0, -0.25], curve = "smooth" }
     low.clamp = { input = "negative", low = -0.3, high = 0.0 }
