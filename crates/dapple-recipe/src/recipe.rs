@@ -55,6 +55,9 @@ pub struct Recipe {
     /// Description of the recipe, in one sentence.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub about: String,
+    /// Words for searches; the first one is the family, such as `wood`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tags: Vec<String>,
     /// Seed for the random numbers of all nodes.
     ///
     /// A node whose seed is a number does not depend on this seed.
@@ -138,6 +141,7 @@ impl Recipe {
             dapple: SCHEMA,
             name: name.to_owned(),
             about: String::new(),
+            tags: Vec::new(),
             seed,
             extent: default_extent(),
             wrap: default_wrap(),

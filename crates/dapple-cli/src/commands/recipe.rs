@@ -3,16 +3,18 @@
 use super::bake::Setting;
 use crate::args::{FiniteArgs, OutputArgs, seed};
 use crate::baking::{advise, is_json, read_images, read_recipe};
-use crate::error::Exit;
+use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, Job, put_text, say};
 use anyhow::Result;
 use dapple::hash::Seed;
 use dapple::recipe::{Plan, Recipe, ShaderOptions};
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 const EXAMPLES: &str = "\
 Examples:
   dapple recipe --list
+  dapple recipe --list wood
   dapple recipe giraffe
   dapple recipe giraffe -o my-giraffe.toml
   dapple recipe flagstone --rust
@@ -34,9 +36,9 @@ pub(crate) struct Args {
     #[arg(value_name = "RECIPE", required_unless_present_any = ["list", "schema", "reference"])]
     recipe: Option<String>,
 
-    /// List the built-in recipes.
-    #[arg(long, conflicts_with = "recipe")]
-    list: bool,
+    /// List the built-in recipes by family; with a word, those whose name, description or tags contain it.
+    #[arg(long, value_name = "WORD", num_args = 0..=1, conflicts_with = "recipe")]
+    list: Option<Option<String>>,
 
     /// Print the JSON Schema of recipes, for completion and checks in editors.
     #[arg(long, conflicts_with_all = ["recipe", "list", "reference"])]
@@ -110,7 +112,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
                 let job = Job::new(context, "recipe", &args.files);
                 put_text(job, "recipe", "md", &Recipe::reference(), args)
             }
-            _ => list(),
+            _ => list(args.list.iter().flatten().next().map(String::as_str)),
         };
     };
     let (mut recipe, folder) = read_recipe(name)?;
@@ -167,13 +169,31 @@ impl Args {
     }
 }
 
-/// Prints the names of the built-in recipes, with a sentence about each.
-fn list() -> Result<Exit> {
-    let mut lines = Vec::new();
+/// Prints the names of the built-in recipes by family, with a sentence about each. With a word, only those whose name,
+/// sentence or tags contain it.
+fn list(word: Option<&str>) -> Result<Exit> {
+    let mut families: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for name in Recipe::builtin_names() {
         let recipe = Recipe::builtin(name).map_err(advise)?;
-        lines.push(format!("{name:<16} {}", recipe.about));
+        let texts = [&name.to_owned(), &recipe.about];
+        let contains = |word: &str| {
+            let mut texts = texts.into_iter().chain(&recipe.tags);
+            texts.any(|text| text.to_lowercase().contains(&word.to_lowercase()))
+        };
+        if word.is_none_or(contains) {
+            let family = recipe.tags.first().cloned().unwrap_or_default();
+            let line = format!("  {name:<18} {}", recipe.about);
+            families.entry(family).or_default().push(line);
+        }
     }
-    say(&lines.join("\n"))?;
+    if families.is_empty() {
+        let word = word.unwrap_or_default();
+        return Err(usage(format!("no built-in recipe is about `{word}`"))
+            .hint("`dapple recipe --list` names all"));
+    }
+    let lines = families
+        .into_iter()
+        .flat_map(|(family, lines)| core::iter::once(family).chain(lines));
+    say(&lines.collect::<Vec<_>>().join("\n"))?;
     Ok(Exit::Done)
 }

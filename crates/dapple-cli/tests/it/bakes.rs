@@ -79,7 +79,7 @@ fn all_built_in_recipes_bake() {
     let list = stdout(&folder.run(&["recipe", "--list"]));
     let names: Vec<_> = list
         .lines()
-        .filter_map(|line| line.split_whitespace().next())
+        .filter_map(|line| line.strip_prefix("  ")?.split_whitespace().next())
         .collect();
     assert!(names.len() >= 20, "all that the papers name: {names:?}");
     for name in names {
@@ -94,6 +94,34 @@ fn all_built_in_recipes_bake() {
             "{name} has a relief: {statistics:?}"
         );
     }
+}
+
+#[test]
+fn recipes_are_listed_by_family_and_by_words() {
+    let folder = Folder::new("recipe-list");
+    let list = stdout(&folder.run(&["recipe", "--list"]));
+    let families = list.lines().filter(|line| !line.starts_with(' '));
+    let families: Vec<_> = families.collect();
+    assert!(
+        families.is_sorted() && families.contains(&"stone"),
+        "{families:?}"
+    );
+    // A tag, a name and a word of the sentence, in any case.
+    for (word, name) in [
+        ("timber", "wood-grain"),
+        ("Marble", "marble"),
+        ("joints", "flagstone"),
+    ] {
+        let found = stdout(&folder.run(&["recipe", "--list", word]));
+        assert!(found.contains(&format!("  {name} ")), "{word}: {found}");
+        assert!(!found.contains("  craters "), "{word}: {found}");
+    }
+    assert_refused(
+        &folder.run(&["recipe", "--list", "xyzzy"]),
+        2,
+        "no built-in recipe is about `xyzzy`",
+        "`dapple recipe --list` names all",
+    );
 }
 
 #[test]
