@@ -19,6 +19,7 @@ readmes! {
     dapple: "../crates/dapple/README.md",
     hash: "../crates/dapple-hash/README.md",
     noise: "../crates/dapple-noise/README.md",
+    pattern: "../crates/dapple-pattern/README.md",
     graph: "../crates/dapple-graph/README.md",
     points: "../crates/dapple-points/README.md",
     pups: "../crates/dapple-pups/README.md",

@@ -193,18 +193,21 @@ impl Bricks {
         if x.offset.is_nan() || y.offset.is_nan() {
             return f32::NAN;
         }
-        let brick = match self.options.bond {
+        let bond = self.options.bond;
+        if value == BrickValue::EdgeDistance {
+            return match bond {
+                Bond::Hexagons => self.hexagon_edge_distance([x, y]) as f32,
+                Bond::RoofTiles | Bond::Slates => self.roof_edge_distance([x, y]) as f32,
+                _ => self.rectangle_edge_distance([x, y]) as f32,
+            };
+        }
+        let brick = match bond {
             Bond::Hexagons => self.hexagon([x, y]),
             Bond::RoofTiles | Bond::Slates => self.roof_tile([x, y]),
             _ => self.rectangle([x, y]),
         };
         match value {
-            BrickValue::Height => brick.height.clamp(0.0, 1.0) as f32,
-            BrickValue::EdgeDistance => match self.options.bond {
-                Bond::Hexagons => self.hexagon_edge_distance([x, y]) as f32,
-                Bond::RoofTiles | Bond::Slates => self.roof_edge_distance([x, y]) as f32,
-                _ => self.rectangle_edge_distance([x, y]) as f32,
-            },
+            BrickValue::Height | BrickValue::EdgeDistance => brick.height.clamp(0.0, 1.0) as f32,
             BrickValue::Random => self.random(brick.id, 0),
             BrickValue::Random2 => self.random(brick.id, 1),
             BrickValue::Random3 => self.random(brick.id, 2),

@@ -274,6 +274,9 @@ impl Shape {
             };
         }
         let mut nearest = self.copy_distance(offset);
+        if spacing == [None; 2] {
+            return nearest;
+        }
         // The nearest point of all copies is at most half of a period from the position along each axis, compared with
         // the same point of other copies. The center of its copy is at most the bound further away.
         let steps = [0, 1].map(|axis| match spacing[axis] {

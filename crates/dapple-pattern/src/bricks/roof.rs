@@ -39,11 +39,13 @@ impl Bricks {
             let columns = [-1, 0, 1].map(|column| self.tile(place, column, below).depth);
             columns[0].max(columns[1]).max(columns[2])
         };
-        let [upper, own, lower] = [-1, 0, 1].map(nearest);
+        let own = nearest(0);
         if own >= 0.0 {
             // The course above lies over this one.
-            own.min(-upper)
-        } else if lower >= 0.0 {
+            return own.min(-nearest(-1));
+        }
+        let lower = nearest(1);
+        if lower >= 0.0 {
             lower.min(-own)
         } else {
             own.max(lower)
