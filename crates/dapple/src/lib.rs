@@ -31,6 +31,7 @@
 //! | cells, cracks, scales, in 2-D to 4-D | [`worley`] | [`Worley2::new`](worley::Worley::new) |
 //! | noise and turbulence of control points, cows, giraffes | [`pups`] | [`noise`](pups::noise()), [`octaves`](pups::octaves()), [`space_giraffe`](pups::space_giraffe()) |
 //! | Perlin's gradient noise, in 2-D to 4-D, and fractal sums of it | [`noise`] | [`GradientNoise2`](noise::GradientNoise2) |
+//! | bricks, tiles, planks, cloth, stars and other shapes | [`pattern`] | [`Bricks`](pattern::Bricks), [`Weave`](pattern::Weave), [`Shape`](pattern::Shape) |
 //! | noise with one octave in each band; images halved and doubled | [`wavelet`] | [`WaveletNoise2`](wavelet::WaveletNoise2), [`SplineFilter`](wavelet::SplineFilter) |
 //! | a material with all its maps, from a text | [`recipe`] | [`Recipe::builtin`](recipe::Recipe::builtin), [`Bake`](recipe::Bake) |
 //! | an image that repeats; materials blended | [`tile`] | [`Seamless`](tile::Seamless), [`SeamReport`](tile::SeamReport), [`blend`](tile::blend()) |
@@ -73,6 +74,8 @@
 //! | domain warping | [`FieldExt::warp`](raster::FieldExt::warp), the `warp` node of a [`recipe`] |
 //! | a heightmap, or the normal map of one | any field through [`to_raster`](raster::Field::to_raster); [`color::normal_map`] |
 //! | tileable or seamless textures | generators repeat exactly with a `period`; [`tile::Seamless`] for images that somebody else made |
+//! | a brick wall, a floor, a fabric | [`pattern::Bricks`], [`pattern::Weave`] |
+//! | signed distance fields (SDF) | [`pattern::Shape`]; `shape` and `smooth_minimum` of a [`recipe`] |
 //! | blue noise | [`points::poisson_disk`]: points that keep their distance |
 //! | trees of an endless world, scatter in chunks | [`points::EndlessPoissonDisk`], also with a radius that [varies](points::EndlessVariablePoissonDisk) |
 //! | a Voronoi diagram, the nearest of some points | [`graph::Voronoi`] |
@@ -95,7 +98,7 @@
 //!
 //! | feature | default | effect |
 //! |---|---|---|
-//! | `hash`, `raster`, `color`, `points`, `noise`, `wavelet`, `mesh`, `mesh-io`, `image`, `graph`, `worley`, `tile`, `preview`, `pups`, `synth`, `recipe` | on | the module of this name, and the modules whose types it uses |
+//! | `hash`, `raster`, `color`, `points`, `noise`, `pattern`, `wavelet`, `mesh`, `mesh-io`, `image`, `graph`, `worley`, `tile`, `preview`, `pups`, `synth`, `recipe` | on | the module of this name, and the modules whose types it uses |
 //! | `rayon` | on | work on all cores; the bits do not change |
 //! | `simd` | on | gradient noise in the widest vector instructions of the processor; the bits do not change |
 //! | `json` | on | seam reports and directions as JSON |
@@ -157,6 +160,10 @@ pub use dapple_worley as worley;
 /// Gradient noise: Perlin's, with exact periods.
 #[cfg(feature = "noise")]
 pub use dapple_noise as noise;
+
+/// Patterns with exact periods: bricks, woven threads, shapes.
+#[cfg(feature = "pattern")]
+pub use dapple_pattern as pattern;
 
 /// Spline wavelets: rasters halved and doubled exactly, and wavelet noise.
 #[cfg(feature = "wavelet")]
