@@ -218,3 +218,19 @@ fn new_nodes_of_patterns_build_on_a_tile_of_one_unit() {
         }
     }
 }
+
+#[test]
+fn the_wall_of_the_readme_has_at_most_12_nodes_and_bakes() {
+    let readme = include_str!("../../README.md");
+    let wall = readme.split("```toml\n").nth(2).expect("a second recipe");
+    let recipe = Recipe::from_toml(wall.split("```").next().expect("its end")).unwrap();
+    assert!(recipe.nodes.len() <= 12, "{} nodes", recipe.nodes.len());
+    let height = try_rendered(&recipe, "height").unwrap();
+    let [least, most] = [f32::INFINITY, f32::NEG_INFINITY];
+    let least = height.pixels().iter().copied().fold(least, f32::min);
+    let most = height.pixels().iter().copied().fold(most, f32::max);
+    assert!(
+        (0.0..0.3).contains(&least) && (0.7..=1.0).contains(&most),
+        "{least} to {most}"
+    );
+}

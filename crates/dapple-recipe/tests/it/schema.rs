@@ -179,11 +179,12 @@ fn built_in_recipes_fit_the_schema_as_written_and_as_written_again() {
 
 #[test]
 fn examples_of_the_readme_fit_the_schema() {
-    let block = README
-        .split("```toml\n")
-        .nth(1)
-        .and_then(|rest| rest.split("```").next());
-    assert_eq!(validate(block.expect("a recipe")), Ok(()));
+    let blocks = README.split("```toml\n").skip(1);
+    let blocks: Vec<_> = blocks.filter_map(|rest| rest.split("```").next()).collect();
+    assert_eq!(blocks.len(), 2, "recipes in the README");
+    for block in blocks {
+        assert_eq!(validate(block), Ok(()));
+    }
     let mut count = 0;
     for line in README.lines() {
         let cells: Vec<_> = line.split(" | ").collect();
