@@ -5,8 +5,10 @@
 //! distance to the nearest border needs the bricks around the position alone.
 //!
 //! Positions are in units of the plane, y points down. Distances are Euclidean in the plane, so that joints are equally
-//! wide along both axes even if bricks are not square. Rounded corners follow the distance function of a rounded box
-//! (Inigo Quilez, "2D distance functions", <https://iquilezles.org/articles/distfunctions2d/>).
+//! wide along both axes even if bricks are not square. Rounded corners follow the distance function of a rounded box.
+//!
+//! Reference: Inigo Quilez, "2D distance functions", <https://iquilezles.org/articles/distfunctions2d/>. The bonds and
+//! the search for the nearest brick are our own.
 
 mod bond;
 mod hexagons;

@@ -1,8 +1,9 @@
 //! Signed distance fields of simple shapes, repeated on a lattice.
 //!
-//! The distances are exact and Euclidean, from Inigo Quilez, "2D distance functions",
-//! <https://iquilezles.org/articles/distfunctions2d/>. Polygons and stars are lists of corners, instead of folded
-//! angles, so that all values are made of sums, products and roots.
+//! The distances are exact and Euclidean. Polygons and stars are lists of corners, instead of folded angles, so that all
+//! values are made of sums, products and roots.
+//!
+//! Reference: Inigo Quilez, "2D distance functions", <https://iquilezles.org/articles/distfunctions2d/>.
 //!
 //! With a lattice of copies, the distance is to the nearest copy. Its center need not be the nearest one: all copies
 //! are measured that can be nearest and whose bounding circle is nearer than the distance so far.

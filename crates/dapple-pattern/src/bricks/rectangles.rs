@@ -114,7 +114,7 @@ impl Bricks {
                 self.squares([x, y], upright, along[usize::from(upright)])
             }
             Bond::Planks => self.plank([x, y]),
-            Bond::Running | _ => {
+            _ => {
                 let shift = match self.options.bond {
                     Bond::Running => self.shift(y.cell),
                     _ => 0.0,

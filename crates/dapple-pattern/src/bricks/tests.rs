@@ -232,23 +232,7 @@ fn polygons(bricks: &Bricks, at: [f64; 2]) -> f64 {
     for [row, column] in (-9..9).flat_map(|row| (-9..9).map(move |column| [row, column])) {
         let id = [column, row];
         let [x, y] = center(id);
-        let mut sides: Vec<([f64; 2], f64)> = Vec::new();
-        let steps = [
-            [-1.0, 0.0],
-            [1.0, 0.0],
-            [-0.5, -1.0],
-            [0.5, -1.0],
-            [-0.5, 1.0],
-            [0.5, 1.0],
-            [0.0, -2.0],
-            [0.0, 2.0],
-        ];
-        for (index, [columns, rows]) in (0..).zip(steps) {
-            let vector = [columns * w, rows * h];
-            let length = length(vector);
-            let distance = 0.5 * length - bricks.inset(id, index);
-            sides.push((vector.map(|part| part / length), distance));
-        }
+        let sides = sides(bricks, id);
         let least = sides
             .iter()
             .fold(f64::INFINITY, |least, side| least.min(side.1));
@@ -292,6 +276,28 @@ fn polygons(bricks: &Bricks, at: [f64; 2]) -> f64 {
         deepest = deepest.max(radius - nearest);
     }
     deepest
+}
+
+/// Returns the normals of the sides of a hexagon's face, and their distances from the center.
+fn sides(bricks: &Bricks, id: [i64; 2]) -> Vec<([f64; 2], f64)> {
+    let [w, h] = bricks.cell;
+    let steps = [
+        [-1.0, 0.0],
+        [1.0, 0.0],
+        [-0.5, -1.0],
+        [0.5, -1.0],
+        [-0.5, 1.0],
+        [0.5, 1.0],
+        [0.0, -2.0],
+        [0.0, 2.0],
+    ];
+    let side = |(index, [columns, rows]): (u32, [f64; 2])| {
+        let vector = [columns * w, rows * h];
+        let length = length(vector);
+        let distance = 0.5 * length - bricks.inset(id, index);
+        (vector.map(|part| part / length), distance)
+    };
+    (0..).zip(steps).map(side).collect()
 }
 
 /// Returns the distance to the border of the uppermost roof tile at a position, and the tile; no tile in a joint.

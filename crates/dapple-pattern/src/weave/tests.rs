@@ -6,8 +6,11 @@ use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::{Field as _, FieldExt as _, Named as _, Window};
 use proptest::prelude::*;
 
+/// A draft, its numbers over, under and step, and its grid.
+type Grid = (Draft, [Option<u32>; 3], &'static [&'static str]);
+
 /// Drafts as in weavers' books: a column for each warp thread, a row for each weft thread, `#` where the warp lies above.
-const GRIDS: [(Draft, [Option<u32>; 3], &[&str]); 5] = [
+const GRIDS: [Grid; 5] = [
     (Draft::Plain, [None; 3], &["#.", ".#"]),
     (Draft::Twill, [None; 3], &["##..", ".##.", "..##", "#..#"]),
     (
@@ -81,7 +84,7 @@ fn highest(weave: &Weave, grid: &[&str], at: [f64; 2]) -> (f64, usize, f64) {
         let ends = [is_above(first), is_above(first + 1.0)]
             .map(|is_above| if is_above { 1.0 } else { 0.0 });
         let t = along - 0.5 - first;
-        let smooth = 3.0 * t.powi(2) - 2.0 * t.powi(3);
+        let smooth = 3.0 * t * t - 2.0 * t * t * t;
         let level = ends[0] * (1.0 - smooth) + ends[1] * smooth;
         let profile =
             (1.0 - options.roundness) + options.roundness * (1.0 - across * across).sqrt();
