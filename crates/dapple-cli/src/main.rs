@@ -28,6 +28,7 @@ mod node;
 mod output;
 mod preview;
 mod progress;
+mod shader_language;
 mod shards;
 mod words;
 

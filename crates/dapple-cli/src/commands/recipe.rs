@@ -5,6 +5,7 @@ use crate::args::{FiniteArgs, OutputArgs, seed};
 use crate::baking::{advise, is_json, read_images, read_recipe};
 use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, Job, put_text, say};
+use crate::shader_language::ShaderLanguage;
 use anyhow::Result;
 use dapple::hash::Seed;
 use dapple::recipe::{Plan, Recipe, ShaderOptions};
@@ -59,6 +60,16 @@ pub(crate) struct Args {
     /// Let the shader take the values of nodes that it cannot compute as arguments, from baked textures.
     #[arg(long, requires = "wgsl")]
     textures: bool,
+
+    /// Language of the shader.
+    #[arg(
+        long,
+        requires = "wgsl",
+        value_enum,
+        value_name = "NAME",
+        default_value_t
+    )]
+    language: ShaderLanguage,
 
     /// Rewrite the recipe in this format [default: by the extension of the output].
     #[arg(long = "as", value_enum, value_name = "FORMAT")]
@@ -138,7 +149,8 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         };
         let shader = recipe.to_wgsl(&images, &options).map_err(advise)?;
         let job = Job::new(context, "recipe", &args.files);
-        return put_text(job, &recipe.name, "wgsl", &shader.wgsl, args);
+        let text = args.language.translate(shader.wgsl)?;
+        return put_text(job, &recipe.name, args.language.extension(), &text, args);
     }
     let is_as_written =
         !args.rust && args.format().is_none() && args.seed.is_none() && args.set.is_empty();

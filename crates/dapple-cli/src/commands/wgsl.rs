@@ -3,6 +3,7 @@
 use crate::args::seed;
 use crate::error::{Exit, usage};
 use crate::job::say;
+use crate::shader_language::ShaderLanguage;
 use crate::words::{NamedValueParser, with_dashes};
 use anyhow::Result;
 use dapple::hash::Seed;
@@ -15,6 +16,7 @@ Examples:
   dapple wgsl gradient-noise-2d > noise.wgsl
   dapple wgsl gradient-noise-3d fractal > clouds.wgsl
   dapple wgsl worley-2d --seed 7 --period 8 > cells.wgsl
+  dapple wgsl worley-2d --seed 7 --language glsl > cells.glsl
   dapple wgsl gradient-noise-2d --naga-oil > gradient_noise_2d.wgsl
 
 A file is complete: it imports nothing, and has no bindings and entry points. --seed adds the
@@ -29,8 +31,12 @@ pub(crate) struct Args {
     #[arg(required = true, value_name = "MODULE", value_parser = NamedValueParser::of(Module::ALL.iter().map(|module| (with_dashes(module.name()), *module))))]
     modules: Vec<Module>,
 
+    /// Language of the shader.
+    #[arg(long, value_enum, value_name = "NAME", default_value_t)]
+    language: ShaderLanguage,
+
     /// Print a single module with its import path, as Bevy needs it.
-    #[arg(long, conflicts_with = "seed")]
+    #[arg(long, conflicts_with_all = ["seed", "language"])]
     naga_oil: bool,
 
     /// Add the parameters of this random seed as constants.
@@ -65,7 +71,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit> {
             text += &constant(module, Seed(seed), args)?;
         }
     }
-    say(text.trim_end())?;
+    say(args.language.translate(text)?.trim_end())?;
     Ok(Exit::Done)
 }
 

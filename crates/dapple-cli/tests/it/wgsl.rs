@@ -15,13 +15,18 @@ fn valid_output(folder: &Folder, arguments: &[&str]) -> String {
     let output = folder.run(arguments);
     assert_done(&output, "a shader");
     let text = stdout(&output);
-    let module = naga::front::wgsl::parse_str(&text)
-        .unwrap_or_else(|error| panic!("{arguments:?}: {}", error.emit_to_string(&text)));
+    validate(&arguments.join(" "), &text);
+    text
+}
+
+/// Parses and validates a shader.
+fn validate(what: &str, text: &str) {
+    let module = naga::front::wgsl::parse_str(text)
+        .unwrap_or_else(|error| panic!("{what}: {}", error.emit_to_string(text)));
     let flags = naga::valid::ValidationFlags::all();
     let capabilities = naga::valid::Capabilities::empty();
     let result = naga::valid::Validator::new(flags, capabilities).validate(&module);
-    assert!(result.is_ok(), "{arguments:?}: {result:?}");
-    text
+    assert!(result.is_ok(), "{what}: {result:?}");
 }
 
 #[test]
@@ -96,22 +101,115 @@ fn materials_of_builtin_recipes_are_valid_shaders() {
 }
 
 #[test]
+fn the_recipe_of_the_readme_is_the_material_of_its_shader() {
+    let readme = include_str!("../../../dapple-recipe/README.md");
+    let block = |language: &str| {
+        let start = readme
+            .split_once(&format!("```{language}\n"))
+            .map(|(_, rest)| rest);
+        let (block, _) = start
+            .and_then(|rest| rest.split_once("```"))
+            .expect("a block");
+        block.to_owned()
+    };
+    let folder = Folder::new("recipe-wgsl-readme");
+    std::fs::write(folder.path("cobbles.toml"), block("toml")).expect("a file");
+    let text = valid_output(&folder, &["recipe", "cobbles.toml", "--wgsl"]);
+    validate("the shader of the README", &(text + &block("wgsl")));
+}
+
+#[test]
 fn nodes_without_a_shader_are_refused_by_name_unless_they_are_textures() {
     let folder = Folder::new("recipe-wgsl-refused");
     let refused = folder.run(&["recipe", "flagstone", "--wgsl"]);
-    assert_refused(
-        &refused,
-        2,
+    for part in [
         "`swell`: noise of the basis `pups` has no shader",
-        "the node",
-    );
-    assert_refused(
-        &refused,
-        2,
         "with --textures, the shader takes their values as arguments",
-        "the way out",
-    );
+    ] {
+        assert_refused(&refused, 2, part, "a node without a shader");
+    }
     let text = valid_output(&folder, &["recipe", "flagstone", "--wgsl", "--textures"]);
     assert!(text.contains("fn material(place: Place2d, textures: Textures, zero: u32)"));
     assert!(text.contains("    swell_value: f32,\n"), "{text}");
+}
+
+#[cfg(feature = "shader-languages")]
+#[test]
+fn shaders_in_glsl_have_all_functions_and_are_valid() {
+    let folder = Folder::new("glsl");
+    let modules = [
+        "gradient-noise-2d",
+        "gradient-noise-3d-with-gradient",
+        "gradient-noise-4d",
+        "fractal",
+        "worley-2d",
+        "worley-3d",
+        "position-2d",
+        "power",
+        "oklab",
+    ];
+    let noise = [
+        &["wgsl"][..],
+        &modules,
+        &["--seed", "7", "--language", "glsl"],
+    ]
+    .concat();
+    let material = [
+        "recipe",
+        "flagstone",
+        "--wgsl",
+        "--textures",
+        "--language",
+        "glsl",
+    ];
+    for arguments in [&noise[..], &material] {
+        let output = folder.run(arguments);
+        assert_done(&output, "a shader");
+        let text = stdout(&output);
+        // The text has functions alone, which `main` of another shader calls.
+        for part in ["#version", "precision ", "layout(", "void main", "entry"] {
+            assert!(!text.contains(part), "{part} in {text}");
+        }
+        let functions = ["Feature2d[2] worley_2d(Worley ", "vec4 exact_mul(vec4 "];
+        for function in functions {
+            assert!(text.contains(function), "{function} is missing: {text}");
+        }
+        let text = format!("#version 450\n{text}\nvoid main() {{}}");
+        let options = naga::front::glsl::Options::from(naga::ShaderStage::Fragment);
+        let parsed = naga::front::glsl::Frontend::default().parse(&options, &text);
+        let module = parsed.unwrap_or_else(|errors| panic!("{}", errors.emit_to_string(&text)));
+        let flags = naga::valid::ValidationFlags::all();
+        let capabilities = naga::valid::Capabilities::empty();
+        let result = naga::valid::Validator::new(flags, capabilities).validate(&module);
+        assert!(result.is_ok(), "{result:?}");
+    }
+}
+
+#[cfg(feature = "shader-languages")]
+#[test]
+fn shaders_in_hlsl_have_all_functions() {
+    let folder = Folder::new("hlsl");
+    let output = folder.run(&["wgsl", "worley-2d", "--seed", "7", "--language", "hlsl"]);
+    assert_done(&output, "a shader");
+    let text = stdout(&output);
+    for part in [
+        "static const Worley WORLEY_2D = ",
+        "float4 exact_mul(float4 ",
+        " worley_2d(Worley ",
+    ] {
+        assert!(text.contains(part), "{part} is missing: {text}");
+    }
+    let material = [
+        "recipe",
+        "flagstone",
+        "--wgsl",
+        "--textures",
+        "--language",
+        "hlsl",
+        "-o",
+        "m/",
+    ];
+    assert_done(&folder.run(&material), "a shader");
+    let written = std::fs::read_to_string(folder.path("m/flagstone.hlsl")).expect("a file");
+    assert!(written.contains("Material material(Place2d "), "{written}");
 }
