@@ -1,11 +1,11 @@
 //! Raises numbers to a power.
 
-use crate::shader::{Code, NodeShader, Refusal, literal};
-use dapple_wgsl::Module;
 use super::NodeKind;
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal, literal};
 use crate::{Input, RecipeError};
 use dapple_raster::{Range, range};
+use dapple_wgsl::Module;
 use serde::{Deserialize, Serialize};
 
 /// Number raised to a power.

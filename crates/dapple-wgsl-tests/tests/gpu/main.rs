@@ -2,6 +2,7 @@
 
 mod gradient_noise;
 mod naga_oil;
+mod numbers;
 mod recipes;
 mod worley;
 

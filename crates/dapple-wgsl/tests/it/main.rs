@@ -1,6 +1,6 @@
 //! Tests of the texts, without a GPU: every module is valid WGSL, alone and in all its flavors.
 
-use dapple_wgsl::{Module, source};
+use dapple_wgsl::{Module, double_value, number_value, source};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// Parses and validates a shader.
@@ -85,4 +85,25 @@ fn shaders_are_short() {
     assert!(noise <= 80, "{noise} lines");
     let worley = lines(Module::Worley2d);
     assert!(worley <= 160, "{worley} lines");
+}
+
+#[test]
+fn literals_have_the_bits_of_their_numbers() {
+    // Bit patterns of all exponents and signs, with a step that is a prime number
+    let patterns = (0..u32::MAX).step_by(65_537).map(f32::from_bits);
+    for number in patterns.filter(|number| number.is_finite()) {
+        // Compilers read a decimal as a number of 64 bits, and round it to 32.
+        let read: f64 = number_value(number).parse().expect("a number");
+        assert_eq!((read as f32).to_bits(), number.to_bits(), "{number}");
+    }
+    assert_eq!(number_value(-1.0), "-1.0");
+    assert_eq!(number_value(0.1), "0.1");
+    // 1.5 has the exponent 0 and the upper half of the mantissa.
+    assert_eq!(double_value(1.5), "vec2(0x3ff80000u, 0x0u)");
+    let constant = format!(
+        "const A = {}; const B = {};",
+        number_value(3e-39),
+        double_value(-0.1)
+    );
+    validate("constants", &constant);
 }
