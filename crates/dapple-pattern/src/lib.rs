@@ -67,7 +67,9 @@
 
 mod bricks;
 mod error;
+mod gabor;
 mod lattice;
+mod near;
 mod scatter;
 mod shape;
 mod weave;
@@ -78,6 +80,7 @@ pub use bricks::{Bond, BrickField, BrickOptions, BrickValue};
 pub use dapple_hash as hash;
 pub use dapple_raster as raster;
 pub use error::{PatternError, PatternErrorKind};
+pub use gabor::{GaborField, GaborNoise, GaborValue};
 pub use scatter::{StampField, StampOverlap, StampShape, StampValue, Stamps};
 #[doc(alias("sdf", "signed distance", "star"))]
 pub use shape::Shape;

@@ -20,6 +20,7 @@ mod tests;
 pub use shape::StampShape;
 
 use crate::PatternError;
+use crate::near::{self, NearCells};
 use dapple_hash::{CellHash, Seed, unit_f32};
 use dapple_raster::{Field, Range, RasterError, RasterViewMut, Window, range};
 use shape::Outline;
@@ -77,9 +78,6 @@ const MAX_REACH: f64 = 8.0;
 
 /// Maximum number of stamps in the cells within reach of a position.
 const MAX_NEAR: f64 = 1024.0;
-
-/// Side of a block of pixels whose candidates are selected together.
-const BLOCK: usize = 16;
 
 /// Stamps at the points of a jittered lattice.
 ///
@@ -482,7 +480,7 @@ struct Point {
 
 /// A stamp at a point.
 #[derive(Clone, Copy, Debug)]
-struct Stamp {
+pub(crate) struct Stamp {
     /// Position of the center in cells.
     center: [f64; 2],
     /// Gradient of the coordinate along the stamp, which is −1 and 1 at its ends, per cell.
@@ -545,11 +543,12 @@ pub struct StampField {
     reach: [f64; 2],
 }
 
-impl StampField {
-    /// Lists the stamps that may cover a box in a cell. The box and the stamps are relative to the corner of the cell.
-    /// They are in the order in which they are stamped or, where that order decides, from the last one to the first.
+impl NearCells for StampField {
+    type Item = Stamp;
+
+    /// Stamps are listed in the order in which they are stamped or, where that order decides, from the last one to the
+    /// first.
     fn near(&self, cell: [i64; 2], center: [f64; 2], half: [f64; 2], near: &mut Vec<Stamp>) {
-        near.clear();
         let stamps = &self.stamps;
         let has_offset = i64::from(stamps.row_offset != 0.0);
         let first = [0, 1].map(|axis| {
@@ -592,7 +591,10 @@ impl StampField {
         }
     }
 
-    /// Returns the value at a position relative to the corner of the cell for which `near` was listed.
+    fn meets(stamp: &Stamp, center: [f64; 2], half: [f64; 2]) -> bool {
+        stamp.meets(center, half)
+    }
+
     fn value_of(&self, near: &[Stamp], position: [f64; 2]) -> f32 {
         let mut top: Option<Hit<'_>> = None;
         let mut sum = 0.0;
@@ -648,146 +650,22 @@ impl StampField {
             StampValue::Angle => hit.stamp.angle,
         }
     }
-
-    /// Renders a window whose columns have these cells and offsets in the cell.
-    fn render_band(
-        &self,
-        window: &Window,
-        columns: &[(i64, f64)],
-        mut out: RasterViewMut<'_, f32>,
-    ) {
-        let rows: Vec<_> = (0..window.size[1])
-            .map(|row| place(window.row_y(row)))
-            .collect();
-        let (mut of_cell, mut of_block) = (Vec::new(), Vec::new());
-        for (first_row, rows) in runs(&rows, usize::MAX) {
-            for (first_column, columns) in runs(columns, usize::MAX) {
-                let cell = [columns[0].0, rows[0].0];
-                let bounds = |columns: &[(i64, f64)], rows: &[(i64, f64)]| {
-                    let [x, y] = [extent(columns), extent(rows)];
-                    ([x.0, y.0], [x.1, y.1])
-                };
-                let (center, half) = bounds(columns, rows);
-                self.near(cell, center, half, &mut of_cell);
-                // Select the candidates of each block of pixels from those of the cell.
-                for (row, rows) in runs(rows, BLOCK) {
-                    for (column, columns) in runs(columns, BLOCK) {
-                        let (center, half) = bounds(columns, rows);
-                        of_block.clear();
-                        let meeting = of_cell.iter().filter(|stamp| stamp.meets(center, half));
-                        of_block.extend(meeting.copied());
-                        let at = [first_column + column, first_row + row];
-                        self.render_block(&of_block, columns, rows, at, &mut out);
-                    }
-                }
-            }
-        }
-    }
-
-    /// Renders a block of pixels of one cell, whose first column and row are `at`.
-    fn render_block(
-        &self,
-        near: &[Stamp],
-        columns: &[(i64, f64)],
-        rows: &[(i64, f64)],
-        at: [usize; 2],
-        out: &mut RasterViewMut<'_, f32>,
-    ) {
-        for (row, &(_, y)) in (at[1]..).zip(rows) {
-            let pixels = &mut out.row_mut(row as u32)[at[0]..at[0] + columns.len()];
-            for (pixel, &(_, x)) in pixels.iter_mut().zip(columns) {
-                *pixel = match x.is_finite() && y.is_finite() {
-                    true => self.value_of(near, [x, y]),
-                    false => f32::NAN,
-                };
-            }
-        }
-    }
 }
-
-/// Number of pixel rows in a band, the unit of parallel work.
-const BAND_ROWS: u32 = 64;
 
 impl Field for StampField {
     fn value(&self, position: [f64; 2]) -> f32 {
-        let [(column, x), (row, y)] = position.map(place);
-        if !x.is_finite() || !y.is_finite() {
-            return f32::NAN;
-        }
-        let mut near = Vec::new();
-        self.near([column, row], [x, y], [0.0; 2], &mut near);
-        self.value_of(&near, [x, y])
+        near::value(self, position)
     }
 
     fn values(&self, positions: &[[f64; 2]], values: &mut [f32]) -> Result<(), RasterError> {
-        RasterError::check_length(values.len(), positions.len())?;
-        // Positions that follow each other are often in the same few cells.
-        let mut cells: Vec<Option<([i64; 2], Vec<Stamp>)>> = vec![None; 64];
-        for (value, &position) in values.iter_mut().zip(positions) {
-            let [(column, x), (row, y)] = position.map(place);
-            if !x.is_finite() || !y.is_finite() {
-                *value = f32::NAN;
-                continue;
-            }
-            let cell = [column, row];
-            let slot = &mut cells[(column & 7 | (row & 7) << 3) as usize];
-            let near = match slot {
-                Some((known, near)) if *known == cell => near,
-                slot => {
-                    let mut near = Vec::new();
-                    self.near(cell, [0.5; 2], [0.5; 2], &mut near);
-                    &mut slot.insert((cell, near)).1
-                }
-            };
-            *value = self.value_of(near, [x, y]);
-        }
-        Ok(())
+        near::values(self, positions, values)
     }
 
     fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
-        window.check_size(out.size())?;
-        let columns: Vec<_> = (0..window.size[0])
-            .map(|column| place(window.column_x(column)))
-            .collect();
-        out.for_each_band(BAND_ROWS, |row, band| {
-            let part = Window {
-                first: [window.first[0], window.first[1].saturating_add(row.into())],
-                size: band.size(),
-                ..*window
-            };
-            self.render_band(&part, &columns, band);
-        });
-        Ok(())
+        near::render(self, window, out)
     }
 
     fn period(&self) -> [Option<f64>; 2] {
         self.stamps.period.map(|period| period.map(f64::from))
     }
-}
-
-/// Splits a coordinate into its cell and the offset in the cell.
-fn place(coordinate: f64) -> (i64, f64) {
-    let cell = coordinate.floor();
-    (cell as i64, coordinate - cell)
-}
-
-/// Splits pixels into runs in the same cell, of at most `most` pixels, each with the index of its first pixel.
-fn runs(pixels: &[(i64, f64)], most: usize) -> impl Iterator<Item = (usize, &[(i64, f64)])> {
-    let mut first = 0;
-    let same = pixels.chunk_by(|a, b| a.0 == b.0);
-    let runs = same.flat_map(move |run| run.chunks(most.min(run.len())));
-    runs.map(move |run| {
-        let at = first;
-        first += run.len();
-        (at, run)
-    })
-}
-
-/// Returns the center and half of the length of the range of offsets; not-a-numbers are left out.
-fn extent(pixels: &[(i64, f64)]) -> (f64, f64) {
-    let offsets = pixels.iter().map(|&(_, offset)| offset);
-    let (low, high) = offsets.fold((1.0_f64, 0.0_f64), |(low, high), offset| {
-        (low.min(offset), high.max(offset))
-    });
-    (0.5 * (low + high), (0.5 * (high - low)).max(0.0))
 }

@@ -2,6 +2,7 @@
 
 use super::shape::Outline;
 use super::{Stamp, StampOverlap, StampShape, StampValue, Stamps};
+use crate::near::NearCells as _;
 use crate::{PatternError, PatternErrorKind};
 use dapple_hash::Seed;
 use dapple_raster::{Field, FieldExt as _, Named as _, Raster, Window};
