@@ -23,6 +23,7 @@ mod edges;
 mod equalize;
 mod flood_fill;
 mod fractal;
+mod gabor;
 mod hsl;
 mod image;
 mod invert;
@@ -81,6 +82,7 @@ pub use edges::Edges;
 pub use equalize::Equalize;
 pub use flood_fill::{FloodFill, RegionValue};
 pub use fractal::FractalOf;
+pub use gabor::GaborNode;
 pub use hsl::HslChange;
 pub use image::ImageNode;
 pub use invert::Invert;
@@ -243,6 +245,8 @@ nodes! {
     "shape" Shape(ShapeNode) in "patterns" as "{}",
     /// Another value of a node that has several, such as the random number of a brick.
     "output" Output(Output) in "patterns" as r#"{"of":0.5}"#,
+    /// Gabor noise: waves of about one length and direction, such as wood fiber or ripples.
+    "gabor" Gabor(GaborNode) in "cells and noise" as "{}",
     /// Shapes stamped at scattered points, such as gravel, leaves, rivets or scratches.
     "scatter" Scatter(ScatterNode) in "patterns" as "{}",
     /// Coordinate of a position along a direction.

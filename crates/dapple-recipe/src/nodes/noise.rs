@@ -179,6 +179,6 @@ impl FractalNode {
 }
 
 /// Adds ½ to a value, and clamps the result to 0 to 1.
-fn about_half(value: f32) -> f32 {
+pub(super) fn about_half(value: f32) -> f32 {
     (0.5 + value).clamp(0.0, 1.0)
 }

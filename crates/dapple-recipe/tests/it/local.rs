@@ -2,6 +2,8 @@
 
 use crate::bakes::plan;
 use dapple_color::LinearRgb;
+use dapple_hash::Seed;
+use dapple_pattern::{GaborNoise, GaborValue};
 use dapple_raster::FieldExt as _;
 use dapple_recipe::{Images, Plan, Recipe, RecipeErrorKind};
 
@@ -172,6 +174,39 @@ fn noise_may_have_a_frequency_for_each_axis() {
 }
 
 #[test]
+fn gabor_noise_is_about_half_and_its_phase_is_in_turns() {
+    let field = |options: &str| {
+        let text = format!(
+            "dapple = 1\nextent = [2, 1]\nseed = 3\n[nodes]\na = {{ gabor = {{ {options} }} }}\n[material]\n"
+        );
+        plan(&text).field("a").unwrap()
+    };
+    let noise = GaborNoise::new(Seed(3).child("a", 0))
+        .with_period([Some(6), Some(4)])
+        .and_then(|noise| {
+            noise
+                .with_waves(3.0)?
+                .with_angle(30.0)?
+                .with_spread(90.0)?
+                .with_impulses(5)
+        })
+        .unwrap();
+    let options = "frequency = [3, 4], waves = 3, angle = 30, spread = 90, impulses = 5";
+    let [half, phase] = [options.to_owned(), format!("{options}, value = \"phase\"")]
+        .map(|options| field(&options));
+    for step in 0..200 {
+        let [x, y] = [f64::from(step) * 0.0137, f64::from(step) * 0.0091];
+        let at = [3.0 * x, 4.0 * y];
+        let expected = (0.5 + noise.field(GaborValue::Noise).sample(at) / 6.0).clamp(0.0, 1.0);
+        assert_eq!(half.sample([x, y]), expected);
+        assert_eq!(
+            phase.sample([x, y]),
+            noise.field(GaborValue::Phase).sample(at)
+        );
+    }
+}
+
+#[test]
 fn options_out_of_range_are_refused_with_the_limit() {
     let kind = |node: &str| {
         let text = format!("dapple = 1\n[nodes]\na = {{ {node} }}\n[material]\n");
@@ -185,6 +220,7 @@ fn options_out_of_range_are_refused_with_the_limit() {
         "threshold = { input = 1, width = -1 }",
         "curve = { input = 1, points = [[0, 0], [0, 1]] }",
         "curve = { input = 1, points = [[0, 0], [1, inf]] }",
+        "gabor = { frequency = 2.5 }",
         "noise = { basis = \"gradient\", frequency = [0, 1] }",
         "noise = { basis = \"gradient\", frequency = [1, 1.5] }",
     ] {

@@ -323,7 +323,8 @@ fn assert_range(right: &str, wrong: &str) {
 #[test]
 fn options_that_no_kind_has_are_refused_by_the_reader_and_the_schema() {
     let tables = [
-        "add", "subtract", "multiply", "divide", "minimum", "maximum", "absolute", "color", "pups",
+        "add", "subtract", "multiply", "divide", "minimum", "maximum", "absolute", "invert",
+        "color", "pups",
     ];
     for kind in KINDS.into_iter().filter(|kind| !tables.contains(kind)) {
         let lines = format!("nodes.a.{kind} = {{ flavor = 1 }}");
