@@ -90,7 +90,7 @@ impl GaborNoise {
     }
 
     /// Sets the frequency of the waves in waves per cell, from 0 to 64. The more, the closer are all waves to this
-    /// frequency and to their direction: the bandwidth is that of a kernel with a radius of one cell.
+    /// frequency and to their direction: the kernel has a radius of one cell.
     ///
     /// # Errors
     ///
@@ -100,8 +100,8 @@ impl GaborNoise {
         Ok(Self { waves, ..self })
     }
 
-    /// Sets the number of impulses per cell, from 1 to 64. Time is proportional to it; from 8 on, values are nearly
-    /// normally distributed.
+    /// Sets the number of impulses per cell, from 1 to 64. Time is proportional to it. With 8 or more, values are
+    /// nearly normally distributed.
     ///
     /// # Errors
     ///
@@ -368,7 +368,7 @@ mod tests {
         // Values of 64 × 64 cells, each with about one independent number: a deviation of 1/64, twice that of squares
         assert!(mean.abs() < 0.05, "{mean}");
         assert!((variance - 1.0).abs() < 0.1, "{variance}");
-        // Half a wave across the stripes is the opposite, and so is no shift along them.
+        // Half a wave across the stripes, the noise is the opposite; along the stripes, it is nearly the same.
         let shifted = |x: f64, y: f64| {
             let shifted = field.clone().offset([x, y]).to_raster(&window).unwrap();
             let pairs = raster.pixels().iter().zip(shifted.pixels());

@@ -107,7 +107,7 @@ fn render_band<F: NearCells>(
             let (center, half) = bounds(columns, rows);
             of_cell.clear();
             field.near([columns[0].0, rows[0].0], center, half, &mut of_cell);
-            // Select the items of each block of pixels from those of the cell.
+            // Select the items of each block of pixels from the cell's items.
             for (row, rows) in runs(rows, BLOCK) {
                 for (column, columns) in runs(columns, BLOCK) {
                     let (center, half) = bounds(columns, rows);

@@ -37,13 +37,13 @@ dapple_raster::named! {
         Order = "order",
         /// The stamp of the upper row, and within a row the right one, such as roof slates.
         Rows = "rows",
-        /// The sum of all heights; other values are those of the highest stamp.
+        /// The sum of all heights; other values come from the highest stamp.
         Add = "add",
     }
 }
 
 dapple_raster::named! {
-    /// Value of stamps at a position. All values are 0 where there is no stamp.
+    /// Value of stamps at a position. All values are 0 outside of stamps.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub enum StampValue {
         /// Height of the stamp, from 0 to 1; with the overlap `add`, the sum of heights.
@@ -465,7 +465,7 @@ fn direction(degrees: f64) -> [f64; 2] {
     }
 }
 
-/// Number of hashes that are reserved for a point: one for its position, those of its stamp, and its priority.
+/// Number of hashes that are reserved for a point: for its position, its stamp and its priority.
 const DRAWS: u32 = 8;
 
 /// A point of a cell.

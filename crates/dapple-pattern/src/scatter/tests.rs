@@ -359,7 +359,7 @@ fn shapes_are_inside_of_their_box_and_their_profile_is_a_height() {
                 covered += 1;
                 assert!((0.0..=1.0).contains(&height), "{shape}: {height}");
                 assert!((0.0..=2.5).contains(&edge), "{shape}: {edge}");
-                // The sides of the box do not cut the shape, but for the root of a blade.
+                // The sides of the box do not cut the shape, except the root of a blade.
                 let is_root = shape == StampShape::Blade && u == -1.0;
                 let is_side = !is_root && (u.abs() == 1.0 || v.abs() == 1.0);
                 assert!(!is_side || edge <= 0.03, "{shape} at {u}, {v}: {edge}");

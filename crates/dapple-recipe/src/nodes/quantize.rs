@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 pub struct Quantize {
     /// Number to round.
     pub input: Input,
-    /// Number of values from 0 to 1, both included; past the ends they go on with the same spacing.
+    /// Number of values from 0 to 1, both included; past these ends, the spacing is the same.
     #[serde(default = "steps")]
     #[cfg_attr(feature = "schema", schemars(transform = { STEPS }))]
     pub steps: u32,

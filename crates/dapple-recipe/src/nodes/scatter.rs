@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 /// Shapes stamped at scattered points: gravel, leaves, grass, rivets, scales, scratches.
 ///
-/// Points are those of a lattice of cells. Lengths are in widths of a cell; shapes are not stretched. Along an axis on
-/// which the recipe repeats, the tile must have a whole number of cells. All values are 0 where there is no stamp.
+/// Points are in the cells of a lattice. Lengths are in widths of a cell; shapes are not stretched. Along an axis on
+/// which the recipe repeats, the tile must have a whole number of cells. All values are 0 outside of stamps.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]

@@ -84,7 +84,7 @@ fn hues_saturations_and_lightnesses_are_those_of_css() {
     // hsl(30 100% 25%)
     assert_eq!(changed("#ff8000", "lightness = 0.5"), [128, 64, 0]);
     assert_eq!(changed("#ff8000", "lightness = 2"), [255, 255, 255]);
-    // Nothing is rounded without a change.
+    // Without a change, no channel is rounded.
     assert_eq!(
         color("hsl = { input = \"#345678\" }", 0.0),
         hex([0x34, 0x56, 0x78])

@@ -223,7 +223,7 @@ fn a_kaleidoscope_has_the_symmetries_of_its_sectors() {
     };
     for step in 0..200 {
         let (radius, turns) = (0.01 * f64::from(step), 0.0005 * f64::from(step));
-        // The first half of a sector is that of the input; the others are its copies.
+        // The first half of a sector shows the input; the other halves are its copies.
         let expected = a.sample(at(radius, turns));
         for sector in 0..5 {
             for turns in [turns, -turns] {
