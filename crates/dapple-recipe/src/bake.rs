@@ -67,6 +67,10 @@ const LEAST_BANDS: u32 = 8;
 /// Minimum number of pixels per band, unless [`BakeOptions::band_pixels`] is smaller.
 const LEAST_PIXELS: u32 = 1 << 15;
 
+/// Minimum number of rows per band, relative to the margin that its neighborhoods need. The rows of the margin are
+/// evaluated in addition to those of the band.
+const MARGINS: u32 = 8;
+
 impl Default for BakeOptions {
     fn default() -> Self {
         Self {
@@ -113,6 +117,8 @@ pub struct Bake<'a> {
     /// The samples to bake. For samples on corners, the last column and row may be copies of the first ones.
     window: Window,
     band_pixels: u32,
+    /// The number of rows above and below a band that the neighborhoods of its nodes need.
+    margin: u32,
     next_row: u32,
     heights: Heights,
     /// The heights around the first column, for its copy at the right side of the tile.
@@ -153,6 +159,7 @@ impl<'a> Bake<'a> {
             tile,
             window,
             band_pixels: options.band_pixels,
+            margin: plan.margin_rows(&tile.window)?,
             next_row: 0,
             first_heights: heights.clone(),
             heights,
@@ -196,7 +203,8 @@ impl<'a> Bake<'a> {
         // Choose the number of rows.
         let most = self.band_pixels / width;
         let least = (LEAST_PIXELS / width).min(most);
-        let rows = height.div_ceil(LEAST_BANDS).clamp(least, most);
+        let around = self.margin.saturating_mul(MARGINS).min(most);
+        let rows = height.div_ceil(LEAST_BANDS).clamp(least.max(around), most);
         let rows = rows.max(16).min(height - first_row);
         // The row after the last distinct one is a copy of the first row.
         let (top, rows) = match distinct(1, top) {

@@ -25,7 +25,7 @@ use cache::StepId;
 use evaluate::Grid;
 pub(crate) use evaluate::Known;
 pub use field::{NodeColors, NodeField};
-pub(crate) use neighborhood::{Neighborhood, Surroundings};
+pub(crate) use neighborhood::Neighborhood;
 pub(crate) use order::order;
 pub use samples::Samples;
 pub(crate) use samples::TileSamples;
@@ -552,6 +552,11 @@ impl Plan {
     pub(crate) fn continues_heights(&self) -> [bool; 2] {
         let ends = step::reads_images(&self.steps, self.channels.height);
         self.wrap.map(|repeats| ends && !repeats)
+    }
+
+    /// Returns the number of rows above and below a window of these pixels that the neighborhoods of the material need.
+    pub(crate) fn margin_rows(&self, window: &Window) -> Result<u32, RecipeError> {
+        neighborhood::margin(&self.steps, window, &self.channels.steps()).map(|margin| margin[1])
     }
 
     /// Returns a copy of the plan's callback with separate progress, for new work.

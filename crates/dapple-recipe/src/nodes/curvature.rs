@@ -1,9 +1,10 @@
 //! Curvature of a height as a gray value.
 
-use super::{NodeKind, slope};
+use super::NodeKind;
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use dapple_color::{CurvatureOptions, HeightPlane, curvature_of_part, curvature_to_gray};
+use dapple_filter::difference_spans;
 use serde::{Deserialize, Serialize};
 
 /// Curvature of a height as a gray value: ½ where it is flat, up to 1 on edges, and down to 0 in grooves.
@@ -42,19 +43,19 @@ impl NodeKind for Curvature {
             plan.radius(self.radius, 1.0 / 100.0)?,
         );
         let input = plan.number(&self.input)?;
-        let halo = move |pixel| slope::spans(radius, pixel);
+        let halo = move |pixel| difference_spans(radius, pixel);
         Ok(plan.neighborhood_of_heights(input, halo, move |around| {
             let options = CurvatureOptions {
                 plane: HeightPlane {
                     strength: relief,
-                    extent: around.pixel,
+                    extent: around.part.pixel,
                     ..HeightPlane::default()
                 },
                 radius,
             };
             // One pixel is the whole raster of this extent.
             let curved = curvature_of_part(&around.raster(0)?, [1; 2], &options)?;
-            let curved = curved.crop(around.halo, around.size)?;
+            let curved = curved.crop(around.part.halo, around.part.size)?;
             let gray = curved.map(|&curvature| curvature_to_gray(curvature, radius as f32));
             Ok(Values::Numbers(gray.into_pixels()))
         }))

@@ -1,14 +1,9 @@
 //! Maximum and minimum over a disk, known as dilation and erosion.
-//!
-//! A row of the disk is a range of columns. Its maximum is that of two ranges whose length is a power of two, from a
-//! table for each line (a sparse table: Michael Bender and Martin Farach-Colton, "The LCA Problem Revisited", LATIN
-//! 2000). A maximum is exact, so the order of comparisons does not change a bit.
 
 use super::NodeKind;
-use crate::plan::{Builder, Step, Surroundings};
-use crate::{Input, RecipeError, Values};
-use dapple_raster::parallel;
-use glam::DVec2;
+use crate::plan::{Builder, Step};
+use crate::{Input, RecipeError};
+use dapple_filter::{dilate, disk_halo, erode};
 use serde::{Deserialize, Serialize};
 
 /// Maximum of a number or a color within a radius, by channel: bright areas grow.
@@ -47,7 +42,7 @@ impl NodeKind for Dilate {
         let input = plan.any(&self.input)?;
         let halo = move |pixel| disk_halo(radius, pixel);
         Ok(plan.neighborhood(vec![input], halo, move |around| {
-            Ok(extremes(around, radius, 1.0))
+            Ok(around.each_channel(0, |values| dilate(values, &around.part, radius)))
         }))
     }
 }
@@ -62,84 +57,7 @@ impl NodeKind for Erode {
         let input = plan.any(&self.input)?;
         let halo = move |pixel| disk_halo(radius, pixel);
         Ok(plan.neighborhood(vec![input], halo, move |around| {
-            Ok(extremes(around, radius, -1.0))
+            Ok(around.each_channel(0, |values| erode(values, &around.part, radius)))
         }))
     }
-}
-
-/// Returns the number of columns and rows within a radius.
-pub(super) fn disk_halo(radius: f64, pixel: DVec2) -> [u32; 2] {
-    // The small factor keeps a whole number of pixels whole, whatever the rounding error of the pixel size.
-    [pixel.x, pixel.y].map(|pixel| (radius / pixel * (1.0 + 1e-9)).floor() as u32)
-}
-
-/// Number of rows for which the tables of lines are computed at a time.
-const ROWS: usize = 32;
-
-/// Returns the maximum within the radius of each pixel if `sign` is 1, and the minimum if it is -1.
-fn extremes(around: &Surroundings<'_>, radius: f64, sign: f32) -> Values {
-    let [width, height] = around.size.map(|side| side as usize);
-    let [left, above] = around.halo.map(|side| side as usize);
-    let wide = width + 2 * left;
-    // For each row of the disk, from the topmost, the number of columns at each side of the middle.
-    let rows = -i64::from(around.halo[1])..=i64::from(around.halo[1]);
-    let spans: Vec<usize> = rows
-        .map(|row| {
-            let y = row as f64 * around.pixel.y;
-            let half = (radius * radius * (1.0 + 2e-9) - y * y).max(0.0).sqrt();
-            ((half / around.pixel.x * (1.0 + 1e-9)).floor() as usize).min(left)
-        })
-        .collect();
-    around.each_channel(0, |values| {
-        let mut found = vec![0.0; width * height];
-        parallel::for_each_chunk(&mut found, ROWS * width, |chunk, found| {
-            let first = chunk * ROWS;
-            let n_lines = found.len() / width + 2 * above;
-            let lines = &values[first * wide..][..n_lines * wide];
-            let tables: Vec<_> = lines
-                .chunks(wide)
-                .map(|line| tables(line, left, sign))
-                .collect();
-            for (row, found) in found.chunks_mut(width).enumerate() {
-                found.fill(f32::NEG_INFINITY);
-                for (&span, tables) in spans.iter().zip(&tables[row..]) {
-                    // Two ranges of 2^level columns cover the columns of the span.
-                    let level = (2 * span + 1).ilog2();
-                    let table = &tables[level as usize];
-                    let [a, b] = [left - span, left + span + 1 - (1 << level)];
-                    let pairs = table[a..][..width].iter().zip(&table[b..][..width]);
-                    for (found, (&a, &b)) in found.iter_mut().zip(pairs) {
-                        *found = larger(*found, larger(a, b));
-                    }
-                }
-                // Zero has one sign.
-                found
-                    .iter_mut()
-                    .for_each(|found| *found = sign * *found + 0.0);
-            }
-        });
-        found
-    })
-}
-
-/// Returns for each power of two up to the longest range, the maximum of that many columns from each column on.
-fn tables(line: &[f32], left: usize, sign: f32) -> Vec<Vec<f32>> {
-    // NaN is the maximum of nothing, and zero has one sign.
-    let number = |&value: &f32| match value.is_nan() {
-        true => f32::NEG_INFINITY,
-        false => sign * value + 0.0,
-    };
-    let mut tables: Vec<Vec<f32>> = vec![line.iter().map(number).collect()];
-    for level in 0..(2 * left + 1).ilog2() {
-        let last = &tables[level as usize];
-        let pairs = last.iter().zip(&last[1 << level..]);
-        let next = pairs.map(|(&a, &b)| larger(a, b)).collect();
-        tables.push(next);
-    }
-    tables
-}
-
-#[inline(always)]
-fn larger(a: f32, b: f32) -> f32 {
-    if b > a { b } else { a }
 }

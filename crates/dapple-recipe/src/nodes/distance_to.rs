@@ -1,15 +1,9 @@
 //! Distance to a mask, up to a radius.
-//!
-//! The first pass finds the nearest pixel of the mask in each column, and the second one the nearest of these in each
-//! row, as in: Toyofumi Saito and Jun-ichiro Toriwaki, "New algorithms for Euclidean distance transformation of an
-//! n-dimensional digitized picture with applications", Pattern Recognition 27(11), 1994.
-//! DOI 10.1016/0031-3203(94)90133-3. Here both passes end at the radius.
 
 use super::NodeKind;
-use super::dilate::disk_halo;
-use crate::plan::{Builder, Step, Surroundings};
+use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
-use dapple_raster::parallel;
+use dapple_filter::{disk_halo, distances};
 use serde::{Deserialize, Serialize};
 
 /// Distance to the nearest pixel at which a mask is above ½, in units of the plane, at most the radius.
@@ -36,66 +30,11 @@ impl NodeKind for DistanceTo {
         let input = plan.number(&self.input)?;
         let halo = move |pixel| disk_halo(radius, pixel);
         Ok(plan.neighborhood(vec![input], halo, move |around| {
-            Ok(Values::Numbers(distances(around, radius as f32)))
+            Ok(Values::Numbers(distances(
+                around.inputs[0].numbers(),
+                &around.part,
+                radius as f32,
+            )))
         }))
     }
-}
-
-/// Returns the distance of each pixel from the mask.
-fn distances(around: &Surroundings<'_>, radius: f32) -> Vec<f32> {
-    let [width, height] = around.size.map(|side| side as usize);
-    let [left, above] = around.halo.map(|side| side as usize);
-    let wide = width + 2 * left;
-    let squares = |axis: usize| -> Vec<f32> {
-        let square = |pixels: u32| {
-            let distance = f64::from(pixels) * around.pixel[axis];
-            (distance * distance) as f32
-        };
-        (0..=around.halo[axis]).map(square).collect()
-    };
-    let [across, down] = [squares(0), squares(1)];
-    let mask = around.inputs[0].numbers();
-    // Count the rows from each pixel to the nearest one of the mask in its column: first above it, then below it, too.
-    let far = around.halo[1].saturating_add(1);
-    let n_lines = height + 2 * above;
-    let mut rows = vec![far; wide * n_lines];
-    for line in 0..n_lines {
-        let (before, here) = rows.split_at_mut(line * wide);
-        let last = before.rchunks(wide).next();
-        for (column, here) in here[..wide].iter_mut().enumerate() {
-            let above = last.map_or(far, |last| last[column]);
-            let is_inside = mask[line * wide + column] > 0.5;
-            *here = if is_inside { 0 } else { far.min(above + 1) };
-        }
-    }
-    for line in (1..n_lines).rev() {
-        let (above, here) = rows.split_at_mut(line * wide);
-        let above = &mut above[(line - 1) * wide..];
-        for (above, &here) in above.iter_mut().zip(&here[..wide]) {
-            *above = (*above).min(here + 1);
-        }
-    }
-    // Find the nearest of these pixels along each row.
-    let mut found = vec![0.0; width * height];
-    parallel::for_each_chunk(&mut found, width, |row, found| {
-        let rows = &rows[(row + above) * wide..][..wide];
-        let square = |&rows: &u32| down.get(rows as usize).copied().unwrap_or(f32::INFINITY);
-        let column: Vec<f32> = rows.iter().map(square).collect();
-        found.copy_from_slice(&column[left..][..width]);
-        for (distance, &square) in across.iter().enumerate().skip(1) {
-            let pairs = column[left - distance..]
-                .iter()
-                .zip(&column[left + distance..]);
-            for (found, (&before, &after)) in found.iter_mut().zip(pairs) {
-                let nearer = if after < before { after } else { before } + square;
-                if nearer < *found {
-                    *found = nearer;
-                }
-            }
-        }
-        for found in found {
-            *found = found.sqrt().min(radius);
-        }
-    });
-    found
 }

@@ -1,8 +1,9 @@
 //! Edges: where a node changes.
 
-use super::{NodeKind, slope};
+use super::NodeKind;
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
+use dapple_filter::{difference_spans, gradients};
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
@@ -29,12 +30,12 @@ impl NodeKind for Edges {
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let radius = plan.radius(Some(self.radius), 0.0)?;
         let input = plan.any(&self.input)?;
-        let halo = move |pixel| slope::spans(radius, pixel);
+        let halo = move |pixel| difference_spans(radius, pixel);
         let step = plan.neighborhood(vec![input], halo, move |around| {
-            let span = around.pixel * DVec2::from(around.halo.map(f64::from));
+            let span = around.part.pixel * DVec2::from(around.part.halo.map(f64::from));
             let scale = radius / (2.0 * span);
             let edges = |values: &[f32]| {
-                slope::gradients(values, around.size, around.halo, |[x, y]| {
+                gradients(values, &around.part, &|[x, y]: [f64; 2]| {
                     let change = [x * scale.x, y * scale.y];
                     (change[0] * change[0] + change[1] * change[1]).sqrt() as f32
                 })

@@ -55,9 +55,9 @@ impl NodeKind for Occlusion {
         Ok(plan.neighborhood_of_heights(input, halo, move |around| {
             let seen = ambient_occlusion_of_part_cancellable(
                 &around.raster(0)?,
-                around.halo,
+                around.part.halo,
                 [1; 2],
-                &options(around.pixel),
+                &options(around.part.pixel),
                 &|| around.watch.is_cancelled(),
             )?;
             Ok(Values::Numbers(seen.into_pixels()))

@@ -1,9 +1,9 @@
 //! Sharpening by an unsharp mask.
 
 use super::NodeKind;
-use super::blur::{gaussian, gaussian_halo};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError};
+use dapple_filter::{gaussian, gaussian_halo};
 use dapple_raster::{Range, range};
 use serde::{Deserialize, Serialize};
 
@@ -42,10 +42,10 @@ impl NodeKind for Sharpen {
         let halo = move |pixel| gaussian_halo(radius, pixel);
         Ok(plan.neighborhood(vec![input], halo, move |around| {
             Ok(around.each_channel(0, |values| {
-                let mut sharp = gaussian(values, around, radius);
-                let width = around.size[0] as usize;
+                let mut sharp = gaussian(values, &around.part, radius);
+                let width = around.part.size[0] as usize;
                 for (row, sharp) in sharp.chunks_mut(width).enumerate() {
-                    for (sharp, &here) in sharp.iter_mut().zip(around.line(values, row)) {
+                    for (sharp, &here) in sharp.iter_mut().zip(around.part.line(values, row)) {
                         *sharp = here + amount * (here - *sharp);
                     }
                 }

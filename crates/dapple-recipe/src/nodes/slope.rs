@@ -4,7 +4,7 @@ use super::NodeKind;
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use core::f64::consts::FRAC_2_PI;
-use dapple_raster::parallel;
+use dapple_filter::{difference_spans, gradients};
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
@@ -45,15 +45,14 @@ impl NodeKind for Slope {
             radius => plan.radius(radius, 0.0)?,
         };
         let input = plan.number(&self.input)?;
-        let halo = move |pixel| spans(radius, pixel);
+        let halo = move |pixel| difference_spans(radius, pixel);
         Ok(plan.neighborhood_of_heights(input, halo, move |around| {
-            let span = around.pixel * DVec2::from(around.halo.map(f64::from));
+            let span = around.part.pixel * DVec2::from(around.part.halo.map(f64::from));
             let scale = relief / (2.0 * span);
             let numbers = gradients(
                 around.inputs[0].numbers(),
-                around.size,
-                around.halo,
-                |[x, y]| {
+                &around.part,
+                &|[x, y]: [f64; 2]| {
                     let rise = [x * scale.x, y * scale.y];
                     let steepness = (rise[0] * rise[0] + rise[1] * rise[1]).sqrt();
                     match steepness.is_finite() {
@@ -65,35 +64,4 @@ impl NodeKind for Slope {
             Ok(Values::Numbers(numbers))
         }))
     }
-}
-
-/// Returns a radius in whole columns and rows, at least 1.
-pub(super) fn spans(radius: f64, pixel: DVec2) -> [u32; 2] {
-    // The small term makes exact half pixels round up, whatever the rounding error of the pixel size.
-    [pixel.x, pixel.y].map(|pixel| ((radius / pixel + 0.5 + 1e-9) as u32).max(1))
-}
-
-/// Computes a number from the differences along x and y between the values at both ends of the halo.
-pub(super) fn gradients(
-    values: &[f32],
-    size: [u32; 2],
-    halo: [u32; 2],
-    number: impl Fn([f64; 2]) -> f32 + Sync,
-) -> Vec<f32> {
-    let [width, height] = size.map(|side| side as usize);
-    let [left, above] = halo.map(|side| side as usize);
-    let wide = width + 2 * left;
-    let mut numbers = vec![0.0; width * height];
-    parallel::for_each_chunk(&mut numbers, width, |row, out| {
-        let line = |row: usize, column: usize| &values[row * wide + column..][..width];
-        let [before, after] = [line(row + above, 0), line(row + above, 2 * left)];
-        let [over, under] = [line(row, left), line(row + 2 * above, left)];
-        for (column, out) in out.iter_mut().enumerate() {
-            *out = number([
-                f64::from(after[column]) - f64::from(before[column]),
-                f64::from(under[column]) - f64::from(over[column]),
-            ]);
-        }
-    });
-    numbers
 }

@@ -14,6 +14,7 @@ use super::{PlanLimits, Watch, Whole};
 use crate::{RecipeError, RecipeErrorKind, Values};
 use core::cmp::Reverse;
 use dapple_color::continue_heights;
+use dapple_filter::Part;
 use dapple_raster::{Raster, Window};
 use glam::DVec2;
 use std::collections::BTreeMap;
@@ -45,37 +46,21 @@ type NeighborhoodFunction = dyn Fn(&Surroundings<'_>) -> Result<Values, RecipeEr
 pub(crate) struct Surroundings<'a> {
     /// The values of the inputs in the window and its halo, row by row.
     pub(crate) inputs: &'a [Arc<Values>],
-    /// Columns and rows of the window, without the halo.
-    pub(crate) size: [u32; 2],
-    /// Columns and rows of the halo at each side.
-    pub(crate) halo: [u32; 2],
-    /// Width and height of a pixel, in units of the plane.
-    pub(crate) pixel: DVec2,
+    /// The pixels of the window and its halo.
+    pub(crate) part: Part,
     /// Reports progress to the caller's callback.
     pub(crate) watch: &'a Watch,
 }
 
 impl Surroundings<'_> {
-    /// Returns the columns and rows of the inputs.
-    pub(crate) fn input_size(&self) -> [u32; 2] {
-        [0, 1].map(|axis| self.size[axis] + 2 * self.halo[axis])
-    }
-
     /// Computes numbers from each channel of an input: from its numbers, or from red, green and blue.
     pub(crate) fn each_channel(&self, input: usize, change: impl Fn(&[f32]) -> Vec<f32>) -> Values {
         self.inputs[input].each_channel(change)
     }
 
-    /// Returns a row of the window, given the numbers in the window and its halo.
-    pub(crate) fn line<'a>(&self, values: &'a [f32], row: usize) -> &'a [f32] {
-        let [width, wide] = [self.size[0], self.input_size()[0]].map(|side| side as usize);
-        let [left, above] = self.halo.map(|side| side as usize);
-        &values[(row + above) * wide + left..][..width]
-    }
-
     /// Returns the numbers of an input as a raster. Colors are converted to their luminance.
     pub(crate) fn raster(&self, input: usize) -> Result<Raster<f32>, RecipeError> {
-        Ok(self.inputs[input].raster(self.input_size())?)
+        Ok(self.inputs[input].raster(self.part.input_size())?)
     }
 }
 
@@ -97,9 +82,7 @@ impl Neighborhood {
         }
         (self.apply)(&Surroundings {
             inputs: &cut,
-            size,
-            halo,
-            pixel,
+            part: Part { size, halo, pixel },
             watch,
         })
     }
@@ -292,17 +275,22 @@ impl Neighborhood {
     }
 }
 
-/// Checks that the halos of the neighborhoods that `wanted` need are within the limits, before any work is done.
-pub(super) fn check_halos(
+/// Returns the largest margin around a window of these pixels that the neighborhoods of `wanted` need. Fails if halos are
+/// above the limits.
+pub(super) fn margin(
     steps: &[Step],
     window: &Window,
     wanted: &[usize],
-) -> Result<(), RecipeError> {
+) -> Result<[u32; 2], RecipeError> {
     let one = Window {
         size: [1; 2],
         ..*window
     };
-    stages(steps, &one, wanted, &[]).map(|_| ())
+    let stages = stages(steps, &one, wanted, &[])?;
+    let margins = stages.into_iter().flatten();
+    Ok(margins.fold([0; 2], |most, (_, _, Reverse(margin))| {
+        [0, 1].map(|axis| most[axis].max(margin[axis]))
+    }))
 }
 
 /// Returns whether `wanted` need a neighborhood that is not known.

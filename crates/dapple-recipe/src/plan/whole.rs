@@ -2,7 +2,7 @@
 
 use super::builder::wrap;
 use super::evaluate::{At, Places};
-use super::neighborhood::check_halos;
+use super::neighborhood::margin;
 use super::step::{Global, Step, StretchedImage, Tile, needed_wholes};
 use super::{OF_NODE, Pass, Picture, Plan, Samples, TileSamples, Watch};
 use crate::{RecipeError, RecipeErrorKind, Region, Values};
@@ -79,7 +79,8 @@ impl Plan {
         wanted: &[usize],
         watch: Watch,
     ) -> Result<Whole, RecipeError> {
-        check_halos(self.steps(), &tile.window, wanted)?;
+        // Check the halos of neighborhoods before any work is done.
+        margin(self.steps(), &tile.window, wanted)?;
         let wholes = needed_wholes(self.steps(), wanted);
         let Some(&first) = wholes.first() else {
             return Ok(Whole {
