@@ -1,5 +1,5 @@
-//! Patterns of bricks, woven threads and shapes for walls, floors, cloth and signs: exact periods, any position, and
-//! the same bits on every machine.
+//! Patterns of bricks, woven threads, shapes and scattered stamps for walls, floors, cloth and ground: exact periods, any
+//! position, and the same bits on every machine.
 //!
 //! A pattern has several values at a position, such as the height, a random number of the brick, and the coordinates on
 //! it. Each is a [`Field`](dapple_raster::Field), so that [`FieldExt`](dapple_raster::FieldExt) composes it.
@@ -28,6 +28,8 @@
 //! | [`Bricks`] | nine [`Bond`]s: running, flemish, herringbone, hexagons, planks, roof tiles and others | height, edge distance, random numbers, coordinates on the brick, column and course |
 //! | [`Weave`] | four [`Draft`]s: plain, twill, satin, basket | height, random numbers and direction of the thread, coordinates on it |
 //! | [`Shape`] | eight [`ShapeKind`]s, alone or on a lattice | signed distance, mask |
+//! | [`Stamps`] | eleven [`StampShape`]s at scattered points: pebbles, leaves, blades, slates and others | height, mask, random numbers, coordinates on the stamp, edge distance, angle |
+//! | [`GaborNoise`] | stripes of a frequency and a direction that waver | noise, phase |
 //!
 //! # Ways to sample
 //!
@@ -80,13 +82,15 @@ pub use bricks::{Bond, BrickField, BrickOptions, BrickValue};
 pub use dapple_hash as hash;
 pub use dapple_raster as raster;
 pub use error::{PatternError, PatternErrorKind};
-pub use gabor::{GaborField, GaborNoise, GaborValue};
-pub use scatter::{StampField, StampOverlap, StampShape, StampValue, Stamps};
+#[doc(alias("phasor"))]
+pub use gabor::GaborNoise;
+pub use gabor::{GaborField, GaborValue};
+#[doc(alias("scatter", "pebbles", "leaves", "grass", "rivets"))]
+pub use scatter::Stamps;
+pub use scatter::{StampField, StampOverlap, StampShape, StampValue};
 #[doc(alias("sdf", "signed distance", "star"))]
 pub use shape::Shape;
-pub use shape::{Shape, ShapeField, ShapeKind, ShapeOptions, ShapeValue};
 pub use shape::{ShapeField, ShapeKind, ShapeOptions, ShapeValue};
 #[doc(alias("cloth", "fabric", "twill"))]
 pub use weave::Weave;
-pub use weave::{Draft, Weave, WeaveField, WeaveOptions, WeaveValue};
 pub use weave::{Draft, WeaveField, WeaveOptions, WeaveValue};
