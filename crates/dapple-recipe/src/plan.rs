@@ -519,7 +519,7 @@ impl Plan {
             let is_found = values.is_some();
             found
                 .borrow_mut()
-                .extend(values.map(|values| (index, values)));
+                .extend(values.map(|values| (index, (*window, values))));
             is_known || is_found
         });
         known.append(&mut found.into_inner());
@@ -557,6 +557,16 @@ impl Plan {
     /// Returns the number of rows above and below a window of these pixels that the neighborhoods of the material need.
     pub(crate) fn margin_rows(&self, window: &Window) -> Result<u32, RecipeError> {
         neighborhood::margin(&self.steps, window, &self.channels.steps()).map(|margin| margin[1])
+    }
+
+    /// Returns the steps whose values neighborhoods read around a window, and the margin in which they need them. Callers
+    /// that store these values need not evaluate rows of the margin again.
+    pub(crate) fn sources(
+        &self,
+        window: &Window,
+        wanted: &[usize],
+    ) -> Result<(Vec<usize>, [u32; 2]), RecipeError> {
+        neighborhood::sources(&self.steps, window, wanted)
     }
 
     /// Returns a copy of the plan's callback with separate progress, for new work.

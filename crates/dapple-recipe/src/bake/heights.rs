@@ -5,7 +5,7 @@ use super::{MapKind, MapRows};
 use crate::plan::{Known, TileSamples};
 use crate::{Plan, RecipeError, Values, Whole};
 use dapple_color::continue_heights;
-use dapple_raster::{Raster, RasterError, Window};
+use dapple_raster::{Raster, Window};
 use std::sync::Arc;
 
 /// Maximum number of pixels, in a band with its margin, at which the values of shared steps are stored in addition to
@@ -28,6 +28,12 @@ pub(super) struct Heights {
     shared: Vec<usize>,
     /// The lowest rows of the previous band, which the margin of the next band reuses.
     last: Option<Rows>,
+    /// The steps that neighborhoods read, such as the input of a blur.
+    sources: Vec<usize>,
+    /// How far beyond a band the sources are needed, in columns and rows.
+    reach: [u32; 2],
+    /// The lowest rows of the sources of the previous band.
+    last_sources: Option<Rows>,
 }
 
 /// The values of several steps at the pixels of a window.
@@ -41,7 +47,7 @@ struct Rows {
 pub(super) struct Margined {
     pub(super) raster: Option<Raster<f32>>,
     pub(super) halo: [u32; 2],
-    /// The values of shared steps in the band, without its margin.
+    /// The values of shared steps in the band and a margin.
     pub(super) shared: Box<Known>,
 }
 
@@ -61,6 +67,9 @@ impl Heights {
             sides: [0, 1].map(|axis| continues[axis].then(|| side(axis))),
             shared: plan.shared_with_height(&beside_height(plan, maps)),
             last: None,
+            sources: Vec::new(),
+            reach: [0; 2],
+            last_sources: None,
         };
         for map in maps {
             let halo = match map {
@@ -75,6 +84,13 @@ impl Heights {
             heights.wanted = true;
             heights.halo = [heights.halo[0].max(halo[0]), heights.halo[1].max(halo[1])];
         }
+        let mut steps = beside_height(plan, maps);
+        if heights.wanted {
+            steps.push(plan.channels().height);
+        }
+        let (sources, margin) = plan.sources(&window, &steps)?;
+        heights.sources = sources;
+        heights.reach = [0, 1].map(|axis| heights.halo[axis].saturating_add(margin[axis]));
         Ok(heights)
     }
 
@@ -93,34 +109,24 @@ impl Heights {
 
     /// Computes the heights of a band with its margin. Reuses rows that it shares with the previous band.
     fn of(&mut self, plan: &Plan, whole: &Whole, band: &Window) -> Result<Margined, RecipeError> {
+        let mut shared = self.sources(plan, whole, band)?;
         let halo = self.halo;
         if !self.wanted {
             return Ok(Margined {
                 raster: None,
                 halo,
-                shared: Box::default(),
+                shared: shared.into(),
             });
         }
-        let window = Window {
-            first: [0, 1].map(|axis| band.first[axis].saturating_sub(halo[axis].into())),
-            size: [0, 1].map(|axis| band.size[axis].saturating_add(halo[axis].saturating_mul(2))),
-            ..*band
-        };
-        // Begin with the rows of the previous band, and compute the rest.
+        let window = with_margin(band, halo);
         let mut steps = vec![plan.channels().height];
         if window.n_pixels() <= SHARED_PIXELS {
-            steps.extend(&self.shared);
+            let is_new = |step: &&usize| !shared.iter().any(|(known, _)| known == *step);
+            steps.extend(self.shared.iter().filter(is_new));
         }
-        let last = self.last.take();
-        let mut rows = last
-            .filter(|last| last.values.len() == steps.len())
-            .and_then(|last| last.rows_from(window.first[1]))
-            .unwrap_or_else(|| Rows::none(&window));
-        rows.complete(plan, whole, &window, &steps)?;
-        if halo[1] > 0 {
-            let next = band.first[1].saturating_add(band.size[1].into());
-            self.last = rows.rows_from(next.saturating_sub(halo[1].into()));
-        }
+        let mut rows = Rows::from(self.last.take(), &window, &steps);
+        rows.complete(plan, whole, &window, &steps, &shared)?;
+        self.last = rows.for_next(band, halo[1]);
         // Extrapolate the heights past the sides of the tile.
         let mut values = rows.values.into_iter();
         let heights = match values.next() {
@@ -133,17 +139,43 @@ impl Heights {
             Some(sides.map(|side| side - window.first[axis]))
         };
         continue_heights(&mut raster, [0, 1].map(in_window));
-        // Crop the margin from the values of the shared steps.
-        let in_band = |(&step, values)| Ok((step, Arc::new(cropped(values, &window, halo, band)?)));
+        let values = values.map(|values| (window, Arc::new(values)));
+        shared.extend(steps[1..].iter().copied().zip(values));
         Ok(Margined {
             raster: Some(raster),
             halo,
-            shared: steps[1..]
-                .iter()
-                .zip(values)
-                .map(in_band)
-                .collect::<Result<_, RasterError>>()?,
+            shared: shared.into(),
         })
+    }
+
+    /// Computes the values that the neighborhoods of a band read. Reuses rows that it shares with the previous band.
+    /// Returns nothing if they would take too much memory; neighborhoods then compute them themselves.
+    fn sources(
+        &mut self,
+        plan: &Plan,
+        whole: &Whole,
+        band: &Window,
+    ) -> Result<Vec<(usize, (Window, Arc<Values>))>, RecipeError> {
+        let window = with_margin(band, self.reach);
+        let [width, height] = window.size.map(u64::from);
+        if self.sources.is_empty() || width * height > SHARED_PIXELS as u64 {
+            return Ok(Vec::new());
+        }
+        let mut rows = Rows::from(self.last_sources.take(), &window, &self.sources);
+        rows.complete(plan, whole, &window, &self.sources, &[])?;
+        self.last_sources = rows.for_next(band, self.reach[1]);
+        let values = rows.values.into_iter();
+        let values = values.map(|values| (window, Arc::new(values)));
+        Ok(self.sources.iter().copied().zip(values).collect())
+    }
+}
+
+/// Returns `band` with a margin at each side, in columns and rows.
+fn with_margin(band: &Window, margin: [u32; 2]) -> Window {
+    Window {
+        first: [0, 1].map(|axis| band.first[axis].saturating_sub(margin[axis].into())),
+        size: [0, 1].map(|axis| band.size[axis].saturating_add(margin[axis].saturating_mul(2))),
+        ..*band
     }
 }
 
@@ -158,6 +190,20 @@ impl Rows {
             },
             values: Vec::new(),
         }
+    }
+
+    /// Returns the first rows of `window`, if `last` has them; otherwise none. `steps` are those of the values.
+    fn from(last: Option<Self>, window: &Window, steps: &[usize]) -> Self {
+        last.filter(|last| last.values.len() == steps.len())
+            .and_then(|last| last.rows_from(window.first[1]))
+            .unwrap_or_else(|| Self::none(window))
+    }
+
+    /// Returns the rows that the band below `band` needs again with a margin; `None` without a margin.
+    fn for_next(&self, band: &Window, margin: u32) -> Option<Self> {
+        let next = band.first[1].saturating_add(band.size[1].into());
+        let rows = (margin > 0).then(|| self.rows_from(next.saturating_sub(margin.into())));
+        rows.flatten()
     }
 
     /// Returns the rows starting at the row `first`; `None` if that row is not stored.
@@ -187,6 +233,7 @@ impl Rows {
         whole: &Whole,
         window: &Window,
         steps: &[usize],
+        known: &Known,
     ) -> Result<(), RecipeError> {
         let [width, made] = self.window.size;
         let rest = Window {
@@ -195,7 +242,7 @@ impl Rows {
             ..*window
         };
         if rest.size[1] > 0 {
-            let below = plan.values(whole, &rest, steps, &[])?;
+            let below = plan.values(whole, &rest, steps, known)?;
             if self.values.is_empty() {
                 self.values = below;
             } else {
@@ -207,28 +254,4 @@ impl Rows {
         self.window = *window;
         Ok(())
     }
-}
-
-/// Crops the values of a window to the band within it.
-fn cropped(
-    values: Values,
-    window: &Window,
-    halo: [u32; 2],
-    band: &Window,
-) -> Result<Values, RasterError> {
-    if halo == [0; 2] {
-        return Ok(values);
-    }
-    Ok(match values {
-        Values::Numbers(numbers) => Values::Numbers(
-            Raster::from_vec(window.size, numbers)?
-                .crop(halo, band.size)?
-                .into_pixels(),
-        ),
-        Values::Colors(colors) => Values::Colors(
-            Raster::from_vec(window.size, colors)?
-                .crop(halo, band.size)?
-                .into_pixels(),
-        ),
-    })
 }

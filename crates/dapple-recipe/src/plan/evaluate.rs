@@ -73,8 +73,8 @@ impl<'a> Places<'a> {
     }
 }
 
-/// Steps whose values were computed beforehand, as pairs of step index and values.
-pub(crate) type Known = [(usize, Arc<Values>)];
+/// Values that were computed beforehand, with their step and a window that contains the evaluated one.
+pub(crate) type Known = [(usize, (Window, Arc<Values>))];
 
 /// Computes the values of the steps `wanted` at `places`, in the order of `wanted`.
 pub(super) fn evaluate(
@@ -82,7 +82,7 @@ pub(super) fn evaluate(
     whole: Option<&Whole>,
     places: Places<'_>,
     wanted: &[usize],
-    known: &Known,
+    known: &[(usize, Arc<Values>)],
 ) -> Result<Vec<Arc<Values>>, RecipeError> {
     let mut values: Vec<Option<Arc<Values>>> = vec![None; steps.len()];
     for (index, known) in known {
@@ -153,7 +153,7 @@ pub(super) fn chunks(
     whole: Option<&Whole>,
     grid: Grid<'_>,
     wanted: &[usize],
-    known: &[(usize, (Window, Arc<Values>))],
+    known: &Known,
 ) -> Result<Vec<Values>, RecipeError> {
     if wanted.is_empty() {
         return Ok(Vec::new());

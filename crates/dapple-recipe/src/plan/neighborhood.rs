@@ -200,15 +200,29 @@ pub(super) fn cropped(values: &Arc<Values>, window: &Window, part: &Window) -> A
 /// neighborhoods come first, and then the other steps from the largest margin to the smallest.
 type Stage = (u32, bool, Reverse<[u32; 2]>);
 
-/// Returns the stage of each step that `wanted` need in `window`, and `None` for the others. Known steps are needed no
-/// further if no margin is needed.
+/// Returns whether `window` contains `part`, which has the same grid.
+fn contains(window: &Window, part: &Window) -> bool {
+    (0..2).all(|axis| {
+        let end = |window: &Window| window.first[axis].saturating_add(i64::from(window.size[axis]));
+        window.first[axis] <= part.first[axis] && end(part) <= end(window)
+    })
+}
+
+/// Returns the stage of each step that `wanted` need in `window`, and `None` for the others. The inputs of steps that are
+/// known in all of the needed window are not needed.
 fn stages(
     steps: &[Step],
     window: &Window,
     wanted: &[usize],
     known: &Known,
 ) -> Result<Vec<Option<Stage>>, RecipeError> {
-    let is_known = |index: usize| known.iter().any(|(known, _)| *known == index);
+    let is_known = |index: usize, margin: [u32; 2]| {
+        let part = with_margin(window, margin);
+        let is_it = |(known, (made_in, _)): &(usize, (Window, _))| {
+            *known == index && contains(made_in, &part)
+        };
+        known.iter().any(is_it)
+    };
     let mut margins: Vec<Option<[u32; 2]>> = vec![None; steps.len()];
     for &index in wanted {
         margins[index] = Some([0; 2]);
@@ -219,7 +233,7 @@ fn stages(
         let Some(margin) = margins[index] else {
             continue;
         };
-        if margin == [0; 2] && is_known(index) {
+        if is_known(index, margin) {
             continue;
         }
         let mut of_inputs = margin;
@@ -293,6 +307,38 @@ pub(super) fn margin(
     }))
 }
 
+/// Returns the steps whose values neighborhoods read around a window of these pixels and that depend on no neighborhood
+/// themselves, with the largest margin in which they are needed.
+pub(super) fn sources(
+    steps: &[Step],
+    window: &Window,
+    wanted: &[usize],
+) -> Result<(Vec<usize>, [u32; 2]), RecipeError> {
+    let one = Window {
+        size: [1; 2],
+        ..*window
+    };
+    let stages = stages(steps, &one, wanted, &[])?;
+    let is_kept = kept(steps, &stages, wanted);
+    let (mut sources, mut most) = (Vec::new(), [0; 2]);
+    for (index, stage) in stages.iter().enumerate() {
+        let is_ready = matches!(
+            steps[index],
+            Step::Number(_) | Step::Color(_) | Step::Global(_)
+        );
+        match stage {
+            Some((0, true, Reverse(margin)))
+                if *margin != [0; 2] && is_kept[index] && !is_ready =>
+            {
+                sources.push(index);
+                most = [0, 1].map(|axis| most[axis].max(margin[axis]));
+            }
+            _ => {}
+        }
+    }
+    Ok((sources, most))
+}
+
 /// Returns whether `wanted` need a neighborhood that is not known.
 fn sees_neighborhoods(steps: &[Step], wanted: &[usize], known: &Known) -> bool {
     let is_known = |index: usize| known.iter().any(|(known, _)| *known == index);
@@ -312,12 +358,12 @@ pub(super) fn window(
     known: &Known,
 ) -> Result<Vec<Values>, RecipeError> {
     let window = grid.window;
-    let at_window = |values: &Known| -> Vec<_> {
-        let made = |(index, values): &(usize, Arc<Values>)| (*index, (*window, values.clone()));
-        values.iter().map(made).collect()
-    };
     if !sees_neighborhoods(steps, wanted, known) {
-        return chunks(steps, whole, grid, wanted, &at_window(known));
+        let is_known = |index: usize| known.iter().any(|(known, _)| *known == index);
+        let read = needed(steps, wanted, is_known);
+        let mut known = known.to_vec();
+        known.retain(|(index, _)| read.contains(index));
+        return chunks(steps, whole, grid, wanted, &known);
     }
     let stages = stages(steps, window, wanted, known)?;
     let is_kept = kept(steps, &stages, wanted);
@@ -327,9 +373,12 @@ pub(super) fn window(
             order.entry(*stage).or_default().push(index);
         }
     }
-    // Known steps have no margin; a step that needs one is computed again.
-    let mut made = BTreeMap::from_iter(at_window(known));
-    made.retain(|&index, _| matches!(stages[index], Some((_, _, Reverse([0, 0])))));
+    // A step that is known in too small a window is computed again.
+    let mut made = BTreeMap::from_iter(known.iter().cloned());
+    made.retain(|&index, (made_in, _)| {
+        let part = |(_, _, Reverse(margin))| with_margin(window, margin);
+        stages[index].is_some_and(|stage| contains(made_in, &part(stage)))
+    });
     let silent = Watch::default();
     let watch = whole.map_or(&silent, |whole| &whole.watch);
     for ((_, _, Reverse(margin)), mut members) in order {
