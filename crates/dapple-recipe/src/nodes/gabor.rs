@@ -5,7 +5,7 @@ use super::{Frequency, NodeKind, NodeSeed};
 use crate::RecipeError;
 use crate::plan::{Builder, Step};
 use dapple_pattern::{GaborNoise, GaborValue};
-use dapple_raster::FieldExt as _;
+use dapple_raster::{FieldExt as _, Named};
 use serde::{Deserialize, Serialize};
 
 /// Gabor noise: waves of about one length and direction, such as wood fiber, brushed metal or ripples of sand.
@@ -52,6 +52,18 @@ impl Default for GaborNode {
 }
 
 impl NodeKind for GaborNode {
+    fn outputs(&self) -> &'static [&'static str] {
+        GaborValue::NAMES
+    }
+
+    fn with_output(&self, value: &str) -> Option<Box<dyn NodeKind>> {
+        let value = GaborValue::from_name(value)?;
+        Some(Box::new(Self {
+            value,
+            ..self.clone()
+        }))
+    }
+
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let frequency = self.frequency.0;
         let period = plan.periods(frequency)?;

@@ -4,7 +4,7 @@ use super::{Frequency, NodeKind, NodeSeed};
 use crate::RecipeError;
 use crate::plan::{Builder, Step};
 use dapple_pattern::{StampOverlap, StampShape, StampValue, Stamps};
-use dapple_raster::FieldExt as _;
+use dapple_raster::{FieldExt as _, Named};
 use serde::{Deserialize, Serialize};
 
 /// Shapes stamped at scattered points: gravel, leaves, grass, rivets, scales, scratches.
@@ -81,6 +81,18 @@ impl Default for ScatterNode {
 }
 
 impl NodeKind for ScatterNode {
+    fn outputs(&self) -> &'static [&'static str] {
+        StampValue::NAMES
+    }
+
+    fn with_output(&self, value: &str) -> Option<Box<dyn NodeKind>> {
+        let value = StampValue::from_name(value)?;
+        Some(Box::new(Self {
+            value,
+            ..self.clone()
+        }))
+    }
+
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let frequency = self.frequency.0;
         let period = plan.periods(frequency)?;

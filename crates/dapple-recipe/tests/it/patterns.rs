@@ -39,6 +39,22 @@ fn outputs_equal_the_node_with_that_value_and_seed() {
         );
         assert_eq!(rendered(&nodes, "a"), rendered(&nodes, "b"), "{value}");
     }
+    for &value in dapple_pattern::StampValue::NAMES {
+        let nodes = format!(
+            "[nodes]\nstones.scatter = {{ shape = \"pebble\", density = 2 }}\n\
+             a.output = {{ of = \"stones\", value = \"{value}\" }}\n\
+             b.scatter = {{ shape = \"pebble\", density = 2, value = \"{value}\", seed = \"stones\" }}"
+        );
+        assert_eq!(rendered(&nodes, "a"), rendered(&nodes, "b"), "{value}");
+    }
+    for &value in dapple_pattern::GaborValue::NAMES {
+        let nodes = format!(
+            "[nodes]\nfibers.gabor = {{ frequency = 4 }}\n\
+             a.output = {{ of = \"fibers\", value = \"{value}\" }}\n\
+             b.gabor = {{ frequency = 4, value = \"{value}\", seed = \"fibers\" }}"
+        );
+        assert_eq!(rendered(&nodes, "a"), rendered(&nodes, "b"), "{value}");
+    }
     let nodes = "[nodes]\n\
         star.shape = { kind = \"star\", frequency = 2 }\n\
         a.output = { of = \"star\", value = \"mask\" }\n\
