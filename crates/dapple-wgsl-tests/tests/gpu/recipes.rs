@@ -6,10 +6,10 @@ use dapple_recipe::{Images, Input, Plan, Recipe, ShaderOptions};
 use dapple_wgsl_tests::Gpu;
 
 /// Number of random positions of a recipe, near and far.
-const RANDOM: usize = 1 << 10;
+const RANDOM: usize = 1 << 8;
 
 /// Number of pixels along each side of a window.
-const SIDE: u32 = 48;
+const SIDE: u32 = 96;
 
 /// Largest error of a color that is mixed in Oklab, whose components are from 0 to 1.
 const OKLAB_ERROR: f32 = 4e-6;
