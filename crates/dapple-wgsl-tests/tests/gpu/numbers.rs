@@ -144,7 +144,7 @@ fn sums_and_products_of_64_bits_are_rounded_to_nearest_even() {
             0 => [0.0, -0.0][i / 10 % 2],
             // Nearly or fully cancels
             1 => -a,
-            2 => f64::from_bits((-a).to_bits() ^ stream.next_u64() % 8),
+            2 => f64::from_bits((-a).to_bits() ^ (stream.next_u64() % 8)),
             // Exponents are close, so that the sum is rounded halfway between two numbers
             3 | 4 => a * double(&mut stream, 2),
             // The sum is rounded halfway between two numbers
