@@ -18,7 +18,11 @@ pub fn difference_spans(radius: f64, pixel: DVec2) -> [u32; 2] {
 ///
 /// If there are fewer values than in the part and its halo.
 #[must_use]
-pub fn gradients(values: &[f32], part: &Part, number: impl Fn([f64; 2]) -> f32 + Sync) -> Vec<f32> {
+pub fn gradients(
+    values: &[f32],
+    part: &Part,
+    number: &(dyn Fn([f64; 2]) -> f32 + Sync),
+) -> Vec<f32> {
     let [width, height] = part.size.map(|side| side as usize);
     let [left, above] = part.halo.map(|side| side as usize);
     let wide = width + 2 * left;

@@ -109,7 +109,7 @@ impl Heights {
 
     /// Computes the heights of a band with its margin. Reuses rows that it shares with the previous band.
     fn of(&mut self, plan: &Plan, whole: &Whole, band: &Window) -> Result<Margined, RecipeError> {
-        let mut shared = self.sources(plan, whole, band)?;
+        let mut shared = self.sources(plan, whole, band)?.into_vec();
         let halo = self.halo;
         if !self.wanted {
             return Ok(Margined {
@@ -155,11 +155,11 @@ impl Heights {
         plan: &Plan,
         whole: &Whole,
         band: &Window,
-    ) -> Result<Vec<(usize, (Window, Arc<Values>))>, RecipeError> {
+    ) -> Result<Box<Known>, RecipeError> {
         let window = with_margin(band, self.reach);
         let [width, height] = window.size.map(u64::from);
         if self.sources.is_empty() || width * height > SHARED_PIXELS as u64 {
-            return Ok(Vec::new());
+            return Ok(Box::default());
         }
         let mut rows = Rows::from(self.last_sources.take(), &window, &self.sources);
         rows.complete(plan, whole, &window, &self.sources, &[])?;
