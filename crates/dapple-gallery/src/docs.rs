@@ -20,6 +20,7 @@ mod noise;
 mod picture;
 mod points;
 mod preview;
+mod recipe;
 mod pups;
 mod synth;
 mod tile;
@@ -74,6 +75,7 @@ pub fn documented() -> &'static [Documented] {
         preview::DOCUMENTED,
         pups::DOCUMENTED,
         synth::DOCUMENTED,
+        recipe::DOCUMENTED,
     ]
 }
 

@@ -7,6 +7,8 @@ pub(crate) mod surface;
 mod wavelet;
 mod worley;
 
+pub(crate) use house::lit;
+
 use crate::{Figure, Paper};
 
 /// Returns the papers in page order.

@@ -1,39 +1,74 @@
-//! The built-in recipes, which reproduce textures of the papers.
+//! The built-in recipes: materials for games, and textures of the papers.
 
 use crate::{Recipe, RecipeError, RecipeErrorKind};
 
-/// The names and texts of the built-in recipes, sorted by name.
-const BUILTIN: [(&str, &str); 20] = [
-    ("clouds", include_str!("builtin/clouds.toml")),
-    ("coastline", include_str!("builtin/coastline.toml")),
-    ("cow", include_str!("builtin/cow.toml")),
-    ("craters", include_str!("builtin/craters.toml")),
-    (
-        "crumpled-paper",
-        include_str!("builtin/crumpled-paper.toml"),
-    ),
-    ("crusty-skin", include_str!("builtin/crusty-skin.toml")),
-    ("flagstone", include_str!("builtin/flagstone.toml")),
-    ("giraffe", include_str!("builtin/giraffe.toml")),
-    ("ice", include_str!("builtin/ice.toml")),
-    ("marble", include_str!("builtin/marble.toml")),
-    ("mountains", include_str!("builtin/mountains.toml")),
-    ("polka-dots", include_str!("builtin/polka-dots.toml")),
-    ("radial-hull", include_str!("builtin/radial-hull.toml")),
-    ("rock", include_str!("builtin/rock.toml")),
-    ("sea-water", include_str!("builtin/sea-water.toml")),
-    (
-        "spaceship-hull",
-        include_str!("builtin/spaceship-hull.toml"),
-    ),
-    (
-        "stone-and-grass",
-        include_str!("builtin/stone-and-grass.toml"),
-    ),
-    ("tinfoil", include_str!("builtin/tinfoil.toml")),
-    ("vein-tracery", include_str!("builtin/vein-tracery.toml")),
-    ("wood-grain", include_str!("builtin/wood-grain.toml")),
-];
+/// Defines the names and texts of the built-in recipes, whose files have the same names.
+macro_rules! builtin {
+    ($($name:literal)*) => {
+        const BUILTIN: [(&str, &str); [$($name),*].len()] =
+            [$(($name, include_str!(concat!("builtin/", $name, ".toml")))),*];
+    };
+}
+
+// Sorted by name.
+builtin! {
+    "asphalt"
+    "bark"
+    "brick-wall"
+    "brushed-metal"
+    "canvas"
+    "cardboard"
+    "clouds"
+    "coastline"
+    "cobblestones"
+    "concrete"
+    "corrugated-metal"
+    "cow"
+    "cracked-mud"
+    "craters"
+    "crumpled-paper"
+    "crusty-skin"
+    "diamond-plate"
+    "fallen-leaves"
+    "flagstone"
+    "floor-tiles"
+    "giraffe"
+    "granite"
+    "grass"
+    "gravel"
+    "herringbone-pavers"
+    "hexagon-tiles"
+    "ice"
+    "leather"
+    "marble"
+    "moss"
+    "mountains"
+    "old-brick-wall"
+    "pebbles"
+    "planks"
+    "plaster"
+    "polka-dots"
+    "radial-hull"
+    "riveted-plates"
+    "rock"
+    "rock-cliff"
+    "roof-tiles"
+    "rusty-metal"
+    "sand-ripples"
+    "scales"
+    "sci-fi-panels"
+    "sea-water"
+    "snow"
+    "soil"
+    "spaceship-hull"
+    "stone-and-grass"
+    "stone-wall"
+    "terrazzo"
+    "tinfoil"
+    "vein-tracery"
+    "wood-floor"
+    "wood-grain"
+}
 
 impl Recipe {
     /// Returns the built-in recipe called `name`.

@@ -1,11 +1,12 @@
 //! Helpers shared by all strips: images with few shades, whose files are small, and rows of images.
 
 use crate::draw::shrink;
-use crate::figures::figures;
+use crate::figures::{figures, lit};
 use crate::{Panel, Picture};
 use anyhow::Context;
 use dapple_color::{Code, LinearRgb};
 use dapple_raster::{Field, Raster, Window};
+use dapple_recipe::Recipe;
 use glam::DVec2;
 
 /// Width and height of an image, in pixels.
@@ -101,6 +102,16 @@ fn of_figure(name: &str, number: usize, height: u32) -> anyhow::Result<Panel> {
         [_, found] if found < height => panel((height * height).div_ceil(found)),
         _ => Ok(first),
     }
+}
+
+/// Returns the upper left quarter of a built-in recipe's tile, lit, with `side` × `side` pixels.
+pub(super) fn lit_recipe(name: &str, side: u32) -> anyhow::Result<Panel> {
+    let recipe = Recipe::builtin(name)?;
+    let [width, height] = recipe.extent;
+    // Half of the shorter side of the tile is `side` pixels long.
+    let longer = width.max(height) / width.min(height) * f64::from(2 * side);
+    let tile = lit(&recipe, longer.ceil() as u32)?;
+    Ok(Panel::color(name, tile.crop([0, 0], [side; 2])?))
 }
 
 /// Joins panels of figures in a row, as the image for a README.

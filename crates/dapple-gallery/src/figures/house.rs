@@ -4,6 +4,8 @@ mod fig_01;
 mod fig_02;
 mod lit;
 
+pub(crate) use lit::lit;
+
 use crate::Paper;
 
 /// The workspace itself, listed as if it were a paper.

@@ -1,4 +1,4 @@
-//! The twenty built-in recipes, each baked to its maps and lit from the upper left. `dapple bake flagstone -o out/`
+//! The built-in recipes, each baked to its maps and lit from the upper left. `dapple bake flagstone -o out/`
 //! writes the maps of one of them.
 
 use super::lit::lit;

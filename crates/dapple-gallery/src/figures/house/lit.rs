@@ -9,7 +9,7 @@ use glam::DVec3;
 const DIELECTRIC: f32 = 0.04;
 
 /// Bakes and lights a recipe that needs no images; the image has `size` pixels along its longer side.
-pub(super) fn lit(recipe: &Recipe, size: u32) -> anyhow::Result<Raster<LinearRgb>> {
+pub(crate) fn lit(recipe: &Recipe, size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let plan = Plan::new(recipe, &Images::new(), 0.0)?;
     let sides = plan.extent() / plan.extent().max_element() * f64::from(size);
     let sides = <[f64; 2]>::from(sides).map(|side| side.round() as u32);
