@@ -134,8 +134,8 @@ pub use error::{IsCancelled, TileError, TileErrorKind};
 pub use gauss::blur;
 pub use map::Map;
 pub use match_borders::{BorderSource, MatchBorders};
-pub use pyramid::Pyramid;
 pub use photo::{even_out, resize};
+pub use pyramid::Pyramid;
 pub use rank::rank_equalize;
 pub use repeat::{repeat, repeat_into};
 pub use report::{

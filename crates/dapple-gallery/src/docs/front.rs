@@ -18,10 +18,7 @@ pub(super) const DOCUMENTED: Documented = Documented {
         ]
         .map(|name| lit_recipe(name, HEIGHT));
         let recipes: Vec<_> = recipes.into_iter().collect::<Result<_, _>>()?;
-        let rows = [
-            row(&of_figures(&models, HEIGHT)?)?,
-            row(&recipes)?,
-        ];
+        let rows = [row(&of_figures(&models, HEIGHT)?)?, row(&recipes)?];
         Ok(colored("", &below(&rows)?, COLORS))
     },
 };
