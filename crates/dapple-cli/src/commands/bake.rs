@@ -127,8 +127,8 @@ pub(crate) struct Args {
     #[arg(long, help_heading = "Output")]
     sheet: bool,
 
-    /// Also write a lit preview, `NAME_preview.png`, on a plane of 2 x 2 tiles, a sphere or a torus.
-    #[arg(long, value_name = "THING", value_parser = NamedValueParser::<Thing>::all(), num_args = 0..=1, require_equals = true, default_missing_value = "plane", help_heading = "Output")]
+    /// Also write a lit preview, `NAME_preview.png`, on a sphere, a plane of 2 x 2 tiles or a torus.
+    #[arg(long, value_name = "THING", value_parser = NamedValueParser::<Thing>::all(), num_args = 0..=1, require_equals = true, default_missing_value = "sphere", help_heading = "Output")]
     preview: Option<Thing>,
 
     /// Also write `contact_sheet.png`, with a lit preview of each recipe and seed: on a sphere, or as by --preview.

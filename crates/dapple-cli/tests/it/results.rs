@@ -1,12 +1,12 @@
 //! Compares the results of the command with those of the libraries.
 
-use crate::support::{Folder, assert_done, read_gray, stderr, stdout};
+use crate::support::{Folder, assert_done, assert_refused, read_gray, stderr, stdout};
 use dapple::hash::Seed;
 use dapple::image::{Depth, Limits, decode_image, read_image, write_gray_png};
 use dapple::mesh_io::read_model;
 use dapple::raster::glam::DVec2;
-use dapple::raster::{Field as _, Raster, Window};
-use dapple::tile::{Method, Seamless, SoftCut};
+use dapple::raster::{Field as _, Raster, Window, Wrap};
+use dapple::tile::{Map, Method, Seamless, SoftCut, even_out, resize};
 use dapple::worley::{Combination, OctaveSeeds, Octaves, Worley2};
 use std::fs;
 
@@ -88,6 +88,40 @@ fn tile_cuts_by_default_with_a_margin_that_fits() {
     assert_eq!(cut.margin_of(source.size()), 32.min(side / 4));
     let expected = Seamless::new(Method::SoftCut(cut)).apply(&source).unwrap();
     assert_eq!(read_gray(&folder, "out.exr"), expected);
+}
+
+#[test]
+fn tile_evens_out_the_light_and_resamples_the_result() {
+    let folder = Folder::with_inputs("tile-even");
+    let arguments = [
+        "tile",
+        "height.exr",
+        "--even=9",
+        "--size",
+        "24x20",
+        "-o",
+        "out.exr",
+    ];
+    let output = folder.run(&arguments);
+    assert_done(&output, "tile");
+    assert!(
+        stdout(&output).contains("is stretched"),
+        "{}",
+        stdout(&output)
+    );
+    let source = Map::Value(read_gray(&folder, "height.exr"));
+    let seamless = Seamless::new(Method::SoftCut(SoftCut::default()));
+    let even = even_out(&source, 9.0).unwrap();
+    let tile = seamless.apply_maps(&[even]).unwrap().remove(0);
+    let expected = resize(&tile, [24, 20], [Wrap::Repeat; 2]).unwrap();
+    assert_eq!(Map::Value(read_gray(&folder, "out.exr")), expected);
+    let refused = folder.run(&["tile", "height.exr", "--even=0.5", "-o", "no.exr"]);
+    assert_refused(
+        &refused,
+        2,
+        "radius of the light is 0.5, but it must be from 1",
+        "--even",
+    );
 }
 
 #[test]
