@@ -1,7 +1,7 @@
 //! Renders the image for the README of `dapple-recipe`: a part of each built-in recipe, lit from the upper left.
 
 use super::Documented;
-use super::picture::{SIDE, below, colored, lit_recipe, row};
+use super::picture::{COLORS, below, colored, lit_recipe, row};
 use crate::Panel;
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
@@ -28,5 +28,5 @@ pub(super) const DOCUMENTED: Documented = Documented {
 /// Number of images in a row.
 const COLUMNS: usize = 8;
 
-/// Number of shades of each channel, low enough for a small file.
-const COLORS: f32 = 16.0;
+/// Width and height of an image, in pixels, low enough for a small file.
+const SIDE: u32 = 72;

@@ -181,7 +181,7 @@ fn built_in_recipes_fit_the_schema_as_written_and_as_written_again() {
 fn examples_of_the_readme_fit_the_schema() {
     let blocks = README.split("```toml\n").skip(1);
     let blocks: Vec<_> = blocks.filter_map(|rest| rest.split("```").next()).collect();
-    assert_eq!(blocks.len(), 2, "recipes in the README");
+    assert!(blocks.len() >= 4, "recipes in the README");
     for block in blocks {
         assert_eq!(validate(block), Ok(()));
     }
