@@ -24,6 +24,7 @@ albedo = "x"
 a = { noise = { frequency = 1.0, octaves = 1 } }
 b = { coordinate = { along = [0.125, 0.0] } }
 c = { ramp = { input = "a", palette = "lagoon" } }
+wall = { bricks = {} }
 "##;
 
 /// Iterates over the rows of the README's node tables, as the kind of node and its example.
@@ -70,8 +71,13 @@ fn readme_examples_of_nodes_bake() {
 #[test]
 fn readme_recipes_bake() {
     let blocks = README.split("```toml\n").skip(1);
-    for recipe in blocks.filter_map(|block| block.split("```").next()) {
-        assert_eq!(bake(recipe).err(), None, "{recipe}");
+    for block in blocks.filter_map(|block| block.split("```").next()) {
+        // Blocks without a version add nodes to the first recipe.
+        let recipe = match block.starts_with("dapple") {
+            true => block.to_owned(),
+            false => format!("{}\n{block}", self::block("toml")),
+        };
+        assert_eq!(bake(&recipe).err(), None, "{recipe}");
     }
 }
 

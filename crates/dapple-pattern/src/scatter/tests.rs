@@ -1,4 +1,6 @@
 //! Tests of stamps: an oracle that visits all stamps of a tile and of its copies, and shapes and limits.
+//!
+//! Reference: our own.
 
 use super::shape::Outline;
 use super::{Stamp, StampOverlap, StampShape, StampValue, Stamps};
