@@ -38,6 +38,7 @@
 //! | more of an example, in the plane or on a mesh | [`synth`] | [`synthesize_plane`](synth::synthesize_plane), [`synthesize`](synth::synthesize) |
 //! | points that keep their distance | [`points`] | [`poisson_disk`](points::poisson_disk) |
 //! | their triangulation and other graphs | [`graph`] | [`delaunay`](graph::delaunay()) |
+//! | blurs, dilation, distances to a mask, connected regions | [`filter`] | [`gaussian`](filter::gaussian()), [`distances`](filter::distances()) |
 //! | colors, normals, occlusion, curvature of heights | [`color`] | [`Palette`](color::Palette), [`normal_map`](color::normal_map) |
 //! | files: PNG and OpenEXR | [`image`] | [`write_color_png`](image::write_color_png), [`read_image`](image::read_image) |
 //! | meshes | [`mesh`] | [`Mesh`](mesh::Mesh), [`Surface`](mesh::Surface) |
@@ -98,7 +99,7 @@
 //!
 //! | feature | default | effect |
 //! |---|---|---|
-//! | `hash`, `raster`, `color`, `points`, `noise`, `pattern`, `wavelet`, `mesh`, `mesh-io`, `image`, `graph`, `worley`, `tile`, `preview`, `pups`, `synth`, `recipe` | on | the module of this name, and the modules whose types it uses |
+//! | `hash`, `raster`, `color`, `filter`, `points`, `noise`, `pattern`, `wavelet`, `mesh`, `mesh-io`, `image`, `graph`, `worley`, `tile`, `preview`, `pups`, `synth`, `recipe` | on | the module of this name, and the modules whose types it uses |
 //! | `rayon` | on | work on all cores; the bits do not change |
 //! | `simd` | on | gradient noise in the widest vector instructions of the processor; the bits do not change |
 //! | `json` | on | seam reports and directions as JSON |
@@ -140,6 +141,10 @@ pub use dapple_raster as raster;
 /// Colors, ramps, and maps from heights: normals, occlusion, curvature.
 #[cfg(feature = "color")]
 pub use dapple_color as color;
+
+/// Blurs, gradients, dilation, distances and regions of rasters, part by part.
+#[cfg(feature = "filter")]
+pub use dapple_filter as filter;
 
 /// Points that keep their distance, on domains that wrap.
 #[cfg(feature = "points")]
