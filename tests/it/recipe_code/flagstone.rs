@@ -30,7 +30,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// The recipe, in TOML.
 const RECIPE: &str = r##"dapple = 1
 name = "flagstone"
-about = "Paving of split stone in sandy joints: Worley's F2 - F1 for the joints, and a shade of its own for each cell."
+about = "Split stone paving in sandy joints. Worley's F2 - F1."
+tags = [
+    "stone",
+    "paving",
+    "floor",
+    "outdoor",
+]
 seed = 3
 extent = [
     6.0,

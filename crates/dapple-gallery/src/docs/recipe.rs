@@ -1,7 +1,7 @@
 //! Renders the image for the README of `dapple-recipe`: a part of each built-in recipe, lit from the upper left.
 
 use super::Documented;
-use super::picture::{COLORS, below, colored, lit_recipe, row};
+use super::picture::{below, colored, lit_recipe, row};
 use crate::Panel;
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
@@ -30,3 +30,6 @@ const COLUMNS: usize = 8;
 
 /// Width and height of an image, in pixels, low enough for a small file.
 const SIDE: u32 = 72;
+
+/// Number of shades of each channel; with fewer, pale grays get a tint.
+const COLORS: f32 = 16.0;
