@@ -63,7 +63,11 @@ fn check_text(recipe: &Recipe) {
         let again = Recipe::from_toml(&second).expect("what was written can be read");
         assert_eq!(again.to_toml().as_ref(), Ok(&second), "TOML again");
     }
-    if let Some(text) = accepted(recipe.to_json())
+    // JSON writes infinite numbers and NaN as `null`, which leaves out an option; TOML writes them as `inf` and `nan`.
+    let toml = recipe.to_toml().unwrap_or_default();
+    let is_finite = !["inf", "nan"].iter().any(|word| toml.contains(word));
+    if is_finite
+        && let Some(text) = accepted(recipe.to_json())
         && let Some(again) = accepted(Recipe::from_json(&text))
     {
         assert_eq!(again.to_json().as_ref(), Ok(&text), "JSON again");

@@ -187,7 +187,7 @@ fn a_sheet_is_two_by_two_copies_and_a_preview_is_lit() {
         "out/",
     ];
     assert_done(
-        &folder.run(&[&bake[..], &["--preview"]].concat()),
+        &folder.run(&[&bake[..], &["--preview=plane"]].concat()),
         "a sheet",
     );
     let (tile, sheet) = (
@@ -211,7 +211,7 @@ fn a_sheet_is_two_by_two_copies_and_a_preview_is_lit() {
         "ao",
         "--size",
         "8",
-        "--preview=sphere",
+        "--preview",
         "-o",
         "ball/",
     ];
