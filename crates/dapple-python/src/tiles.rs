@@ -85,10 +85,7 @@ fn extend(whole: &mut [Map], maps: Vec<Map>) -> Result<()> {
 }
 
 /// Reads a tiling method from its name and options.
-fn method(
-    name: &Bound<'_, PyAny>,
-    options: Option<&Bound<'_, PyDict>>,
-) -> Result<Method> {
+fn method(name: &Bound<'_, PyAny>, options: Option<&Bound<'_, PyDict>>) -> Result<Method> {
     let options = options.map_or(Ok(Value::Null), |options| data::value(options.as_any()))?;
     let given = match options {
         Value::Object(given) => given,

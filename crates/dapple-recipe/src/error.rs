@@ -296,27 +296,22 @@ impl fmt::Display for RecipeErrorKind {
                 )
             }
             Self::Conflict { rule } => f.write_str(rule),
-            Self::UnknownOutput { value, outputs } => write!(
-                f,
-                "the node has no value `{value}`, but {}",
-                outputs.join(", ")
-            ),
-            Self::SingleOutput { node, kinds } => write!(
-                f,
-                "{node} has a single value; nodes with several are {}",
-                kinds.join(", ")
-            ),
+            Self::UnknownOutput { value, outputs } => {
+                let outputs = outputs.join(", ");
+                write!(f, "the node has no value `{value}`, but {outputs}")
+            }
+            Self::SingleOutput { node, kinds } => {
+                let kinds = kinds.join(", ");
+                write!(
+                    f,
+                    "{node} has a single value; nodes with several are {kinds}"
+                )
+            }
             Self::NoImage { file } => write!(f, "there is no image `{file}`"),
             Self::Global { during } => {
                 write!(f, "it sees the whole tile, which is not at hand {during}")
             }
-            Self::NotInShader { nodes } => {
-                f.write_str("no shader computes these nodes, which can be baked to textures:")?;
-                for (name, reason) in nodes {
-                    write!(f, "\n  `{name}`: {reason}")?;
-                }
-                Ok(())
-            }
+            Self::NotInShader { nodes } => not_in_shader(nodes, f),
             Self::Cancelled => f.write_str("the callback asked to stop"),
             Self::Worley(error) => error.fmt(f),
             Self::Pups(error) => error.fmt(f),
@@ -328,6 +323,15 @@ impl fmt::Display for RecipeErrorKind {
             Self::Raster(error) => error.fmt(f),
         }
     }
+}
+
+/// Lists the nodes without a shader, one on each line.
+fn not_in_shader(nodes: &[(String, String)], f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    f.write_str("no shader computes these nodes, which can be baked to textures:")?;
+    for (name, reason) in nodes {
+        write!(f, "\n  `{name}`: {reason}")?;
+    }
+    Ok(())
 }
 
 impl core::error::Error for RecipeError {

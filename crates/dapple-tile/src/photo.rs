@@ -236,7 +236,7 @@ mod tests {
     fn even_out_removes_slow_changes_and_keeps_the_mean_and_detail() {
         let detail = gravel(1, [240, 200], false);
         let lit = Raster::from_fn([240, 200], |x, y| {
-            detail.row(y as u32)[x as usize] + 0.0125 * x as f32 - 0.01 * y as f32
+            detail.row(y)[x as usize] + 0.0125 * x as f32 - 0.01 * y as f32
         })
         .unwrap();
         let mean = lit.statistics().mean;
@@ -279,10 +279,8 @@ mod tests {
     fn even_out_takes_away_the_step_across_the_wrap() {
         let size = [200, 160];
         let source = fbm(4, size, true);
-        let lit = Raster::from_fn(size, |x, y| {
-            source.row(y as u32)[x as usize] + 0.02 * x as f32
-        })
-        .unwrap();
+        let lit =
+            Raster::from_fn(size, |x, y| source.row(y)[x as usize] + 0.02 * x as f32).unwrap();
         let [before, after] = [
             Map::Value(lit.clone()),
             even_out(&Map::Value(lit), 50.0).unwrap(),
