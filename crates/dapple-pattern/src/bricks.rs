@@ -18,12 +18,12 @@ mod roof;
 pub use bond::{Bond, BrickValue};
 
 use crate::PatternError;
-use crate::lattice::{self, Split, wrapped};
-use dapple_hash::{CellHash, Seed, unit_f32, unit_f64};
+use crate::lattice::{self, Split, random, smoothstep, wrapped_cell};
+use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::{Field, Range, RasterError, RasterViewMut, Window, range};
 
 /// Options of [`Bricks`]. Lengths are in units of the shorter side of a brick, so that they do not depend on the
-/// frequency; for bonds of squares the shorter side is that of a square.
+/// frequency; for bonds of squares, it is the side of a square.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BrickOptions {
     /// Number of bricks per unit of the plane along x, and of courses along y, above 0 and at most 1e6; by default 4
@@ -34,7 +34,7 @@ pub struct BrickOptions {
     /// `2 / √3 = 1.155` times as many courses as columns.
     pub frequency: [f64; 2],
     /// Period along each axis in bricks and courses, or in squares; `None` for an axis without a period. See
-    /// [`Bond`] for what the bonds need.
+    /// [`Bond`] for the periods that suit each bond.
     pub period: [Option<u32>; 2],
     /// Arrangement of the bricks.
     pub bond: Bond,
@@ -223,10 +223,10 @@ impl Bricks {
 
     /// Returns a random number of a brick, from 0 to below 1.
     fn random(&self, id: [i64; 2], index: u32) -> f32 {
-        unit_f32((CellHash::new(self.seed, id).at(index) >> 32) as u32)
+        random(CellHash::new(self.seed, id), index)
     }
 
-    /// Returns the distance by which a side of a brick is moved into its cell, in units of the plane.
+    /// Returns the distance from the side of a cell to the face of its brick, in units of the plane.
     fn inset(&self, id: [i64; 2], side: u32) -> f64 {
         let BrickOptions { joint, jitter, .. } = self.options;
         let random = match jitter {
@@ -245,12 +245,11 @@ impl Bricks {
         if depth >= bevel {
             return 1.0;
         }
-        let t = depth / bevel;
-        t * t * (3.0 - 2.0 * t)
+        smoothstep(depth / bevel)
     }
 
     fn wrapped(&self, id: [i64; 2]) -> [i64; 2] {
-        [0, 1].map(|axis| wrapped(id[axis], self.options.period[axis]))
+        wrapped_cell(id, self.options.period)
     }
 
     /// Returns the shift of a course, in bricks.
@@ -278,11 +277,6 @@ impl Field for BrickField {
         } = self.bricks.options;
         [0, 1].map(|axis| period[axis].map(|bricks| f64::from(bricks) / frequency[axis]))
     }
-}
-
-/// Returns the length of a vector.
-fn length([x, y]: [f64; 2]) -> f64 {
-    (x * x + y * y).sqrt()
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@
 //! Positions are in cells.
 
 use crate::PatternError;
+use crate::lattice::{check_period, wrapped_cell};
 use crate::near::{self, NearCells};
 use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::{Field, Range, RasterError, RasterViewMut, Window, range};
@@ -84,8 +85,7 @@ impl GaborNoise {
     ///
     /// [`Range`](crate::PatternErrorKind::Range) if a period is 0.
     pub fn with_period(self, period: [Option<u32>; 2]) -> Result<Self, PatternError> {
-        let holds = !period.contains(&Some(0));
-        PatternError::check(holds, "period", 0.0, "at least 1 cell")?;
+        check_period(period)?;
         Ok(Self { period, ..self })
     }
 
@@ -145,10 +145,7 @@ impl GaborNoise {
 
     /// Returns the impulses of a cell, relative to the corner of the cell.
     fn impulses(&self, cell: [i64; 2]) -> impl Iterator<Item = Impulse> {
-        let wrapped = [0, 1].map(|axis| match self.period[axis] {
-            Some(period) => cell[axis].rem_euclid(period.into()),
-            None => cell[axis],
-        });
+        let wrapped = wrapped_cell(cell, self.period);
         let hash = CellHash::new(self.seed, wrapped);
         (0..self.impulses).map(move |index| {
             let draw = |number: u32| unit_f64(hash.at(4 * index + number));

@@ -1,5 +1,7 @@
-//! Lattice positions: coordinates split into cells and offsets, wrapped by periods.
+//! Lattice positions: coordinates split into cells and offsets, wrapped by periods. Also the arithmetic that patterns share.
 
+use crate::PatternError;
+use dapple_hash::{CellHash, unit_f32};
 use dapple_raster::{RasterError, RasterViewMut, Window};
 
 /// Rows that one parallel task renders.
@@ -57,6 +59,49 @@ pub(crate) fn wrapped(cell: i64, period: Option<u32>) -> i64 {
     match period {
         None | Some(0) => cell,
         Some(period) => cell.rem_euclid(i64::from(period)),
+    }
+}
+
+/// Wraps a column and a row by the period along each axis.
+pub(crate) fn wrapped_cell(cell: [i64; 2], period: [Option<u32>; 2]) -> [i64; 2] {
+    [0, 1].map(|axis| wrapped(cell[axis], period[axis]))
+}
+
+/// Returns an error if a period is 0.
+pub(crate) fn check_period(period: [Option<u32>; 2]) -> Result<(), PatternError> {
+    let holds = !period.contains(&Some(0));
+    PatternError::check(holds, "period", 0.0, "at least 1 cell")
+}
+
+/// Returns a random number of a cell, from 0 to below 1.
+pub(crate) fn random(hash: CellHash, index: u32) -> f32 {
+    unit_f32((hash.at(index) >> 32) as u32)
+}
+
+/// Returns the length of a vector.
+pub(crate) fn length([x, y]: [f64; 2]) -> f64 {
+    (x * x + y * y).sqrt()
+}
+
+/// Returns a smooth transition from 0 to 1.
+pub(crate) fn smoothstep(t: f64) -> f64 {
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Returns the cosine and the sine of an angle in degrees; exact for multiples of 90.
+#[doc(hidden)]
+#[must_use]
+pub fn direction(degrees: f64) -> [f64; 2] {
+    let degrees = degrees % 360.0;
+    match (degrees + 360.0) % 360.0 {
+        0.0 => [1.0, 0.0],
+        90.0 => [0.0, 1.0],
+        180.0 => [-1.0, 0.0],
+        270.0 => [0.0, -1.0],
+        _ => {
+            let (sin, cos) = libm::sincos(degrees.to_radians());
+            [cos, sin]
+        }
     }
 }
 

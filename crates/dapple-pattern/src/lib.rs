@@ -54,7 +54,7 @@
 //!
 //! * Positions are in units of the plane; `frequency` is the number of bricks, threads or copies per unit.
 //! * A period holds a whole number of bricks or threads, and whole repeats of the bond or the draft. Other periods are
-//!   an error that says what is needed.
+//!   an error that names the condition.
 //! * Lengths among the options are relative to the shorter side of a brick, to the distance of threads, or to the size
 //!   of a shape, so that a frequency changes no proportions. Distances among the values are in units of the plane.
 //! * Values are not filtered: a joint narrower than a pixel aliases.
@@ -85,6 +85,8 @@ pub use error::{PatternError, PatternErrorKind};
 #[doc(alias("phasor"))]
 pub use gabor::GaborNoise;
 pub use gabor::{GaborField, GaborValue};
+#[doc(hidden)]
+pub use lattice::direction;
 #[doc(alias("scatter", "pebbles", "leaves", "grass", "rivets"))]
 pub use scatter::Stamps;
 pub use scatter::{StampField, StampOverlap, StampShape, StampValue};

@@ -20,6 +20,7 @@ mod tests;
 pub use shape::StampShape;
 
 use crate::PatternError;
+use crate::lattice::{check_period, direction, wrapped_cell};
 use crate::near::{self, NearCells};
 use dapple_hash::{CellHash, Seed, unit_f32};
 use dapple_raster::{Field, Range, RasterError, RasterViewMut, Window, range};
@@ -158,8 +159,7 @@ impl Stamps {
     ///
     /// [`Range`](crate::PatternErrorKind::Range) if a period is 0.
     pub fn with_period(self, period: [Option<u32>; 2]) -> Result<Self, PatternError> {
-        let holds = !period.contains(&Some(0));
-        PatternError::check(holds, "period", 0.0, "at least 1 cell")?;
+        check_period(period)?;
         Ok(Self { period, ..self })
     }
 
@@ -288,7 +288,7 @@ impl Stamps {
     }
 
     /// Sets the slope of the profile along a stamp, from −1 to 1; by default 0. At 1, the height rises from 0 at its
-    /// start to that of the profile at its end.
+    /// start to the full profile at its end.
     ///
     /// # Errors
     ///
@@ -371,10 +371,7 @@ impl Stamps {
 
     /// Returns the points of a cell, relative to the corner of the cell.
     fn points(&self, cell: [i64; 2]) -> impl Iterator<Item = Point> {
-        let wrapped = [0, 1].map(|axis| match self.period[axis] {
-            Some(period) => cell[axis].rem_euclid(period.into()),
-            None => cell[axis],
-        });
+        let wrapped = wrapped_cell(cell, self.period);
         let shift = wrapped[1] as f64 * self.row_offset;
         let shift = shift - shift.floor();
         let hash = CellHash::new(self.seed, wrapped);
@@ -449,20 +446,6 @@ fn check_range(range: Range, what: &'static str, ends: [f64; 2]) -> Result<(), P
 /// Converts 64 random bits to two numbers from 0 to below 1.
 fn halves(bits: u64) -> [f32; 2] {
     [(bits >> 32) as u32, bits as u32].map(unit_f32)
-}
-
-/// Returns the cosine and the sine of an angle in degrees; exact for multiples of 90.
-fn direction(degrees: f64) -> [f64; 2] {
-    match (degrees % 360.0 + 360.0) % 360.0 {
-        0.0 => [1.0, 0.0],
-        90.0 => [0.0, 1.0],
-        180.0 => [-1.0, 0.0],
-        270.0 => [0.0, -1.0],
-        _ => {
-            let (sin, cos) = libm::sincos(degrees.to_radians());
-            [cos, sin]
-        }
-    }
 }
 
 /// Number of hashes that are reserved for a point: for its position, its stamp and its priority.

@@ -11,7 +11,7 @@
 //! Positions are in units of the plane, y points down.
 
 use crate::PatternError;
-use crate::lattice::{self, Split};
+use crate::lattice::{self, Split, direction, length, smoothstep};
 use dapple_raster::{Field, Range, RasterError, RasterViewMut, Window, range};
 
 dapple_raster::named! {
@@ -216,7 +216,7 @@ impl Shape {
             outline: Outline::new(&options),
             direction: direction(options.rotation),
             rounding: rounding(&options),
-            // The corners of a box are the farthest points from a center.
+            // The corners of a square are further from the center than any other point of a shape.
             bound: core::f64::consts::SQRT_2 * options.size + shell,
         })
     }
@@ -252,7 +252,7 @@ impl Shape {
                     return 1.0;
                 }
                 let t = 0.5 - distance / edge;
-                (t * t * (3.0 - 2.0 * t)) as f32
+                smoothstep(t) as f32
             }
         }
     }
@@ -460,25 +460,6 @@ fn heart_distance([x, y]: [f64; 2]) -> f64 {
     let foot = 0.5 * (x + y).max(0.0);
     let distance = length([x, y - 1.0]).min(length([x - foot, y - foot]));
     if x < y { -distance } else { distance }
-}
-
-fn length([x, y]: [f64; 2]) -> f64 {
-    (x * x + y * y).sqrt()
-}
-
-/// Returns the cosine and the sine of an angle in degrees; exact for multiples of 90.
-fn direction(degrees: f64) -> [f64; 2] {
-    let degrees = degrees % 360.0;
-    match (degrees + 360.0) % 360.0 {
-        0.0 => [1.0, 0.0],
-        90.0 => [0.0, 1.0],
-        180.0 => [-1.0, 0.0],
-        270.0 => [0.0, -1.0],
-        _ => {
-            let (sin, cos) = libm::sincos(degrees.to_radians());
-            [cos, sin]
-        }
-    }
 }
 
 #[cfg(test)]

@@ -11,8 +11,8 @@
 //! Positions are in units of the plane, y points down.
 
 use crate::PatternError;
-use crate::lattice::{self, Split, wrapped};
-use dapple_hash::{CellHash, Seed, unit_f32, unit_f64};
+use crate::lattice::{self, Split, random, smoothstep, wrapped};
+use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::{Field, Range, RasterError, RasterViewMut, Window, range};
 
 dapple_raster::named! {
@@ -62,12 +62,12 @@ pub struct WeaveOptions {
     pub period: [Option<u32>; 2],
     /// Draft.
     pub draft: Draft,
-    /// Crossings that a warp thread passes over in a row, from 1 to 32; by default those of the draft.
+    /// Crossings that a warp thread passes over in a row, from 1 to 32; the default depends on the draft.
     pub over: Option<u32>,
-    /// Crossings that a warp thread passes under in a row, from 1 to 32; by default those of the draft. Used by `twill`
+    /// Crossings that a warp thread passes under in a row, from 1 to 32; the default depends on the draft. Used by `twill`
     /// and `satin`.
     pub under: Option<u32>,
-    /// Shift of the draft between neighboring weft threads, in threads, from 1 to 32; by default that of the draft.
+    /// Shift of the draft between neighboring weft threads, in threads, from 1 to 32; the default depends on the draft.
     /// Used by `twill` and `satin`, where it has no common factor with `over + under`.
     pub step: Option<u32>,
     /// Width of a thread relative to the distance of threads, above 0 and at most 1; by default 0.9.
@@ -159,7 +159,7 @@ struct Thread {
     across: f64,
     /// Position along the thread, from 0 to below 1 for every crossing.
     along: f64,
-    /// Height of the surface; 0 beside the thread.
+    /// Height of the surface; 0 outside of the thread.
     height: f64,
 }
 
@@ -224,8 +224,8 @@ impl Weave {
         let visible = if is_warp { warp } else { weft };
         match value {
             WeaveValue::Height => visible.height as f32,
-            WeaveValue::Random => unit_f32((self.hash(&visible).at(0) >> 32) as u32),
-            WeaveValue::Random2 => unit_f32((self.hash(&visible).at(1) >> 32) as u32),
+            WeaveValue::Random => random(self.hash(&visible), 0),
+            WeaveValue::Random2 => random(self.hash(&visible), 1),
             WeaveValue::Direction => visible.axis as f32,
             WeaveValue::U => visible.along as f32,
             WeaveValue::V => (0.5 + 0.5 * visible.across).clamp(0.0, 1.0) as f32,
@@ -258,8 +258,7 @@ impl Weave {
             // Interpolate between the crossings before and after the position.
             let before = along.shifted(-0.5);
             let [start, end] = [0, 1].map(|step| self.level(axis, own.cell, before.cell + step));
-            let t = before.offset;
-            let level = start + (end - start) * t * t * (3.0 - 2.0 * t);
+            let level = start + (end - start) * smoothstep(before.offset);
             let circle = (1.0 - thread.across * thread.across).sqrt();
             let profile = 1.0 - self.options.roundness * (1.0 - circle);
             thread.height = 0.5 * level + 0.5 * profile;

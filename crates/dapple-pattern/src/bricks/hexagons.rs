@@ -4,10 +4,11 @@
 //! one axis, and joints stay equally wide. The face of a hexagon is a convex polygon; rounding its corners insets the
 //! polygon and dilates it again.
 
-use super::{Brick, Bricks, length};
+use super::{Brick, Bricks};
 use crate::lattice::Split;
+use crate::lattice::length;
 
-/// Maximum number of corners: those of a square, and one more for each side of a hexagon.
+/// Maximum number of corners: four of a square, and one more for each side of a hexagon.
 const CORNERS: usize = 12;
 
 /// A half-plane: positions whose product with the unit vector `normal` is at most `distance`.

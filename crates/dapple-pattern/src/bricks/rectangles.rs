@@ -1,7 +1,8 @@
 //! Bonds of rectangular bricks.
 
-use super::{Bond, Brick, Bricks, length};
+use super::{Bond, Brick, Bricks};
 use crate::lattice::Split;
+use crate::lattice::length;
 use dapple_hash::{CellHash, unit_f64};
 
 /// The cell of a rectangular brick, and a position in it.

@@ -52,7 +52,7 @@ impl Bricks {
         }
     }
 
-    /// Returns the tile of the position's course, or that of the next course, which lies below it.
+    /// Returns the tile of the position's course, or the tile of the next course, which lies below it.
     fn visible_tile(&self, place: [Split; 2]) -> Tile {
         let own = self.tile(place, 0, 0);
         if own.depth >= 0.0 {

@@ -1,7 +1,8 @@
 //! Compares bricks with naive implementations that measure the distances to all faces around a position.
 
-use super::{Bond, BrickOptions, BrickValue, Bricks, length};
+use super::{Bond, BrickOptions, BrickValue, Bricks};
 use crate::PatternErrorKind;
+use crate::lattice::length;
 use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::{Field as _, FieldExt as _, Named as _, Window};
 use proptest::prelude::*;

@@ -1,9 +1,10 @@
 //! Gaussian blur, in all directions or along one.
 
-use super::{NodeKind, transform};
+use super::NodeKind;
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, RecipeErrorKind};
 use dapple_filter::{DirectionalBlur, gaussian, gaussian_halo};
+use dapple_pattern::direction;
 use dapple_raster::{Range, range};
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -50,7 +51,7 @@ impl NodeKind for Blur {
             }));
         };
         RecipeError::check_in(DIRECTION, "direction", degrees)?;
-        let direction = DVec2::from(transform::direction(degrees));
+        let direction = DVec2::from(direction(degrees));
         let line = move |pixel| DirectionalBlur::new(direction, radius, is_one_sided, pixel);
         let halo = move |pixel| line(pixel).halo();
         Ok(plan.neighborhood(vec![input], halo, move |around| {

@@ -4,6 +4,7 @@ use super::{Frequency, NodeKind};
 use crate::plan::{Builder, LinearMap, Moved, Positions, Step};
 use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError, RecipeErrorKind};
+use dapple_pattern::direction;
 use dapple_raster::{Range, range};
 use dapple_wgsl::double_value;
 use serde::{Deserialize, Serialize};
@@ -77,21 +78,6 @@ impl NodeKind for Transform {
             at = shader.name("position", format!("shifted_2d({at}, {x}, {y})"));
         }
         Ok(input(&at))
-    }
-}
-
-/// Returns the cosine and the sine of an angle in degrees; exact for multiples of 90.
-pub(super) fn direction(degrees: f64) -> [f64; 2] {
-    let degrees = degrees % 360.0;
-    match (degrees + 360.0) % 360.0 {
-        0.0 => [1.0, 0.0],
-        90.0 => [0.0, 1.0],
-        180.0 => [-1.0, 0.0],
-        270.0 => [0.0, -1.0],
-        _ => {
-            let (sin, cos) = libm::sincos(degrees.to_radians());
-            [cos, sin]
-        }
     }
 }
 
