@@ -1,7 +1,8 @@
 //! Gaussian blur along a direction.
 
 use crate::Part;
-use crate::gaussian::{reach, weights};
+use crate::gaussian::weights;
+use crate::part::pixels_within;
 use dapple_raster::parallel;
 use glam::DVec2;
 
@@ -33,7 +34,7 @@ impl DirectionalBlur {
         let fast = usize::from(crossed.y.abs() > crossed.x.abs());
         let per_unit = crossed[fast].abs();
         let step = crossed / per_unit;
-        let reach = reach(radius, per_unit.recip());
+        let reach = pixels_within(3.0 * radius, per_unit.recip());
         // Values are smeared forward, so that a pixel reads those behind it.
         let sides: &[f64] = if is_one_sided { &[-1.0] } else { &[-1.0, 1.0] };
         let weights = weights(radius, per_unit.recip(), reach, sides.len() as f64);

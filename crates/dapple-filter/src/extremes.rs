@@ -5,17 +5,17 @@
 //! 2000). A maximum is exact, so the order of comparisons does not change a bit.
 
 use crate::Part;
+use crate::part::pixels_within;
 use dapple_raster::parallel;
 use glam::DVec2;
 
 /// Returns the number of columns and rows within a radius, in units of the plane.
 #[must_use]
 pub fn disk_halo(radius: f64, pixel: DVec2) -> [u32; 2] {
-    // The small factor keeps a whole number of pixels whole, whatever the rounding error of the pixel size.
-    [pixel.x, pixel.y].map(|pixel| (radius / pixel * (1.0 + 1e-9)).floor() as u32)
+    [pixel.x, pixel.y].map(|pixel| pixels_within(radius, pixel))
 }
 
-/// Returns the maximum of the disk part each pixel of a part. The disk contains the pixels whose centers are at most
+/// Returns the maximum of the disk around each pixel of a part. The disk contains the pixels whose centers are at most
 /// `radius` away, in units of the plane. NaN counts as no value.
 ///
 /// # Panics
@@ -26,7 +26,7 @@ pub fn dilate(values: &[f32], part: &Part, radius: f64) -> Vec<f32> {
     extremes(values, part, radius, 1.0)
 }
 
-/// Returns the minimum of the disk part each pixel of a part; see [`dilate`].
+/// Returns the minimum of the disk around each pixel of a part; see [`dilate`].
 ///
 /// # Panics
 ///
@@ -50,39 +50,37 @@ fn extremes(values: &[f32], part: &Part, radius: f64, sign: f32) -> Vec<f32> {
         .map(|row| {
             let y = row as f64 * part.pixel.y;
             let half = (radius * radius * (1.0 + 2e-9) - y * y).max(0.0).sqrt();
-            ((half / part.pixel.x * (1.0 + 1e-9)).floor() as usize).min(left)
+            (pixels_within(half, part.pixel.x) as usize).min(left)
         })
         .collect();
-    {
-        let mut found = vec![0.0; width * height];
-        parallel::for_each_chunk(&mut found, ROWS * width, |chunk, found| {
-            let first = chunk * ROWS;
-            let n_lines = found.len() / width + 2 * above;
-            let lines = &values[first * wide..][..n_lines * wide];
-            let tables: Vec<_> = lines
-                .chunks(wide)
-                .map(|line| tables(line, left, sign))
-                .collect();
-            for (row, found) in found.chunks_mut(width).enumerate() {
-                found.fill(f32::NEG_INFINITY);
-                for (&span, tables) in spans.iter().zip(&tables[row..]) {
-                    // Two ranges of 2^level columns cover the columns of the span.
-                    let level = (2 * span + 1).ilog2();
-                    let table = &tables[level as usize];
-                    let [a, b] = [left - span, left + span + 1 - (1 << level)];
-                    let pairs = table[a..][..width].iter().zip(&table[b..][..width]);
-                    for (found, (&a, &b)) in found.iter_mut().zip(pairs) {
-                        *found = larger(*found, larger(a, b));
-                    }
+    let mut found = vec![0.0; width * height];
+    parallel::for_each_chunk(&mut found, ROWS * width, |chunk, found| {
+        let first = chunk * ROWS;
+        let n_lines = found.len() / width + 2 * above;
+        let lines = &values[first * wide..][..n_lines * wide];
+        let tables: Vec<_> = lines
+            .chunks(wide)
+            .map(|line| tables(line, left, sign))
+            .collect();
+        for (row, found) in found.chunks_mut(width).enumerate() {
+            found.fill(f32::NEG_INFINITY);
+            for (&span, tables) in spans.iter().zip(&tables[row..]) {
+                // Two ranges of 2^level columns cover the columns of the span.
+                let level = (2 * span + 1).ilog2();
+                let table = &tables[level as usize];
+                let [a, b] = [left - span, left + span + 1 - (1 << level)];
+                let pairs = table[a..][..width].iter().zip(&table[b..][..width]);
+                for (found, (&a, &b)) in found.iter_mut().zip(pairs) {
+                    *found = larger(*found, larger(a, b));
                 }
-                // Zero has one sign.
-                found
-                    .iter_mut()
-                    .for_each(|found| *found = sign * *found + 0.0);
             }
-        });
-        found
-    }
+            // Zero has one sign.
+            found
+                .iter_mut()
+                .for_each(|found| *found = sign * *found + 0.0);
+        }
+    });
+    found
 }
 
 /// Returns for each power of two up to the longest range, the maximum of that many columns from each column on.

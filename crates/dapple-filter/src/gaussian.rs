@@ -2,24 +2,19 @@
 //!
 //! The blur is separable: rows first, then columns. Weights are samples of the Gaussian at the pixel centers, up to three
 //! standard deviations, divided by their sum. Each pass adds weighted differences from the center in a fixed order, from
-//! the nearest pixels to the farthest. A constant therefore stays the same, bit for bit.
+//! near pixels to far ones. A constant therefore stays the same, bit for bit.
 //!
 //! Running sums and recursive filters would be faster for large radii, but their rounding depends on where a part starts.
 
 use crate::Part;
+use crate::extremes::disk_halo;
 use dapple_raster::parallel;
 use glam::DVec2;
-
-/// Returns the number of pixels of size `pixel` within three standard deviations.
-pub(crate) fn reach(radius: f64, pixel: f64) -> u32 {
-    // The small factor keeps a whole number of pixels whole, whatever the rounding error of the pixel size.
-    (3.0 * radius / pixel * (1.0 + 1e-9)).floor() as u32
-}
 
 /// Returns the halo of a Gaussian blur: the pixels within three standard deviations `radius`, in units of the plane.
 #[must_use]
 pub fn gaussian_halo(radius: f64, pixel: DVec2) -> [u32; 2] {
-    [pixel.x, pixel.y].map(|pixel| reach(radius, pixel))
+    disk_halo(3.0 * radius, pixel)
 }
 
 /// Returns the weights of the pixels at distances of 1 to `reach` pixels on one side; those on `sides` sides and the

@@ -37,7 +37,7 @@
 //! # Limits
 //!
 //! * Values are single-channel `f32`, row by row. Filter each channel of a color separately.
-//! * Filters panic if the number of values is not that of the part and its halo.
+//! * Filters panic unless the number of values is the number of pixels of the part and its halo.
 //! * Results have the same bits on every platform and any number of threads.
 
 #![forbid(unsafe_code)]

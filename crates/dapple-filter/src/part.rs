@@ -2,6 +2,12 @@
 
 use glam::DVec2;
 
+/// Returns the number of pixels, or of other steps, of a length within a distance.
+pub(crate) fn pixels_within(distance: f64, pixel: f64) -> u32 {
+    // The small factor keeps a whole number of pixels whole, whatever the rounding error of the pixel size.
+    (distance / pixel * (1.0 + 1e-9)).floor() as u32
+}
+
 /// The pixels that a filter computes, and the halo around them that it reads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
@@ -14,7 +20,7 @@ pub struct Part {
 }
 
 impl Part {
-    /// Returns the columns and rows that are read: those of the result and of the halo.
+    /// Returns the columns and rows of the result and its halo, which a filter reads.
     ///
     /// # Panics
     ///

@@ -1,12 +1,13 @@
 //! Blur along the paths on which water runs down a height.
 //!
 //! The path of a pixel follows the gradient of the height uphill, in steps of equal length. Values are averaged along it,
-//! so that they run downhill, in the way of line integral convolution (Brian Cabral and Leith Leedom, "Imaging vector
+//! so that they run downhill, as in line integral convolution (Brian Cabral and Leith Leedom, "Imaging vector
 //! fields using line integral convolution", SIGGRAPH 1993). Gradients and values are interpolated between pixels. Paths
 //! are in pixels relative to the pixel, so that they have the same bits in every window.
 
 use crate::Part;
 use crate::gaussian::weights;
+use crate::part::pixels_within;
 use dapple_raster::parallel;
 use glam::DVec2;
 
@@ -28,8 +29,7 @@ impl SlopeBlur {
     pub fn new(radius: f64, pixel: DVec2) -> Self {
         let reach = 3.0 * radius;
         let length = pixel.min_element().max(reach / f64::from(MAX_STEPS));
-        // The small factor keeps a whole number of steps whole, whatever the rounding error of the pixel size.
-        let count = (reach / length * (1.0 + 1e-9)).floor() as u32;
+        let count = pixels_within(reach, length);
         Self {
             length,
             weights: weights(radius, length, count, 1.0),

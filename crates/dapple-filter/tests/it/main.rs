@@ -80,6 +80,6 @@ fn parts_have_the_bits_of_the_whole() {
     assert_crops(
         "gradients",
         difference_spans(RADIUS, pixel),
-        |values, part| gradients(values, part, &|[x, y]: [f64; 2]| (x - 2.0 * y) as f32),
+        |values, part| gradients(values, part, 3.0, &|length| length as f32),
     );
 }

@@ -4,7 +4,6 @@ use super::NodeKind;
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use dapple_filter::{difference_spans, gradients};
-use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 /// Edges of a number or a color: how much it changes over the radius, which is the length of its gradient times the
@@ -32,14 +31,8 @@ impl NodeKind for Edges {
         let input = plan.any(&self.input)?;
         let halo = move |pixel| difference_spans(radius, pixel);
         let step = plan.neighborhood(vec![input], halo, move |around| {
-            let span = around.part.pixel * DVec2::from(around.part.halo.map(f64::from));
-            let scale = radius / (2.0 * span);
-            let edges = |values: &[f32]| {
-                gradients(values, &around.part, &|[x, y]: [f64; 2]| {
-                    let change = [x * scale.x, y * scale.y];
-                    (change[0] * change[0] + change[1] * change[1]).sqrt() as f32
-                })
-            };
+            let edges =
+                |values: &[f32]| gradients(values, &around.part, radius, &|change| change as f32);
             Ok(Values::Numbers(match around.each_channel(0, edges) {
                 Values::Numbers(edges) => edges,
                 Values::Colors(edges) => edges

@@ -5,7 +5,6 @@ use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use core::f64::consts::FRAC_2_PI;
 use dapple_filter::{difference_spans, gradients};
-use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 /// Steepness of a height: 0 where it is level, ½ at 45 degrees, and 1 where it is vertical.
@@ -47,21 +46,13 @@ impl NodeKind for Slope {
         let input = plan.number(&self.input)?;
         let halo = move |pixel| difference_spans(radius, pixel);
         Ok(plan.neighborhood_of_heights(input, halo, move |around| {
-            let span = around.part.pixel * DVec2::from(around.part.halo.map(f64::from));
-            let scale = relief / (2.0 * span);
-            let numbers = gradients(
-                around.inputs[0].numbers(),
-                &around.part,
-                &|[x, y]: [f64; 2]| {
-                    let rise = [x * scale.x, y * scale.y];
-                    let steepness = (rise[0] * rise[0] + rise[1] * rise[1]).sqrt();
-                    match steepness.is_finite() {
-                        true => (libm::atan(steepness) * FRAC_2_PI) as f32,
-                        false => 0.0,
-                    }
-                },
-            );
-            Ok(Values::Numbers(numbers))
+            let angle = |steepness: f64| match steepness.is_finite() {
+                true => (libm::atan(steepness) * FRAC_2_PI) as f32,
+                false => 0.0,
+            };
+            let heights = around.inputs[0].numbers();
+            let angles = gradients(heights, &around.part, relief, &angle);
+            Ok(Values::Numbers(angles))
         }))
     }
 }
