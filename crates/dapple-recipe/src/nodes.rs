@@ -184,20 +184,35 @@ pub(crate) trait NodeKind {
     }
 }
 
+/// Implements `outputs` and `with_output` of a [`NodeKind`] whose option `value` is one of the named values of an enum.
+macro_rules! outputs {
+    ($values:ty) => {
+        fn outputs(&self) -> &'static [&'static str] {
+            <$values as dapple_raster::Named>::NAMES
+        }
+
+        fn with_output(&self, value: &str) -> Option<Box<dyn NodeKind>> {
+            let value = dapple_raster::Named::from_name(value)?;
+            Some(Box::new(Self {
+                value,
+                ..self.clone()
+            }))
+        }
+    };
+}
+
+pub(crate) use outputs;
+
 /// Defines the enum of all kinds, their names in recipes, and access to a node as a [`NodeKind`].
 macro_rules! nodes {
     ($($(#[$doc:meta])* $name:literal $variant:ident($options:ident) in $group:literal as $start:literal,)*) => {
         /// Node of a recipe: a table with a single entry, whose key is the kind of node.
         ///
-        /// Most nodes compute a number at every position. `ramp`, `color`, `image` and `synth` with a color image, and
-        /// `pups = { color_noise = … }` compute a color. `add`, `multiply`, `mix`, `tile`, `disturb`, `match_borders`,
-        /// `corner_tiles`, `warp`, `blur`, `slope_blur`, `sharpen`, `dilate`, `erode` and `blend` compute a color if an input is a color; numbers among their inputs are
-        /// then grays.
-        /// `pups = { color_noise = … }` compute a color. `add`, `multiply`, `mix`, `tile`, `disturb`,
-        /// Most nodes compute a number at every position. `ramp`, `color`, `hsl`, `image` and `synth` with a color image, and
-        /// `pups = { color_noise = … }` compute a color. `add`, `multiply`, `mix`, `select`, `invert`, `tile`, `disturb`,
-        /// `match_borders`, `corner_tiles`, `blend` and nodes that evaluate another node elsewhere, such as `warp`, compute
-        /// a color if an input is a color; numbers among their inputs are then grays.
+        /// Most nodes compute a number at every position. `ramp`, `color`, `hsl`, `image` and `synth` with a color image,
+        /// and `pups = { color_noise = … }` compute a color. `add`, `multiply`, `mix`, `select`, `invert`, `blur`,
+        /// `slope_blur`, `sharpen`, `dilate`, `erode`, `tile`, `disturb`, `match_borders`, `corner_tiles`, `blend` and
+        /// nodes that evaluate another node elsewhere, such as `warp`, compute a color if an input is a color; numbers
+        /// among their inputs are then grays.
         #[derive(Clone, Debug, Serialize, Deserialize)]
         #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
         #[non_exhaustive]

@@ -19,13 +19,13 @@ mod work;
 
 #[cfg(feature = "schema")]
 pub(crate) use builder::RADIUS;
-pub(crate) use builder::{Builder, FREQUENCY, seed_of};
+pub(crate) use builder::{Builder, FREQUENCY, at_least_one, seed_of};
 pub use cache::PlanCache;
 use cache::StepId;
 use evaluate::Grid;
 pub(crate) use evaluate::Known;
 pub use field::{NodeColors, NodeField};
-pub(crate) use neighborhood::Neighborhood;
+pub(crate) use neighborhood::{Neighborhood, with_margin};
 pub(crate) use order::order;
 pub use samples::Samples;
 pub(crate) use samples::TileSamples;

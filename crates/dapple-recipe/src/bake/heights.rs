@@ -2,7 +2,7 @@
 
 use super::maps::{NORMAL_HALO, beside_height, curvature_options, maps, occlusion_options};
 use super::{MapKind, MapRows};
-use crate::plan::{Known, TileSamples};
+use crate::plan::{Known, TileSamples, with_margin};
 use crate::{Plan, RecipeError, Values, Whole};
 use dapple_color::continue_heights;
 use dapple_raster::{Raster, Window};
@@ -167,15 +167,6 @@ impl Heights {
         let values = rows.values.into_iter();
         let values = values.map(|values| (window, Arc::new(values)));
         Ok(self.sources.iter().copied().zip(values).collect())
-    }
-}
-
-/// Returns `band` with a margin at each side, in columns and rows.
-fn with_margin(band: &Window, margin: [u32; 2]) -> Window {
-    Window {
-        first: [0, 1].map(|axis| band.first[axis].saturating_sub(margin[axis].into())),
-        size: [0, 1].map(|axis| band.size[axis].saturating_add(margin[axis].saturating_mul(2))),
-        ..*band
     }
 }
 

@@ -1,10 +1,9 @@
 //! Bricks, tiles and planks.
 
-use super::{Frequency, NodeKind, NodeSeed};
+use super::{Frequency, NodeKind, NodeSeed, outputs};
 use crate::RecipeError;
 use crate::plan::{Builder, Step};
 use dapple_pattern::{Bond, BrickOptions, BrickValue, Bricks};
-use dapple_raster::Named;
 use serde::{Deserialize, Serialize};
 
 /// Bricks, tiles or planks in a regular bond.
@@ -69,17 +68,7 @@ impl Default for BricksNode {
 }
 
 impl NodeKind for BricksNode {
-    fn outputs(&self) -> &'static [&'static str] {
-        BrickValue::NAMES
-    }
-
-    fn with_output(&self, value: &str) -> Option<Box<dyn NodeKind>> {
-        let value = BrickValue::from_name(value)?;
-        Some(Box::new(Self {
-            value,
-            ..self.clone()
-        }))
-    }
+    outputs!(BrickValue);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let options = BrickOptions {

@@ -1,11 +1,11 @@
 //! Gabor noise and its phase.
 
 use super::noise::about_half;
-use super::{Frequency, NodeKind, NodeSeed};
+use super::{Frequency, NodeKind, NodeSeed, outputs};
 use crate::RecipeError;
 use crate::plan::{Builder, Step};
 use dapple_pattern::{GaborNoise, GaborValue};
-use dapple_raster::{FieldExt as _, Named};
+use dapple_raster::FieldExt as _;
 use serde::{Deserialize, Serialize};
 
 /// Gabor noise: waves of about one length and direction, such as wood fiber, brushed metal or ripples of sand.
@@ -52,17 +52,7 @@ impl Default for GaborNode {
 }
 
 impl NodeKind for GaborNode {
-    fn outputs(&self) -> &'static [&'static str] {
-        GaborValue::NAMES
-    }
-
-    fn with_output(&self, value: &str) -> Option<Box<dyn NodeKind>> {
-        let value = GaborValue::from_name(value)?;
-        Some(Box::new(Self {
-            value,
-            ..self.clone()
-        }))
-    }
+    outputs!(GaborValue);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let frequency = self.frequency.0;

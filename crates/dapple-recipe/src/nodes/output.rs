@@ -1,4 +1,4 @@
-//! Further values of nodes that compute several, such as the random number of a brick beside its height.
+//! Further values of nodes that compute several, such as the height and the random number of a brick.
 
 use super::{KINDS, NEW_NODES, Node, NodeKind};
 use crate::plan::{Builder, Step, Work};

@@ -1,10 +1,10 @@
 //! Shapes stamped at scattered points.
 
-use super::{Frequency, NodeKind, NodeSeed};
+use super::{Frequency, NodeKind, NodeSeed, outputs};
 use crate::RecipeError;
 use crate::plan::{Builder, Step};
 use dapple_pattern::{StampOverlap, StampShape, StampValue, Stamps};
-use dapple_raster::{FieldExt as _, Named};
+use dapple_raster::FieldExt as _;
 use serde::{Deserialize, Serialize};
 
 /// Shapes stamped at scattered points: gravel, leaves, grass, rivets, scales, scratches.
@@ -81,17 +81,7 @@ impl Default for ScatterNode {
 }
 
 impl NodeKind for ScatterNode {
-    fn outputs(&self) -> &'static [&'static str] {
-        StampValue::NAMES
-    }
-
-    fn with_output(&self, value: &str) -> Option<Box<dyn NodeKind>> {
-        let value = StampValue::from_name(value)?;
-        Some(Box::new(Self {
-            value,
-            ..self.clone()
-        }))
-    }
+    outputs!(StampValue);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let frequency = self.frequency.0;

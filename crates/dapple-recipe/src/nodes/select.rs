@@ -1,8 +1,8 @@
 //! Chooses one of several inputs by a number.
 
 use super::NodeKind;
-use crate::plan::{Builder, Step};
-use crate::{Input, RecipeError, RecipeErrorKind, Values};
+use crate::plan::{Builder, Step, at_least_one};
+use crate::{Input, RecipeError, Values};
 use serde::{Deserialize, Serialize};
 
 /// One of several inputs, chosen by a number from 0 to 1, such as the random number of a brick.
@@ -24,15 +24,9 @@ impl NodeKind for Select {
     }
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
-        if self.inputs.is_empty() {
-            return Err(RecipeError::new(RecipeErrorKind::Count {
-                what: "inputs",
-                count: 0,
-                needed: "at least 1",
-            }));
-        }
+        let choices = at_least_one(self.inputs.iter().collect())?;
         let mut inputs = vec![plan.number(&self.by)?];
-        for input in &self.inputs {
+        for input in choices {
             inputs.push(plan.any(input)?);
         }
         Ok(plan.local(inputs, |inputs| {

@@ -1,10 +1,9 @@
 //! Shapes, as signed distances or masks.
 
-use super::{Frequency, NodeKind};
+use super::{Frequency, NodeKind, outputs};
 use crate::RecipeError;
 use crate::plan::{Builder, Step};
 use dapple_pattern::{Shape, ShapeKind, ShapeOptions, ShapeValue};
-use dapple_raster::Named;
 use serde::{Deserialize, Serialize};
 
 /// Simple shape, or a grid of its copies.
@@ -67,17 +66,7 @@ impl Default for ShapeNode {
 }
 
 impl NodeKind for ShapeNode {
-    fn outputs(&self) -> &'static [&'static str] {
-        ShapeValue::NAMES
-    }
-
-    fn with_output(&self, value: &str) -> Option<Box<dyn NodeKind>> {
-        let value = ShapeValue::from_name(value)?;
-        Some(Box::new(Self {
-            value,
-            ..self.clone()
-        }))
-    }
+    outputs!(ShapeValue);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let frequency = match self.frequency {

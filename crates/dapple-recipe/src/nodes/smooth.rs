@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub struct SmoothMinimum {
     /// Inputs: numbers, at least one.
     pub inputs: Vec<Input>,
-    /// Difference of two inputs from which on the result equals the minimum; 0 for the minimum.
+    /// Difference of two inputs at and above which the result equals the minimum; 0 for the minimum.
     #[serde(default = "radius")]
     #[cfg_attr(feature = "schema", schemars(transform = { RADIUS }))]
     pub radius: f64,
@@ -29,7 +29,7 @@ pub struct SmoothMinimum {
 pub struct SmoothMaximum {
     /// Inputs: numbers, at least one.
     pub inputs: Vec<Input>,
-    /// Difference of two inputs from which on the result equals the maximum; 0 for the maximum.
+    /// Difference of two inputs at and above which the result equals the maximum; 0 for the maximum.
     #[serde(default = "radius")]
     #[cfg_attr(feature = "schema", schemars(transform = { RADIUS }))]
     pub radius: f64,

@@ -1,10 +1,9 @@
 //! Woven cloth.
 
-use super::{Frequency, NodeKind, NodeSeed};
+use super::{Frequency, NodeKind, NodeSeed, outputs};
 use crate::RecipeError;
 use crate::plan::{Builder, Step};
 use dapple_pattern::{Draft, Weave, WeaveOptions, WeaveValue};
-use dapple_raster::Named;
 use serde::{Deserialize, Serialize};
 
 /// Woven cloth: warp threads along y and weft threads along x, which pass over and under each other.
@@ -69,17 +68,7 @@ impl Default for WeaveNode {
 }
 
 impl NodeKind for WeaveNode {
-    fn outputs(&self) -> &'static [&'static str] {
-        WeaveValue::NAMES
-    }
-
-    fn with_output(&self, value: &str) -> Option<Box<dyn NodeKind>> {
-        let value = WeaveValue::from_name(value)?;
-        Some(Box::new(Self {
-            value,
-            ..self.clone()
-        }))
-    }
+    outputs!(WeaveValue);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let options = WeaveOptions {

@@ -438,7 +438,7 @@ pub(super) fn wrap(repeats: [bool; 2]) -> [Wrap; 2] {
 }
 
 /// Returns an error if there is no input.
-fn at_least_one(inputs: Vec<usize>) -> Result<Vec<usize>, RecipeError> {
+pub(crate) fn at_least_one<T>(inputs: Vec<T>) -> Result<Vec<T>, RecipeError> {
     if inputs.is_empty() {
         let (what, count, needed) = ("inputs", 0, "at least 1");
         return Err(RecipeError::new(RecipeErrorKind::Count {

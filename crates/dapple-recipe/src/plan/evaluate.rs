@@ -1,6 +1,6 @@
 //! Evaluates steps at many positions.
 
-use super::neighborhood::cropped;
+use super::neighborhood::{cropped, pixel};
 use super::step::{LinearMap, Moved, Positions, Step, StretchedImage, needed};
 use super::{Picture, Values, Whole};
 use crate::{RecipeError, RecipeErrorKind};
@@ -31,7 +31,7 @@ impl<'a> Places<'a> {
     fn pixels(window: &'a Window) -> Self {
         Self {
             at: At::Window(window),
-            area: (DVec2::from(window.pixel) * DVec2::from(window.scale)).abs(),
+            area: pixel(window),
         }
     }
 

@@ -163,12 +163,12 @@ impl Neighborhood {
 }
 
 /// Returns the width and height of a window's pixels, in units of the plane.
-fn pixel(window: &Window) -> DVec2 {
+pub(super) fn pixel(window: &Window) -> DVec2 {
     (DVec2::from(window.pixel) * DVec2::from(window.scale)).abs()
 }
 
 /// Returns `window` with a margin at each side, in columns and rows.
-fn with_margin(window: &Window, margin: [u32; 2]) -> Window {
+pub(crate) fn with_margin(window: &Window, margin: [u32; 2]) -> Window {
     Window {
         first: [0, 1].map(|axis| window.first[axis].saturating_sub(margin[axis].into())),
         size: [0, 1].map(|axis| {
@@ -322,13 +322,9 @@ pub(super) fn sources(
     let is_kept = kept(steps, &stages, wanted);
     let (mut sources, mut most) = (Vec::new(), [0; 2]);
     for (index, stage) in stages.iter().enumerate() {
-        let is_ready = matches!(
-            steps[index],
-            Step::Number(_) | Step::Color(_) | Step::Global(_)
-        );
         match stage {
             Some((0, true, Reverse(margin)))
-                if *margin != [0; 2] && is_kept[index] && !is_ready =>
+                if *margin != [0; 2] && is_kept[index] && !steps[index].is_ready() =>
             {
                 sources.push(index);
                 most = [0, 1].map(|axis| most[axis].max(margin[axis]));
@@ -337,15 +333,6 @@ pub(super) fn sources(
         }
     }
     Ok((sources, most))
-}
-
-/// Returns whether `wanted` need a neighborhood that is not known.
-fn sees_neighborhoods(steps: &[Step], wanted: &[usize], known: &Known) -> bool {
-    let is_known = |index: usize| known.iter().any(|(known, _)| *known == index);
-    let needed = needed(steps, wanted, is_known).into_iter();
-    needed
-        .filter(|&index| !is_known(index))
-        .any(|index| matches!(steps[index], Step::Neighborhood(_)))
 }
 
 /// Computes the values of the steps `wanted` at the pixels of a window, in the order of `wanted`. Each step that a
@@ -358,9 +345,11 @@ pub(super) fn window(
     known: &Known,
 ) -> Result<Vec<Values>, RecipeError> {
     let window = grid.window;
-    if !sees_neighborhoods(steps, wanted, known) {
-        let is_known = |index: usize| known.iter().any(|(known, _)| *known == index);
-        let read = needed(steps, wanted, is_known);
+    let is_known = |index: usize| known.iter().any(|(known, _)| *known == index);
+    let read = needed(steps, wanted, is_known);
+    let sees_neighborhood =
+        |&index: &usize| !is_known(index) && matches!(steps[index], Step::Neighborhood(_));
+    if !read.iter().any(sees_neighborhood) {
         let mut known = known.to_vec();
         known.retain(|(index, _)| read.contains(index));
         return chunks(steps, whole, grid, wanted, &known);
@@ -440,12 +429,8 @@ fn kept(steps: &[Step], stages: &[Option<Stage>], wanted: &[usize]) -> Vec<bool>
         let is_neighborhood = matches!(step, Step::Neighborhood(_));
         is_kept[index] |= is_neighborhood;
         for input in step.inputs_at_pixels() {
-            // Computing a constant is as fast as copying it, and the images of global steps are stored already.
-            let is_ready = matches!(
-                steps[input],
-                Step::Number(_) | Step::Color(_) | Step::Global(_)
-            );
-            is_kept[input] |= is_neighborhood || (!is_ready && stages[input] != stages[index]);
+            let is_read_later = !steps[input].is_ready() && stages[input] != stages[index];
+            is_kept[input] |= is_neighborhood || is_read_later;
         }
     }
     is_kept

@@ -224,6 +224,12 @@ impl Step {
         }
     }
 
+    /// Returns whether there is no use in storing the values of the step: computing a constant is as fast as copying it,
+    /// and the image of a step that depends on the whole tile is stored already.
+    pub(super) fn is_ready(&self) -> bool {
+        matches!(self, Self::Number(_) | Self::Color(_) | Self::Global(_))
+    }
+
     /// Returns the inputs that are evaluated at pixels of the same grid as the step.
     pub(super) fn inputs_at_pixels(&self) -> Vec<usize> {
         match self {
@@ -330,14 +336,8 @@ fn reached(steps: &[Step], wanted: &[usize], leads_to: impl Fn(usize) -> Vec<usi
 /// Returns the steps that both `wanted` and `height` depend on, except steps that are cheap to recompute.
 pub(super) fn shared(steps: &[Step], height: usize, wanted: &[usize]) -> Vec<usize> {
     let of_height = needed(steps, &[height], |_| false);
-    let is_shared = |index: usize| {
-        // Computing a constant is as fast as copying it, and steps that depend on the whole tile are stored already.
-        let is_ready = matches!(
-            steps[index],
-            Step::Number(_) | Step::Color(_) | Step::Global(_)
-        );
-        !is_ready && of_height.binary_search(&index).is_ok()
-    };
+    let is_shared =
+        |index: usize| !steps[index].is_ready() && of_height.binary_search(&index).is_ok();
     let mut shared = needed(steps, wanted, is_shared);
     shared.retain(|&index| is_shared(index));
     shared

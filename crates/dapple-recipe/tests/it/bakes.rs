@@ -122,6 +122,22 @@ pub(crate) fn crop(map: &[u32], [width, height]: [u32; 2], region: Region) -> Ve
         .collect()
 }
 
+/// Compares a region of a bake with a crop of the whole, and a bake in bands with the whole.
+pub(crate) fn assert_parts_have_the_bits_of_the_whole(plan: &Plan, size: [u32; 2], region: Region) {
+    let whole = bake(plan, &options(size));
+    let part = BakeOptions {
+        region: Some(region),
+        ..options(size)
+    };
+    let cropped: Vec<_> = whole.iter().map(|map| crop(map, size, region)).collect();
+    assert!(cropped == bake(plan, &part), "a region");
+    let banded = BakeOptions {
+        memory: BakeMemory::Banded,
+        ..options(size)
+    };
+    assert!(whole == bake(plan, &banded), "bands");
+}
+
 #[test]
 fn a_region_is_the_crop_of_the_whole_bit_for_bit() {
     let plan = plan(ALL_NODES);

@@ -1,10 +1,8 @@
 //! Tests of nodes that evaluate their input at other positions: `transform`, `fractal` and `warp`.
 
-use crate::bakes::{bake, crop, options, plan};
+use crate::bakes::{assert_parts_have_the_bits_of_the_whole, plan};
 use dapple_raster::{Field, FieldExt, Fractal, FractalShape, Raster, Window};
-use dapple_recipe::{
-    BakeMemory, BakeOptions, Images, Picture, Plan, Recipe, RecipeErrorKind, Region,
-};
+use dapple_recipe::{Images, Picture, Plan, Recipe, RecipeErrorKind, Region};
 
 /// Returns the plan of a recipe with the node `a`, two octaves of noise, and the node `b` of the given text.
 fn plan_of(head: &str, b: &str) -> Plan {
@@ -349,21 +347,9 @@ height = "turned"
 albedo = "repeated"
 "#,
     );
-    let size = [96, 72];
-    let whole = bake(&plan, &options(size));
     let region = Region {
         first: [40, 31],
         size: [56, 40],
     };
-    let part = BakeOptions {
-        region: Some(region),
-        ..options(size)
-    };
-    let cropped: Vec<_> = whole.iter().map(|map| crop(map, size, region)).collect();
-    assert!(cropped == bake(&plan, &part), "a region");
-    let banded = BakeOptions {
-        memory: BakeMemory::Banded,
-        ..options(size)
-    };
-    assert!(whole == bake(&plan, &banded), "bands");
+    assert_parts_have_the_bits_of_the_whole(&plan, [96, 72], region);
 }

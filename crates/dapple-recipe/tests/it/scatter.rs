@@ -1,10 +1,10 @@
 //! Tests of the node `scatter`.
 
-use crate::bakes::{bake, crop, options, plan};
+use crate::bakes::{assert_parts_have_the_bits_of_the_whole, plan};
 use dapple_hash::Seed;
 use dapple_pattern::{StampOverlap, StampShape, StampValue, Stamps};
 use dapple_raster::{Field as _, FieldExt as _, Window};
-use dapple_recipe::{BakeMemory, BakeOptions, Images, Plan, Recipe, RecipeErrorKind, Region};
+use dapple_recipe::{Images, Plan, Recipe, RecipeErrorKind, Region};
 
 const STAMPS: &str = "shape = \"leaf\", frequency = [3, 6], density = 2.5, jitter = 0.5, spacing = 0.25, row_offset = 0.5, \
     size = [0.8, 1.2], aspect = [0.4, 0.5], rotation = [-30, 30], height = [0.5, 1], bevel = 0.1, lift = 0.6, \
@@ -62,23 +62,11 @@ fn regions_and_bands_have_the_bits_of_the_whole() {
          b = {{ warp = {{ input = \"a\", x = \"a\", y = 0.1, amount = 0.1 }} }}\n[material]\nheight = \"a\"\n\
          roughness = \"b\"\n"
     ));
-    let size = [128, 64];
-    let whole = bake(&plan, &options(size));
     let region = Region {
         first: [40, 31],
         size: [56, 30],
     };
-    let part = BakeOptions {
-        region: Some(region),
-        ..options(size)
-    };
-    let cropped: Vec<_> = whole.iter().map(|map| crop(map, size, region)).collect();
-    assert!(cropped == bake(&plan, &part), "a region");
-    let banded = BakeOptions {
-        memory: BakeMemory::Banded,
-        ..options(size)
-    };
-    assert!(whole == bake(&plan, &banded), "bands");
+    assert_parts_have_the_bits_of_the_whole(&plan, [128, 64], region);
 }
 
 #[test]
