@@ -123,7 +123,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
                 let job = Job::new(context, "recipe", &args.files);
                 put_text(job, "recipe", "md", &Recipe::reference(), args)
             }
-            _ => list(args.list.iter().flatten().next().map(String::as_str)),
+            _ => list(args.list.as_ref().and_then(|word| word.as_deref())),
         };
     };
     let (mut recipe, folder) = read_recipe(name)?;
@@ -139,10 +139,10 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         ))?;
         return Ok(Exit::Done);
     }
+    if let Some(seed) = args.seed {
+        recipe.seed = Seed(seed);
+    }
     if args.wgsl {
-        if let Some(seed) = args.seed {
-            recipe.seed = Seed(seed);
-        }
         let images = read_images(&recipe, folder, args.finite)?;
         let options = ShaderOptions {
             textures: args.textures,
@@ -154,9 +154,6 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     }
     let is_as_written =
         !args.rust && args.format().is_none() && args.seed.is_none() && args.set.is_empty();
-    if let Some(seed) = args.seed {
-        recipe.seed = Seed(seed);
-    }
     let text = match (Recipe::builtin_text(name), args.format()) {
         (Ok(text), _) if is_as_written && folder.as_os_str().is_empty() => text.to_owned(),
         _ if args.rust => recipe.to_rust().map_err(advise)?,

@@ -390,7 +390,7 @@ fn reports(
     Ok((Value::Array(all), passes))
 }
 
-/// Returns what to try if a tile does not pass.
+/// Returns the next step for a tile that does not pass.
 fn next_step(made: &Candidate, is_auto: bool) -> &'static str {
     match &made.how {
         _ if is_auto => {

@@ -61,6 +61,33 @@ fn alpha_goes_the_way_of_the_colors_in_tile_and_synth() {
 }
 
 #[test]
+fn hidden_colors_do_not_bleed_into_a_resampled_tile() {
+    let folder = Folder::new("alpha-resampled");
+    // Green columns between transparent red ones.
+    let pixels = Raster::from_fn([48; 2], |x, _| match x % 2 {
+        0 => LinearRgba {
+            color: LinearRgb::new(0.0, 0.5, 0.0),
+            alpha: 1.0,
+        },
+        _ => LinearRgba {
+            color: LinearRgb::new(1.0, 0.0, 0.0),
+            alpha: 0.0,
+        },
+    });
+    write_color_alpha_png(folder.path("grid.png"), &pixels.unwrap(), Depth::Sixteen).unwrap();
+    let line = "tile grid.png --method mirror --size 24 -o small.png";
+    assert_done(&folder.run(&line.split(' ').collect::<Vec<_>>()), line);
+    let pixels = read(&folder, "small.png").color_alpha().unwrap();
+    assert_eq!(pixels.size(), [24; 2]);
+    for pixel in pixels.pixels() {
+        // Half of the area is green; 16 bits round the sRGB curve.
+        let LinearRgba { color, alpha } = *pixel;
+        assert!((alpha - 0.5).abs() < 1e-4 && color.r < 1e-4, "{pixel:?}");
+        assert!((color.g - 0.5).abs() < 1e-4, "{pixel:?}");
+    }
+}
+
+#[test]
 fn color_goes_on_under_alpha_0_but_around_a_hole() {
     let folder = Folder::new("rims");
     let leaf = LinearRgba::opaque(LinearRgb::new(0.05, 0.3, 0.02));

@@ -106,7 +106,7 @@ fn recipes_are_listed_by_family_and_by_words() {
         families.is_sorted() && families.contains(&"stone"),
         "{families:?}"
     );
-    // A tag, a name and a word of the sentence, in any case.
+    // A tag, a name and a word of the sentence, in upper or lower case.
     for (word, name) in [
         ("timber", "wood-grain"),
         ("Marble", "marble"),
