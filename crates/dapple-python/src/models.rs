@@ -25,6 +25,7 @@ use dapple::raster::Raster;
 use dapple::synth::{
     Atlas, Direction, Hierarchy, HierarchyOptions, Orientation, Progress, SurfaceTexture, Symmetry,
     SynthError, Synthesizer, bake_colors, bake_normals, bake_values, site_model,
+    sites_for_exemplar,
 };
 use dapple::tile::Map;
 use example_mesh::ExampleMesh;
@@ -101,8 +102,9 @@ impl SitePoints {
 ///     (rows, columns), or (rows, columns, 3) in linear light; or a dictionary of maps, of which the first is matched
 ///     and the others follow it: `normal` and `orm` are also written to the material of exported files. The texture of
 ///     another mesh is lifted from there: `Exemplar(maps, mesh=…)`.
-/// sites : int, default 65536
-///     The number of points on the surface that get a color, 1 to 2**28.
+/// sites : int or None, default None
+///     The number of points on the surface that get a color, 1 to 2**28. By default, the exemplar repeats five times along
+///     the longest side of the mesh, or as often as 400,000 points allow; 65,536 points if it is a mesh.
 /// directions : Directions, dict, tuple of array_like or None, default None
 ///     How the texture lies on the surface; by default Directions(). A pair (positions, vectors) is `field` alone.
 /// atlas : Atlas, dict or None, default None
@@ -135,14 +137,14 @@ impl SitePoints {
 /// >>> model.texture.shape, model.uv.shape
 /// ((64, 64), (2, 3, 2))
 #[pyfunction]
-#[pyo3(signature = (mesh, exemplar, *, sites = 65536, directions = None, atlas = None, seed = SeedArgument::default(),
+#[pyo3(signature = (mesh, exemplar, *, sites = None, directions = None, atlas = None, seed = SeedArgument::default(),
     matching = None, progress = None),
-    text_signature = "(mesh, exemplar, *, sites=65536, directions=None, atlas=None, seed=0, matching=None, progress=None)")]
+    text_signature = "(mesh, exemplar, *, sites=None, directions=None, atlas=None, seed=0, matching=None, progress=None)")]
 pub(crate) fn synthesize_on<'py>(
     py: Python<'py>,
     mesh: &Bound<'py, PyAny>,
     exemplar: &Bound<'py, PyAny>,
-    sites: usize,
+    sites: Option<usize>,
     directions: Option<&Bound<'py, PyAny>>,
     atlas: Option<&Bound<'py, PyAny>>,
     seed: SeedArgument,
@@ -191,11 +193,14 @@ pub(crate) fn synthesize_on<'py>(
     } = exemplar;
     let example_mesh = ExampleMesh::of(given)?;
     let [hierarchy, sites_of_example] = ["sites", "example sites"].map(|name| HierarchyOptions {
-        n_sites: sites,
         n_levels: matching.n_levels(),
         seed: seed.0.child(name, 0),
-        ..HierarchyOptions::default()
+        ..sites.map_or_else(HierarchyOptions::default, |n_sites| HierarchyOptions {
+            n_sites,
+            ..HierarchyOptions::default()
+        })
     });
+    let size = example_mesh.is_none().then(|| example.size());
     let options = matching.options(seed)?;
     let symmetry: Symmetry = data::named("symmetry", &directions.symmetry.to_string())?;
     let directions = self::directions(directions.field)?;
@@ -204,6 +209,10 @@ pub(crate) fn synthesize_on<'py>(
     let cover = move |heard: watch::Heard<'_>, _: &Stop| -> Result<Model> {
         let (repaired, repair) = mesh.repair();
         let surface = Surface::new(repaired)?;
+        let mut hierarchy = hierarchy;
+        if let (None, Some(size)) = (sites, size) {
+            hierarchy.n_sites = sites_for_exemplar(&surface, size);
+        }
         // Check all options before cutting charts, which takes long.
         hierarchy.check(&surface)?;
         let uvs = match needs_uvs {

@@ -243,7 +243,7 @@ pub use side_by_side::SideBySide;
 pub use sites::{
     Blend, Connected, Evenness, Hierarchy, HierarchyOptions, Level, SiteGraph, SiteGrid, SiteIdx,
     SiteTriangles, Sites, evenness, hexagonal_spacing, nested_points, repeats_of_sites, repel,
-    scatter, sites_for_repeats,
+    scatter, sites_for_exemplar, sites_for_repeats,
 };
 pub use surface_texture::SurfaceTexture;
 pub use sweep::Sweep;

@@ -44,7 +44,9 @@ pub use connect::Connected;
 pub use evenness::{Evenness, evenness, hexagonal_spacing};
 pub use graph::SiteGraph;
 pub use grid::SiteGrid;
-pub use hierarchy::{Hierarchy, HierarchyOptions, Level, repeats_of_sites, sites_for_repeats};
+pub use hierarchy::{
+    Hierarchy, HierarchyOptions, Level, repeats_of_sites, sites_for_exemplar, sites_for_repeats,
+};
 pub use interpolation::INTERPOLATION_RADIUS;
 pub(crate) use interpolation::{weight, weights};
 pub use low_pass::LowPass;

@@ -248,6 +248,12 @@ fn repeats_across_a_mesh_set_the_number_of_sites() {
     // many sites as a square one with 400.
     let sites = dapple::mesh_io::read_model(folder.path("sites.ply")).unwrap();
     assert_eq!(sites.mesh.positions().len(), 462);
+    // By default the example repeats five times, which takes (5 / 0.5)² times as many sites.
+    let done = run("");
+    assert_done(&done, "the default");
+    let said = stderr(&done);
+    assert!(said.contains("46188 sites"), "{said}");
+    assert!(said.contains("repeats about 5.0 times"), "{said}");
     for (more, word) in [
         ("--repeat 1 --sites 500", "--sites"),
         ("--repeat 0", "repeats"),

@@ -19,6 +19,12 @@ const LEVELS_MAX: usize = 16;
 /// Maximum number of iterations. A larger number is rejected as a mistake, since it would run almost forever.
 const ITERATIONS_MAX: usize = 10_000;
 
+/// Default number of times that an exemplar repeats along the longest side of a mesh.
+const REPEATS: f64 = 5.0;
+/// Maximum number of sites that is chosen without being asked for: about half a minute on two cores, and a site for
+/// every one to two texels of a 1024 × 1024 texture.
+const DEFAULT_SITES_MAX: usize = 400_000;
+
 /// Maximum mean number of sites within two site spacings of a site. On a single sheet there are about 15.
 const NEAR_MAX: f64 = 512.0;
 /// Number of random points used to detect crossing sheets.
@@ -191,9 +197,36 @@ pub fn sites_for_repeats(
 ) -> Result<usize, SynthError> {
     let holds = repeats > 0.0 && repeats <= 10_000.0;
     SynthError::check(holds, "number of repeats", repeats, "above 0, up to 10000")?;
+    Ok(sites_at(surface, size, repeats))
+}
+
+/// Returns the default number of sites for an exemplar of `size` pixels: the image repeats five times along the longest
+/// side of the surface's bounding box, or fewer times if that would take more than 400,000 sites.
+///
+/// See [`sites_for_repeats`] for other numbers of repeats. The result is at least 1.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_synth::mesh::{Mesh, Surface, glam::DVec3};
+/// use dapple_synth::sites_for_exemplar;
+///
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y, DVec3::Y];
+/// let square = Surface::new(Mesh::new(corners, &[[0, 1, 2], [0, 2, 3]])?)?;
+/// assert_eq!(sites_for_exemplar(&square, [100, 100]), 288_675);
+/// assert_eq!(sites_for_exemplar(&square, [256, 256]), 400_000);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[must_use]
+pub fn sites_for_exemplar(surface: &Surface, size: [u32; 2]) -> usize {
+    sites_at(surface, size, REPEATS).min(DEFAULT_SITES_MAX)
+}
+
+/// Returns the number of sites for a number of repeats above 0.
+fn sites_at(surface: &Surface, size: [u32; 2], repeats: f64) -> usize {
     // The number of sites is inversely proportional to the square of their spacing.
     let ratio = repeats / repeats_of_sites(surface, size, 1);
-    Ok((ratio * ratio).round().clamp(1.0, (1_u64 << 53) as f64) as usize)
+    (ratio * ratio).round().clamp(1.0, (1_u64 << 53) as f64) as usize
 }
 
 /// Returns the number of times that an image of `size` pixels repeats along the longest side of the surface's bounding

@@ -11,7 +11,7 @@ use dapple::mesh::Surface;
 use dapple::raster::Raster;
 use dapple::synth::{
     Axes as FieldAxes, Coherence, Edges, EndlessOptions, HierarchyOptions, Matching, Options,
-    Symmetry, SynthError, sites_for_repeats,
+    Symmetry, SynthError, sites_for_exemplar, sites_for_repeats,
 };
 use dapple::tile::Map;
 use serde::Serialize;
@@ -176,13 +176,15 @@ pub(super) struct SurfaceArgs {
     #[arg(long, value_name = "N", value_parser = NamedValueParser::<Symmetry>::all())]
     pub(super) symmetry: Option<Symmetry>,
 
-    /// Number of times that the example repeats along the mesh's longest side, above 0 up to 10000.
+    /// Number of times that the example repeats along the mesh's longest side, above 0 up to 10000 [default: 5, or what
+    /// 400000 sites allow].
     ///
     /// The side is that of the bounding box. A smaller number makes larger features. It sets the number of sites.
     #[arg(long, value_name = "N", conflicts_with = "sites")]
     pub(super) repeat: Option<f64>,
 
-    /// Number of sample points on the mesh, 1 to 2^28; more make smaller features [default: 65536].
+    /// Number of sample points on the mesh, 1 to 2^28; more make smaller features [default: as --repeat, or 65536 with an
+    /// example mesh].
     #[arg(long, hide_short_help = true, value_name = "N")]
     sites: Option<usize>,
 
@@ -409,8 +411,8 @@ impl SurfaceArgs {
 }
 
 impl SurfaceArgs {
-    /// Returns the options for the sites on a surface. With `--repeat`, the number of sites follows from `size`, the
-    /// example's size in pixels.
+    /// Returns the options for the sites on a surface. Without `--sites`, their number follows from the number of repeats
+    /// and from `size`, the example's size in pixels.
     ///
     /// # Errors
     ///
@@ -422,9 +424,10 @@ impl SurfaceArgs {
         matching: &MatchArgs,
     ) -> Result<HierarchyOptions, SynthError> {
         let sites = self.sites(matching);
-        let n_sites = match self.repeat {
-            Some(repeats) => sites_for_repeats(surface, size, repeats)?,
-            None => sites.n_sites,
+        let n_sites = match (self.repeat, self.sites) {
+            (Some(repeats), _) => sites_for_repeats(surface, size, repeats)?,
+            (None, Some(n_sites)) => n_sites,
+            (None, None) => sites_for_exemplar(surface, size),
         };
         Ok(HierarchyOptions { n_sites, ..sites })
     }
