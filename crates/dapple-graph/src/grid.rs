@@ -1,6 +1,7 @@
 //! A bucket grid of sites, for finding the images near a position.
 
 use crate::lattice::Lattice;
+use dapple_raster::Groups;
 use glam::DVec2;
 use std::sync::OnceLock;
 
@@ -52,13 +53,12 @@ pub(crate) struct Grid<'a> {
     sites: &'a [DVec2],
     cells: [usize; 2],
     per_step: DVec2,
-    /// Index of the first site of each cell in `order`, followed by the number of sites.
-    starts: Vec<u32>,
-    order: Vec<u32>,
+    /// Sites of each cell, row by row.
+    groups: Groups,
 }
 
 impl<'a> Grid<'a> {
-    /// Sorts the sites by cell, with a stable order within each cell.
+    /// Sorts the sites by cell.
     pub(crate) fn new(lattice: &'a Lattice, sites: &'a [DVec2]) -> Self {
         let size = lattice.size;
         let n = sites.len().max(1);
@@ -69,23 +69,10 @@ impl<'a> Grid<'a> {
             sites,
             cells,
             per_step: DVec2::new(cells[0] as f64, cells[1] as f64) / size,
-            starts: vec![0; cells[0] * cells[1] + 1],
-            order: vec![0; sites.len()],
+            groups: Groups::default(),
         };
-        for &site in sites {
-            let cell = grid.cell(site);
-            grid.starts[cell] += 1;
-        }
-        let mut end = 0;
-        for start in &mut grid.starts {
-            end += *start;
-            *start = end;
-        }
-        for (index, &site) in sites.iter().enumerate().rev() {
-            let cell = grid.cell(site);
-            grid.starts[cell] -= 1;
-            grid.order[grid.starts[cell] as usize] = index as u32;
-        }
+        let of_sites: Vec<u32> = sites.iter().map(|&site| grid.cell(site) as u32).collect();
+        grid.groups = Groups::sort(cells[0] * cells[1], &of_sites);
         grid
     }
 
@@ -111,11 +98,11 @@ impl<'a> Grid<'a> {
             });
             for row in rows {
                 let row = row * self.cells[0];
-                let first = self.starts[row + columns.start()] as usize;
-                let end = self.starts[row + columns.end() + 1] as usize;
+                let first = self.groups.range(row + columns.start()).start;
+                let end = self.groups.range(row + columns.end()).end;
                 // Visiting a row takes time even if it is empty.
                 budget.take((end - first) as u64 + 1)?;
-                for &index in &self.order[first..end] {
+                for &index in &self.groups.items[first..end] {
                     visit(index, self.sites[index as usize] + shift);
                 }
             }

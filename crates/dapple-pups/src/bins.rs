@@ -9,6 +9,7 @@
 //! near each other in memory, whatever the order of the points.
 
 use crate::net::{AxisBlock, BLOCK, Instance, Net};
+use dapple_raster::Groups;
 use glam::DVec2;
 
 /// Number of bins for each instance. More bins mean fewer candidates in each, but more memory. With 3, a position has
@@ -206,8 +207,7 @@ impl Bins {
     /// Lists the candidates of every bin, in the order of the instances. The candidates of bin `b` are
     /// `candidates[offsets[b]..offsets[b + 1]]`.
     fn list_candidates(&self, net: &Net, places: &[u32]) -> (Vec<u32>, Vec<u32>) {
-        let mut entries = Vec::new();
-        let mut offsets = vec![0; self.size[0] * self.size[1] + 1];
+        let (mut bins, mut candidates) = (Vec::new(), Vec::new());
         // Of the bins in the bounds of a support, list the candidate in those that the support itself may touch.
         for (instance, &place) in net.instances.iter().zip(places) {
             let is_long = net.blocks(instance).len() > 1;
@@ -218,24 +218,16 @@ impl Bins {
             for row in rows {
                 for column in columns.clone() {
                     if self.touches(net, instance, [column, row]) {
-                        let bin = row * self.size[0] + column;
-                        entries.push((bin, candidate));
-                        offsets[bin + 1] += 1;
+                        bins.push((row * self.size[0] + column) as u32);
+                        candidates.push(candidate);
                     }
                 }
             }
         }
-        // Counting sort: accumulate the counts, and store the candidates.
-        for bin in 1..offsets.len() {
-            offsets[bin] += offsets[bin - 1];
-        }
-        let mut next = offsets.clone();
-        let mut candidates = vec![0; entries.len()];
-        for (bin, candidate) in entries {
-            candidates[next[bin] as usize] = candidate;
-            next[bin] += 1;
-        }
-        (offsets, candidates)
+        let sorted = Groups::sort(self.size[0] * self.size[1], &bins);
+        let items = sorted.items.iter();
+        let candidates = items.map(|&item| candidates[item as usize]).collect();
+        (sorted.starts, candidates)
     }
 
     /// Packs the candidates into bins, and appends those that do not fit to `crowded`.

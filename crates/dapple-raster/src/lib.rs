@@ -70,6 +70,7 @@
 mod error;
 mod error_macro;
 mod field;
+mod groups;
 mod named;
 mod parts;
 mod range;
@@ -99,6 +100,8 @@ pub use field::{
     Slice, Translated, Warped, common_period, field_fn,
 };
 pub use glam;
+#[doc(hidden)]
+pub use groups::Groups;
 #[doc(hidden)]
 pub use named::Named;
 #[cfg(feature = "serde")]

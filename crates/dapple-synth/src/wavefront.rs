@@ -12,6 +12,7 @@ use crate::cells::Cells;
 use core::hint::spin_loop;
 use core::ops::Range;
 use core::sync::atomic::{AtomicUsize, Ordering};
+use dapple_raster::Groups;
 
 /// Number of spins before a waiting thread yields its core.
 const LOOKS: u32 = 64;
@@ -91,28 +92,18 @@ impl WavefrontSchedule {
     }
 }
 
-/// Sorts the sites of `order` by generation with a stable counting sort.
+/// Sorts the sites of `order` by generation. Sites of one generation keep their order.
 fn by_generation(order: &[u32], generations: &[u32]) -> Vec<u32> {
     let n_generations = generations
         .iter()
         .max()
         .map_or(0, |&last| last as usize + 1);
-    let mut next = vec![0_usize; n_generations];
-    // Count the sites of each generation, then turn the counts into start positions.
-    for &generation in generations {
-        next[generation as usize] += 1;
-    }
-    let mut first = 0;
-    for next in &mut next {
-        (*next, first) = (first, first + *next);
-    }
-    let mut sites = vec![0; order.len()];
-    for (&site, &generation) in order.iter().zip(generations) {
-        let at = &mut next[generation as usize];
-        sites[*at] = site;
-        *at += 1;
-    }
-    sites
+    let groups = Groups::sort(n_generations, generations);
+    groups
+        .items
+        .iter()
+        .map(|&turn| order[turn as usize])
+        .collect()
 }
 
 /// Shared state of a run: the turn that each thread has, within a range of turns. All turns before the range are

@@ -8,6 +8,7 @@
 
 use crate::search::{Hit, PointId, Ranking, by_rings};
 use crate::{Dimensions, Feature, MAX_NEAREST, Metric, Space, Vector, WorleyError};
+use dapple_raster::Groups;
 
 /// Mean number of points per bin.
 const POINTS_PER_BIN: f64 = 2.0;
@@ -94,34 +95,21 @@ where
             }
         }
         let bins = Bins::new(&places, period);
-        let mut order: Vec<(usize, u32)> = Vec::with_capacity(places.len());
-        for (index, place) in (0..).zip(&places) {
-            order.push((
-                bins.index(core::array::from_fn(|axis| bins.bin(axis, place[axis]))),
-                index,
-            ));
-        }
-        order.sort_unstable();
+        let bin_of = |place: &[f64; N]| {
+            bins.index(core::array::from_fn(|axis| bins.bin(axis, place[axis]))) as u32
+        };
+        let of_places: Vec<u32> = places.iter().map(bin_of).collect();
         let n_bins = bins
             .count
             .iter()
             .map(|&count| count as usize)
             .product::<usize>();
-        // Accumulate the point counts to the index of each bin's first point.
-        let mut starts = vec![0; n_bins + 1];
-        for &(bin, _) in &order {
-            starts[bin + 1] += 1;
-        }
-        for bin in 0..n_bins {
-            starts[bin + 1] += starts[bin];
-        }
-        let points = order
-            .iter()
-            .map(|&(_, index)| (places[index as usize], index))
-            .collect();
+        let sorted = Groups::sort(n_bins, &of_places);
+        let points = sorted.items.iter();
+        let points = points.map(|&index| (places[index as usize], index));
         Ok(Self {
-            points,
-            starts,
+            points: points.collect(),
+            starts: sorted.starts,
             bins,
             metric: Metric::default(),
         })

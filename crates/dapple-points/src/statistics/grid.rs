@@ -1,6 +1,7 @@
 //! A grid of square cells that contain sorted points, for searches ring by ring.
 
 use crate::{Domain, PointSet};
+use dapple_raster::Groups;
 use glam::DVec2;
 
 /// Mean number of points per cell: few enough to skip most distant points, enough to visit few empty cells.
@@ -27,9 +28,7 @@ pub(super) struct Grid {
     counts: [i64; 2],
     /// Length of the shorter side of a cell.
     side: f64,
-    /// `starts[cell]..starts[cell + 1]` is the range of the points of a cell in `order`.
-    starts: Vec<u32>,
-    order: Vec<u32>,
+    cells: Groups,
 }
 
 impl Grid {
@@ -45,31 +44,15 @@ impl Grid {
             domain,
             counts,
             side,
-            starts: vec![0; (counts[0] * counts[1]) as usize + 1],
-            order: vec![0; set.len()],
+            cells: Groups::default(),
         };
-        grid.sort(set);
-        grid
-    }
-
-    /// Sorts the points by cell, with a stable order within each cell.
-    fn sort(&mut self, set: &PointSet) {
-        let columns = self.counts[0];
-        let cells = set.iter().map(|(_, position)| self.cell(position));
-        let cells: Vec<usize> = cells
-            .map(|[column, row]| (row * columns + column) as usize)
+        // Sort the points by cell.
+        let cells = set.iter().map(|(_, position)| grid.cell(position));
+        let cells: Vec<u32> = cells
+            .map(|[column, row]| (row * counts[0] + column) as u32)
             .collect();
-        for &cell in &cells {
-            self.starts[cell + 1] += 1;
-        }
-        for cell in 1..self.starts.len() {
-            self.starts[cell] += self.starts[cell - 1];
-        }
-        let mut next = self.starts.clone();
-        for (point, cell) in (0..).zip(cells) {
-            self.order[next[cell] as usize] = point;
-            next[cell] += 1;
-        }
+        grid.cells = Groups::sort((counts[0] * counts[1]) as usize, &cells);
+        grid
     }
 
     /// Returns the column and row of a position.
@@ -123,9 +106,7 @@ impl Grid {
                     continue;
                 };
                 let cell = (row * self.counts[0] + column) as usize;
-                for &point in
-                    &self.order[self.starts[cell] as usize..self.starts[cell + 1] as usize]
-                {
+                for &point in self.cells.of(cell) {
                     visit(point as usize, DVec2::new(shift_x, shift_y));
                 }
             }

@@ -7,6 +7,7 @@
 
 use crate::cells::Cells;
 use crate::{Hierarchy, Sites};
+use dapple_raster::Groups;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, f32x8, prelude::*};
 use glam::{DVec3, Vec3};
@@ -75,30 +76,24 @@ impl Neighborhoods {
         ]
         .map(|(start, pick)| positions.iter().copied().fold(start, pick));
         let middle = low * 0.5 + high * 0.5;
-        // Count the sites of each cell, and compute prefix sums.
-        let mut first = vec![0_u32; cells.n_cells() + 1];
-        for site in 0..n_reads as u32 {
-            first[cells.of_site(site) + 1] += 1;
-        }
-        for cell in 0..cells.n_cells() {
-            first[cell + 1] += first[cell];
-        }
         let centers: Vec<Vec3> = positions
             .iter()
             .map(|&at| (at - middle).as_vec3())
             .collect();
         // Sort the sites by cell.
-        let mut records = vec![Record::default(); n_reads];
-        let mut next = first.clone();
-        for site in 0..n_reads {
-            let to = &mut next[cells.of_site(site as u32)];
-            records[*to as usize] = Record {
-                position: centers[site].to_array(),
-                normal: sites.normals()[site].as_vec3().to_array(),
-                site: site as u32,
-            };
-            *to += 1;
-        }
+        let of_sites: Vec<u32> = (0..n_reads as u32)
+            .map(|site| cells.of_site(site) as u32)
+            .collect();
+        let sorted = Groups::sort(cells.n_cells(), &of_sites);
+        let records: Vec<Record> = sorted
+            .items
+            .iter()
+            .map(|&site| Record {
+                position: centers[site as usize].to_array(),
+                normal: sites.normals()[site as usize].as_vec3().to_array(),
+                site,
+            })
+            .collect();
         // Copy the coordinates into arrays.
         let column = |part: usize| {
             let column = records.iter().map(|record| record.position[part]);
@@ -107,7 +102,7 @@ impl Neighborhoods {
         Self {
             columns: [0, 1, 2].map(column),
             cells,
-            first,
+            first: sorted.starts,
             records,
             centers,
             reach_sq: (reach * reach) as f32,

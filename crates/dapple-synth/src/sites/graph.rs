@@ -1,6 +1,7 @@
 //! Neighbor graph of sites, in compressed rows.
 
 use crate::SiteIdx;
+use dapple_raster::Groups;
 
 /// A symmetric graph of sites in compressed rows: the edges of the paper's mesh `M_k`. Its triangles are not stored.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -26,29 +27,16 @@ impl SiteGraph {
     pub fn from_edges(n_sites: usize, edges: impl IntoIterator<Item = [SiteIdx; 2]>) -> Self {
         let is_edge = |&[a, b]: &[SiteIdx; 2]| a != b && a.index().max(b.index()) < n_sites;
         let edges: Vec<[SiteIdx; 2]> = edges.into_iter().filter(is_edge).collect();
-        // Count the neighbors to find the start of each row. While rows are filled, `next` is the index of the next
-        // neighbor.
-        let mut next = vec![0_u32; n_sites + 1];
-        for [a, b] in &edges {
-            next[a.index() + 1] += 1;
-            next[b.index() + 1] += 1;
-        }
-        for site in 0..n_sites {
-            next[site + 1] += next[site];
-        }
-        let mut ends = vec![SiteIdx(0); next[n_sites] as usize];
-        for &[a, b] in &edges {
-            for [from, to] in [[a, b], [b, a]] {
-                ends[next[from.index()] as usize] = to;
-                next[from.index()] += 1;
-            }
-        }
-        let mut from = 0;
+        // Sort the ends of the edges by site. The other end of the end `i` is `i ^ 1`.
+        let ends = edges.as_flattened();
+        let sites: Vec<u32> = ends.iter().map(|end| end.0).collect();
+        let rows = Groups::sort(n_sites, &sites);
         Self::from_rows(n_sites, ends.len(), |site, row| {
-            // After filling, `next` holds the end of each row.
-            let end = next[site.index()] as usize;
-            row.extend(&ends[from..end]);
-            from = end;
+            row.extend(
+                rows.of(site.index())
+                    .iter()
+                    .map(|&end| ends[end as usize ^ 1]),
+            );
         })
     }
 

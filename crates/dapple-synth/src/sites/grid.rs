@@ -7,6 +7,7 @@
 
 use crate::SiteIdx;
 use core::ops::Range;
+use dapple_raster::Groups;
 use glam::DVec3;
 
 /// Sites sorted into the cells of a cubic grid.
@@ -245,27 +246,11 @@ impl SiteGrid {
         }
     }
 
-    /// Sorts the sites by cell with a counting sort.
+    /// Sorts the sites by cell.
     fn sort(&mut self, places: &[u32]) {
-        let mut starts = vec![0_u32; self.bricks.len() * BRICK_CELLS + 1];
-        // Count the sites of each cell, then sum up the counts to the end of each cell.
-        for &place in places {
-            starts[place as usize] += 1;
-        }
-        let mut end = 0;
-        for start in &mut starts {
-            end += *start;
-            *start = end;
-        }
-        self.members = vec![SiteIdx(0); places.len()];
-        // Fill each cell from its end, last site first: sites keep their order, and each end becomes the start of its
-        // cell.
-        for (site, &place) in places.iter().enumerate().rev() {
-            let start = &mut starts[place as usize];
-            *start -= 1;
-            self.members[*start as usize] = SiteIdx(site as u32);
-        }
-        self.starts = starts;
+        let cells = Groups::sort(self.bricks.len() * BRICK_CELLS, places);
+        self.members = cells.items.into_iter().map(SiteIdx).collect();
+        self.starts = cells.starts;
     }
 
     /// Returns the cell of a position; the nearest cell if the position is outside of the grid.
