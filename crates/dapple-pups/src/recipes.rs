@@ -11,6 +11,27 @@
 //! To add a recipe, write a file that implements [`PupsRecipe`] for its options, and add a line to the table of
 //! [`recipes!`](crate::recipes!).
 
+/// Implements the access of [`PupsRecipe`] to the fields `domain` and `net`. With `points`, the number of points follows
+/// from the field `spacing`.
+macro_rules! net_of {
+    (points) => {
+        fn expected_points(&self) -> f64 {
+            self.spacing.expected_points(self.domain)
+        }
+
+        net_of!();
+    };
+    ($(.$inner:tt)?) => {
+        fn domain_mut(&mut self) -> &mut dapple_points::Domain {
+            &mut self$(.$inner)?.domain
+        }
+
+        fn net_mut(&mut self) -> &mut crate::NetOptions {
+            &mut self$(.$inner)?.net
+        }
+    };
+}
+
 mod label_texture;
 mod layers;
 mod net_options;

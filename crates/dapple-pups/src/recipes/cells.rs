@@ -93,17 +93,7 @@ pub fn cells(options: &CellsOptions, seed: Seed) -> Result<LabelTexture, PupsErr
 }
 
 impl PupsRecipe for CellsOptions {
-    fn domain_mut(&mut self) -> &mut Domain {
-        &mut self.domain
-    }
-
-    fn net_mut(&mut self) -> &mut NetOptions {
-        &mut self.net
-    }
-
-    fn expected_points(&self) -> f64 {
-        self.spacing.expected_points(self.domain)
-    }
+    net_of!(points);
 
     fn build(&self, (): &(), seed: Seed) -> Result<PupsField, PupsError> {
         Ok(PupsField::numbers(cells(self, seed)?))

@@ -103,13 +103,7 @@ pub fn cellular_noise(
 }
 
 impl PupsRecipe for CellularNoiseOptions {
-    fn domain_mut(&mut self) -> &mut Domain {
-        &mut self.domain
-    }
-
-    fn net_mut(&mut self) -> &mut NetOptions {
-        &mut self.net
-    }
+    net_of!();
 
     fn expected_points(&self) -> f64 {
         expected_in_series(&self.spacing, self.domain, self.layers, self.lacunarity)

@@ -82,17 +82,7 @@ pub fn color_noise(options: &ColorNoiseOptions, seed: Seed) -> Result<VectorText
 impl PupsRecipe for ColorNoiseOptions {
     const IS_COLOR: bool = true;
 
-    fn domain_mut(&mut self) -> &mut Domain {
-        &mut self.domain
-    }
-
-    fn net_mut(&mut self) -> &mut NetOptions {
-        &mut self.net
-    }
-
-    fn expected_points(&self) -> f64 {
-        self.spacing.expected_points(self.domain)
-    }
+    net_of!(points);
 
     fn build(&self, (): &(), seed: Seed) -> Result<PupsField, PupsError> {
         Ok(PupsField::Colors(Box::new(color_noise(self, seed)?)))

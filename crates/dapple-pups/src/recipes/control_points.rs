@@ -282,13 +282,7 @@ mod orientation {
 }
 
 impl PupsRecipe for ControlPoints {
-    fn domain_mut(&mut self) -> &mut Domain {
-        &mut self.domain
-    }
-
-    fn net_mut(&mut self) -> &mut NetOptions {
-        &mut self.net
-    }
+    net_of!();
 
     fn expected_points(&self) -> f64 {
         self.points.len() as f64

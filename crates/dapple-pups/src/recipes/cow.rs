@@ -73,17 +73,7 @@ pub fn cow(options: &CowOptions, seed: Seed) -> Result<LabelTexture, PupsError> 
 }
 
 impl PupsRecipe for CowOptions {
-    fn domain_mut(&mut self) -> &mut Domain {
-        &mut self.domain
-    }
-
-    fn net_mut(&mut self) -> &mut NetOptions {
-        &mut self.net
-    }
-
-    fn expected_points(&self) -> f64 {
-        self.spacing.expected_points(self.domain)
-    }
+    net_of!(points);
 
     fn build(&self, (): &(), seed: Seed) -> Result<PupsField, PupsError> {
         Ok(PupsField::numbers(cow(self, seed)?))

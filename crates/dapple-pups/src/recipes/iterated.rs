@@ -167,13 +167,7 @@ impl IteratedOptions {
 }
 
 impl PupsRecipe<ReferenceImage> for IteratedOptions {
-    fn domain_mut(&mut self) -> &mut Domain {
-        &mut self.domain
-    }
-
-    fn net_mut(&mut self) -> &mut NetOptions {
-        &mut self.net
-    }
+    net_of!();
 
     fn expected_points(&self) -> f64 {
         expected_in_series(&self.spacing, self.domain, self.iterations, SQRT_2)

@@ -60,17 +60,7 @@ pub fn noise(options: &NoiseOptions, seed: Seed) -> Result<Texture, PupsError> {
 }
 
 impl PupsRecipe for NoiseOptions {
-    fn domain_mut(&mut self) -> &mut Domain {
-        &mut self.domain
-    }
-
-    fn net_mut(&mut self) -> &mut NetOptions {
-        &mut self.net
-    }
-
-    fn expected_points(&self) -> f64 {
-        self.spacing.expected_points(self.domain)
-    }
+    net_of!(points);
 
     fn build(&self, (): &(), seed: Seed) -> Result<PupsField, PupsError> {
         Ok(PupsField::numbers(noise(self, seed)?))

@@ -211,13 +211,7 @@ pub(crate) fn check_series(
 }
 
 impl PupsRecipe for OctavesOptions {
-    fn domain_mut(&mut self) -> &mut Domain {
-        &mut self.domain
-    }
-
-    fn net_mut(&mut self) -> &mut NetOptions {
-        &mut self.net
-    }
+    net_of!();
 
     fn expected_points(&self) -> f64 {
         match self.source {
@@ -234,13 +228,7 @@ impl PupsRecipe for OctavesOptions {
 }
 
 impl PupsRecipe for TurbulenceOptions {
-    fn domain_mut(&mut self) -> &mut Domain {
-        &mut self.0.domain
-    }
-
-    fn net_mut(&mut self) -> &mut NetOptions {
-        &mut self.0.net
-    }
+    net_of!(.0);
 
     fn expected_points(&self) -> f64 {
         self.0.expected_points()

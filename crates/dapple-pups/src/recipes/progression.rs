@@ -197,13 +197,7 @@ fn left_to_right(domain: &Domain, [start, end]: [f64; 2]) -> Ramp {
 }
 
 impl PupsRecipe for CowProgressionOptions {
-    fn domain_mut(&mut self) -> &mut Domain {
-        &mut self.0.domain
-    }
-
-    fn net_mut(&mut self) -> &mut NetOptions {
-        &mut self.0.net
-    }
+    net_of!(.0);
 
     fn expected_points(&self) -> f64 {
         self.0.cow().expected_points()
@@ -215,13 +209,7 @@ impl PupsRecipe for CowProgressionOptions {
 }
 
 impl PupsRecipe for GiraffeProgressionOptions {
-    fn domain_mut(&mut self) -> &mut Domain {
-        &mut self.0.domain
-    }
-
-    fn net_mut(&mut self) -> &mut NetOptions {
-        &mut self.0.net
-    }
+    net_of!(.0);
 
     fn expected_points(&self) -> f64 {
         self.0.giraffe().expected_points()
@@ -233,17 +221,7 @@ impl PupsRecipe for GiraffeProgressionOptions {
 }
 
 impl PupsRecipe for LabelRampOptions {
-    fn domain_mut(&mut self) -> &mut Domain {
-        &mut self.domain
-    }
-
-    fn net_mut(&mut self) -> &mut NetOptions {
-        &mut self.net
-    }
-
-    fn expected_points(&self) -> f64 {
-        self.spacing.expected_points(self.domain)
-    }
+    net_of!(points);
 
     fn build(&self, (): &(), seed: Seed) -> Result<PupsField, PupsError> {
         Ok(PupsField::numbers(label_ramp(self, seed)?))

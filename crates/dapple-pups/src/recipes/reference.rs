@@ -72,17 +72,7 @@ pub fn reference_texture(
 }
 
 impl PupsRecipe<ReferenceImage> for ReferenceOptions {
-    fn domain_mut(&mut self) -> &mut Domain {
-        &mut self.domain
-    }
-
-    fn net_mut(&mut self) -> &mut NetOptions {
-        &mut self.net
-    }
-
-    fn expected_points(&self) -> f64 {
-        self.spacing.expected_points(self.domain)
-    }
+    net_of!(points);
 
     fn build(&self, image: &ReferenceImage, seed: Seed) -> Result<PupsField, PupsError> {
         Ok(PupsField::numbers(reference_texture(image, self, seed)?))

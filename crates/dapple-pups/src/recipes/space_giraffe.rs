@@ -207,13 +207,7 @@ fn radius(graph: &Graph, center: PointIdx) -> Result<f64, PupsError> {
 }
 
 impl PupsRecipe for SpaceGiraffeOptions {
-    fn domain_mut(&mut self) -> &mut Domain {
-        &mut self.domain
-    }
-
-    fn net_mut(&mut self) -> &mut NetOptions {
-        &mut self.net
-    }
+    net_of!();
 
     fn expected_points(&self) -> f64 {
         // A spot has its center, and at most the larger number of pairs.
