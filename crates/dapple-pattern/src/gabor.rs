@@ -30,17 +30,56 @@ dapple_raster::named! {
     }
 }
 
+/// Options of [`GaborNoise`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GaborOptions {
+    /// Period along each axis in cells; `None` for an axis without a period.
+    pub period: [Option<u32>; 2],
+    /// Frequency of the waves in waves per cell, from 0 to 64; by default 2. The more, the closer are all waves to this
+    /// frequency and to their direction: the kernel has a radius of one cell.
+    pub waves: f64,
+    /// Number of impulses per cell, from 1 to 64; by default 8. Time is proportional to it. With 8 or more, values are
+    /// nearly normally distributed.
+    pub impulses: u32,
+    /// Direction of the stripes, clockwise from the x axis in degrees, from −360 to 360; by default 0.
+    pub angle: f64,
+    /// Range of random directions around the angle in degrees, from 0 to 180 (all directions); by default 20.
+    pub spread: f64,
+}
+
+/// Ranges of options, for the schema of recipes.
+#[doc(hidden)]
+impl GaborOptions {
+    pub const WAVES: Range = range!(from 0 to 64);
+    pub const IMPULSES: Range = range!(from 1 to 64);
+    pub const ANGLE: Range = range!(from -360 to 360);
+    pub const SPREAD: Range = range!(from 0 to 180);
+}
+
+impl Default for GaborOptions {
+    fn default() -> Self {
+        Self {
+            period: [None; 2],
+            waves: 2.0,
+            impulses: 8,
+            angle: 0.0,
+            spread: 20.0,
+        }
+    }
+}
+
 /// Gabor noise: waves of about one length and direction, in random places.
 ///
 /// # Examples
 ///
 /// ```
 /// use dapple_hash::Seed;
-/// use dapple_pattern::{GaborNoise, GaborValue};
+/// use dapple_pattern::{GaborNoise, GaborOptions, GaborValue};
 /// use dapple_raster::FieldExt as _;
 ///
 /// // Fibers along x that repeat after 4 cells, with 3 waves per cell
-/// let fibers = GaborNoise::new(Seed(7)).with_period([Some(4), Some(4)])?.with_waves(3.0)?.with_spread(10.0)?;
+/// let options = GaborOptions { period: [Some(4), Some(4)], waves: 3.0, spread: 10.0, ..Default::default() };
+/// let fibers = GaborNoise::new(Seed(7), options)?;
 /// let (noise, phase) = (fibers.field(GaborValue::Noise), fibers.field(GaborValue::Phase));
 /// assert_eq!(noise.sample([0.25, 0.5]), noise.sample([4.25, -3.5]));
 /// assert!((0.0..1.0).contains(&phase.sample([0.25, 0.5])));
@@ -49,93 +88,37 @@ dapple_raster::named! {
 #[derive(Clone, Debug, PartialEq)]
 pub struct GaborNoise {
     seed: Seed,
-    period: [Option<u32>; 2],
-    waves: f64,
-    impulses: u32,
-    angle: f64,
-    spread: f64,
-}
-
-/// Ranges of options, for the schema of recipes.
-#[doc(hidden)]
-impl GaborNoise {
-    pub const WAVES: Range = range!(from 0 to 64);
-    pub const IMPULSES: Range = range!(from 1 to 64);
-    pub const ANGLE: Range = range!(from -360 to 360);
-    pub const SPREAD: Range = range!(from 0 to 180);
+    options: GaborOptions,
 }
 
 impl GaborNoise {
-    /// Creates noise with 2 waves per cell along x, 8 impulses per cell and one direction.
-    #[must_use]
-    pub fn new(seed: Seed) -> Self {
-        Self {
-            seed: seed.child("gabor", 0),
-            period: [None; 2],
-            waves: 2.0,
-            impulses: 8,
-            angle: 0.0,
-            spread: 0.0,
+    /// Creates the noise.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PatternErrorKind::Range) if an option is out of range.
+    pub fn new(seed: Seed, options: GaborOptions) -> Result<Self, PatternError> {
+        use GaborOptions as Of;
+        check_period(options.period)?;
+        for (range, what, value) in [
+            (Of::WAVES, "number of waves per cell", options.waves),
+            (Of::IMPULSES, "number of impulses", options.impulses.into()),
+            (Of::ANGLE, "angle", options.angle),
+            (Of::SPREAD, "spread of directions", options.spread),
+        ] {
+            PatternError::check_in(range, what, value)?;
         }
-    }
-
-    /// Makes the noise repeat exactly after a number of cells along each axis; `None` for an axis without a period.
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if a period is 0.
-    pub fn with_period(self, period: [Option<u32>; 2]) -> Result<Self, PatternError> {
-        check_period(period)?;
-        Ok(Self { period, ..self })
-    }
-
-    /// Sets the frequency of the waves in waves per cell, from 0 to 64. The more, the closer are all waves to this
-    /// frequency and to their direction: the kernel has a radius of one cell.
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if the number is out of range.
-    pub fn with_waves(self, waves: f64) -> Result<Self, PatternError> {
-        PatternError::check_in(Self::WAVES, "number of waves per cell", waves)?;
-        Ok(Self { waves, ..self })
-    }
-
-    /// Sets the number of impulses per cell, from 1 to 64. Time is proportional to it. With 8 or more, values are
-    /// nearly normally distributed.
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if the number is out of range.
-    pub fn with_impulses(self, impulses: u32) -> Result<Self, PatternError> {
-        PatternError::check_in(Self::IMPULSES, "number of impulses", impulses.into())?;
-        Ok(Self { impulses, ..self })
-    }
-
-    /// Sets the direction of the stripes, clockwise from the x axis in degrees, from −360 to 360.
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if the angle is out of range.
-    pub fn with_angle(self, angle: f64) -> Result<Self, PatternError> {
-        PatternError::check_in(Self::ANGLE, "angle", angle)?;
-        Ok(Self { angle, ..self })
-    }
-
-    /// Sets the range of random directions around the angle in degrees, from 0 to 180 (all directions).
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if the spread is out of range.
-    pub fn with_spread(self, spread: f64) -> Result<Self, PatternError> {
-        PatternError::check_in(Self::SPREAD, "spread of directions", spread)?;
-        Ok(Self { spread, ..self })
+        Ok(Self {
+            seed: seed.child("gabor", 0),
+            options,
+        })
     }
 
     /// Returns the field of a value of the noise, over positions in cells.
     #[must_use]
     pub fn field(&self, value: GaborValue) -> GaborField {
         // The variance of a wave is 1/2, and the integral of the squared kernel is π/7.
-        let variance = f64::from(self.impulses) * core::f64::consts::PI / 14.0;
+        let variance = f64::from(self.options.impulses) * core::f64::consts::PI / 14.0;
         GaborField {
             noise: self.clone(),
             value,
@@ -145,15 +128,15 @@ impl GaborNoise {
 
     /// Returns the impulses of a cell, relative to the corner of the cell.
     fn impulses(&self, cell: [i64; 2]) -> impl Iterator<Item = Impulse> {
-        let wrapped = wrapped_cell(cell, self.period);
+        let wrapped = wrapped_cell(cell, self.options.period);
         let hash = CellHash::new(self.seed, wrapped);
-        (0..self.impulses).map(move |index| {
+        (0..self.options.impulses).map(move |index| {
             let draw = |number: u32| unit_f64(hash.at(4 * index + number));
-            let degrees = self.angle + (draw(2) - 0.5) * self.spread;
+            let degrees = self.options.angle + (draw(2) - 0.5) * self.options.spread;
             let (sin, cos) = libm::sincos(degrees.to_radians());
             Impulse {
                 position: [draw(0), draw(1)],
-                wave: [-sin * self.waves, cos * self.waves],
+                wave: [-sin * self.options.waves, cos * self.options.waves],
                 phase: draw(3),
             }
         })
@@ -257,7 +240,10 @@ impl Field for GaborField {
     }
 
     fn period(&self) -> [Option<f64>; 2] {
-        self.noise.period.map(|period| period.map(f64::from))
+        self.noise
+            .options
+            .period
+            .map(|period| period.map(f64::from))
     }
 }
 
@@ -274,15 +260,18 @@ fn cosine(turns: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{GaborField, GaborNoise, GaborValue, cosine};
-    use crate::PatternError;
+    use super::{GaborField, GaborNoise, GaborOptions, GaborValue, cosine};
     use core::f64::consts::TAU;
     use dapple_hash::Seed;
     use dapple_raster::{Field as _, FieldExt as _, Named as _, Window};
 
     fn noise() -> GaborNoise {
-        let noise = GaborNoise::new(Seed(7)).with_period([Some(4), Some(3)]);
-        noise.unwrap().with_spread(120.0).unwrap()
+        let options = GaborOptions {
+            period: [Some(4), Some(3)],
+            spread: 120.0,
+            ..GaborOptions::default()
+        };
+        GaborNoise::new(Seed(7), options).unwrap()
     }
 
     /// Computes a value from all impulses of five by five cells, with the cosine of libm.
@@ -355,7 +344,11 @@ mod tests {
     #[test]
     fn noise_has_mean_0_and_variance_1_and_the_given_waves() {
         let window = Window::new([0.0; 2], [64.0; 2], [512; 2]).unwrap();
-        let noise = GaborNoise::new(Seed(3)).with_waves(2.0).unwrap();
+        let options = GaborOptions {
+            spread: 0.0,
+            ..GaborOptions::default()
+        };
+        let noise = GaborNoise::new(Seed(3), options).unwrap();
         let field = noise.field(GaborValue::Noise);
         let raster = field.to_raster(&window).unwrap();
         let numbers = raster.pixels().iter().map(|&value| f64::from(value));
@@ -386,11 +379,16 @@ mod tests {
 
     #[test]
     fn options_out_of_range_are_refused() {
-        let refused = |result: Result<GaborNoise, PatternError>| result.is_err();
-        assert!(refused(noise().with_waves(-1.0)) && refused(noise().with_waves(f64::NAN)));
-        assert!(refused(noise().with_impulses(0)) && refused(noise().with_impulses(65)));
-        assert!(refused(noise().with_angle(361.0)) && refused(noise().with_spread(181.0)));
-        assert!(refused(noise().with_period([None, Some(0)])));
+        let refused = |change: fn(&mut GaborOptions)| {
+            let mut options = GaborOptions::default();
+            change(&mut options);
+            GaborNoise::new(Seed(7), options).is_err()
+        };
+        assert!(refused(|of| of.waves = -1.0) && refused(|of| of.waves = f64::NAN));
+        assert!(refused(|of| of.impulses = 0) && refused(|of| of.impulses = 65));
+        assert!(refused(|of| of.angle = 361.0) && refused(|of| of.spread = 181.0));
+        assert!(refused(|of| of.period = [None, Some(0)]));
+        assert!(!refused(|_| ()));
     }
 
     #[test]

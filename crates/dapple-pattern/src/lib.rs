@@ -84,12 +84,12 @@ pub use dapple_raster as raster;
 pub use error::{PatternError, PatternErrorKind};
 #[doc(alias("phasor"))]
 pub use gabor::GaborNoise;
-pub use gabor::{GaborField, GaborValue};
+pub use gabor::{GaborField, GaborOptions, GaborValue};
 #[doc(hidden)]
 pub use lattice::direction;
 #[doc(alias("scatter", "pebbles", "leaves", "grass", "rivets"))]
 pub use scatter::Stamps;
-pub use scatter::{StampField, StampOverlap, StampShape, StampValue};
+pub use scatter::{StampField, StampOptions, StampOverlap, StampShape, StampValue};
 #[doc(alias("sdf", "signed distance", "star"))]
 pub use shape::Shape;
 pub use shape::{ShapeField, ShapeKind, ShapeOptions, ShapeValue};

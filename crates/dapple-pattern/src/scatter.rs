@@ -80,61 +80,59 @@ const MAX_REACH: f64 = 8.0;
 /// Maximum number of stamps in the cells within reach of a position.
 const MAX_NEAR: f64 = 1024.0;
 
-/// Stamps at the points of a jittered lattice.
-///
-/// # Examples
-///
-/// ```
-/// use dapple_hash::Seed;
-/// use dapple_pattern::{StampShape, StampValue, Stamps};
-/// use dapple_raster::{Field as _, FieldExt as _};
-///
-/// let pebbles = Stamps::new(Seed(7))
-///     .with_period([Some(8), Some(8)])?
-///     .with_shape(StampShape::Pebble)
-///     .with_size([0.6, 1.2])?;
-/// let (height, random) = (pebbles.field(StampValue::Height)?, pebbles.field(StampValue::Random)?);
-/// assert_eq!(height.sample([0.25, 3.5]), height.sample([8.25, -4.5]));
-/// let tile = height.tile_raster([64, 64])?;
-/// assert!(tile.pixels().iter().all(|height| (0.0..=1.0).contains(height)));
-/// assert!((0.0..1.0).contains(&random.sample([0.25, 3.5])));
-/// # Ok::<(), dapple_pattern::PatternError>(())
-/// ```
-#[derive(Clone, Debug, PartialEq)]
-pub struct Stamps {
-    seed: Seed,
-    period: [Option<u32>; 2],
-    cell_height: f64,
-    density: f64,
-    jitter: f64,
-    spacing: f64,
-    row_offset: f64,
-    shape: StampShape,
-    size: [f64; 2],
-    aspect: [f64; 2],
-    rotation: [f64; 2],
-    height: [f64; 2],
-    bevel: f64,
-    lift: f64,
-    tilt: f64,
-    overlap: StampOverlap,
+/// Options of [`Stamps`]. Lengths are in widths of a cell. Shapes are not stretched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StampOptions {
+    /// Period along each axis in cells; `None` for an axis without a period.
+    pub period: [Option<u32>; 2],
+    /// Height of a cell relative to its width, from 0.01 to 100; by default 1.
+    pub cell_height: f64,
+    /// Mean number of stamps per cell, above 0 and at most 16; by default 1. The whole part is in every cell, and the
+    /// fraction is the chance of one more.
+    pub density: f64,
+    /// Maximum offset of a point from the center of its cell, from 0 (a regular lattice) to 1 (anywhere in the cell);
+    /// by default 1.
+    pub jitter: f64,
+    /// Minimum distance between two points, from 0 to 4; by default 0. Of points that are closer, the ones with the lower
+    /// random priorities are left out, so that the density becomes lower.
+    pub spacing: f64,
+    /// Shift of each row of cells relative to the row above, in cells, from −1 to 1; by default 0.
+    pub row_offset: f64,
+    /// Shape of the stamps.
+    pub shape: StampShape,
+    /// Minimum and maximum length of a stamp, from 0.001 to 8; by default ½ and 1.
+    pub size: [f64; 2],
+    /// Minimum and maximum width of a stamp relative to its length, from 0.01 to 1; by default 1.
+    pub aspect: [f64; 2],
+    /// Minimum and maximum clockwise rotation of a stamp in degrees, from −360 to 360; by default 0 and 360. At 0, the
+    /// length of a stamp is along the x axis.
+    pub rotation: [f64; 2],
+    /// Minimum and maximum height of a stamp, from 0 to 1; by default 1.
+    pub height: [f64; 2],
+    /// Width of the bevel of flat shapes relative to half of their width, from 0 to 1; by default 0.2.
+    pub bevel: f64,
+    /// Fraction of a stamp's height, from 0 to 1, that is its random place in the order of stamps instead of its
+    /// profile; by default 0. Stamps that lie on others are then higher.
+    pub lift: f64,
+    /// Slope of the profile along a stamp, from −1 to 1; by default 0. At 1, the height rises from 0 at its start to the
+    /// full profile at its end.
+    pub tilt: f64,
+    /// Rule for positions that several stamps cover.
+    pub overlap: StampOverlap,
 }
 
 /// Ranges of options, for the schema of recipes.
 #[doc(hidden)]
-impl Stamps {
+impl StampOptions {
     pub const DENSITY: Range = range!(above 0 to 16);
     pub const FRACTION: Range = range!(from 0 to 1);
     pub const SIGNED: Range = range!(from -1 to 1);
     pub const SPACING: Range = range!(from 0 to 4);
 }
 
-impl Stamps {
-    /// Creates round stamps, one per cell, with a diameter of half a cell to a whole cell.
-    #[must_use]
-    pub fn new(seed: Seed) -> Self {
+impl Default for StampOptions {
+    fn default() -> Self {
         Self {
-            seed: seed.child("stamps", 0),
             period: [None; 2],
             cell_height: 1.0,
             density: 1.0,
@@ -152,203 +150,33 @@ impl Stamps {
             overlap: StampOverlap::default(),
         }
     }
+}
 
-    /// Makes the stamps repeat exactly after a number of cells along each axis; `None` for an axis without a period.
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if a period is 0.
-    pub fn with_period(self, period: [Option<u32>; 2]) -> Result<Self, PatternError> {
-        check_period(period)?;
-        Ok(Self { period, ..self })
-    }
-
-    /// Sets the height of a cell relative to its width, from 0.01 to 100; by default 1. Shapes are not stretched.
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if the height is out of range.
-    pub fn with_cell_height(self, cell_height: f64) -> Result<Self, PatternError> {
-        PatternError::check_in(CELL_HEIGHT, "height of a cell", cell_height)?;
-        Ok(Self {
-            cell_height,
-            ..self
-        })
-    }
-
-    /// Sets the mean number of stamps per cell, above 0 and at most 16; by default 1. The whole part is in every cell,
-    /// and the fraction is the chance of one more.
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if the number is out of range.
-    pub fn with_density(self, density: f64) -> Result<Self, PatternError> {
-        PatternError::check_in(Self::DENSITY, "number of stamps per cell", density)?;
-        Ok(Self { density, ..self })
-    }
-
-    /// Sets the maximum offset of a point from the center of its cell, from 0 (a regular lattice) to 1 (anywhere in
-    /// the cell, the default).
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if the jitter is out of range.
-    pub fn with_jitter(self, jitter: f64) -> Result<Self, PatternError> {
-        PatternError::check_in(Self::FRACTION, "jitter", jitter)?;
-        Ok(Self { jitter, ..self })
-    }
-
-    /// Sets the minimum distance between two points, in widths of a cell, from 0 to 4; by default 0. Of points that are
-    /// closer, the ones with the lower random priorities are left out, so that the density becomes lower.
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if the distance is out of range.
-    pub fn with_spacing(self, spacing: f64) -> Result<Self, PatternError> {
-        PatternError::check_in(Self::SPACING, "spacing", spacing)?;
-        Ok(Self { spacing, ..self })
-    }
-
-    /// Sets the shift of each row of cells relative to the row above, in cells, from −1 to 1; by default 0.
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if the offset is out of range.
-    pub fn with_row_offset(self, row_offset: f64) -> Result<Self, PatternError> {
-        PatternError::check_in(Self::SIGNED, "offset of a row", row_offset)?;
-        Ok(Self { row_offset, ..self })
-    }
-
-    /// Sets the shape of the stamps.
-    #[must_use]
-    pub fn with_shape(self, shape: StampShape) -> Self {
-        Self { shape, ..self }
-    }
-
-    /// Sets the range of the length of a stamp, in widths of a cell, from 0.001 to 8.
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if a length is out of range, or the second is below the first.
-    pub fn with_size(self, size: [f64; 2]) -> Result<Self, PatternError> {
-        check_range(SIZE, "size of a stamp", size)?;
-        Ok(Self { size, ..self })
-    }
-
-    /// Sets the range of the width of a stamp relative to its length, from 0.01 to 1; by default 1.
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if an aspect is out of range, or the second is below the first.
-    pub fn with_aspect(self, aspect: [f64; 2]) -> Result<Self, PatternError> {
-        check_range(ASPECT, "aspect of a stamp", aspect)?;
-        Ok(Self { aspect, ..self })
-    }
-
-    /// Sets the range of the clockwise rotation of a stamp in degrees, from −360 to 360; by default 0 to 360. At 0,
-    /// the length of a stamp is along the x axis.
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if an angle is out of range, or the second is below the first.
-    pub fn with_rotation(self, rotation: [f64; 2]) -> Result<Self, PatternError> {
-        check_range(ROTATION, "rotation of a stamp", rotation)?;
-        Ok(Self { rotation, ..self })
-    }
-
-    /// Sets the range of the height of a stamp, from 0 to 1; by default 1.
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if a height is out of range, or the second is below the first.
-    pub fn with_height(self, height: [f64; 2]) -> Result<Self, PatternError> {
-        check_range(Self::FRACTION, "height of a stamp", height)?;
-        Ok(Self { height, ..self })
-    }
-
-    /// Sets the width of the bevel of flat shapes relative to half of their width, from 0 to 1; by default 0.2.
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if the bevel is out of range.
-    pub fn with_bevel(self, bevel: f64) -> Result<Self, PatternError> {
-        PatternError::check_in(Self::FRACTION, "bevel", bevel)?;
-        Ok(Self { bevel, ..self })
-    }
-
-    /// Sets the part of a stamp's height, from 0 to 1, that is its random place in the order of stamps instead of its
-    /// profile; by default 0. Stamps that lie on others are then higher.
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if the lift is out of range.
-    pub fn with_lift(self, lift: f64) -> Result<Self, PatternError> {
-        PatternError::check_in(Self::FRACTION, "lift", lift)?;
-        Ok(Self { lift, ..self })
-    }
-
-    /// Sets the slope of the profile along a stamp, from −1 to 1; by default 0. At 1, the height rises from 0 at its
-    /// start to the full profile at its end.
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if the tilt is out of range.
-    pub fn with_tilt(self, tilt: f64) -> Result<Self, PatternError> {
-        PatternError::check_in(Self::SIGNED, "tilt", tilt)?;
-        Ok(Self { tilt, ..self })
-    }
-
-    /// Sets the rule for positions that several stamps cover.
-    #[must_use]
-    pub fn with_overlap(self, overlap: StampOverlap) -> Self {
-        Self { overlap, ..self }
-    }
-
-    /// Returns the field of a value of the stamps, over positions in cells.
-    ///
-    /// # Errors
-    ///
-    /// [`Range`](crate::PatternErrorKind::Range) if stamps reach farther than 8 cells along an axis, if more than 1024
-    /// stamps are in the cells within reach, if a period is shorter than the spacing or more than 64 points are within
-    /// the spacing, or if the offsets of all rows of a period do not add up to a whole number of cells.
-    pub fn field(&self, value: StampValue) -> Result<StampField, PatternError> {
-        let half = 0.5 * self.size[1];
-        // Corners of the bounding box, whose half width is the half length times the aspect.
-        let aspect = self.aspect[1];
-        let radius = half * (1.0 + aspect * aspect).sqrt();
-        let reach = [radius, radius / self.cell_height];
-        for reach in reach {
-            PatternError::check(
-                reach <= MAX_REACH,
-                "reach of a stamp in cells",
-                reach,
-                "at most 8 along each axis",
-            )?;
+impl StampOptions {
+    /// Refuses options out of range.
+    fn check(&self) -> Result<(), PatternError> {
+        check_period(self.period)?;
+        for (range, what, value) in [
+            (CELL_HEIGHT, "height of a cell", self.cell_height),
+            (Self::DENSITY, "number of stamps per cell", self.density),
+            (Self::FRACTION, "jitter", self.jitter),
+            (Self::SPACING, "spacing", self.spacing),
+            (Self::SIGNED, "offset of a row", self.row_offset),
+            (Self::FRACTION, "bevel", self.bevel),
+            (Self::FRACTION, "lift", self.lift),
+            (Self::SIGNED, "tilt", self.tilt),
+        ] {
+            PatternError::check_in(range, what, value)?;
         }
-        let near = self.density * (2.0 * reach[0] + 1.0) * (2.0 * reach[1] + 1.0);
-        PatternError::check(
-            near <= MAX_NEAR,
-            "number of stamps within reach of a position",
-            near,
-            "at most 1024 (by the density and the largest size)",
-        )?;
-        self.check_spacing()?;
-        if let Some(rows) = self.period[1] {
-            let shift = f64::from(rows) * self.row_offset;
-            PatternError::check(
-                // Offsets such as 0.333 are meant as whole parts of a cell.
-                (shift - shift.round()).abs() <= 0.01,
-                "total offset of the rows of a period",
-                shift,
-                "a whole number of cells (rows times offset)",
-            )?;
+        for (range, what, ends) in [
+            (SIZE, "size of a stamp", self.size),
+            (ASPECT, "aspect of a stamp", self.aspect),
+            (ROTATION, "rotation of a stamp", self.rotation),
+            (Self::FRACTION, "height of a stamp", self.height),
+        ] {
+            check_range(range, what, ends)?;
         }
-        let stamps = self.clone();
-        Ok(StampField {
-            stamps,
-            value,
-            reach,
-        })
+        Ok(())
     }
 
     /// Refuses a spacing at which a point would meet its copies, or too many other points.
@@ -369,19 +197,110 @@ impl Stamps {
         )
     }
 
+    /// Returns how far a stamp reaches beyond the cell of its point, in cells along each axis.
+    fn reach(&self) -> [f64; 2] {
+        // Corners of the bounding box, whose half width is the half length times the aspect.
+        let aspect = self.aspect[1];
+        let radius = 0.5 * self.size[1] * (1.0 + aspect * aspect).sqrt();
+        [radius, radius / self.cell_height]
+    }
+}
+
+/// Stamps at the points of a jittered lattice.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_hash::Seed;
+/// use dapple_pattern::{StampOptions, StampShape, StampValue, Stamps};
+/// use dapple_raster::{Field as _, FieldExt as _};
+///
+/// let options = StampOptions {
+///     period: [Some(8), Some(8)],
+///     shape: StampShape::Pebble,
+///     size: [0.6, 1.2],
+///     ..StampOptions::default()
+/// };
+/// let pebbles = Stamps::new(Seed(7), options)?;
+/// let (height, random) = (pebbles.field(StampValue::Height), pebbles.field(StampValue::Random));
+/// assert_eq!(height.sample([0.25, 3.5]), height.sample([8.25, -4.5]));
+/// let tile = height.tile_raster([64, 64])?;
+/// assert!(tile.pixels().iter().all(|height| (0.0..=1.0).contains(height)));
+/// assert!((0.0..1.0).contains(&random.sample([0.25, 3.5])));
+/// # Ok::<(), dapple_pattern::PatternError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stamps {
+    seed: Seed,
+    options: StampOptions,
+}
+
+impl Stamps {
+    /// Creates the stamps.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PatternErrorKind::Range) if an option is out of range, stamps reach farther than 8 cells along an
+    /// axis, more than 1024 stamps are in the cells within reach, a period is shorter than the spacing, more than 64
+    /// points are within the spacing, or the offsets of all rows of a period do not add up to a whole number of cells.
+    pub fn new(seed: Seed, options: StampOptions) -> Result<Self, PatternError> {
+        options.check()?;
+        let reach = options.reach();
+        for reach in reach {
+            PatternError::check(
+                reach <= MAX_REACH,
+                "reach of a stamp in cells",
+                reach,
+                "at most 8 along each axis",
+            )?;
+        }
+        let near = options.density * (2.0 * reach[0] + 1.0) * (2.0 * reach[1] + 1.0);
+        PatternError::check(
+            near <= MAX_NEAR,
+            "number of stamps within reach of a position",
+            near,
+            "at most 1024 (by the density and the largest size)",
+        )?;
+        options.check_spacing()?;
+        if let Some(rows) = options.period[1] {
+            let shift = f64::from(rows) * options.row_offset;
+            PatternError::check(
+                // Offsets such as 0.333 are meant as whole parts of a cell.
+                (shift - shift.round()).abs() <= 0.01,
+                "total offset of the rows of a period",
+                shift,
+                "a whole number of cells (rows times offset)",
+            )?;
+        }
+        Ok(Self {
+            seed: seed.child("stamps", 0),
+            options,
+        })
+    }
+
+    /// Returns the field of a value of the stamps, over positions in cells.
+    #[must_use]
+    pub fn field(&self, value: StampValue) -> StampField {
+        StampField {
+            stamps: self.clone(),
+            value,
+            reach: self.options.reach(),
+        }
+    }
+
     /// Returns the points of a cell, relative to the corner of the cell.
     fn points(&self, cell: [i64; 2]) -> impl Iterator<Item = Point> {
-        let wrapped = wrapped_cell(cell, self.period);
-        let shift = wrapped[1] as f64 * self.row_offset;
+        let wrapped = wrapped_cell(cell, self.options.period);
+        let shift = wrapped[1] as f64 * self.options.row_offset;
         let shift = shift - shift.floor();
         let hash = CellHash::new(self.seed, wrapped);
-        let whole = self.density.floor();
-        let has_one_more = f64::from(halves(hash.at(0))[0]) < self.density - whole;
+        let whole = self.options.density.floor();
+        let has_one_more = f64::from(halves(hash.at(0))[0]) < self.options.density - whole;
         let count = whole as u32 + u32::from(has_one_more);
         (0..count).map(move |index| {
             let first = 1 + DRAWS * index;
-            let [x, y] =
-                halves(hash.at(first)).map(|part| 0.5 + (f64::from(part) - 0.5) * self.jitter);
+            let [x, y] = halves(hash.at(first))
+                .map(|part| 0.5 + (f64::from(part) - 0.5) * self.options.jitter);
             Point {
                 position: [x + shift, y],
                 hash,
@@ -400,22 +319,25 @@ impl Stamps {
         let [random3, order] = draw(4);
         let [a, b] = draw(5);
         let [c, d] = draw(6);
-        let half = 0.5 * between(self.size, size);
-        let aspect = between(self.aspect, aspect);
-        let degrees = between(self.rotation, rotation);
+        let half = 0.5 * between(self.options.size, size);
+        let aspect = between(self.options.aspect, aspect);
+        let degrees = between(self.options.rotation, rotation);
         let [cos, sin] = direction(degrees);
         let turns = degrees / 360.0;
-        let (full, lift) = (between(self.height, height) as f32, self.lift as f32);
+        let (full, lift) = (
+            between(self.options.height, height) as f32,
+            self.options.lift as f32,
+        );
         Stamp {
             center: point.position,
-            u_axis: [cos / half, sin * self.cell_height / half],
+            u_axis: [cos / half, sin * self.options.cell_height / half],
             v_axis: [
                 -sin / (half * aspect),
-                cos * self.cell_height / (half * aspect),
+                cos * self.options.cell_height / (half * aspect),
             ],
             outline: Outline {
                 aspect: aspect as f32,
-                bevel: self.bevel as f32,
+                bevel: self.options.bevel as f32,
                 random: [a, b, c, d],
             },
             height: full,
@@ -428,7 +350,7 @@ impl Stamps {
 
     /// Returns the height of a stamp where its profile has the value `profile`.
     fn height_of(&self, stamp: &Stamp, u: f32, profile: f32) -> f32 {
-        let (lift, tilt) = (self.lift as f32, self.tilt as f32);
+        let (lift, tilt) = (self.options.lift as f32, self.options.tilt as f32);
         let tilted = profile * (1.0 + tilt * u) / (1.0 + tilt.abs());
         stamp.height * (lift * stamp.order + (1.0 - lift) * tilted)
     }
@@ -533,7 +455,7 @@ impl NearCells for StampField {
     /// first.
     fn near(&self, cell: [i64; 2], center: [f64; 2], half: [f64; 2], near: &mut Vec<Stamp>) {
         let stamps = &self.stamps;
-        let has_offset = i64::from(stamps.row_offset != 0.0);
+        let has_offset = i64::from(stamps.options.row_offset != 0.0);
         let first = [0, 1].map(|axis| {
             let low = center[axis] - half[axis] - self.reach[axis];
             low.floor() as i64 - if axis == 0 { has_offset } else { 0 }
@@ -561,7 +483,7 @@ impl NearCells for StampField {
                 }
             }
         }
-        match stamps.overlap {
+        match stamps.options.overlap {
             StampOverlap::Highest | StampOverlap::Add => {}
             StampOverlap::Order => {
                 near.reverse();
@@ -581,7 +503,7 @@ impl NearCells for StampField {
     fn value_of(&self, near: &[Stamp], position: [f64; 2]) -> f32 {
         let mut top: Option<Hit<'_>> = None;
         let mut sum = 0.0;
-        let overlap = self.stamps.overlap;
+        let overlap = self.stamps.options.overlap;
         for stamp in near {
             // A stamp that is nowhere as high as the top so far does not matter.
             if overlap == StampOverlap::Highest && top.is_some_and(|top| stamp.highest < top.height)
@@ -593,7 +515,7 @@ impl NearCells for StampField {
                 continue;
             }
             let [u, v] = local.map(|local| local as f32);
-            let Some((edge, profile)) = self.stamps.shape.at(&stamp.outline, u, v) else {
+            let Some((edge, profile)) = self.stamps.options.shape.at(&stamp.outline, u, v) else {
                 continue;
             };
             let height = self.stamps.height_of(stamp, u, profile);
@@ -621,7 +543,7 @@ impl NearCells for StampField {
         };
         let [random, random2, random3] = hit.stamp.randoms;
         match self.value {
-            StampValue::Height if self.stamps.overlap == StampOverlap::Add => sum,
+            StampValue::Height if self.stamps.options.overlap == StampOverlap::Add => sum,
             StampValue::Height => hit.height,
             StampValue::Mask => 1.0,
             StampValue::Random => random,
@@ -649,6 +571,9 @@ impl Field for StampField {
     }
 
     fn period(&self) -> [Option<f64>; 2] {
-        self.stamps.period.map(|period| period.map(f64::from))
+        self.stamps
+            .options
+            .period
+            .map(|period| period.map(f64::from))
     }
 }

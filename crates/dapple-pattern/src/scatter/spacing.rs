@@ -26,7 +26,7 @@ impl<'a> Spacing<'a> {
     /// Returns whether a point of a cell is kept.
     pub(super) fn keeps(&mut self, cell: [i64; 2], index: usize) -> bool {
         let stamps = self.stamps;
-        if stamps.spacing == 0.0 {
+        if stamps.options.spacing == 0.0 {
             return true;
         }
         let (point, known) = self.points(cell)[index];
@@ -34,9 +34,12 @@ impl<'a> Spacing<'a> {
             return known;
         }
         // A point may be shifted by up to a cell to the right.
-        let reach = [stamps.spacing, stamps.spacing / stamps.cell_height];
+        let reach = [
+            stamps.options.spacing,
+            stamps.options.spacing / stamps.options.cell_height,
+        ];
         let [columns, rows] = reach.map(|reach| reach.ceil() as i64);
-        let columns = columns + i64::from(stamps.row_offset != 0.0);
+        let columns = columns + i64::from(stamps.options.row_offset != 0.0);
         let mut is_kept = true;
         'cells: for y in -rows..=rows {
             for x in -columns..=columns {
@@ -44,9 +47,10 @@ impl<'a> Spacing<'a> {
                 for rival in 0..self.points(other).len() {
                     let (candidate, _) = self.points(other)[rival];
                     let dx = candidate.position[0] + x as f64 - point.position[0];
-                    let dy =
-                        (candidate.position[1] + y as f64 - point.position[1]) * stamps.cell_height;
-                    let is_close = dx * dx + dy * dy < stamps.spacing * stamps.spacing;
+                    let dy = (candidate.position[1] + y as f64 - point.position[1])
+                        * stamps.options.cell_height;
+                    let is_close =
+                        dx * dx + dy * dy < stamps.options.spacing * stamps.options.spacing;
                     // A point does not compete with itself, nor with a copy of itself.
                     let is_stronger = candidate.priority() > point.priority();
                     if is_close && is_stronger && self.keeps(other, rival) {

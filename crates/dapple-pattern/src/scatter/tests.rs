@@ -3,62 +3,57 @@
 //! Reference: our own.
 
 use super::shape::Outline;
-use super::{Stamp, StampOverlap, StampShape, StampValue, Stamps};
+use super::{Stamp, StampOptions, StampOverlap, StampShape, StampValue, Stamps};
+use crate::PatternErrorKind;
 use crate::near::NearCells as _;
-use crate::{PatternError, PatternErrorKind};
 use dapple_hash::Seed;
 use dapple_raster::{Field, FieldExt as _, Named as _, Raster, Window};
 
 const PERIOD: u32 = 4;
 
-fn tile() -> Stamps {
-    let stamps = Stamps::new(Seed(7));
-    stamps.with_period([Some(PERIOD), Some(PERIOD)]).unwrap()
+fn tile() -> StampOptions {
+    StampOptions {
+        period: [Some(PERIOD), Some(PERIOD)],
+        ..StampOptions::default()
+    }
+}
+
+fn stamps(options: StampOptions) -> Stamps {
+    Stamps::new(Seed(7), options).unwrap()
 }
 
 /// Options of all kinds, with whose numbers positions in cells are computed without rounding.
 fn examples() -> Vec<Stamps> {
     let mut examples = Vec::new();
     for (index, &shape) in StampShape::ALL.iter().enumerate() {
-        let overlap = StampOverlap::ALL[index % 4];
-        examples.push(
-            tile()
-                .with_shape(shape)
-                .with_overlap(overlap)
-                .with_size([0.5, 2.5])
-                .unwrap()
-                .with_aspect([0.25, 1.0])
-                .unwrap()
-                .with_density([1.0, 2.5, 0.25][index % 3])
-                .unwrap()
-                .with_lift(0.25)
-                .unwrap()
-                .with_tilt([-0.5, 0.0, 1.0][index % 3])
-                .unwrap()
-                .with_row_offset([0.0, 0.5, -0.25][index % 3])
-                .unwrap()
-                .with_cell_height([1.0, 0.5, 2.0][index % 3])
-                .unwrap()
-                .with_height([0.25, 1.0])
-                .unwrap(),
-        );
+        examples.push(stamps(StampOptions {
+            shape,
+            overlap: StampOverlap::ALL[index % 4],
+            size: [0.5, 2.5],
+            aspect: [0.25, 1.0],
+            density: [1.0, 2.5, 0.25][index % 3],
+            lift: 0.25,
+            tilt: [-0.5, 0.0, 1.0][index % 3],
+            row_offset: [0.0, 0.5, -0.25][index % 3],
+            cell_height: [1.0, 0.5, 2.0][index % 3],
+            height: [0.25, 1.0],
+            ..tile()
+        }));
     }
-    let spaced = tile()
-        .with_density(3.0)
-        .unwrap()
-        .with_spacing(0.75)
-        .unwrap();
-    let spaced = spaced.with_row_offset(0.5).unwrap();
-    examples.push(spaced.with_cell_height(0.5).unwrap());
+    examples.push(stamps(StampOptions {
+        density: 3.0,
+        spacing: 0.75,
+        row_offset: 0.5,
+        cell_height: 0.5,
+        ..tile()
+    }));
     // Long stamps reach over the whole tile.
-    examples.push(
-        tile()
-            .with_shape(StampShape::Capsule)
-            .with_size([4.0, 8.0])
-            .unwrap()
-            .with_aspect([0.02, 0.05])
-            .unwrap(),
-    );
+    examples.push(stamps(StampOptions {
+        shape: StampShape::Capsule,
+        size: [4.0, 8.0],
+        aspect: [0.02, 0.05],
+        ..tile()
+    }));
     examples
 }
 
@@ -88,8 +83,8 @@ fn kept_points(stamps: &Stamps) -> Vec<([i64; 2], usize)> {
             (0..9).any(|copy| {
                 let dx = x - other_x + f64::from(PERIOD) * f64::from(copy % 3 - 1);
                 let dy = y - other_y + f64::from(PERIOD) * f64::from(copy / 3 - 1);
-                let dy = dy * stamps.cell_height;
-                dx * dx + dy * dy < stamps.spacing * stamps.spacing
+                let dy = dy * stamps.options.cell_height;
+                dx * dx + dy * dy < stamps.options.spacing * stamps.options.spacing
             })
         };
         if !kept.iter().any(is_close) {
@@ -128,7 +123,7 @@ fn oracle(stamps: &Stamps, all: &[Stamp], value: StampValue, position: [f64; 2])
     for stamp in all {
         let [u, v] = stamp.local(position);
         let inside = u.abs() <= 1.0 && v.abs() <= 1.0;
-        let at = |()| stamps.shape.at(&stamp.outline, u as f32, v as f32);
+        let at = |()| stamps.options.shape.at(&stamp.outline, u as f32, v as f32);
         if let Some((edge, profile)) = inside.then_some(()).and_then(at) {
             let height = stamps.height_of(stamp, u as f32, profile);
             hits.push((stamp, u as f32, v as f32, edge, height));
@@ -136,15 +131,18 @@ fn oracle(stamps: &Stamps, all: &[Stamp], value: StampValue, position: [f64; 2])
     }
     let sum = hits.iter().map(|hit| hit.4).sum();
     // The last of equal stamps is on top.
-    let Some((stamp, u, v, edge, height)) = hits.into_iter().max_by(|a, b| match stamps.overlap {
-        StampOverlap::Highest | StampOverlap::Add => a.4.total_cmp(&b.4),
-        StampOverlap::Order => a.0.order.total_cmp(&b.0.order),
-        StampOverlap::Rows => b.0.center[1].floor().total_cmp(&a.0.center[1].floor()),
-    }) else {
+    let Some((stamp, u, v, edge, height)) =
+        hits.into_iter()
+            .max_by(|a, b| match stamps.options.overlap {
+                StampOverlap::Highest | StampOverlap::Add => a.4.total_cmp(&b.4),
+                StampOverlap::Order => a.0.order.total_cmp(&b.0.order),
+                StampOverlap::Rows => b.0.center[1].floor().total_cmp(&a.0.center[1].floor()),
+            })
+    else {
         return 0.0;
     };
     match value {
-        StampValue::Height if stamps.overlap == StampOverlap::Add => sum,
+        StampValue::Height if stamps.options.overlap == StampOverlap::Add => sum,
         StampValue::Height => height,
         StampValue::Mask => 1.0,
         StampValue::Random => stamp.randoms[0],
@@ -176,7 +174,7 @@ fn values_equal_those_of_all_stamps_of_the_tile_and_its_copies() {
                 .map(|&position| oracle(&stamps, &all, value, position))
                 .collect();
             assert!(expected.iter().any(|&value| value > 0.0), "{stamps:?}");
-            let field = stamps.field(value).unwrap();
+            let field = stamps.field(value);
             let raster = field.to_raster(&window).unwrap();
             assert_eq!(bits(raster.pixels()), bits(&expected), "{value} {stamps:?}");
             let mut values = vec![0.0; positions.len()];
@@ -196,7 +194,7 @@ fn values_equal_those_of_all_stamps_of_the_tile_and_its_copies() {
 #[test]
 fn windows_are_crops_and_equal_single_positions() {
     for stamps in examples() {
-        let field = stamps.field(StampValue::Height).unwrap();
+        let field = stamps.field(StampValue::Height);
         // A pixel larger than a cell, one as in a bake, and one that mirrors the plane
         for extent in [[70.0, 90.0], [3.3, 2.9], [-0.7, 1.9]] {
             let window = Window::new([-1.3, 1e6 + 0.2], extent, [70, 90]).unwrap();
@@ -219,7 +217,7 @@ fn windows_are_crops_and_equal_single_positions() {
 fn periods_are_exact() {
     for stamps in examples() {
         for value in [StampValue::Height, StampValue::Random, StampValue::U] {
-            let field = stamps.field(value).unwrap();
+            let field = stamps.field(value);
             assert_eq!(field.period(), [Some(4.0); 2]);
             let window = |x, y| Window::new([x, y], [4.0, 4.0], [32, 32]).unwrap();
             let render = |x, y| -> Raster<f32> { field.to_raster(&window(x, y)).unwrap() };
@@ -237,31 +235,41 @@ fn periods_are_exact() {
 
 #[test]
 fn a_regular_lattice_has_known_heights() {
-    let stamps = Stamps::new(Seed(1)).with_jitter(0.0).unwrap();
-    let stamps = stamps.with_size([0.5; 2]).unwrap();
-    let stamps = stamps.with_rotation([0.0; 2]).unwrap();
-    let height = stamps.field(StampValue::Height).unwrap();
+    let options = StampOptions {
+        jitter: 0.0,
+        size: [0.5; 2],
+        rotation: [0.0; 2],
+        ..StampOptions::default()
+    };
+    let stamps = stamps(options);
+    let height = stamps.field(StampValue::Height);
     // A half ball with a radius of a quarter of a cell
     assert_eq!(height.sample([3.5, -2.5]), 1.0);
     assert_eq!(height.sample([3.625, -2.5]), 0.75_f32.sqrt());
     assert_eq!(height.sample([3.76, -2.5]), 0.0);
-    let [u, v] = [StampValue::U, StampValue::V].map(|value| stamps.field(value).unwrap());
+    let [u, v] = [StampValue::U, StampValue::V].map(|value| stamps.field(value));
     assert_eq!(
         [u.sample([0.625, 0.375]), v.sample([0.625, 0.375])],
         [0.75, 0.25]
     );
     // A quarter turn leads from x to y.
-    let turned = stamps.clone().with_rotation([90.0; 2]).unwrap();
-    let [u, v] = [StampValue::U, StampValue::V].map(|value| turned.field(value).unwrap());
+    let turned = self::stamps(StampOptions {
+        rotation: [90.0; 2],
+        ..options
+    });
+    let [u, v] = [StampValue::U, StampValue::V].map(|value| turned.field(value));
     assert_eq!(
         [u.sample([0.625, 0.375]), v.sample([0.625, 0.375])],
         [0.25, 0.25]
     );
-    let angle = turned.field(StampValue::Angle).unwrap();
+    let angle = turned.field(StampValue::Angle);
     assert_eq!(angle.sample([0.5, 0.5]), 0.25);
     // Rows are shifted by half a cell.
-    let shifted = stamps.with_row_offset(0.5).unwrap();
-    let height = shifted.field(StampValue::Height).unwrap();
+    let shifted = self::stamps(StampOptions {
+        row_offset: 0.5,
+        ..options
+    });
+    let height = shifted.field(StampValue::Height);
     assert_eq!(
         [height.sample([0.5, 0.5]), height.sample([1.0, 1.5])],
         [1.0; 2]
@@ -272,31 +280,33 @@ fn a_regular_lattice_has_known_heights() {
 #[test]
 fn the_overlap_decides_which_stamp_is_on_top() {
     // Disks of two cells cover their neighbors.
-    let stamps = tile()
-        .with_shape(StampShape::Disk)
-        .with_jitter(0.0)
-        .unwrap();
-    let stamps = stamps.with_size([2.0; 2]).unwrap();
-    let stamps = stamps.with_height([0.1, 1.0]).unwrap();
+    let options = StampOptions {
+        shape: StampShape::Disk,
+        jitter: 0.0,
+        size: [2.0; 2],
+        height: [0.1, 1.0],
+        ..tile()
+    };
+    let stamps = stamps(options);
     let at = [1.5, 1.0];
     let read = |overlap: StampOverlap, value: StampValue| {
-        let stamps = stamps.clone().with_overlap(overlap);
-        stamps.field(value).unwrap().sample(at)
+        let stamps = self::stamps(StampOptions { overlap, ..options });
+        stamps.field(value).sample(at)
     };
-    let upper = stamps.field(StampValue::Height).unwrap();
+    let upper = stamps.field(StampValue::Height);
     let all = all_stamps(&stamps);
     let covering: Vec<_> = all
         .iter()
         .filter(|stamp| {
             let [u, v] = stamp.local(at).map(|local| local as f32);
-            stamps.shape.at(&stamp.outline, u, v).is_some()
+            stamps.options.shape.at(&stamp.outline, u, v).is_some()
         })
         .collect();
     assert_eq!(covering.len(), 2, "one above, one below");
     let height = |index: usize| {
         let stamp = covering[index];
         let [u, v] = stamp.local(at).map(|local| local as f32);
-        let (_, profile) = stamps.shape.at(&stamp.outline, u, v).unwrap();
+        let (_, profile) = stamps.options.shape.at(&stamp.outline, u, v).unwrap();
         stamp.height * profile
     };
     let [above, below] = [height(0), height(1)];
@@ -312,7 +322,11 @@ fn the_overlap_decides_which_stamp_is_on_top() {
 #[test]
 fn the_density_is_the_mean_number_of_stamps() {
     for density in [0.25, 1.0, 2.5] {
-        let stamps = Stamps::new(Seed(3)).with_density(density).unwrap();
+        let options = StampOptions {
+            density,
+            ..StampOptions::default()
+        };
+        let stamps = Stamps::new(Seed(3), options).unwrap();
         let side = 64;
         let cells = (0..side * side).map(|cell| [cell % side, cell / side]);
         let count: usize = cells.map(|cell| stamps.points(cell).count()).sum();
@@ -324,17 +338,21 @@ fn the_density_is_the_mean_number_of_stamps() {
 
 #[test]
 fn the_spacing_leaves_out_close_points() {
-    let spaced = tile()
-        .with_density(3.0)
-        .unwrap()
-        .with_spacing(0.75)
-        .unwrap();
+    let options = StampOptions {
+        density: 3.0,
+        spacing: 0.75,
+        ..tile()
+    };
+    let spaced = stamps(options);
     let kept = kept_points(&spaced).len();
     // A saturated set has 0.70 points per squared distance, 20 in the tile; there are 48 candidates.
     assert!((12..=20).contains(&kept), "{kept}");
     // The stamps are as small as points.
-    let dots = spaced.with_size([0.001; 2]).unwrap();
-    let field = dots.field(StampValue::Mask).unwrap();
+    let dots = stamps(StampOptions {
+        size: [0.001; 2],
+        ..options
+    });
+    let field = dots.field(StampValue::Mask);
     let mut near = Vec::new();
     field.near([0, 0], [2.0; 2], [2.0; 2], &mut near);
     assert_eq!(near.len(), kept);
@@ -372,9 +390,11 @@ fn shapes_are_inside_of_their_box_and_their_profile_is_a_height() {
     }
 }
 
-/// Checks that a result is the error for a number out of its range, which is called `expected`.
-fn assert_refused<T: core::fmt::Debug>(result: Result<T, PatternError>, expected: &str) {
-    let error = result.expect_err(expected);
+/// Checks that changed options are refused for a number out of its range, which is called `expected`.
+fn assert_refused(change: impl Fn(&mut StampOptions), expected: &str) {
+    let mut options = tile();
+    change(&mut options);
+    let error = Stamps::new(Seed(7), options).expect_err(expected);
     match error.kind() {
         PatternErrorKind::Range { what, .. } => assert_eq!(*what, expected, "{error}"),
         kind => panic!("{expected}: {kind:?}"),
@@ -383,50 +403,44 @@ fn assert_refused<T: core::fmt::Debug>(result: Result<T, PatternError>, expected
 
 #[test]
 fn options_out_of_range_are_refused_with_the_limit() {
-    assert_refused(tile().with_size([0.0, 1.0]), "size of a stamp");
-    assert_refused(tile().with_size([1.0, 9.0]), "size of a stamp");
-    assert_refused(tile().with_size([1.0, 0.5]), "upper end of a range");
-    assert_refused(tile().with_aspect([0.0, 1.0]), "aspect of a stamp");
-    assert_refused(tile().with_jitter(1.5), "jitter");
-    assert_refused(tile().with_density(0.0), "number of stamps per cell");
-    assert_refused(tile().with_rotation([0.0, f64::NAN]), "rotation of a stamp");
-    assert_refused(tile().with_height([-0.1, 1.0]), "height of a stamp");
-    assert_refused(tile().with_spacing(5.0), "spacing");
-    assert_refused(tile().with_bevel(-0.1), "bevel");
-    assert_refused(tile().with_lift(2.0), "lift");
-    assert_refused(tile().with_tilt(-2.0), "tilt");
-    assert_refused(tile().with_row_offset(2.0), "offset of a row");
-    assert_refused(tile().with_cell_height(0.0), "height of a cell");
-    assert_refused(tile().with_period([Some(0), None]), "period");
+    assert_refused(|of| of.size = [0.0, 1.0], "size of a stamp");
+    assert_refused(|of| of.size = [1.0, 9.0], "size of a stamp");
+    assert_refused(|of| of.size = [1.0, 0.5], "upper end of a range");
+    assert_refused(|of| of.aspect = [0.0, 1.0], "aspect of a stamp");
+    assert_refused(|of| of.jitter = 1.5, "jitter");
+    assert_refused(|of| of.density = 0.0, "number of stamps per cell");
+    assert_refused(|of| of.rotation = [0.0, f64::NAN], "rotation of a stamp");
+    assert_refused(|of| of.height = [-0.1, 1.0], "height of a stamp");
+    assert_refused(|of| of.spacing = 5.0, "spacing");
+    assert_refused(|of| of.bevel = -0.1, "bevel");
+    assert_refused(|of| of.lift = 2.0, "lift");
+    assert_refused(|of| of.tilt = -2.0, "tilt");
+    assert_refused(|of| of.row_offset = 2.0, "offset of a row");
+    assert_refused(|of| of.cell_height = 0.0, "height of a cell");
+    assert_refused(|of| of.period = [Some(0), None], "period");
 }
 
 #[test]
 fn stamps_that_reach_too_far_or_break_the_period_are_refused() {
-    let large = tile().with_size([1.0, 2.0]).unwrap();
-    let flat = large.clone().with_cell_height(0.1).unwrap();
-    assert_refused(flat.field(StampValue::Height), "reach of a stamp in cells");
-    let larger = large.with_size([1.0, 8.0]).unwrap();
-    let many = larger.with_density(16.0).unwrap();
-    let what = "number of stamps within reach of a position";
-    assert_refused(many.field(StampValue::Height), what);
-    let spaced = tile()
-        .with_period([Some(1), None])
-        .unwrap()
-        .with_spacing(1.5);
-    assert_refused(spaced.unwrap().field(StampValue::Height), "spacing");
-    let spaced = tile().with_density(16.0).unwrap().with_spacing(2.0);
-    let what = "number of points within the spacing";
-    assert_refused(spaced.unwrap().field(StampValue::Height), what);
-    let shifted = tile().with_row_offset(0.3).unwrap();
-    let what = "total offset of the rows of a period";
-    assert_refused(shifted.field(StampValue::Height), what);
-    let shifted = tile().with_row_offset(0.25).unwrap();
-    assert!(shifted.field(StampValue::Height).is_ok());
+    let flat = |of: &mut StampOptions| (of.size, of.cell_height) = ([1.0, 2.0], 0.1);
+    assert_refused(flat, "reach of a stamp in cells");
+    let many = |of: &mut StampOptions| (of.size, of.density) = ([1.0, 8.0], 16.0);
+    assert_refused(many, "number of stamps within reach of a position");
+    let spaced = |of: &mut StampOptions| (of.period, of.spacing) = ([Some(1), None], 1.5);
+    assert_refused(spaced, "spacing");
+    let spaced = |of: &mut StampOptions| (of.density, of.spacing) = (16.0, 2.0);
+    assert_refused(spaced, "number of points within the spacing");
+    let shifted = |of: &mut StampOptions| of.row_offset = 0.3;
+    assert_refused(shifted, "total offset of the rows of a period");
+    stamps(StampOptions {
+        row_offset: 0.25,
+        ..tile()
+    });
 }
 
 #[test]
 fn positions_that_are_not_finite_have_no_value() {
-    let field = tile().field(StampValue::Mask).unwrap();
+    let field = stamps(tile()).field(StampValue::Mask);
     for position in [
         [f64::NAN, 0.0],
         [0.0, f64::INFINITY],
@@ -442,9 +456,12 @@ fn positions_that_are_not_finite_have_no_value() {
 
 #[test]
 fn value_stability_stamps() {
-    let stamps = tile().with_shape(StampShape::Pebble);
-    let height = stamps.field(StampValue::Height).unwrap();
-    let random = stamps.field(StampValue::Random).unwrap();
+    let stamps = stamps(StampOptions {
+        shape: StampShape::Pebble,
+        ..tile()
+    });
+    let height = stamps.field(StampValue::Height);
+    let random = stamps.field(StampValue::Random);
     let at = [[0.5, 0.5], [1.25, 2.75], [3.5, 1.5]];
     let found = at.map(|at| [height.sample(at).to_bits(), random.sample(at).to_bits()]);
     let expected = [

@@ -4,7 +4,7 @@ use super::noise::about_half;
 use super::{Frequency, NodeKind, NodeSeed, outputs};
 use crate::RecipeError;
 use crate::plan::{Builder, Step};
-use dapple_pattern::{GaborNoise, GaborValue};
+use dapple_pattern::{GaborNoise, GaborOptions, GaborValue};
 use dapple_raster::FieldExt as _;
 use serde::{Deserialize, Serialize};
 
@@ -21,16 +21,16 @@ pub struct GaborNode {
     /// Value at a position.
     pub value: GaborValue,
     /// Number of waves per cell. The more, the closer are all waves to this length and to their direction.
-    #[cfg_attr(feature = "schema", schemars(transform = { GaborNoise::WAVES }))]
+    #[cfg_attr(feature = "schema", schemars(transform = { GaborOptions::WAVES }))]
     pub waves: f64,
     /// Direction of the stripes, clockwise from the x axis in degrees.
-    #[cfg_attr(feature = "schema", schemars(transform = { GaborNoise::ANGLE }))]
+    #[cfg_attr(feature = "schema", schemars(transform = { GaborOptions::ANGLE }))]
     pub angle: f64,
     /// Range of random directions around `angle` in degrees; 180 is all directions.
-    #[cfg_attr(feature = "schema", schemars(transform = { GaborNoise::SPREAD }))]
+    #[cfg_attr(feature = "schema", schemars(transform = { GaborOptions::SPREAD }))]
     pub spread: f64,
     /// Number of waves that are placed in each cell; time is proportional to it.
-    #[cfg_attr(feature = "schema", schemars(transform = { GaborNoise::IMPULSES }))]
+    #[cfg_attr(feature = "schema", schemars(transform = { GaborOptions::IMPULSES }))]
     pub impulses: u32,
     /// Seed, or the name of the node whose random numbers are used [default: this node's name].
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -39,13 +39,14 @@ pub struct GaborNode {
 
 impl Default for GaborNode {
     fn default() -> Self {
+        let options = GaborOptions::default();
         Self {
             frequency: Frequency([8.0; 2]),
             value: GaborValue::default(),
-            waves: 2.0,
-            angle: 0.0,
-            spread: 20.0,
-            impulses: 8,
+            waves: options.waves,
+            angle: options.angle,
+            spread: options.spread,
+            impulses: options.impulses,
             seed: None,
         }
     }
@@ -56,13 +57,14 @@ impl NodeKind for GaborNode {
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let frequency = self.frequency.0;
-        let period = plan.periods(frequency)?;
-        let noise = GaborNoise::new(plan.seed(self.seed.as_ref()))
-            .with_period(period)?
-            .with_waves(self.waves)?
-            .with_angle(self.angle)?
-            .with_spread(self.spread)?
-            .with_impulses(self.impulses)?;
+        let options = GaborOptions {
+            period: plan.periods(frequency)?,
+            waves: self.waves,
+            impulses: self.impulses,
+            angle: self.angle,
+            spread: self.spread,
+        };
+        let noise = GaborNoise::new(plan.seed(self.seed.as_ref()), options)?;
         let field = noise.field(self.value).frequency_per_axis(frequency);
         Ok(match self.value {
             GaborValue::Noise => Step::field(field.map(|value| about_half(value / 6.0))),

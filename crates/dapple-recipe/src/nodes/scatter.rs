@@ -3,7 +3,7 @@
 use super::{Frequency, NodeKind, NodeSeed, outputs};
 use crate::RecipeError;
 use crate::plan::{Builder, Step};
-use dapple_pattern::{StampOverlap, StampShape, StampValue, Stamps};
+use dapple_pattern::{StampOptions, StampOverlap, StampShape, StampValue, Stamps};
 use dapple_raster::FieldExt as _;
 use serde::{Deserialize, Serialize};
 
@@ -22,16 +22,16 @@ pub struct ScatterNode {
     /// Shape of the stamps.
     pub shape: StampShape,
     /// Number of stamps per cell; the fraction is the chance of one more.
-    #[cfg_attr(feature = "schema", schemars(transform = { Stamps::DENSITY }))]
+    #[cfg_attr(feature = "schema", schemars(transform = { StampOptions::DENSITY }))]
     pub density: f64,
     /// Maximum offset of a point from the center of its cell: 0 is a regular lattice, 1 is anywhere in the cell.
-    #[cfg_attr(feature = "schema", schemars(transform = { Stamps::FRACTION }))]
+    #[cfg_attr(feature = "schema", schemars(transform = { StampOptions::FRACTION }))]
     pub jitter: f64,
     /// Minimum distance between two points, in widths of a cell: points that are too close to others are left out.
-    #[cfg_attr(feature = "schema", schemars(transform = { Stamps::SPACING }))]
+    #[cfg_attr(feature = "schema", schemars(transform = { StampOptions::SPACING }))]
     pub spacing: f64,
     /// Shift of each row of cells relative to the row above, in cells.
-    #[cfg_attr(feature = "schema", schemars(transform = { Stamps::SIGNED }))]
+    #[cfg_attr(feature = "schema", schemars(transform = { StampOptions::SIGNED }))]
     pub row_offset: f64,
     /// Minimum and maximum length of a stamp, in widths of a cell, at most 8.
     pub size: [f64; 2],
@@ -42,13 +42,13 @@ pub struct ScatterNode {
     /// Minimum and maximum height of a stamp, from 0 to 1.
     pub height: [f64; 2],
     /// Width of the bevel of flat shapes relative to half of their width.
-    #[cfg_attr(feature = "schema", schemars(transform = { Stamps::FRACTION }))]
+    #[cfg_attr(feature = "schema", schemars(transform = { StampOptions::FRACTION }))]
     pub bevel: f64,
     /// Fraction of a stamp's height that is its random place in the order instead of its profile.
-    #[cfg_attr(feature = "schema", schemars(transform = { Stamps::FRACTION }))]
+    #[cfg_attr(feature = "schema", schemars(transform = { StampOptions::FRACTION }))]
     pub lift: f64,
     /// Slope of the profile along a stamp; at 1, it rises from 0 at the start to its full height at the end.
-    #[cfg_attr(feature = "schema", schemars(transform = { Stamps::SIGNED }))]
+    #[cfg_attr(feature = "schema", schemars(transform = { StampOptions::SIGNED }))]
     pub tilt: f64,
     /// Rule for positions that several stamps cover.
     pub overlap: StampOverlap,
@@ -59,22 +59,23 @@ pub struct ScatterNode {
 
 impl Default for ScatterNode {
     fn default() -> Self {
+        let options = StampOptions::default();
         Self {
             frequency: Frequency([8.0; 2]),
             value: StampValue::default(),
-            shape: StampShape::default(),
-            density: 1.0,
-            jitter: 1.0,
-            spacing: 0.0,
-            row_offset: 0.0,
-            size: [0.5, 1.0],
-            aspect: [1.0; 2],
-            rotation: [0.0, 360.0],
-            height: [1.0; 2],
-            bevel: 0.2,
-            lift: 0.0,
-            tilt: 0.0,
-            overlap: StampOverlap::default(),
+            shape: options.shape,
+            density: options.density,
+            jitter: options.jitter,
+            spacing: options.spacing,
+            row_offset: options.row_offset,
+            size: options.size,
+            aspect: options.aspect,
+            rotation: options.rotation,
+            height: options.height,
+            bevel: options.bevel,
+            lift: options.lift,
+            tilt: options.tilt,
+            overlap: options.overlap,
             seed: None,
         }
     }
@@ -85,24 +86,25 @@ impl NodeKind for ScatterNode {
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let frequency = self.frequency.0;
-        let period = plan.periods(frequency)?;
-        let stamps = Stamps::new(plan.seed(self.seed.as_ref()))
-            .with_period(period)?
-            .with_cell_height(frequency[0] / frequency[1])?
-            .with_density(self.density)?
-            .with_jitter(self.jitter)?
-            .with_spacing(self.spacing)?
-            .with_row_offset(self.row_offset)?
-            .with_shape(self.shape)
-            .with_size(self.size)?
-            .with_aspect(self.aspect)?
-            .with_rotation(self.rotation)?
-            .with_height(self.height)?
-            .with_bevel(self.bevel)?
-            .with_lift(self.lift)?
-            .with_tilt(self.tilt)?
-            .with_overlap(self.overlap);
-        let field = stamps.field(self.value)?;
+        let options = StampOptions {
+            period: plan.periods(frequency)?,
+            cell_height: frequency[0] / frequency[1],
+            density: self.density,
+            jitter: self.jitter,
+            spacing: self.spacing,
+            row_offset: self.row_offset,
+            shape: self.shape,
+            size: self.size,
+            aspect: self.aspect,
+            rotation: self.rotation,
+            height: self.height,
+            bevel: self.bevel,
+            lift: self.lift,
+            tilt: self.tilt,
+            overlap: self.overlap,
+        };
+        let stamps = Stamps::new(plan.seed(self.seed.as_ref()), options)?;
+        let field = stamps.field(self.value);
         Ok(Step::field(field.frequency_per_axis(frequency)))
     }
 }

@@ -3,7 +3,7 @@
 use crate::bakes::plan;
 use dapple_color::LinearRgb;
 use dapple_hash::Seed;
-use dapple_pattern::{GaborNoise, GaborValue};
+use dapple_pattern::{GaborNoise, GaborOptions, GaborValue};
 use dapple_raster::FieldExt as _;
 use dapple_recipe::{Images, Plan, Recipe, RecipeErrorKind};
 
@@ -181,16 +181,14 @@ fn gabor_noise_is_about_half_and_its_phase_is_in_turns() {
         );
         plan(&text).field("a").unwrap()
     };
-    let noise = GaborNoise::new(Seed(3).child("a", 0))
-        .with_period([Some(6), Some(4)])
-        .and_then(|noise| {
-            noise
-                .with_waves(3.0)?
-                .with_angle(30.0)?
-                .with_spread(90.0)?
-                .with_impulses(5)
-        })
-        .unwrap();
+    let of = GaborOptions {
+        period: [Some(6), Some(4)],
+        waves: 3.0,
+        impulses: 5,
+        angle: 30.0,
+        spread: 90.0,
+    };
+    let noise = GaborNoise::new(Seed(3).child("a", 0), of).unwrap();
     let options = "frequency = [3, 4], waves = 3, angle = 30, spread = 90, impulses = 5";
     let [half, phase] = [options.to_owned(), format!("{options}, value = \"phase\"")]
         .map(|options| field(&options));

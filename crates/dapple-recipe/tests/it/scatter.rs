@@ -2,7 +2,7 @@
 
 use crate::bakes::{assert_parts_have_the_bits_of_the_whole, plan};
 use dapple_hash::Seed;
-use dapple_pattern::{StampOverlap, StampShape, StampValue, Stamps};
+use dapple_pattern::{StampOptions, StampOverlap, StampShape, StampValue, Stamps};
 use dapple_raster::{Field as _, FieldExt as _, Window};
 use dapple_recipe::{Images, Plan, Recipe, RecipeErrorKind, Region};
 
@@ -17,39 +17,28 @@ fn the_node_is_the_field_of_the_crate() {
          b = {{ scatter = {{ {STAMPS}, value = \"random2\", seed = \"a\" }} }}\n[material]\n"
     );
     let plan = plan(&text);
-    let stamps = Stamps::new(Seed(7).child("a", 0))
-        .with_period([Some(6), Some(6)])
-        .unwrap()
-        .with_cell_height(0.5)
-        .unwrap()
-        .with_shape(StampShape::Leaf)
-        .with_density(2.5)
-        .unwrap()
-        .with_jitter(0.5)
-        .unwrap()
-        .with_spacing(0.25)
-        .unwrap()
-        .with_row_offset(0.5)
-        .unwrap()
-        .with_size([0.8, 1.2])
-        .unwrap()
-        .with_aspect([0.4, 0.5])
-        .unwrap()
-        .with_rotation([-30.0, 30.0])
-        .unwrap()
-        .with_height([0.5, 1.0])
-        .unwrap()
-        .with_bevel(0.1)
-        .unwrap()
-        .with_lift(0.6)
-        .unwrap()
-        .with_tilt(0.2)
-        .unwrap()
-        .with_overlap(StampOverlap::Order);
+    let options = StampOptions {
+        period: [Some(6), Some(6)],
+        cell_height: 0.5,
+        shape: StampShape::Leaf,
+        density: 2.5,
+        jitter: 0.5,
+        spacing: 0.25,
+        row_offset: 0.5,
+        size: [0.8, 1.2],
+        aspect: [0.4, 0.5],
+        rotation: [-30.0, 30.0],
+        height: [0.5, 1.0],
+        bevel: 0.1,
+        lift: 0.6,
+        tilt: 0.2,
+        overlap: StampOverlap::Order,
+    };
+    let stamps = Stamps::new(Seed(7).child("a", 0), options).unwrap();
     let window = Window::new([-0.3, 0.2], [2.0, 1.0], [64, 32]).unwrap();
     for (node, value) in [("a", StampValue::Height), ("b", StampValue::Random2)] {
         let found = plan.field(node).unwrap().to_raster(&window).unwrap();
-        let field = stamps.field(value).unwrap().frequency_per_axis([3.0, 6.0]);
+        let field = stamps.field(value).frequency_per_axis([3.0, 6.0]);
         assert_eq!(found.pixels(), field.to_raster(&window).unwrap().pixels());
         assert!(found.pixels().iter().any(|&value| value > 0.0));
     }
