@@ -184,6 +184,17 @@ pub(crate) trait NodeKind {
     }
 }
 
+/// Implements `inputs` of a [`NodeKind`] by the names of its fields.
+macro_rules! inputs {
+    ($($field:tt),*) => {
+        fn inputs(&self) -> Vec<&$crate::Input> {
+            vec![$(&self.$field),*]
+        }
+    };
+}
+
+pub(crate) use inputs;
+
 /// Implements `outputs` and `with_output` of a [`NodeKind`] whose option `value` is one of the named values of an enum.
 macro_rules! outputs {
     ($values:ty) => {

@@ -1,6 +1,6 @@
 //! Sums, products and other arithmetic of inputs at each position.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError};
@@ -134,9 +134,7 @@ impl NodeKind for Maximum {
 }
 
 impl NodeKind for Absolute {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.0]
-    }
+    inputs!(0);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         plan.each(&self.0, f32::abs)

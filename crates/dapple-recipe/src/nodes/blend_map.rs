@@ -1,6 +1,6 @@
 //! Blend maps, which are low where another texture shows first, such as in cracks.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use dapple_tile::{BlendMap, rank_equalize};
@@ -27,9 +27,7 @@ fn one() -> f64 {
 }
 
 impl NodeKind for BlendMapOf {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let how = BlendMap::new(32.0)

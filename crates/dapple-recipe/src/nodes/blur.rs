@@ -1,6 +1,6 @@
 //! Gaussian blur, in all directions or along one.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, RecipeErrorKind};
 use dapple_filter::{DirectionalBlur, gaussian, gaussian_halo};
@@ -33,9 +33,7 @@ pub struct Blur {
 const DIRECTION: Range = range!(finite);
 
 impl NodeKind for Blur {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let (radius, is_one_sided) = (plan.radius(Some(self.radius), 0.0)?, self.one_sided);

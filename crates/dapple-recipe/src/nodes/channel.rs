@@ -1,6 +1,6 @@
 //! A component of a color as a number.
 
-use super::{NodeKind, hsl};
+use super::{NodeKind, hsl, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use dapple_color::LinearRgb;
@@ -41,9 +41,7 @@ dapple_raster::named! {
 }
 
 impl NodeKind for ChannelOf {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let channel = self.channel;

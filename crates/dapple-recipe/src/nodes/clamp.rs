@@ -1,6 +1,6 @@
 //! Clamps numbers to a range.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError};
@@ -30,9 +30,7 @@ fn one() -> f32 {
 const BOUND: Range = range!(finite);
 
 impl NodeKind for Clamp {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let (low, high) = (self.low, self.high);

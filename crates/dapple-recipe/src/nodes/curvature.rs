@@ -1,6 +1,6 @@
 //! Curvature of a height as a gray value.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use dapple_color::{CurvatureOptions, HeightPlane, curvature_of_part, curvature_to_gray};
@@ -29,9 +29,7 @@ pub struct Curvature {
 }
 
 impl NodeKind for Curvature {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn reads_relief(&self) -> bool {
         self.relief.is_none()

@@ -5,7 +5,7 @@
 //! <https://doi.org/10.1137/0905021>, with weights of both intervals' widths. The slope at an end
 //! is that of the line to the next point.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, RecipeErrorKind};
 use dapple_raster::{Range, range};
@@ -32,9 +32,7 @@ fn line() -> Vec<[f32; 2]> {
 const NUMBER: Range = range!(finite);
 
 impl NodeKind for SplineCurve {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let spline = Spline::new(&self.points)?;

@@ -1,6 +1,6 @@
 //! Maximum and minimum over a disk, known as dilation and erosion.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError};
 use dapple_filter::{dilate, disk_halo, erode};
@@ -33,9 +33,7 @@ pub struct Erode {
 }
 
 impl NodeKind for Dilate {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let radius = plan.radius(Some(self.radius), 0.0)?;
@@ -48,9 +46,7 @@ impl NodeKind for Dilate {
 }
 
 impl NodeKind for Erode {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let radius = plan.radius(Some(self.radius), 0.0)?;

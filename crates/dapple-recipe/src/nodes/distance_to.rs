@@ -1,6 +1,6 @@
 //! Distance to a mask, up to a radius.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use dapple_filter::{disk_halo, distances};
@@ -21,9 +21,7 @@ pub struct DistanceTo {
 }
 
 impl NodeKind for DistanceTo {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let radius = plan.radius(Some(self.radius), 0.0)?;

@@ -1,6 +1,6 @@
 //! Fills the tile with copies of a texture that differ inside.
 
-use super::{NodeKind, NodeSeed};
+use super::{NodeKind, NodeSeed, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use dapple_raster::{Range, range};
@@ -56,9 +56,7 @@ pub(super) fn check_copies(copies: [u32; 2]) -> Result<(), RecipeError> {
 }
 
 impl NodeKind for Disturbed {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         check_copies(self.copies)?;

@@ -1,6 +1,6 @@
 //! Edges: where a node changes.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use dapple_filter::{difference_spans, gradients};
@@ -22,9 +22,7 @@ pub struct Edges {
 }
 
 impl NodeKind for Edges {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let radius = plan.radius(Some(self.radius), 0.0)?;

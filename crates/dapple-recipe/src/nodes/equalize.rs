@@ -1,6 +1,6 @@
 //! Numbers spread evenly from 0 to 1.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use dapple_tile::rank_equalize;
@@ -19,9 +19,7 @@ pub struct Equalize {
 }
 
 impl NodeKind for Equalize {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let inputs = vec![plan.any(&self.input)?];

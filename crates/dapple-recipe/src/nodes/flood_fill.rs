@@ -1,6 +1,6 @@
 //! A number for each connected region of a mask.
 
-use super::{NodeKind, NodeSeed};
+use super::{NodeKind, NodeSeed, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use dapple_filter::regions;
@@ -42,9 +42,7 @@ pub enum RegionValue {
 }
 
 impl NodeKind for FloodFill {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let (value, seed) = (self.value, plan.seed(self.seed.as_ref()));

@@ -1,6 +1,6 @@
 //! Sums a node at several scales.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Moved, Positions, Step};
 use crate::shader::{Code, NodeShader, Refusal, literal};
 use crate::{Input, RecipeError, RecipeErrorKind};
@@ -52,9 +52,7 @@ const GAIN: Range = range!(from -1 to 1);
 const LACUNARITY: Range = range!(from 1 to 16);
 
 impl NodeKind for FractalOf {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         RecipeError::check_in(OCTAVES, "number of octaves", self.octaves.into())?;

@@ -3,7 +3,7 @@
 //! HSL of the sRGB components, as in A. R. Smith, "Color Gamut Transform Pairs", SIGGRAPH 1978,
 //! <https://doi.org/10.1145/800248.807361>, and in CSS.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use dapple_color::LinearRgb;
@@ -38,9 +38,7 @@ fn one() -> Input {
 }
 
 impl NodeKind for HslChange {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input, &self.hue, &self.saturation, &self.lightness]
-    }
+    inputs!(input, hue, saturation, lightness);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let inputs = vec![

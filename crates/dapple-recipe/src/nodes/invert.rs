@@ -1,6 +1,6 @@
 //! Inverts a number or a color.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use dapple_color::LinearRgb;
@@ -12,9 +12,7 @@ use serde::{Deserialize, Serialize};
 pub struct Invert(pub Input);
 
 impl NodeKind for Invert {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.0]
-    }
+    inputs!(0);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let inputs = vec![plan.any(&self.0)?];

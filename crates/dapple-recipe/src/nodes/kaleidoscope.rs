@@ -1,6 +1,6 @@
 //! Shows a sector of a node all around a center, as a kaleidoscope does.
 
-use super::{NodeKind, distance};
+use super::{NodeKind, distance, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError};
 use core::f64::consts::TAU;
@@ -33,9 +33,7 @@ fn six() -> u32 {
 const SECTORS: Range = range!(from 1 to 256);
 
 impl NodeKind for Kaleidoscope {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         RecipeError::check_in(SECTORS, "number of sectors", self.sectors.into())?;

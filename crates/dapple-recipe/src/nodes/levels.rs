@@ -1,6 +1,6 @@
 //! Maps a range of numbers to another.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::shader::{Code, NodeShader, Refusal, literal, quotient};
 use crate::{Input, RecipeError};
@@ -49,9 +49,7 @@ pub enum LevelsCurve {
 }
 
 impl NodeKind for Levels {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let (from, to, curve) = (self.from, self.to, self.curve);

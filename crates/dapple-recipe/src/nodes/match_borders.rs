@@ -1,6 +1,6 @@
 //! Textures with the borders of another texture, so that both fit next to each other.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use dapple_tile::MatchBorders;
@@ -24,9 +24,7 @@ pub struct Framed {
 }
 
 impl NodeKind for Framed {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input, &self.border]
-    }
+    inputs!(input, border);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let options = self.options;

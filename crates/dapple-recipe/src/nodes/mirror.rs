@@ -1,6 +1,6 @@
 //! Mirrors a node at a center.
 
-use super::{NodeKind, distance};
+use super::{NodeKind, distance, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError};
 use serde::{Deserialize, Serialize};
@@ -28,9 +28,7 @@ fn both() -> [bool; 2] {
 }
 
 impl NodeKind for MirroredNode {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let (axes, center) = (self.axes, distance::center(plan, Some(self.center))?);

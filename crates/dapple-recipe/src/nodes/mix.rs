@@ -1,6 +1,6 @@
 //! Interpolates between two inputs.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::shader::{Code, NodeShader, Refusal, lerp};
 use crate::{Input, RecipeError, Values};
@@ -20,9 +20,7 @@ pub struct Mix {
 }
 
 impl NodeKind for Mix {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.from, &self.to, &self.by]
-    }
+    inputs!(from, to, by);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let inputs = vec![

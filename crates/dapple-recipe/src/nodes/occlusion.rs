@@ -1,6 +1,6 @@
 //! Ambient occlusion of a height.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use dapple_color::{HeightPlane, OcclusionOptions, ambient_occlusion_of_part_cancellable};
@@ -28,9 +28,7 @@ pub struct Occlusion {
 }
 
 impl NodeKind for Occlusion {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn reads_relief(&self) -> bool {
         self.relief.is_none()

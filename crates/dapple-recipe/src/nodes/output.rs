@@ -1,6 +1,6 @@
 //! Further values of nodes that compute several, such as the height and the random number of a brick.
 
-use super::{KINDS, NEW_NODES, Node, NodeKind};
+use super::{KINDS, NEW_NODES, Node, NodeKind, inputs};
 use crate::plan::{Builder, Step, Work};
 use crate::{Input, RecipeError, RecipeErrorKind};
 use serde::{Deserialize, Serialize};
@@ -22,9 +22,7 @@ fn random() -> String {
 }
 
 impl NodeKind for Output {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.of]
-    }
+    inputs!(of);
 
     fn work(&self, plan: &Builder<'_>) -> Result<Work, RecipeError> {
         match plan.node_of(&self.of)? {

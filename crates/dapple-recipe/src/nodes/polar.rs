@@ -1,6 +1,6 @@
 //! Bends a node around a center.
 
-use super::{NodeKind, distance};
+use super::{NodeKind, distance, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError};
 use dapple_raster::{Range, range};
@@ -34,9 +34,7 @@ fn one() -> u32 {
 const REPEAT: Range = range!(from 1 to 1024);
 
 impl NodeKind for Polar {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         RecipeError::check_in(REPEAT, "number of repeats", self.repeat.into())?;

@@ -1,6 +1,6 @@
 //! Raises numbers to a power.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::shader::{Code, NodeShader, Refusal, literal};
 use crate::{Input, RecipeError};
@@ -23,9 +23,7 @@ pub struct Power {
 const EXPONENT: Range = range!(above 0);
 
 impl NodeKind for Power {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let exponent = self.exponent;

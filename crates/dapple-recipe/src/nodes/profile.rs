@@ -1,6 +1,6 @@
 //! Cross-sections of bumps, as functions of a number.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::shader::{Code, NodeShader, Refusal, quotient};
 use crate::{Input, RecipeError};
@@ -19,9 +19,7 @@ pub struct ProfileOf {
 }
 
 impl NodeKind for ProfileOf {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let shape = self.shape;

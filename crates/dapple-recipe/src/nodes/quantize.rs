@@ -1,6 +1,6 @@
 //! Rounds a number to steps.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError};
 use dapple_raster::{Range, range};
@@ -26,9 +26,7 @@ fn steps() -> u32 {
 const STEPS: Range = range!(from 2 to 65536);
 
 impl NodeKind for Quantize {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         RecipeError::check_in(STEPS, "number of steps", self.steps.into())?;

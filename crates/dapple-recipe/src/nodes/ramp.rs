@@ -1,6 +1,6 @@
 //! Color ramps.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::shader::{Code, NodeShader, Refusal, color_literal, lerp, literal, quotient};
 use crate::{Input, RecipeError, RecipeErrorKind, Values};
@@ -38,9 +38,7 @@ pub struct Ramped {
 }
 
 impl NodeKind for Ramped {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let ramp = self.ramp()?;

@@ -1,6 +1,6 @@
 //! Evaluates a node at positions that two other nodes give.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Moved, Positions, Step};
 use crate::{Input, RecipeError};
 use dapple_raster::{Range, range};
@@ -33,9 +33,7 @@ fn one() -> [f64; 2] {
 const SCALE: Range = range!(finite);
 
 impl NodeKind for SampleAt {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input, &self.x, &self.y]
-    }
+    inputs!(input, x, y);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         for scale in self.scale {

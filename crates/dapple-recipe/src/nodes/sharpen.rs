@@ -1,6 +1,6 @@
 //! Sharpening by an unsharp mask.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError};
 use dapple_filter::{gaussian, gaussian_halo};
@@ -31,9 +31,7 @@ fn one() -> f32 {
 const AMOUNT: Range = range!(finite);
 
 impl NodeKind for Sharpen {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let (radius, amount) = (plan.radius(Some(self.radius), 0.0)?, self.amount);

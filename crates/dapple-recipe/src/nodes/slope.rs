@@ -1,6 +1,6 @@
 //! Steepness of a height.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use core::f64::consts::FRAC_2_PI;
@@ -29,9 +29,7 @@ pub struct Slope {
 }
 
 impl NodeKind for Slope {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn reads_relief(&self) -> bool {
         self.relief.is_none()

@@ -1,6 +1,6 @@
 //! Blur along the slope of a height.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use dapple_color::LinearRgb;
@@ -24,9 +24,7 @@ pub struct SlopeBlur {
 }
 
 impl NodeKind for SlopeBlur {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input, &self.height]
-    }
+    inputs!(input, height);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let radius = plan.radius(Some(self.radius), 0.0)?;

@@ -1,6 +1,6 @@
 //! Compares a number with a threshold.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use dapple_raster::{Range, range};
@@ -29,9 +29,7 @@ fn half() -> Input {
 const WIDTH: Range = range!(at least 0);
 
 impl NodeKind for Threshold {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input, &self.threshold]
-    }
+    inputs!(input, threshold);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let width = self.width;

@@ -1,6 +1,6 @@
 //! Makes textures repeat.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, RecipeErrorKind, Values};
 use dapple_tile::{Method, Seamless};
@@ -27,9 +27,7 @@ fn both() -> [bool; 2] {
 }
 
 impl NodeKind for Tiled {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let seamless = Seamless {

@@ -1,6 +1,6 @@
 //! Rotates, scales and shifts a node.
 
-use super::{Frequency, NodeKind};
+use super::{Frequency, NodeKind, inputs};
 use crate::plan::{Builder, LinearMap, Moved, Positions, Step};
 use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError, RecipeErrorKind};
@@ -32,9 +32,7 @@ pub struct Transform {
 const FINITE: Range = range!(finite);
 
 impl NodeKind for Transform {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         for frequency in self.frequency.0 {

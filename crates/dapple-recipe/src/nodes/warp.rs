@@ -1,6 +1,6 @@
 //! Domain warping: evaluates a node at displaced positions.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Moved, Positions, Step};
 use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError};
@@ -34,9 +34,7 @@ fn one() -> f64 {
 const AMOUNT: Range = range!(finite);
 
 impl NodeKind for Warp {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input, &self.x, &self.y]
-    }
+    inputs!(input, x, y);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         RecipeError::check_in(AMOUNT, "amount", self.amount)?;

@@ -1,6 +1,6 @@
 //! Periodic functions of a number.
 
-use super::NodeKind;
+use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
 use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError};
@@ -53,9 +53,7 @@ pub enum Waveform {
 }
 
 impl NodeKind for Wave {
-    fn inputs(&self) -> Vec<&Input> {
-        vec![&self.input]
-    }
+    inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         RecipeError::check_in(FINITE, "frequency of the wave", self.frequency)?;
