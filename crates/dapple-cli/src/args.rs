@@ -143,6 +143,11 @@ impl Axes {
             matches!(self, Self::Y | Self::Both),
         ]
     }
+
+    /// Returns, for each axis, `wrapped` if the image repeats along it, and otherwise `cut`.
+    pub(crate) fn choose<T: Copy>(self, wrapped: T, cut: T) -> [T; 2] {
+        self.flags().map(|wraps| if wraps { wrapped } else { cut })
+    }
 }
 
 impl ImageArgs {

@@ -4,13 +4,14 @@
 //! A table of [`Flag`]s lists what differs: other names, values inside of tables, and options without a flag.
 
 use crate::args::numbers_of;
-use crate::error::usage;
+use crate::error::{Hint, usage};
 use crate::words::{first_sentence, unknown, with_dashes, with_underscores};
 use anyhow::Result;
 use clap::builder::{PossibleValue, RangedI64ValueParser, StringValueParser, TypedValueParser};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Command, Error, FromArgMatches};
 use dapple::recipe::{Node, Recipe};
+use serde::de::DeserializeOwned;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
@@ -20,8 +21,11 @@ use std::sync::OnceLock;
 
 /// A kind of node whose options become flags of a subcommand.
 pub(crate) trait NodeFlags: Send + Sync + 'static {
-    /// Name of the kind in recipes.
+    /// Name of the kind in recipes. If it is empty, paths of options begin with the name of a kind.
     const KIND: &'static str;
+
+    /// Heading of the flags in the help; `None` for the flags of the subcommand itself.
+    const HEADING: Option<&'static str> = Some("Texture");
 
     /// Flags that differ from the schema. An option at the top of the node without an entry has a flag of its name.
     const FLAGS: &'static [Flag];
@@ -48,6 +52,8 @@ pub(crate) struct Flag {
     conflicts: &'static [&'static str],
     /// Flag that must be given, too.
     requires: Option<&'static str>,
+    /// Another flag, and its values with which this flag has an effect.
+    only_with: Option<(&'static str, &'static [&'static str])>,
 }
 
 /// Value of an option whose flag is not given.
@@ -72,6 +78,7 @@ impl Flag {
             is_list: false,
             conflicts: &[],
             requires: None,
+            only_with: None,
         }
     }
 
@@ -118,6 +125,19 @@ impl Flag {
     /// Sets the flags that must not be given together with this one.
     pub(crate) const fn conflicting(self, conflicts: &'static [&'static str]) -> Self {
         Self { conflicts, ..self }
+    }
+
+    /// Sets another flag, and its values with which this flag has an effect. The flag has no value unless it is given,
+    /// and its help begins with these values.
+    pub(crate) const fn only_with(
+        self,
+        flag: &'static str,
+        values: &'static [&'static str],
+    ) -> Self {
+        Self {
+            only_with: Some((flag, values)),
+            ..self
+        }
     }
 
     /// Sets the flag that must be given, too.
@@ -173,6 +193,64 @@ impl<K: NodeFlags> NodeArgs<K> {
         node.insert(K::KIND.to_owned(), options);
         Ok(serde_json::from_value(Value::Object(node))?)
     }
+
+    /// Returns the value of a flag, given or by default; `None` for a flag without a value.
+    ///
+    /// # Errors
+    ///
+    /// If a number is not finite.
+    pub(crate) fn get<T: DeserializeOwned>(&self, flag: &str) -> Result<Option<T>> {
+        if let Some(value) = self.values.iter().find(|value| value.flag == flag) {
+            value.check_finite()?;
+            return Ok(Some(serde_json::from_value(value.value.clone())?));
+        }
+        let mut options = K::options().into_iter();
+        let option = options.find(|option| option.flag == flag);
+        let default = option.and_then(|option| option.parser().parse(&option.default_text()?).ok());
+        Ok(default.map(serde_json::from_value).transpose()?)
+    }
+
+    /// Returns the options that are given as a type of the library. `chosen` are pairs of a flag and a name, which
+    /// replaces the flag's value.
+    ///
+    /// # Errors
+    ///
+    /// If a number is not finite.
+    pub(crate) fn read<T: DeserializeOwned>(&self, chosen: &[(&str, &str)]) -> Result<T> {
+        let mut table = json!({});
+        for option in K::options() {
+            let given = self.given().find(|value| value.flag == option.flag);
+            let chosen = chosen.iter().find(|(flag, _)| *flag == option.flag);
+            if let Some((_, name)) = chosen {
+                set(&mut table, &option.path, option.tagged(json!(name)));
+            } else if let Some(given) = given {
+                given.check_finite()?;
+                set(&mut table, &option.path, option.tagged(given.value.clone()));
+            }
+        }
+        Ok(serde_json::from_value(table)?)
+    }
+
+    /// Refuses flags that have no effect. `chosen` are pairs of a flag that others depend on and its value; `what` names
+    /// the operation.
+    ///
+    /// # Errors
+    ///
+    /// If such a flag is given.
+    pub(crate) fn check_used(&self, what: &str, chosen: &[(&str, &str)]) -> Result<()> {
+        for option in K::options() {
+            if let Some((flag, values)) = option.entry.only_with
+                && self.is_given(&option.flag)
+                && !chosen
+                    .iter()
+                    .any(|(other, value)| *other == flag && values.contains(value))
+            {
+                let message = format!("--{} has no effect on this {what}", option.flag);
+                return Err(usage(message).hint(format!("add --{flag} {}", values.join(" or "))));
+            }
+        }
+        Ok(())
+    }
 }
 
 impl NodeValue {
@@ -219,7 +297,7 @@ impl<K: NodeFlags> clap::Args for NodeArgs<K> {
         // Generate the schema only if the subcommand is invoked, since every start of the command defines all of them.
         command.defer(|command| {
             let options = K::options().into_iter();
-            command.args(options.map(|option| option.arg()))
+            command.args(options.map(|option| option.arg(K::HEADING)))
         })
     }
 
@@ -272,6 +350,8 @@ pub(crate) struct NodeOption {
     entry: Flag,
     /// Whether a list may have any length.
     any_length: bool,
+    /// Whether the flag chooses among tables, whose options have flags of their own.
+    is_choice: bool,
 }
 
 /// Returns the options of a kind of node that have flags: first the entries of the table in its order, then the other
@@ -279,10 +359,16 @@ pub(crate) struct NodeOption {
 fn options(kind: &str, flags: &'static [Flag]) -> Vec<NodeOption> {
     let kinds = variants(&schema()["$defs"]["Node"]);
     let mut kinds = kinds.filter_map(|variant| variant["properties"].get(kind));
-    let node = followed(kinds.next().unwrap_or(&Value::Null));
-    let of_table = flags
-        .iter()
-        .filter_map(|entry| NodeOption::new(node, entry));
+    let node = match kind {
+        "" => &schema()["$defs"]["Node"],
+        _ => followed(kinds.next().unwrap_or(&Value::Null)),
+    };
+    let of_table = flags.iter().filter_map(|entry| {
+        let mut option = NodeOption::new(node, entry)?;
+        let mut dependent = flags.iter().filter_map(|flag| flag.only_with);
+        option.is_choice = dependent.any(|(flag, _)| flag == option.flag);
+        Some(option)
+    });
     let is_free = |name: &str| {
         !flags
             .iter()
@@ -340,6 +426,7 @@ impl NodeOption {
             default: schema["default"].clone(),
             entry,
             any_length: false,
+            is_choice: false,
         }
     }
 
@@ -380,33 +467,66 @@ impl NodeOption {
             default: default.clone(),
             entry: *entry,
             any_length: false,
+            is_choice: false,
         })
     }
 
-    /// Defines the flag.
-    fn arg(&self) -> Arg {
-        let parser = self.parser();
-        let mut arg = Arg::new(self.flag.clone())
-            .long(self.flag.clone())
-            .help(self.help.trim_end_matches('.').replace('`', ""))
-            .help_heading("Texture")
-            .value_name(parser.value_name())
-            .allow_hyphen_values(parser.is_list())
-            .allow_negative_numbers(true)
-            .value_parser(parser);
-        if self.path.rsplit('/').next() == Some("gain") {
-            arg = arg.visible_alias("persistence");
+    /// Returns the value of a choice as the node takes it: a table for a name that stands for one.
+    fn tagged(&self, value: Value) -> Value {
+        let table = value.as_str().map(|name| table_of(self.schema, name));
+        match (table, value) {
+            (Some(Value::Object(_)), Value::String(name)) => {
+                let mut table = Map::new();
+                table.insert(name, json!({}));
+                Value::Object(table)
+            }
+            (_, value) => value,
         }
-        let entry = &self.entry;
-        let default = match (entry.default, &self.default) {
+    }
+
+    /// Returns the default as it is typed, or a description of it.
+    fn default_text(&self) -> Option<String> {
+        match (self.entry.default, &self.default) {
             (FlagDefault::Value(default), _) => Some(default.to_owned()),
             (FlagDefault::Schema, Value::String(word)) => Some(with_dashes(word)),
             (FlagDefault::Schema, Value::Number(number)) => {
                 Some(number.as_f64().unwrap_or(0.0).to_string())
             }
             _ => None,
+        }
+    }
+
+    /// Returns the help text, with the values of another flag that the flag is for, and with a default that depends on
+    /// them.
+    fn help(&self, default: Option<&str>) -> String {
+        let help = self.help.trim_end_matches('.').replace('`', "");
+        let Some((_, values)) = self.entry.only_with else {
+            return help;
         };
-        if let Some(default) = default.filter(|_| !entry.is_list) {
+        let mut letters = help.chars();
+        let first = letters.next().map(|letter| letter.to_ascii_lowercase());
+        let help: String = first.into_iter().chain(letters).collect();
+        let default = default.map_or_else(String::new, |value| format!(" [default: {value}]"));
+        format!("{}: {help}{default}", values.join(", "))
+    }
+
+    /// Defines the flag.
+    fn arg(&self, heading: Option<&'static str>) -> Arg {
+        let parser = self.parser();
+        let mut arg = Arg::new(self.flag.clone())
+            .long(self.flag.clone())
+            .help_heading(heading)
+            .value_name(parser.value_name())
+            .allow_hyphen_values(parser.is_list())
+            .allow_negative_numbers(true)
+            .value_parser(parser);
+        let entry = &self.entry;
+        if self.path.ends_with("gain") && entry.only_with.is_none() {
+            arg = arg.visible_alias("persistence");
+        }
+        let default = self.default_text();
+        arg = arg.help(self.help(default.as_deref()));
+        if let Some(default) = default.filter(|_| !entry.is_list && entry.only_with.is_none()) {
             arg = arg.default_value(default);
         }
         if let Some(flag) = entry.requires {
@@ -422,7 +542,7 @@ impl NodeOption {
             let mut lists = variants(schema).filter(|variant| variant["type"] == "array");
             return ValueParser::Numbers(lists.next().and_then(length));
         }
-        let names = names(schema);
+        let names = names(schema, self.is_choice);
         let bound = |key: &str| schema[key].as_f64();
         match schema["type"].as_str() {
             _ if !names.is_empty() => ValueParser::Name(names),
@@ -446,11 +566,14 @@ fn length(list: &Value) -> Option<usize> {
     (list["maxItems"].as_u64() == Some(count)).then_some(count as usize)
 }
 
-/// Returns the names that a value may have, with their help texts.
-fn names(value: &'static Value) -> Vec<(&'static str, String)> {
+/// Returns the names that a value may have, with their help texts. `with_tables` includes the names of tables.
+fn names(value: &'static Value, with_tables: bool) -> Vec<(&'static str, String)> {
     let named = |variant: &'static Value| {
         let about = variant["description"].as_str().unwrap_or_default();
-        Some((variant["const"].as_str()?, first_sentence(about)))
+        let table = || variant["properties"].as_object()?.keys().next();
+        let name = variant["const"].as_str();
+        let name = name.or_else(|| table().filter(|_| with_tables).map(String::as_str));
+        Some((name?, first_sentence(about)))
     };
     let listed = variants(value)
         .filter_map(|variant| variant["enum"].as_array())

@@ -63,9 +63,9 @@ dapple_raster::named! {
 )]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MatchBorders {
-    /// Distance from a border within which a tile changes, in pixels, from 1 to half of a side, rounded down.
+    /// Distance from a border within which a tile changes, in pixels, from 1 to half of a side.
     ///
-    /// With [`BorderSource::Middle`], the maximum is one pixel less. The default is 16.
+    /// The maximum is rounded down. With [`BorderSource::Middle`], it is one pixel less. The default is 16.
     pub width: u32,
     /// Source of the pixels of all borders.
     ///

@@ -37,18 +37,35 @@ pub enum Weighting {
     Given,
     /// Share by height: the higher layer is visible. The blend tile is the height of layers without one.
     Height {
-        /// Height difference over which layers mix, above 0. For heights from 0 to 1, 0.1 is crisp and 0.3 is soft.
-        /// With such heights and up to four layers, a layer with less than 1/16 of the weights is invisible, for depths
-        /// up to 1.
+        /// Height difference over which layers mix, above 0: 0.1 is crisp, 0.3 is soft.
+        ///
+        /// With heights from 0 to 1 and up to four layers, a layer with less than 1/16 of the weights is invisible, for
+        /// depths up to 1.
+        #[cfg_attr(feature = "serde", serde(default = "depth"))]
         depth: f64,
     },
     /// Share by mask: the blend tile is divided at thresholds. The first layer is visible where the tile is lowest, as
     /// in the cracks of a [`BlendMap`](crate::BlendMap).
     Mask {
-        /// Reciprocal of the transition's width, which is measured in tile values. Above 0 and at most 1e9. 1 is soft,
-        /// 4 and more show the features of the tile, and 1e9 gives hard edges without any transition.
+        /// Sharpness of transitions, above 0 and at most 1e9: 1 is soft, 1e9 is hard.
+        ///
+        /// It is the reciprocal of the transition's width, which is measured in tile values. 4 and more show the
+        /// features of the tile.
+        #[cfg_attr(feature = "serde", serde(default = "gain"))]
         gain: f64,
     },
+}
+
+/// Default depth.
+#[cfg(feature = "serde")]
+fn depth() -> f64 {
+    0.2
+}
+
+/// Default gain.
+#[cfg(feature = "serde")]
+fn gain() -> f64 {
+    8.0
 }
 
 /// Maximum gain, which gives hard edges.

@@ -4,6 +4,7 @@ use crate::args::{Axes, ImageArgs, ReadArgs, Region, image_alpha};
 use crate::error::{Exit, Hint};
 use crate::input::{self, ALPHA_HINT, Kind};
 use crate::job::{Context, Job};
+use crate::node::{Flag, NodeArgs, NodeFlags};
 use crate::progress::Progress;
 use crate::words::NamedValueParser;
 use anyhow::{Result, anyhow};
@@ -44,13 +45,9 @@ pub(crate) struct Args {
     #[serde(flatten)]
     read: ReadArgs,
 
-    /// Feature size in pixels, such as the diameter of stones, from 1 to 4096.
-    #[arg(long, value_name = "PX", default_value_t = 32.0)]
-    feature_size: f64,
-
-    /// Contrast of the map around its median, at least 0; 100 is almost black and white.
-    #[arg(long, value_name = "N", default_value_t = 1.0)]
-    contrast: f64,
+    #[command(flatten)]
+    #[serde(flatten)]
+    node: NodeArgs<MapFlags>,
 
     /// Axes along which texture and map repeat; along others the texture is mirrored.
     #[arg(long, value_parser = NamedValueParser::<Axes>::all(), default_value_t = Axes::Both)]
@@ -63,6 +60,23 @@ pub(crate) struct Args {
     #[command(flatten)]
     #[serde(skip)]
     output: ImageArgs,
+}
+
+/// The options of the node `blend_map` of recipes.
+#[derive(Clone, Debug)]
+struct MapFlags;
+
+impl NodeFlags for MapFlags {
+    const KIND: &'static str = "blend_map";
+    const HEADING: Option<&'static str> = None;
+    const FLAGS: &'static [Flag] = &[
+        Flag::new("feature_size", "feature-size")
+            .with_default("32")
+            .with_help(
+                "Size of the features, such as the diameter of stones, in pixels, from 1 to 4096",
+            ),
+        Flag::none("input"),
+    ];
 }
 
 /// Runs the subcommand.
@@ -84,11 +98,9 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         &args.read,
         ALPHA_HINT,
     )?;
-    let wrap = |repeats| if repeats { Wrap::Repeat } else { Wrap::Mirror };
     let options = BlendMap {
-        feature_size: args.feature_size,
-        contrast: args.contrast,
-        wrap: args.wrap.flags().map(wrap),
+        wrap: args.wrap.choose(Wrap::Repeat, Wrap::Mirror),
+        ..args.node.read(&[])?
     };
     let progress = Progress::spinner("looking for features", context);
     let map = match &loaded.map {

@@ -90,7 +90,7 @@ const WRONG: [&str; 51] = [
 ];
 
 /// Command lines with a value that a library rejects, and a part of the message.
-const LIMITS: [(&str, &str); 28] = [
+const LIMITS: [(&str, &str); 31] = [
     ("bake flagston -o out/", "flagstone"),
     (
         "bake flagstone --region 60,0,8,8 --size 64 -o out/",
@@ -161,6 +161,18 @@ const LIMITS: [(&str, &str); 28] = [
     ("points --radius 3", "--radius 3: "),
     ("points --radius 0", "--radius 0: "),
     ("points nested --radii 0.1,0.2", "radius"),
+    (
+        "blend rock.png grass.png --depth 0.1 -o out.png",
+        "--depth has no effect on this blend\nhint: add --weighting height",
+    ),
+    (
+        "copies photo.png --size 64 --share 0.5 -o out.png",
+        "hint: add --method corners",
+    ),
+    (
+        "blend rock.png grass.png --tile cracks.png --gain inf -o out.png",
+        "--gain must be finite",
+    ),
 ];
 
 /// Command lines whose files do not match, and a part of the message.

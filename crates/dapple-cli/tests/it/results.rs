@@ -420,6 +420,27 @@ fn gray_layers_become_color_where_others_are() {
 }
 
 #[test]
+fn an_option_of_a_blend_that_is_not_given_has_its_default() {
+    let folder = Folder::with_inputs("defaults");
+    let run = |options: &[&str]| {
+        let layers = ["blend", "rock.png,height=rock_height.png"];
+        let output = ["grass.png,height=mask.png", "--force", "-o", "out.png"];
+        let arguments = [&layers[..], &output, options].concat();
+        assert_done(&folder.run(&arguments), "blend");
+        std::fs::read(folder.path("out.png")).unwrap()
+    };
+    for (chosen, given, other) in [
+        (&["--tile", "cracks.png"][..], ["--gain", "8"], "4"),
+        (&["--weighting", "height"], ["--depth", "0.2"], "0.4"),
+        (&["--mixing", "pyramid"], ["--levels", "4"], "2"),
+    ] {
+        let default = run(chosen);
+        assert_eq!(default, run(&[chosen, &given].concat()), "{given:?}");
+        assert_ne!(default, run(&[chosen, &[given[0], other]].concat()));
+    }
+}
+
+#[test]
 fn a_layer_over_the_ground_begins_where_the_tile_is_low() {
     let folder = Folder::with_inputs("cracks");
     let arguments = [

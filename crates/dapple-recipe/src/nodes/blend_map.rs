@@ -17,7 +17,7 @@ pub struct BlendMapOf {
     pub input: Input,
     /// Size of the features, such as the diameter of stones, in units of the plane.
     pub feature_size: f64,
-    /// Steepness of the map before its values are equalized, above 0.
+    /// Steepness of the map around its median, before values are equalized, at least 0.
     #[serde(default = "one")]
     pub contrast: f64,
 }

@@ -26,8 +26,9 @@ pub struct Disturbed {
     /// Width of the unchanged strip along each border of a copy, in pixels.
     #[serde(default = "frozen")]
     pub frozen: u32,
-    /// Width of the strip next to the unchanged one in which the cut may run, in pixels. Together, `frozen` and
-    /// `margin` are at most half of a copy's side.
+    /// Width of the strip next to the unchanged one in which the cut may run, in pixels.
+    ///
+    /// Together, `frozen` and `margin` are at most half of a copy's side.
     #[serde(default = "margin")]
     pub margin: u32,
     /// Seed, or the name of the node whose random numbers are used [default: this node's name].

@@ -1,9 +1,11 @@
 //! The methods of `dapple copies`, and their options.
 
 use crate::error::{Hint, usage};
+use crate::node::{Flag, NodeArgs, NodeFlags};
 use crate::words::NamedValueParser;
 use anyhow::Result;
 use dapple::hash::Seed;
+use dapple::raster::Named;
 use dapple::tile::{BorderSource, CornerTiles, Disturbance, Map, MatchBorders, TileError};
 use serde::Serialize;
 
@@ -25,36 +27,39 @@ dapple::raster::named! {
 
 /// Options of the method.
 #[derive(clap::Args, Clone, Debug, Serialize)]
-#[command(next_help_heading = "Method")]
 pub(super) struct MethodArgs {
     /// Method [default: by the number of tiles].
-    #[arg(long, value_parser = NamedValueParser::<Name>::all())]
+    #[arg(long, value_parser = NamedValueParser::<Name>::all(), help_heading = MethodFlags::HEADING)]
     method: Option<Name>,
 
-    /// disturb: number of unchanged pixels along the borders of a tile [default: 4, or an eighth of the shorter side].
-    #[arg(long, value_name = "PX")]
-    frozen: Option<u32>,
+    #[command(flatten)]
+    #[serde(flatten)]
+    node: NodeArgs<MethodFlags>,
+}
 
-    /// disturb: number of further pixels in which the cut may lie [default: a quarter of the shorter side].
-    ///
-    /// Together with the frozen pixels it is at most half of a side.
-    #[arg(long, value_name = "PX")]
-    margin: Option<u32>,
+/// The options of the nodes `disturb`, `match_borders` and `corner_tiles` of recipes. Widths have other defaults here,
+/// which depend on the size of the tiles.
+#[derive(Clone, Debug)]
+struct MethodFlags;
 
-    /// borders: width of the changed borders in pixels, from 1 to half of a side [default: a quarter of the shorter
-    /// side].
-    #[arg(long, value_name = "PX")]
-    width: Option<u32>,
-
-    /// borders: source of all borders: the first tile's border, or its middle if it does not repeat [default: border].
-    #[arg(long, value_name = "WHICH", value_parser = NamedValueParser::<BorderSource>::all())]
-    source: Option<BorderSource>,
-
-    /// corners: share of the shorter side that cuts may take, above 0 up to 1 [default: 0.75].
-    ///
-    /// The larger, the less the pieces look like squares.
-    #[arg(long, value_name = "PART")]
-    share: Option<f64>,
+impl NodeFlags for MethodFlags {
+    const KIND: &'static str = "";
+    const HEADING: Option<&'static str> = Some("Method");
+    const FLAGS: &'static [Flag] = &[
+        Flag::new("disturb/frozen", "frozen")
+            .only_with("method", &["disturb"])
+            .with_default("4, or an eighth of the shorter side"),
+        Flag::new("disturb/margin", "margin")
+            .only_with("method", &["disturb"])
+            .with_default("a quarter of the shorter side"),
+        Flag::new("match_borders/options/width", "width")
+            .only_with("method", &["borders"])
+            .with_default("a quarter of the shorter side"),
+        Flag::new("match_borders/options/source", "source").only_with("method", &["borders"]),
+        Flag::new("corner_tiles/width", "share")
+            .only_with("method", &["corners"])
+            .with_default("0.75"),
+    ];
 }
 
 /// A method with its options. An option is `None` if its default depends on the tiles.
@@ -85,7 +90,7 @@ impl MethodArgs {
             2..=CORNERS_MAX => Name::Corners,
             _ => Name::Borders,
         });
-        self.check_used(name)?;
+        self.node.check_used("method", &[("method", name.name())])?;
         match name {
             Name::Disturb if count != 1 => Err(usage(format!(
                 "--method disturb takes one tile, and there are {count}"
@@ -100,34 +105,17 @@ impl MethodArgs {
             ))
             .hint("take --method borders for more, or disturb for one")),
             Name::Disturb => Ok(Method::Disturb {
-                frozen: self.frozen,
-                margin: self.margin,
+                frozen: self.node.get("frozen")?,
+                margin: self.node.get("margin")?,
             }),
             Name::Corners => Ok(Method::Corners {
-                share: self.share.unwrap_or(0.75),
+                share: self.node.get("share")?.unwrap_or_default(),
             }),
             Name::Borders => Ok(Method::Borders {
-                width: self.width,
-                source: self.source.unwrap_or_default(),
+                width: self.node.get("width")?,
+                source: self.node.get("source")?.unwrap_or_default(),
             }),
         }
-    }
-
-    /// Returns an error if an option of another method is given, which would have no effect.
-    fn check_used(&self, method: Name) -> Result<()> {
-        for (option, is_given, used_by) in [
-            ("frozen", self.frozen.is_some(), Name::Disturb),
-            ("margin", self.margin.is_some(), Name::Disturb),
-            ("width", self.width.is_some(), Name::Borders),
-            ("source", self.source.is_some(), Name::Borders),
-            ("share", self.share.is_some(), Name::Corners),
-        ] {
-            if is_given && method != used_by {
-                let message = format!("--{option} has no effect on this method");
-                return Err(usage(message).hint(format!("add --method {used_by}")));
-            }
-        }
-        Ok(())
     }
 }
 

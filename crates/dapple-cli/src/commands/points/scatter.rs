@@ -234,12 +234,11 @@ impl ScatterArgs {
             value.max(0.0)
         });
         let places = density.size().map(|side| side.min(PLACES_MAX));
-        let repeats = |wraps| if wraps { Wrap::Repeat } else { Wrap::Clamp };
         let density = Varying::Raster {
             raster: Arc::new(density),
             origin: from,
             extent: domain.size,
-            wrap: domain.wrap.map(repeats),
+            wrap: self.wrap.choose(Wrap::Repeat, Wrap::Clamp),
         };
         let radius = gentle_radius_for_count(domain, &density, count.into(), places);
         radius.map_err(advise).with_context(|| input::name(path))
