@@ -59,6 +59,30 @@ dapple_raster::error! {
             /// Value of the pixel.
             value: f32,
         } => "the pixel in column {column} and row {row} is {value}, but all must be finite";
+        /// A corner of a quadrilateral is outside of the image.
+        CornerOutside {
+            /// Number of the corner, from 1.
+            corner: u32,
+            /// Position in pixels, x first.
+            position: [f64; 2],
+            /// Size of the image in pixels.
+            size: [u32; 2],
+        } =>
+            "corner {corner} at ({}, {}) is outside of the image of {} × {} pixels",
+            position[0], position[1], size[0], size[1];
+        /// The corners of a quadrilateral are not in clockwise order around a convex shape.
+        NotConvex {
+            /// Number of the corner where the shape is not convex, from 1.
+            corner: u32,
+            /// Cross product of the sides at the corner, in square pixels; positive for a clockwise turn.
+            turn: f64,
+        } =>
+            "the corners must go clockwise around a convex quadrilateral, but the cross product of the sides at corner \
+             {corner} is {turn}; at least 1 is needed";
+        /// Normals were given to an operation that changes the perspective.
+        NormalsInPerspective =>
+            "normals cannot be rectified, since their slopes depend on the view; rectify the heights, and compute normals \
+             from them";
         /// Cancelled by the caller's callback.
         Cancelled => "the callback asked to stop";
     }

@@ -31,6 +31,7 @@
 //! | make one raster repeat | [`Seamless::apply`] | depends on the [`Method`], below |
 //! | make a color image repeat | [`Seamless::apply_color`] | all channels together |
 //! | make all maps of a material repeat | [`Seamless::apply_maps`] | one cut for all maps |
+//! | prepare a photograph | [`even_out`], [`rectify`], [`resize`] | |
 //! | measure a seam | [`SeamReport`], [`SeamReports`] for all channels | |
 //! | fill any size | [`repeat`], [`repeat_into`] | 0.18 ns/pixel from a tile of 128 × 128 |
 //! | vary the copies | [`Disturbance`] | |
@@ -89,6 +90,7 @@ mod error;
 mod map;
 
 mod photo;
+mod rectify;
 
 mod seamless;
 
@@ -137,6 +139,7 @@ pub use match_borders::{BorderSource, MatchBorders};
 pub use photo::{even_out, resize};
 pub use pyramid::Pyramid;
 pub use rank::rank_equalize;
+pub use rectify::rectify;
 pub use repeat::{repeat, repeat_into};
 pub use report::{
     ChannelReport, DetailKept, Fault, Seam, SeamOptions, SeamRatio, SeamReport, SeamReports,
