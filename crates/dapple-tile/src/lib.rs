@@ -136,7 +136,7 @@ pub use error::{IsCancelled, TileError, TileErrorKind};
 pub use gauss::blur;
 pub use map::Map;
 pub use match_borders::{BorderSource, MatchBorders};
-pub use photo::{even_out, resize};
+pub use photo::{even_out, resample_with_alpha, resize};
 pub use pyramid::Pyramid;
 pub use rank::rank_equalize;
 pub use rectify::rectify;

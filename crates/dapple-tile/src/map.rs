@@ -146,7 +146,9 @@ pub(crate) fn color_from_planes(planes: Vec<Raster<f32>>) -> Result<Raster<Linea
 }
 
 /// Converts the planes to an array of exactly `N` planes.
-fn exactly<const N: usize>(planes: Vec<Raster<f32>>) -> Result<[Raster<f32>; N], TileError> {
+pub(crate) fn exactly<const N: usize>(
+    planes: Vec<Raster<f32>>,
+) -> Result<[Raster<f32>; N], TileError> {
     planes.try_into().map_err(|planes: Vec<_>| {
         TileError::new(TileErrorKind::Count {
             what: "planes",

@@ -1,6 +1,8 @@
 //! Prepares photographs for tiles: evens out their light, and resamples the tile.
 
+use crate::map::{color_from_planes, exactly};
 use crate::{Map, TileError};
+use dapple_color::LinearRgb;
 use dapple_raster::glam::DVec2;
 use dapple_raster::{Range, Raster, Wrap, parallel, range};
 
@@ -203,18 +205,64 @@ fn slow_part(plane: &Raster<f32>, columns: &Cells, rows: &Cells, radius: f64) ->
 ///
 /// [`TileErrorKind::Raster`](crate::TileErrorKind::Raster) if the new size has no pixels or too many.
 pub fn resize(map: &Map, size: [u32; 2], wrap: [Wrap; 2]) -> Result<Map, TileError> {
-    let area = DVec2::new(1.0 / f64::from(size[0]), 1.0 / f64::from(size[1]));
-    let resized = map.planes().into_iter().map(|plane| {
-        let mut resized = Raster::filled(size, 0.0)?;
-        parallel::for_each_chunk(resized.pixels_mut(), size[0] as usize, |row, pixels| {
-            for (column, pixel) in pixels.iter_mut().enumerate() {
-                let uv = (DVec2::new(column as f64, row as f64) + 0.5) * area;
-                *pixel = plane.sample_area(uv, area, wrap);
-            }
-        });
-        Ok(resized)
-    });
+    let planes = map.planes().into_iter();
+    let resized = planes.map(|plane| resize_plane(&plane, size, wrap));
     map.with_planes(resized.collect::<Result<_, TileError>>()?)
+}
+
+/// Resamples a plane; see [`resize`].
+pub(crate) fn resize_plane(
+    plane: &Raster<f32>,
+    size: [u32; 2],
+    wrap: [Wrap; 2],
+) -> Result<Raster<f32>, TileError> {
+    let area = DVec2::new(1.0 / f64::from(size[0]), 1.0 / f64::from(size[1]));
+    let mut resized = Raster::filled(size, 0.0)?;
+    parallel::for_each_chunk(resized.pixels_mut(), size[0] as usize, |row, pixels| {
+        for (column, pixel) in pixels.iter_mut().enumerate() {
+            let uv = (DVec2::new(column as f64, row as f64) + 0.5) * area;
+            *pixel = plane.sample_area(uv, area, wrap);
+        }
+    });
+    Ok(resized)
+}
+
+/// Resamples colors with straight alpha by `resample`, such as [`resize`]. Each color counts by its alpha, so that the
+/// colors of clear pixels do not bleed in. Where the new alpha is 0, the color is 0.
+///
+/// # Errors
+///
+/// Those of `resample`, and [`TileErrorKind::Raster`](crate::TileErrorKind::Raster) if the sizes differ.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_tile::color::LinearRgb;
+/// use dapple_tile::raster::{Raster, Wrap};
+/// use dapple_tile::{resample_with_alpha, resize};
+///
+/// // Every other pixel is white and opaque, and the others are black and clear.
+/// let alpha = Raster::from_fn([4, 4], |x, _| (x % 2) as f32)?;
+/// let colors = alpha.map(|&alpha| LinearRgb::gray(alpha));
+/// let half = |map: &_| resize(map, [2, 2], [Wrap::Repeat; 2]);
+/// let (colors, alpha) = resample_with_alpha(&colors, &alpha, half)?;
+/// assert_eq!((colors.row(0)[0], alpha.row(0)[0]), (LinearRgb::WHITE, 0.5));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn resample_with_alpha(
+    colors: &Raster<LinearRgb>,
+    alpha: &Raster<f32>,
+    resample: impl Fn(&Map) -> Result<Map, TileError>,
+) -> Result<(Raster<LinearRgb>, Raster<f32>), TileError> {
+    let weighted = colors.zip_map(alpha, |&color, &alpha| color * alpha)?;
+    let planes = |map: &Map| Ok::<_, TileError>(resample(map)?.planes());
+    let sums = color_from_planes(planes(&Map::Color(weighted))?)?;
+    let [alpha] = exactly(planes(&Map::Value(alpha.clone()))?)?;
+    let color = |&sum: &LinearRgb, &alpha: &f32| match alpha > 0.0 {
+        true => sum * (1.0 / alpha),
+        false => sum,
+    };
+    Ok((sums.zip_map(&alpha, color)?, alpha))
 }
 
 #[cfg(test)]
