@@ -32,6 +32,7 @@
 //! | make a color image repeat | [`Seamless::apply_color`] | all channels together |
 //! | make all maps of a material repeat | [`Seamless::apply_maps`] | one cut for all maps |
 //! | prepare a photograph | [`even_out`], [`rectify`], [`resize`] | |
+//! | estimate height and roughness from a photograph | [`estimate_material`] | |
 //! | measure a seam | [`SeamReport`], [`SeamReports`] for all channels | |
 //! | fill any size | [`repeat`], [`repeat_into`] | 0.18 ns/pixel from a tile of 128 × 128 |
 //! | vary the copies | [`Disturbance`] | |
@@ -89,6 +90,7 @@
 mod error;
 mod map;
 
+mod estimate;
 mod photo;
 mod rectify;
 
@@ -133,6 +135,7 @@ pub use corner::CornerTiles;
 pub use crossfade::Crossfade;
 pub use disturb::Disturbance;
 pub use error::{IsCancelled, TileError, TileErrorKind};
+pub use estimate::{Estimate, EstimateOptions, estimate_material};
 pub use gauss::blur;
 pub use map::Map;
 pub use match_borders::{BorderSource, MatchBorders};
