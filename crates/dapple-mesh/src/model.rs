@@ -78,8 +78,20 @@ pub struct Material {
     pub metallic_roughness: Option<EncodedImage>,
     /// Texture with ambient occlusion in red. It may be the metallic-roughness image, which then packs all three.
     pub occlusion: Option<EncodedImage>,
+    /// Texture of the emitted light, encoded as sRGB.
+    pub emission: Option<EncodedImage>,
+    /// Factor multiplied with the emission texture [default: 1].
+    pub emission_strength: f32,
+    /// Texture with the strength of the specular reflection of nonmetals in alpha.
+    pub specular: Option<EncodedImage>,
+    /// Texture with the strength of a clear coat in red.
+    pub clearcoat: Option<EncodedImage>,
+    /// Roughness of the clear coat, from 0 to 1 [default: 0].
+    pub clearcoat_roughness: f32,
     /// How the base color's alpha is interpreted.
     pub alpha: AlphaMode,
+    /// Lowest alpha that is opaque in [`AlphaMode::Mask`], from 0 to 1 [default: ½].
+    pub alpha_cutoff: f32,
     /// Whether textures may use coarser mipmap levels [default: true]. Where islands of an atlas are close together,
     /// coarse levels mix islands that are far apart on the mesh.
     pub mipmaps: bool,
@@ -94,7 +106,7 @@ pub enum AlphaMode {
     /// Alpha is ignored and the surface is opaque. If the base color factor is not opaque, the surface blends.
     #[default]
     Opaque,
-    /// Alpha of at least one half is opaque, and lower alpha is fully transparent.
+    /// Alpha of at least [`Material::alpha_cutoff`] is opaque, and lower alpha is fully transparent.
     Mask,
     /// Alpha blends the surface with the background.
     Blend,
@@ -169,8 +181,8 @@ impl Model {
     /// # Errors
     ///
     /// [`MeshErrorKind::Count`] if the length of an attribute does not match the mesh; [`MeshErrorKind::Range`] if a
-    /// component of a color is not finite, or a component of a normal or texture coordinate is not between -1e30 and
-    /// 1e30.
+    /// component of a color or a number of the material is not finite, or a component of a normal or texture coordinate
+    /// is not between -1e30 and 1e30.
     pub fn check(&self) -> Result<(), MeshError> {
         let (vertices, faces) = (self.mesh.positions().len(), self.mesh.faces().len());
         if let Some(colors) = &self.colors {
@@ -197,7 +209,15 @@ impl Model {
                 check_part("texture coordinate", part)?;
             }
         }
-        check_color("base color factor", self.material.base_color_factor)
+        let material = &self.material;
+        for (what, number) in [
+            ("emission strength", material.emission_strength),
+            ("clear coat roughness", material.clearcoat_roughness),
+            ("alpha cutoff", material.alpha_cutoff),
+        ] {
+            MeshError::check(number.is_finite(), what, f64::from(number), "finite")?;
+        }
+        check_color("base color factor", material.base_color_factor)
     }
 }
 
@@ -219,7 +239,13 @@ impl Default for Material {
             normal: None,
             metallic_roughness: None,
             occlusion: None,
+            emission: None,
+            emission_strength: 1.0,
+            specular: None,
+            clearcoat: None,
+            clearcoat_roughness: 0.0,
             alpha: AlphaMode::Opaque,
+            alpha_cutoff: 0.5,
             mipmaps: true,
             double_sided: false,
         }

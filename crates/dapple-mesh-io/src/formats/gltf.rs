@@ -11,7 +11,7 @@
 //!
 //! Textures are copied unchanged if they are PNG or JPEG and use the same texture coordinates as the base color,
 //! whose `KHR_texture_transform` is applied to the corners. Everything else in a file that a
-//! [`Material`](dapple_mesh::Material) cannot represent, such as an alpha cutoff other than one half, is listed in
+//! [`Material`](dapple_mesh::Material) cannot represent, such as emission, is listed in
 //! [`Model::left_out`].
 //!
 //! At a seam of the texture, a glTF file has two vertices at one position; [`Mesh::repair`](dapple_mesh::Mesh::repair)

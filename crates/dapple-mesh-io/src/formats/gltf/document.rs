@@ -160,7 +160,7 @@ pub(super) struct Material {
     pub(super) alpha_mode: Option<Box<str>>,
     #[serde(default)]
     pub(super) double_sided: bool,
-    pub(super) alpha_cutoff: Option<f64>,
+    pub(super) alpha_cutoff: Option<f32>,
     pub(super) emissive_factor: Option<Box<[f64; 3]>>,
     pub(super) emissive_texture: Option<IgnoredAny>,
     pub(super) extensions: Option<BTreeMap<String, IgnoredAny>>,

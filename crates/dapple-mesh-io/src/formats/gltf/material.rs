@@ -109,6 +109,7 @@ impl Source<'_> {
                 Some("BLEND") => AlphaMode::Blend,
                 _ => AlphaMode::Opaque,
             },
+            alpha_cutoff: material.alpha_cutoff.unwrap_or(0.5),
             double_sided: material.double_sided,
             ..Material::default()
         };
@@ -179,7 +180,6 @@ fn left_out_of(material: &Entry) -> Vec<&str> {
     };
     let number = |number: Option<f64>, plain: f64| number.is_some_and(|number| number != plain);
     let (normal, occlusion) = (&material.normal_texture, &material.occlusion_texture);
-    let is_mask = material.alpha_mode.as_deref() == Some("MASK");
     let emits = material
         .emissive_factor
         .as_deref()
@@ -206,7 +206,6 @@ fn left_out_of(material: &Entry) -> Vec<&str> {
             "emissiveTexture",
             emits && material.emissive_texture.is_some(),
         ),
-        ("alphaCutoff", is_mask && number(material.alpha_cutoff, 0.5)),
     ];
     let properties = all.into_iter().filter(|(_, is_there)| *is_there);
     let extensions = material

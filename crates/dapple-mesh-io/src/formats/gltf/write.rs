@@ -51,6 +51,8 @@ struct Split {
 /// - Colors are clamped to 0 to 1. Without texture coordinates, textures are omitted.
 /// - The material is rough and not metallic unless a texture defines both. It is double-sided if the model is, or if
 ///   the mesh is open. Its alpha mode is blend if the model's is opaque but the base color factor is not.
+/// - Emission, specular and clear coat are written as `emissiveTexture`, `KHR_materials_emissive_strength`,
+///   `KHR_materials_specular` and `KHR_materials_clearcoat`. The reader lists these as left out.
 /// - If the material disallows mipmaps, the samplers have a minification filter without them; otherwise viewers may
 ///   use any number of levels.
 /// - A model without faces becomes a point cloud, and a model without vertices an empty scene.
@@ -80,7 +82,11 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
             None => json!([{ "mesh": 0 }]),
         };
         document["meshes"] = json!([{ "primitives": [primitive] }]);
-        document["materials"] = json!([material(model, &mut bin)]);
+        let material = material(model, &mut bin);
+        if let Some(extensions) = material["extensions"].as_object() {
+            document["extensionsUsed"] = extensions.keys().cloned().collect();
+        }
+        document["materials"] = json!([material]);
         document["accessors"] = bin.accessors.into();
         document["bufferViews"] = bin.views.into();
         document["buffers"] = json!([{ "byteLength": bin.bytes.len() }]);
@@ -184,12 +190,43 @@ fn material(model: &Model, bin: &mut Bin) -> Value {
     if let Some(texture) = occlusion {
         value["occlusionTexture"] = texture;
     }
+    let mut extensions = Map::new();
+    if let Some(texture) = texture(&material.emission) {
+        value["emissiveTexture"] = texture;
+        // A factor above 1 needs an extension.
+        let strength = material.emission_strength.max(0.0);
+        value["emissiveFactor"] = json!([strength.min(1.0), strength.min(1.0), strength.min(1.0)]);
+        if strength > 1.0 {
+            let strength = json!({ "emissiveStrength": strength });
+            extensions.insert("KHR_materials_emissive_strength".into(), strength);
+        }
+    }
+    if let Some(texture) = texture(&material.specular) {
+        let specular = json!({ "specularTexture": texture });
+        extensions.insert("KHR_materials_specular".into(), specular);
+    }
+    if let Some(texture) = texture(&material.clearcoat) {
+        let clearcoat = json!({
+            "clearcoatFactor": 1.0,
+            "clearcoatTexture": texture,
+            "clearcoatRoughnessFactor": material.clearcoat_roughness.clamp(0.0, 1.0),
+        });
+        extensions.insert("KHR_materials_clearcoat".into(), clearcoat);
+    }
+    if !extensions.is_empty() {
+        value["extensions"] = extensions.into();
+    }
     if material.double_sided || is_open(&model.mesh) {
         value["doubleSided"] = true.into();
     }
     let is_clear = material.base_color_factor.alpha < 1.0;
     match material.alpha {
-        AlphaMode::Mask => value["alphaMode"] = "MASK".into(),
+        AlphaMode::Mask => {
+            value["alphaMode"] = "MASK".into();
+            if material.alpha_cutoff != 0.5 {
+                value["alphaCutoff"] = material.alpha_cutoff.max(0.0).into();
+            }
+        }
         AlphaMode::Blend => value["alphaMode"] = "BLEND".into(),
         _ if is_clear => value["alphaMode"] = "BLEND".into(),
         _ => {}

@@ -298,14 +298,12 @@ fn other_parts_of_a_file_are_listed() {
             .push(lines);
         let material = &mut document["materials"][0];
         material["emissiveFactor"] = json!([1, 0, 0]);
-        material["alphaMode"] = "MASK".into();
-        material["alphaCutoff"] = 0.2.into();
         material["pbrMetallicRoughness"]["metallicFactor"] = 1.into();
         material["extensions"] = json!({ "KHR_materials_sheen": {} });
     });
     let want = [
         "lines",
-        "properties of the material: metallicFactor, emissiveFactor, alphaCutoff, KHR_materials_sheen",
+        "properties of the material: metallicFactor, emissiveFactor, KHR_materials_sheen",
         "the animations",
     ];
     assert_eq!(all, want);
