@@ -3,9 +3,10 @@
 use crate::encode::Format;
 use crate::encode::n_clipped;
 use anyhow::{Result, anyhow};
+use dapple::color::LinearRgba;
 use dapple::image::{Content, ImageError, RowWriter};
 use dapple::raster::Raster;
-use dapple::recipe::{Band, MapKind, MapRows};
+use dapple::recipe::{Band, MapKind, MapRows, Material};
 use dapple::tile::repeat;
 use std::borrow::Cow;
 use std::fmt;
@@ -23,6 +24,10 @@ pub(crate) struct Image {
 pub(crate) enum Layers {
     /// The channels of one map.
     Map(MapKind),
+    /// The base color with the opacity as alpha.
+    AlbedoOpacity,
+    /// A single channel.
+    Gray(Channel),
     /// Four independent channels: red, green, blue and alpha.
     Rgba([Channel; 4]),
 }
@@ -34,6 +39,8 @@ pub(crate) enum Channel {
     Of(MapKind),
     /// One minus a map of numbers.
     OneLess(MapKind),
+    /// Half of a map of numbers.
+    Half(MapKind),
     /// A constant number.
     Always(f32),
 }
@@ -41,14 +48,32 @@ pub(crate) enum Channel {
 /// Consecutive rows of an image.
 pub(crate) enum LayerRows<'a> {
     Map(Cow<'a, MapRows>),
+    ColorAlpha(Raster<LinearRgba>),
     Rgba(Raster<[f32; 4]>),
 }
 
 impl Layers {
+    /// Returns the layers of an image for a material: without opacity if the material is opaque; `None` if the material
+    /// lacks a map of the image.
+    pub(crate) fn of(self, material: &Material) -> Option<Self> {
+        match self {
+            Self::AlbedoOpacity if !material.has(MapKind::Opacity) => {
+                Some(Self::Map(MapKind::Albedo))
+            }
+            layers => layers
+                .kinds()
+                .into_iter()
+                .all(|kind| material.has(kind))
+                .then_some(layers),
+        }
+    }
+
     /// Returns the maps that the channels need.
     pub(crate) fn kinds(&self) -> Vec<MapKind> {
         match self {
             Self::Map(kind) => vec![*kind],
+            Self::AlbedoOpacity => vec![MapKind::Albedo, MapKind::Opacity],
+            Self::Gray(channel) => channel.kind().into_iter().collect(),
             Self::Rgba(channels) => channels.iter().filter_map(Channel::kind).collect(),
         }
     }
@@ -57,6 +82,8 @@ impl Layers {
     pub(crate) fn content(&self) -> Content {
         match self {
             Self::Map(kind) => kind.content(),
+            Self::AlbedoOpacity => Content::ColorAlpha,
+            Self::Gray(_) => Content::Gray,
             Self::Rgba(_) => Content::PackedFour,
         }
     }
@@ -74,6 +101,19 @@ impl Layers {
     pub(crate) fn rows<'a>(&self, band: &'a Band) -> Result<LayerRows<'a>> {
         match self {
             Self::Map(kind) => Ok(LayerRows::Map(Cow::Borrowed(map_of(*kind, band)?))),
+            Self::AlbedoOpacity => {
+                let opacity = numbers_of(MapKind::Opacity, band)?;
+                let MapRows::Color(albedo) = map_of(MapKind::Albedo, band)? else {
+                    return Err(anyhow!("the map albedo has no colors"));
+                };
+                let pixels = albedo.zip_map(opacity, |&color, &alpha| LinearRgba { color, alpha });
+                Ok(LayerRows::ColorAlpha(pixels?))
+            }
+            Self::Gray(channel) => {
+                let kind = channel.kind().unwrap_or(MapKind::Height);
+                let pixels = numbers_of(kind, band)?.map(|&number| channel.value(Some(number)));
+                Ok(LayerRows::Map(Cow::Owned(MapRows::Gray(pixels))))
+            }
             Self::Rgba(channels) => {
                 let size = band.maps.first().map_or([0; 2], |(_, rows)| rows.size());
                 let mut pixels = vec![[0.0; 4]; size[0] as usize * size[1] as usize];
@@ -93,7 +133,7 @@ impl Layers {
 impl Channel {
     fn kind(&self) -> Option<MapKind> {
         match self {
-            Self::Of(kind) | Self::OneLess(kind) => Some(*kind),
+            Self::Of(kind) | Self::OneLess(kind) | Self::Half(kind) => Some(*kind),
             Self::Always(_) => None,
         }
     }
@@ -103,6 +143,7 @@ impl Channel {
         match self {
             Self::Of(_) => number.unwrap_or_default(),
             Self::OneLess(_) => 1.0 - number.unwrap_or_default(),
+            Self::Half(_) => 0.5 * number.unwrap_or_default(),
             Self::Always(value) => value,
         }
     }
@@ -113,6 +154,9 @@ impl fmt::Display for Layers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Map(MapKind::Albedo) => f.write_str("albedo in sRGB"),
+            Self::Map(MapKind::Emission) => f.write_str("emission in sRGB"),
+            Self::AlbedoOpacity => f.write_str("albedo in sRGB, with opacity in A if there is any"),
+            Self::Gray(channel) => channel.fmt(f),
             Self::Map(MapKind::Orm) => f.write_str("R ao, G roughness, B metallic"),
             Self::Map(kind) => f.write_str(kind.name()),
             Self::Rgba(channels) => {
@@ -128,6 +172,7 @@ impl fmt::Display for Channel {
         match self {
             Self::Of(kind) => f.write_str(kind.name()),
             Self::OneLess(kind) => write!(f, "1 - {}", kind.name()),
+            Self::Half(kind) => write!(f, "0.5 {}", kind.name()),
             Self::Always(value) => write!(f, "{value}"),
         }
     }
@@ -141,6 +186,7 @@ impl LayerRows<'_> {
     ) -> Result<(), ImageError> {
         match self {
             Self::Rgba(rows) => writer.write_packed_four(rows.view()),
+            Self::ColorAlpha(rows) => writer.write_color_alpha(rows.view()),
             Self::Map(rows) => rows.write(writer),
         }
     }
@@ -149,16 +195,8 @@ impl LayerRows<'_> {
     pub(crate) fn range(&self, range: [f32; 2]) -> [f32; 2] {
         match self {
             Self::Map(rows) => rows.range(range),
-            Self::Rgba(rows) => {
-                let numbers = rows
-                    .pixels()
-                    .iter()
-                    .flatten()
-                    .filter(|number| number.is_finite());
-                numbers.fold(range, |[min, max], &number| {
-                    [min.min(number), max.max(number)]
-                })
-            }
+            Self::ColorAlpha(rows) => widened(range, rows.pixels().iter().flat_map(four)),
+            Self::Rgba(rows) => widened(range, rows.pixels().iter().copied().flatten()),
         }
     }
 
@@ -172,6 +210,7 @@ impl LayerRows<'_> {
                 MapRows::Normal(_) => 0,
                 MapRows::Packed(rows) => n_clipped(rows, |parts| *parts),
             },
+            Self::ColorAlpha(rows) => n_clipped(rows, four),
             Self::Rgba(rows) => n_clipped(rows, |parts| *parts),
         }
     }
@@ -184,6 +223,7 @@ impl LayerRows<'_> {
         }
         let rows = match self {
             Self::Rgba(rows) => return Ok(LayerRows::Rgba(twice(rows)?)),
+            Self::ColorAlpha(rows) => return Ok(LayerRows::ColorAlpha(twice(rows)?)),
             Self::Map(rows) => match rows.as_ref() {
                 MapRows::Gray(rows) => MapRows::Gray(twice(rows)?),
                 MapRows::Color(rows) => MapRows::Color(twice(rows)?),
@@ -193,6 +233,20 @@ impl LayerRows<'_> {
         };
         Ok(LayerRows::Map(Cow::Owned(rows)))
     }
+}
+
+/// Returns the channels of a color with alpha.
+fn four(pixel: &LinearRgba) -> [f32; 4] {
+    let [r, g, b] = pixel.color.to_array();
+    [r, g, b, pixel.alpha]
+}
+
+/// Extends `range`, a minimum and a maximum, to include the finite numbers.
+fn widened(range: [f32; 2], numbers: impl Iterator<Item = f32>) -> [f32; 2] {
+    let numbers = numbers.filter(|number| number.is_finite());
+    numbers.fold(range, |[min, max], number| {
+        [min.min(number), max.max(number)]
+    })
 }
 
 /// Returns the rows of a map in a band.

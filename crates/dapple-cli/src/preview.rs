@@ -15,6 +15,20 @@ const SIDE: u32 = 512;
 /// Pixels along the longer side of the baked maps.
 const TILE: u32 = 512;
 
+/// The maps of a preview, of which the last four are optional.
+const MAPS: [MapKind; 7] = [
+    MapKind::Normal,
+    MapKind::Albedo,
+    MapKind::Orm,
+    MapKind::Emission,
+    MapKind::Opacity,
+    MapKind::Specular,
+    MapKind::Clearcoat,
+];
+
+/// The color behind transparent parts of a material.
+const BEHIND: LinearRgb = LinearRgb::gray(0.25);
+
 /// Major and minor radius of the torus: those of the ring and of its tube.
 const RING: [f64; 2] = [0.9, 0.4];
 
@@ -37,6 +51,13 @@ struct Maps {
     albedo: Raster<LinearRgb>,
     /// Occlusion, roughness and metallic, packed.
     orm: Raster<Vec3>,
+    emission: Option<Raster<LinearRgb>>,
+    emission_strength: f32,
+    opacity: Option<Raster<f32>>,
+    /// Opacity below which a pixel is transparent; `None` to blend.
+    opacity_cutoff: Option<f32>,
+    specular: Option<Raster<f32>>,
+    clearcoat: Option<Raster<f32>>,
     /// Number of repeats of the tile along u and v.
     tiles: DVec2,
 }
@@ -101,9 +122,11 @@ impl Maps {
         let side = |extent: f64| (extent / longer * f64::from(TILE)).round().max(1.0) as u32;
         let size = recipe.extent.map(side);
         let plan = Plan::new(&recipe, images, time).map_err(advise)?;
+        let material = &recipe.material;
+        let is_there = |&kind: &MapKind| material.has(kind);
         let options = BakeOptions {
             size,
-            maps: vec![MapKind::Normal, MapKind::Albedo, MapKind::Orm],
+            maps: MAPS.into_iter().filter(is_there).collect(),
             ..BakeOptions::default()
         };
         let bake = Bake::new(&plan, &options).map_err(advise)?;
@@ -120,7 +143,22 @@ impl Maps {
         else {
             bail!("a map of the preview was not baked");
         };
+        let mut next = |kind| material.has(kind).then(|| maps.next()).flatten();
+        let emission = match next(MapKind::Emission) {
+            Some(MapRows::Color(emission)) => Some(emission),
+            _ => None,
+        };
+        let mut gray = |kind| match next(kind) {
+            Some(MapRows::Gray(numbers)) => Some(numbers),
+            _ => None,
+        };
         Ok(Self {
+            emission,
+            emission_strength: material.emission_strength.unwrap_or(1.0) as f32,
+            opacity: gray(MapKind::Opacity),
+            opacity_cutoff: material.opacity_cutoff.map(|cutoff| cutoff as f32),
+            specular: gray(MapKind::Specular),
+            clearcoat: gray(MapKind::Clearcoat),
             normal: normal.map(|normal| Vec3::from(normal.to_array())),
             albedo,
             orm: orm.map(|&orm| Vec3::from(orm)),
@@ -140,10 +178,54 @@ impl Maps {
         let [right, up] = directions(surface);
         // Limit the slope, which is infinite where a normal is horizontal.
         let slope = normal.as_dvec3() / f64::from(normal.z.max(0.05));
-        Material::matte(color * free)
+        let number = |map: &Option<Raster<f32>>, default| match map {
+            Some(map) => map.sample_bilinear(uv, wrap),
+            None => default,
+        };
+        let specular = number(&self.specular, 1.0);
+        let coat = number(&self.clearcoat, 0.0).clamp(0.0, 1.0);
+        let metal = metallic * gloss * gloss * 0.6;
+        let mirror = match coat > metal {
+            true => Mirror::Fresnel(0.04 * coat),
+            false => Mirror::Constant(metal),
+        };
+        let mut material = Material::matte(color * free)
             .with_bump(-slope.x * right - slope.y * up)
-            .with_specular(gloss * (0.1 + 0.6 * metallic), 2.0 / (rough * rough))
-            .with_mirror(Mirror::Constant(metallic * gloss * gloss * 0.6))
+            .with_specular(
+                gloss * (0.1 * specular + 0.6 * metallic),
+                2.0 / (rough * rough),
+            )
+            .with_mirror(mirror);
+        if let Some(emission) = &self.emission {
+            let emission = emission.sample_bilinear(uv, wrap) * self.emission_strength;
+            material = material.with_emission(emission);
+        }
+        let opacity = number(&self.opacity, 1.0);
+        let opacity = match self.opacity_cutoff {
+            Some(cutoff) => f32::from(u8::from(opacity >= cutoff)),
+            None => opacity.clamp(0.0, 1.0),
+        };
+        see_through(material, opacity)
+    }
+}
+
+/// Mixes a material with the gray of [`BEHIND`], as if a wall was right behind a transparent surface.
+fn see_through(material: Material, opacity: f32) -> Material {
+    if opacity >= 1.0 {
+        return material;
+    }
+    let behind = BEHIND * (1.0 - opacity);
+    Material {
+        color: material.color * opacity,
+        emission: material.emission * opacity + behind,
+        bump: material.bump * f64::from(opacity),
+        specular: material.specular * opacity,
+        mirror: if opacity > 0.5 {
+            material.mirror
+        } else {
+            Mirror::None
+        },
+        ..material
     }
 }
 

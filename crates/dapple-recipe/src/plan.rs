@@ -140,12 +140,25 @@ pub(crate) struct Channels {
     pub(crate) albedo: usize,
     pub(crate) roughness: usize,
     pub(crate) metallic: usize,
+    pub(crate) emission: usize,
+    pub(crate) opacity: usize,
+    pub(crate) specular: usize,
+    pub(crate) clearcoat: usize,
 }
 
 impl Channels {
-    /// Returns the four steps, in a fixed order.
-    pub(crate) fn steps(&self) -> [usize; 4] {
-        [self.height, self.albedo, self.roughness, self.metallic]
+    /// Returns all steps, in a fixed order.
+    pub(crate) fn steps(&self) -> [usize; 8] {
+        [
+            self.height,
+            self.albedo,
+            self.roughness,
+            self.metallic,
+            self.emission,
+            self.opacity,
+            self.specular,
+            self.clearcoat,
+        ]
     }
 }
 
@@ -600,21 +613,48 @@ pub(crate) const EXTENT: Range = range!(above 0 to 1e6);
 /// The allowed range of the relief. It is far larger than textures need, and small enough that slopes and their squares
 /// stay finite.
 pub(crate) const RELIEF: Range = range!(from -1e6 to 1e6);
+/// The allowed range of the factor of the emitted light.
+pub(crate) const EMISSION: Range = range!(from 0 to 1e6);
+/// The allowed range of the cut-off of the opacity and of the roughness of the clear coat.
+pub(crate) const UNIT: Range = range!(from 0 to 1);
 
 /// Adds the steps that the material reads, after the steps of all nodes.
 fn channels(recipe: &Recipe, builder: &mut Builder<'_>) -> Result<Channels, RecipeError> {
     let material = &recipe.material;
     RecipeError::check_in(RELIEF, "relief", material.relief)?;
+    for (range, what, value) in [
+        (EMISSION, "emission strength", material.emission_strength),
+        (UNIT, "cut-off of the opacity", material.opacity_cutoff),
+        (
+            UNIT,
+            "roughness of the clear coat",
+            material.clearcoat_roughness,
+        ),
+    ] {
+        value.map_or(Ok(()), |value| RecipeError::check_in(range, what, value))?;
+    }
     let height = builder.number(&material.height)?;
     let albedo = match &material.albedo {
         Some(albedo) => builder.any(albedo)?,
         None => height,
     };
+    let emission = material.emission.as_ref();
+    let emission = builder.any(emission.unwrap_or(&Input::Color(LinearRgb::BLACK)))?;
+    let mut number = |input: &Option<Input>, default: f64| {
+        builder.number(input.as_ref().unwrap_or(&Input::Number(default)))
+    };
+    let opacity = number(&material.opacity, 1.0)?;
+    let specular = number(&material.specular, 1.0)?;
+    let clearcoat = number(&material.clearcoat, 0.0)?;
     Ok(Channels {
         height,
         albedo,
         roughness: builder.number(&material.roughness)?,
         metallic: builder.number(&material.metallic)?,
+        emission,
+        opacity,
+        specular,
+        clearcoat,
     })
 }
 

@@ -1,6 +1,6 @@
 //! Recipes as plain data, independent of their text format.
 
-use crate::{Input, Node};
+use crate::{Input, MapKind, Node};
 use dapple_color::NormalY;
 use dapple_hash::Seed;
 use indexmap::IndexMap;
@@ -109,6 +109,31 @@ pub struct Material {
     pub roughness: Input,
     /// Metalness, from 0 (no metal) to 1 (pure metal).
     pub metallic: Input,
+    /// Emitted light, as a color [default: none].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub emission: Option<Input>,
+    /// Factor of the emitted light, from 0 to 1e6 [default: 1].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(transform = { crate::plan::EMISSION }))]
+    pub emission_strength: Option<f64>,
+    /// Opacity, from 0 (transparent) to 1 (opaque) [default: opaque].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub opacity: Option<Input>,
+    /// Cut-off of the opacity, from 0 to 1: pixels are opaque at and above it, and transparent below [default: opacity
+    /// blends with the background].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(transform = { crate::plan::UNIT }))]
+    pub opacity_cutoff: Option<f64>,
+    /// Strength of the specular reflection of nonmetals, from 0 (none) to 1 (index of refraction 1.5) [default: 1].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub specular: Option<Input>,
+    /// Strength of a clear coat, such as varnish, from 0 (none) to 1 [default: none].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clearcoat: Option<Input>,
+    /// Roughness of the clear coat, from 0 to 1 [default: 0.03].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(transform = { crate::plan::UNIT }))]
+    pub clearcoat_roughness: Option<f64>,
     /// Direction of the green channel of normal maps: up, as in OpenGL, or down, as in DirectX.
     pub normal_y: NormalY,
     /// Radius of ambient occlusion, in units of the plane [default: 1/20 of the tile's shorter side].
@@ -125,9 +150,31 @@ impl Default for Material {
             albedo: None,
             roughness: Input::Number(0.8),
             metallic: Input::Number(0.0),
+            emission: None,
+            emission_strength: None,
+            opacity: None,
+            opacity_cutoff: None,
+            specular: None,
+            clearcoat: None,
+            clearcoat_roughness: None,
             normal_y: NormalY::OpenGl,
             occlusion_radius: None,
             curvature_radius: None,
+        }
+    }
+}
+
+impl Material {
+    /// Returns whether the material has this map: whether it sets the emission, opacity, specular or clear coat; true
+    /// for all other maps.
+    #[must_use]
+    pub fn has(&self, map: MapKind) -> bool {
+        match map {
+            MapKind::Emission => self.emission.is_some(),
+            MapKind::Opacity => self.opacity.is_some(),
+            MapKind::Specular => self.specular.is_some(),
+            MapKind::Clearcoat => self.clearcoat.is_some(),
+            _ => true,
         }
     }
 }

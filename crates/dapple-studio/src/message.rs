@@ -453,6 +453,10 @@ fn about(kind: MapKind) -> &'static str {
         MapKind::Roughness => "Black is a mirror, white is chalk",
         MapKind::Metallic => "White is metal",
         MapKind::Orm => "Occlusion, roughness and metallic as red, green and blue",
+        MapKind::Emission => "The light that it emits",
+        MapKind::Opacity => "Black is transparent, white is opaque",
+        MapKind::Specular => "How much nonmetals reflect",
+        MapKind::Clearcoat => "White has a clear coat, such as varnish",
         _ => "",
     }
 }

@@ -123,6 +123,9 @@ impl Picture {
                     | MapKind::Curvature
                     | MapKind::Roughness
                     | MapKind::Metallic
+                    | MapKind::Opacity
+                    | MapKind::Specular
+                    | MapKind::Clearcoat
             )
         )
     }

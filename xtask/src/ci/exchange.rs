@@ -43,10 +43,32 @@ context.registerSourceCodeSearchPath(path)
 [material] = shader.findRenderableElements(document)
 source = generator.generate('material', material, context).getSourceCode(shader.PIXEL_STAGE)
 call = next(line for line in source.splitlines() if line.strip().startswith('NG_standard_surface'))
-for name in ['base_color_out_cm_out', 'roughness_out', 'metallic_out', 'normal_out']:
+for name in ['base_color_out_cm_out', 'roughness_out', 'metallic_out', 'normal_out', 'emission_out_cm_out',
+             'opacity_out', 'specular_out', 'clearcoat_out']:
     assert ' ' + name + ',' in call, (name, call)
 assert 'NG_srgb_texture_to_lin_rec709_color3(base_color_out' in source
 print('MaterialX: valid, with a shader of', len(source.splitlines()), 'lines')
+";
+
+/// A recipe with all maps, for files that contain a whole material.
+const RECIPE: &str = "
+dapple = 1
+[nodes.cells.worley]
+frequency = 4
+[nodes.glow.ramp]
+input = 'cells'
+colors = ['#000000', '#ff8000']
+[material]
+height = 'cells'
+albedo = 'glow'
+roughness = 'cells'
+metallic = 'cells'
+emission = 'glow'
+emission_strength = 3.0
+opacity = 'cells'
+opacity_cutoff = 0.25
+specular = 'cells'
+clearcoat = 'cells'
 ";
 
 /// A script that reads a NumPy array.
@@ -107,9 +129,14 @@ pub(super) fn exchange(shell: &Shell) -> anyhow::Result<()> {
     }
     let dapple = command_of_tests(shell)?;
     let folder = shell.create_temp_dir()?;
+    let recipe = folder.path().join("all.toml");
+    shell.write_file(&recipe, RECIPE)?;
     for judge in here {
         let file = folder.path().join(judge.file);
-        let bake = cmd!(shell, "{dapple} bake rock --size 64x40 --quiet -o {file}");
+        let bake = cmd!(
+            shell,
+            "{dapple} bake {recipe} --size 64x40 --quiet -o {file}"
+        );
         let maps = judge.file.ends_with(".npy").then_some(["--maps", "normal"]);
         bake.quiet().args(maps.into_iter().flatten()).run()?;
         let asked = judge.command(shell, judge.code).arg(&file).quiet().run();

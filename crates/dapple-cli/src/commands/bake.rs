@@ -69,7 +69,8 @@ a height of 1 stands for. Normals point out of the surface; occlusion is 1 where
 sky is seen; curvature is 0.5 where it is flat. Albedo is sRGB in PNG and linear in EXR and
 NumPy arrays, and everything else is linear in all. For programs that know meters, a unit is one.";
 
-/// Bake the maps of materials from recipes: height, normal, ao, curvature, albedo, roughness, metallic, orm.
+/// Bake the maps of materials from recipes: height, normal, ao, curvature, albedo, roughness, metallic, orm, emission,
+/// opacity, specular, clearcoat.
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{}", presets::table()))]
 pub(crate) struct Args {
@@ -289,12 +290,13 @@ impl Work {
         if let Some(seed) = seed {
             recipe.name = format!("{}_{seed}", recipe.name);
         }
+        let maps = args.material.map_kinds(&recipe.material);
         let wanted = args.shard.map(|shard| Wanted {
             size: args.material.size,
             samples: args.material.samples,
             shard: shard.size,
             overlap: shard.overlap,
-            maps: args.material.map_kinds(),
+            maps: &maps,
             frames: args.frame.map(Frame::count),
             finite: args.material.finite,
         });

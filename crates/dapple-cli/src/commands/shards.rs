@@ -109,13 +109,13 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let (mut recipe, folder) = read_recipe(&args.recipe)?;
     args.material.check_single()?;
     args.material.change(&mut recipe, None)?;
-    let maps = args.material.map_kinds();
+    let maps = args.material.map_kinds(&recipe.material);
     let wanted = Wanted {
         size: args.material.size,
         samples: args.material.samples,
         shard: args.shard,
         overlap: args.overlap,
-        maps,
+        maps: &maps,
         frames: args.frames,
         finite: args.material.finite,
     };
@@ -123,7 +123,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let images = read_images(&recipe, folder, args.material.finite)?;
     let plan = Plan::new(&recipe, &images, 0.0).map_err(|error| args.material.blame(error))?;
     let first = list.tasks()?.next().map(|task| task.region);
-    check(&plan, args, first)?;
+    check(&plan, args, first, &maps)?;
     if args.frames.is_some() && !plan.moves() && !context.quiet {
         eprintln_if_possible(STILL);
     }
@@ -135,7 +135,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut out = BufWriter::new(io::stdout().lock());
     match args.format {
         ListFormat::Lines => lines(args, &options, &list, &mut out)?,
-        ListFormat::Json => json(&list, maps, &mut out)?,
+        ListFormat::Json => json(&list, &maps, &mut out)?,
         ListFormat::OpenJd => {
             let template = openjd::template(args, options, &list)?;
             serde_json::to_writer_pretty(&mut out, &template)?;
@@ -154,12 +154,12 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 }
 
 /// Checks that the bake of a shard can be set up.
-fn check(plan: &Plan, args: &Args, region: Option<Region>) -> Result<()> {
+fn check(plan: &Plan, args: &Args, region: Option<Region>, maps: &[MapKind]) -> Result<()> {
     let options = BakeOptions {
         size: args.material.size.0,
         samples: args.material.samples.samples,
         region,
-        maps: args.material.map_kinds().to_vec(),
+        maps: maps.to_vec(),
         memory: BakeMemory::Banded,
         ..BakeOptions::default()
     };

@@ -489,3 +489,93 @@ fn the_help_has_a_line_for_each_image_of_each_preset() {
         }
     }
 }
+
+/// A recipe whose material has all optional maps.
+const GLOWING: &str = r##"
+dapple = 1
+[nodes.x.coordinate]
+[material]
+height = "x"
+albedo = "#804020"
+emission = "#ff8000"
+emission_strength = 4
+opacity = "x"
+opacity_cutoff = 0.25
+specular = "x"
+clearcoat = 0.5
+"##;
+
+#[test]
+fn optional_maps_of_a_material_are_in_presets_and_documents() {
+    let folder = Folder::new("glowing");
+    fs::write(folder.path("glowing.toml"), GLOWING).unwrap();
+    let bake = |line: &str| {
+        let words: Vec<_> = line.split_whitespace().collect();
+        assert_done(&folder.run(&words), line);
+    };
+    for preset in ["unity", "unreal", "godot", "gltf", "blender", "materialx"] {
+        let line = format!("bake glowing.toml --size 8 --preset {preset} -o {preset}/");
+        bake(&line);
+    }
+    let is_there = |name: &str| folder.path(name).exists();
+    for name in [
+        "unity/glowing_Emission.png",
+        "unity/glowing_ClearCoat.png",
+        "unreal/T_glowing_Emissive.png",
+        "unreal/T_glowing_Opacity.png",
+        "godot/glowing_emission.png",
+        "gltf/glowing_specular.png",
+        "blender/glowing_alpha.png",
+        "materialx/glowing_clearcoat.png",
+    ] {
+        assert!(is_there(name), "{name}");
+    }
+    // The opacity is the alpha of the base color where a program expects it, and Unreal halves the specular.
+    let image = |name: &str| read_image(folder.path(name), &Limits::default()).unwrap();
+    let colors = image("unity/glowing_BaseMap.png").color_alpha().unwrap();
+    let alphas: Vec<_> = colors.row(0).iter().map(|pixel| pixel.alpha).collect();
+    assert!(
+        alphas.is_sorted() && alphas[0] < 0.1 && alphas[7] > 0.9,
+        "{alphas:?}"
+    );
+    let halves = image("unreal/T_glowing_Specular.png").gray().unwrap();
+    assert!((halves.row(0)[7] - 0.5 * alphas[7]).abs() < 0.01);
+    // MaterialX compares the opacity with the cut-off.
+    let document = fs::read_to_string(folder.path("materialx/glowing.mtlx")).unwrap();
+    for part in [
+        r#"<input name="emission" type="float" value="4" />"#,
+        r#"<input name="value2" type="float" value="0.25" />"#,
+        r#"<input name="opacity" type="color3" nodegraph="maps""#,
+        r#"<input name="coat_roughness" type="float" value="0.03" />"#,
+    ] {
+        assert!(document.contains(part), "{part} in {document}");
+    }
+    // By default, a bake has the optional maps that the material sets; `all` has no others.
+    for (maps, is_all) in [("", false), ("--maps all", true)] {
+        let line = format!("bake glowing.toml --size 8 {maps} -o maps{is_all}/");
+        bake(&line);
+        for map in ["emission", "opacity", "specular", "clearcoat"] {
+            assert!(
+                is_there(&format!("maps{is_all}/glowing_{map}.png")),
+                "{map}"
+            );
+        }
+    }
+    let line = "bake rock --size 8 --maps all -o rock/";
+    bake(line);
+    assert!(is_there("rock/rock_orm.png") && !is_there("rock/rock_opacity.png"));
+    let line = "bake rock --size 8 --preset unity -o rock-unity/";
+    bake(line);
+    assert!(!is_there("rock-unity/rock_Emission.png"));
+    // A map that is named is baked with its default.
+    let line = "bake rock --size 8 --maps opacity -o opaque.png";
+    bake(line);
+    assert!(
+        image("opaque.png")
+            .gray()
+            .unwrap()
+            .pixels()
+            .iter()
+            .all(|&alpha| alpha == 1.0)
+    );
+}

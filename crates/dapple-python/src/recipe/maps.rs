@@ -10,7 +10,7 @@ use pyo3::types::{PyDict, PyString};
 /// Returns the kind of a map: its content and number of channels.
 pub(super) fn kind_of(map: MapKind) -> Kind {
     let (content, n_channels) = match map {
-        MapKind::Albedo => (Content::Color, 3),
+        MapKind::Albedo | MapKind::Emission => (Content::Color, 3),
         MapKind::Normal => (Content::Normal, 3),
         MapKind::Orm => (Content::Data, 3),
         _ => (Content::Gray, 1),

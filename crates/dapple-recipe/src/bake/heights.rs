@@ -79,7 +79,13 @@ impl Heights {
                     occlusion_options(plan, extent)?.halo(window.size)
                 }
                 MapKind::Curvature => curvature_options(plan, extent)?.halo(window.size),
-                MapKind::Albedo | MapKind::Roughness | MapKind::Metallic => continue,
+                MapKind::Albedo
+                | MapKind::Roughness
+                | MapKind::Metallic
+                | MapKind::Emission
+                | MapKind::Opacity
+                | MapKind::Specular
+                | MapKind::Clearcoat => continue,
             };
             heights.wanted = true;
             heights.halo = [heights.halo[0].max(halo[0]), heights.halo[1].max(halo[1])];

@@ -10,11 +10,16 @@ impl MapKind {
     pub fn content(self) -> Content {
         match self {
             Self::Normal => Content::Normal,
-            Self::Albedo => Content::Color,
+            Self::Albedo | Self::Emission => Content::Color,
             Self::Orm => Content::Packed,
-            Self::Height | Self::Occlusion | Self::Curvature | Self::Roughness | Self::Metallic => {
-                Content::Gray
-            }
+            Self::Height
+            | Self::Occlusion
+            | Self::Curvature
+            | Self::Roughness
+            | Self::Metallic
+            | Self::Opacity
+            | Self::Specular
+            | Self::Clearcoat => Content::Gray,
         }
     }
 }

@@ -31,6 +31,14 @@ pub enum MapKind {
     Metallic,
     /// Occlusion, roughness and metalness packed into red, green and blue, as in glTF and game engines.
     Orm,
+    /// The emitted light as a color, black by default, without the material's `emission_strength`.
+    Emission,
+    /// The opacity, from 0 for transparent to 1 for opaque; 1 by default.
+    Opacity,
+    /// The strength of the specular reflection, from 0 to 1; 1 by default.
+    Specular,
+    /// The strength of the clear coat, from 0 to 1; 0 by default.
+    Clearcoat,
 }
 
 /// The side of a map at which another part of it is appended.
@@ -55,7 +63,7 @@ pub enum MapRows {
 
 impl MapKind {
     /// All map kinds, in the order of their definition.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 12] = [
         Self::Height,
         Self::Normal,
         Self::Occlusion,
@@ -64,6 +72,10 @@ impl MapKind {
         Self::Roughness,
         Self::Metallic,
         Self::Orm,
+        Self::Emission,
+        Self::Opacity,
+        Self::Specular,
+        Self::Clearcoat,
     ];
 
     /// Returns the map called `name`, which is its [name](Self::name) or an alias: `basecolor` and `base_color` for
@@ -89,6 +101,10 @@ impl MapKind {
             Self::Roughness => "roughness",
             Self::Metallic => "metallic",
             Self::Orm => "orm",
+            Self::Emission => "emission",
+            Self::Opacity => "opacity",
+            Self::Specular => "specular",
+            Self::Clearcoat => "clearcoat",
         }
     }
 }
@@ -264,6 +280,10 @@ pub(super) fn beside_height(plan: &Plan, kinds: &[MapKind]) -> Vec<usize> {
         MapKind::Roughness => vec![channels.roughness],
         MapKind::Metallic => vec![channels.metallic],
         MapKind::Orm => vec![channels.roughness, channels.metallic],
+        MapKind::Emission => vec![channels.emission],
+        MapKind::Opacity => vec![channels.opacity],
+        MapKind::Specular => vec![channels.specular],
+        MapKind::Clearcoat => vec![channels.clearcoat],
         MapKind::Height | MapKind::Normal | MapKind::Occlusion | MapKind::Curvature => Vec::new(),
     };
     kinds.iter().flat_map(of_kind).collect()
@@ -304,8 +324,14 @@ pub(super) fn maps(
             MapKind::Normal => MapRows::Normal(around.normal()?),
             MapKind::Occlusion => MapRows::Gray(around.occlusion()?.clone()),
             MapKind::Curvature => MapRows::Gray(around.curvature()?),
-            MapKind::Albedo => MapRows::Color(Raster::from_vec(band.size, local().into_colors())?),
-            MapKind::Roughness | MapKind::Metallic => {
+            MapKind::Albedo | MapKind::Emission => {
+                MapRows::Color(Raster::from_vec(band.size, local().into_colors())?)
+            }
+            MapKind::Roughness
+            | MapKind::Metallic
+            | MapKind::Opacity
+            | MapKind::Specular
+            | MapKind::Clearcoat => {
                 MapRows::Gray(Raster::from_vec(band.size, local().into_grays())?)
             }
             MapKind::Orm => {

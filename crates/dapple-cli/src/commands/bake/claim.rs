@@ -51,7 +51,7 @@ pub(super) fn claim(
         check_ending(&target, document)?;
         claimed.document = Some((job.claim(&target)?, document));
     }
-    for (_, layers, asked) in args.images() {
+    for (_, layers, asked) in args.images(&work.recipe.material) {
         if args.has_images_in_it() {
             let format = asked.unwrap_or(Format::Png8);
             claimed.images.push(Image { layers, format });
@@ -89,12 +89,12 @@ pub(super) fn claim(
 fn targets(args: &Args, files: &OutputArgs, work: &Work) -> Result<Targets> {
     if let (Some(shard), Some(list)) = (args.shard, &work.list) {
         let folder = files.output.as_deref().ok_or_else(no_folder)?;
-        return shard_targets(args, folder, shard, list);
+        return shard_targets(args, folder, shard, work, list);
     }
     let document = args.document();
     // The document is the output itself, and so has an empty part name.
     let mut parts: Vec<_> = document.iter().map(|_| String::new()).collect();
-    let images = args.images();
+    let images = args.images(&work.recipe.material);
     for (part, ..) in images.iter().filter(|_| !args.has_images_in_it()) {
         parts.push((*part).to_owned());
         parts.extend(args.sheet.then(|| format!("{part}_2x2")));
@@ -128,10 +128,16 @@ fn targets(args: &Args, files: &OutputArgs, work: &Work) -> Result<Targets> {
 
 /// Returns the paths of a shard's files. Their directory is created here and remains, since other runs may need it
 /// before this one is done.
-fn shard_targets(args: &Args, folder: &Path, shard: Shard, list: &List) -> Result<Targets> {
+fn shard_targets(
+    args: &Args,
+    folder: &Path,
+    shard: Shard,
+    work: &Work,
+    list: &List,
+) -> Result<Targets> {
     list.check_folder(folder)?;
-    let kinds = args.material.map_kinds().iter();
-    let file = |&kind: &MapKind| folder.join(list.file(args.frame, shard.place, kind));
+    let kinds = args.material.map_kinds(&work.recipe.material).into_iter();
+    let file = |kind: MapKind| folder.join(list.file(args.frame, shard.place, kind));
     let files: Vec<_> = kinds.map(file).collect();
     if let Some(folder) = files.first().and_then(|file| file.parent()) {
         Outputs::make_lasting_folder(folder)?;
@@ -209,7 +215,8 @@ impl Claimed {
             None => baking::write(job, bake, &self.files, progress),
             Some((output, Document::Glb)) => {
                 let images = baking::encode(bake, &self.images, progress)?;
-                job.write(output, &glb(recipe, images)?)
+                let layers = self.images.iter().map(|image| image.layers);
+                job.write(output, &glb(recipe, layers.zip(images))?)
             }
             Some((output, Document::Mtlx)) => {
                 baking::write(job, bake, &self.files, progress)?;

@@ -4,19 +4,21 @@
 //! Specification* and *MaterialX Standard Nodes*, version 1.38, 2021. One unit of the plane is one meter in both.
 
 use crate::layers::Layers;
-use anyhow::{Result, anyhow};
-use dapple::mesh::{EncodedImage, Material, Mesh, Model};
+use anyhow::Result;
+use dapple::mesh::{AlphaMode, EncodedImage, Material, Mesh, Model};
 use dapple::mesh_io::gltf;
 use dapple::points::glam::{DVec2, DVec3};
 use dapple::recipe::{MapKind, Recipe};
 
+/// The default roughness of a clear coat.
+const CLEARCOAT_ROUGHNESS: f64 = 0.03;
+
 /// Builds a GLB file of a horizontal rectangle with the extent of the tile. It faces up (+y), and v points toward +z.
-/// The images are, in order: base color, packed occlusion, roughness and metallic, and normals.
-pub(super) fn glb(recipe: &Recipe, images: Vec<Vec<u8>>) -> Result<Vec<u8>> {
-    let images = images.into_iter().map(EncodedImage::new);
-    let images = images.collect::<Result<Vec<_>, _>>()?;
-    let [base_color, packed, normal] =
-        <[_; 3]>::try_from(images).map_err(|_| anyhow!("a plane of glTF has three images"))?;
+/// The images are those of the preset.
+pub(super) fn glb(
+    recipe: &Recipe,
+    images: impl Iterator<Item = (Layers, Vec<u8>)>,
+) -> Result<Vec<u8>> {
     let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(DVec2::from);
     let extent = DVec2::from(recipe.extent);
     let position = |uv: DVec2| {
@@ -30,13 +32,35 @@ pub(super) fn glb(recipe: &Recipe, images: Vec<Vec<u8>>) -> Result<Vec<u8>> {
             .map(|face| face.map(|corner| corners[corner as usize]))
             .to_vec(),
     );
+    let numbers = &recipe.material;
     model.material = Material {
-        base_color: Some(base_color),
-        normal: Some(normal),
-        occlusion: Some(packed.clone()),
-        metallic_roughness: Some(packed),
+        emission_strength: numbers.emission_strength.unwrap_or(1.0) as f32,
+        clearcoat_roughness: numbers.clearcoat_roughness.unwrap_or(CLEARCOAT_ROUGHNESS) as f32,
+        alpha: match (numbers.has(MapKind::Opacity), numbers.opacity_cutoff) {
+            (false, _) => AlphaMode::Opaque,
+            (true, None) => AlphaMode::Blend,
+            (true, Some(_)) => AlphaMode::Mask,
+        },
+        alpha_cutoff: numbers.opacity_cutoff.unwrap_or(0.5) as f32,
         ..Material::default()
     };
+    let material = &mut model.material;
+    for (layers, bytes) in images {
+        let image = Some(EncodedImage::new(bytes)?);
+        let kinds = layers.kinds();
+        match kinds.as_slice() {
+            [MapKind::Albedo, ..] => material.base_color = image,
+            [MapKind::Normal] => material.normal = image,
+            [MapKind::Orm] => {
+                material.occlusion.clone_from(&image);
+                material.metallic_roughness = image;
+            }
+            [MapKind::Emission] => material.emission = image,
+            [MapKind::Specular] => material.specular = image,
+            [MapKind::Clearcoat] => material.clearcoat = image,
+            _ => {}
+        }
+    }
     Ok(gltf::write(&model)?)
 }
 
@@ -59,7 +83,7 @@ const fn wire(
     input: Option<&'static str>,
 ) -> Wire {
     let color_space = match kind {
-        MapKind::Albedo => "srgb_texture",
+        MapKind::Albedo | MapKind::Emission => "srgb_texture",
         _ => "raw",
     };
     Wire {
@@ -71,7 +95,7 @@ const fn wire(
     }
 }
 
-const WIRES: [Wire; 5] = [
+const WIRES: [Wire; 9] = [
     wire(MapKind::Albedo, "base_color", "color3", Some("base_color")),
     wire(
         MapKind::Roughness,
@@ -82,6 +106,15 @@ const WIRES: [Wire; 5] = [
     wire(MapKind::Metallic, "metallic", "float", Some("metalness")),
     wire(MapKind::Normal, "normal", "vector3", Some("normal")),
     wire(MapKind::Height, "height", "float", None),
+    wire(
+        MapKind::Emission,
+        "emission",
+        "color3",
+        Some("emission_color"),
+    ),
+    wire(MapKind::Opacity, "opacity", "color3", Some("opacity")),
+    wire(MapKind::Specular, "specular", "float", Some("specular")),
+    wire(MapKind::Clearcoat, "clearcoat", "float", Some("coat")),
 ];
 
 /// Builds a MaterialX document: a standard surface with an image for each map, referenced by file name, and a
@@ -96,13 +129,14 @@ pub(super) fn mtlx(recipe: &Recipe, files: &[(Layers, String)]) -> String {
         let Some(wire) = WIRES.iter().find(is_of) else {
             continue;
         };
-        graph += &image_node(wire, file);
+        graph += &image_node(wire, file, recipe.material.opacity_cutoff);
         let Wire {
             name, type_name, ..
         } = wire;
         outputs += &format!(
             "    <output name=\"{name}_output\" type=\"{type_name}\" nodename=\"{name}\" />\n"
         );
+        inputs += &constants(wire.kind, recipe);
         if let Some(input) = wire.input {
             inputs += &format!(
                 "    <input name=\"{input}\" type=\"{type_name}\" nodegraph=\"maps\" output=\"{name}_output\" />\n"
@@ -133,16 +167,35 @@ pub(super) fn mtlx(recipe: &Recipe, files: &[(Layers, String)]) -> String {
 /// The displacement input of a material.
 const DISPLACEMENT_INPUT: &str = "    <input name=\"displacementshader\" type=\"displacementshader\" nodename=\"displacement\" />\n";
 
-/// Returns the XML of a map's image node. For normals, it includes the node that decodes them.
-fn image_node(wire: &Wire, file: &str) -> String {
+/// Returns the XML of the constant inputs of the surface that come with a map.
+fn constants(kind: MapKind, recipe: &Recipe) -> String {
+    let material = &recipe.material;
+    let (name, value) = match kind {
+        MapKind::Emission => ("emission", material.emission_strength.unwrap_or(1.0)),
+        MapKind::Clearcoat => {
+            let roughness = material.clearcoat_roughness;
+            ("coat_roughness", roughness.unwrap_or(CLEARCOAT_ROUGHNESS))
+        }
+        _ => return String::new(),
+    };
+    format!("    <input name=\"{name}\" type=\"float\" value=\"{value}\" />\n")
+}
+
+/// Returns the XML of a map's image node. For normals, it includes the node that decodes them. For the opacity, whose
+/// input is a color, it includes the conversion, and a comparison with the cut-off if there is one.
+fn image_node(wire: &Wire, file: &str, cutoff: Option<f64>) -> String {
     let Wire {
         name,
         type_name,
         color_space,
         ..
     } = wire;
-    let is_normal = wire.kind == MapKind::Normal;
-    let image = if is_normal { "normal_image" } else { name };
+    let (is_normal, is_opacity) = (wire.kind == MapKind::Normal, wire.kind == MapKind::Opacity);
+    let image = match is_normal || is_opacity {
+        true => &format!("{name}_image"),
+        false => *name,
+    };
+    let type_name = if is_opacity { "float" } else { type_name };
     let file = escaped(file);
     let mut text = format!(
         r#"    <image name="{image}" type="{type_name}">
@@ -157,6 +210,27 @@ fn image_node(wire: &Wire, file: &str) -> String {
             r#"    <normalmap name="{name}" type="vector3">
       <input name="in" type="vector3" nodename="{image}" />
     </normalmap>
+"#
+        );
+    }
+    if is_opacity {
+        let mut opacity = image.to_owned();
+        if let Some(cutoff) = cutoff {
+            opacity = "opacity_mask".to_owned();
+            text += &format!(
+                r#"    <ifgreatereq name="{opacity}" type="float">
+      <input name="value1" type="float" nodename="{image}" />
+      <input name="value2" type="float" value="{cutoff}" />
+      <input name="in1" type="float" value="1" />
+      <input name="in2" type="float" value="0" />
+    </ifgreatereq>
+"#
+            );
+        }
+        text += &format!(
+            r#"    <convert name="{name}" type="color3">
+      <input name="in" type="float" nodename="{opacity}" />
+    </convert>
 "#
         );
     }

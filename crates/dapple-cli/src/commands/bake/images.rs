@@ -7,7 +7,7 @@ use crate::error::{Hint, usage};
 use crate::layers::Layers;
 use anyhow::Result;
 use dapple::color::NormalY;
-use dapple::recipe::{MapKind, Samples};
+use dapple::recipe::{MapKind, Material, Samples};
 use std::path::Path;
 
 impl Args {
@@ -63,16 +63,21 @@ impl Args {
         }
     }
 
-    /// Returns the images to bake. Each has its part of the file name, its channels, and the format if one was chosen.
-    pub(super) fn images(&self) -> Vec<(&'static str, Layers, Option<Format>)> {
+    /// Returns the images to bake for a material. Each has its part of the file name, its channels, and the format if one
+    /// was chosen. Images of a preset whose maps the material lacks are left out.
+    pub(super) fn images(
+        &self,
+        material: &Material,
+    ) -> Vec<(&'static str, Layers, Option<Format>)> {
         if let Some(preset) = self.preset() {
             let images = preset.images.iter();
             let of_preset = |PresetImage { part, image }: &PresetImage| {
-                (*part, image.layers, Some(image.format))
+                Some((*part, image.layers.of(material)?, Some(image.format)))
             };
-            return images.map(of_preset).collect();
+            return images.filter_map(of_preset).collect();
         }
-        let of_map = |&kind: &MapKind| (kind.name(), Layers::Map(kind), self.format);
-        self.material.map_kinds().iter().map(of_map).collect()
+        let of_map = |kind: MapKind| (kind.name(), Layers::Map(kind), self.format);
+        let kinds = self.material.map_kinds(material).into_iter();
+        kinds.map(of_map).collect()
     }
 }

@@ -9,6 +9,21 @@ use std::str::FromStr;
 #[derive(Clone, Debug)]
 pub(super) struct Maps(pub(super) Vec<MapKind>);
 
+impl Maps {
+    /// Returns whether these are all maps.
+    pub(super) fn are_all(&self) -> bool {
+        self.0 == MapKind::ALL
+    }
+
+    /// Returns the names of the maps, or `all`.
+    pub(super) fn names(&self) -> Vec<&'static str> {
+        match self.are_all() {
+            true => vec!["all"],
+            false => self.0.iter().map(|kind| kind.name()).collect(),
+        }
+    }
+}
+
 impl FromStr for Maps {
     type Err = String;
 
@@ -48,7 +63,7 @@ mod tests {
         };
         assert_eq!(names("AO, BaseColor"), Ok(vec!["ao", "albedo"]));
         assert_eq!(names("base-color"), names("albedo"));
-        assert_eq!(names("All").map(|maps| maps.len()), Ok(8));
+        assert_eq!(names("All").map(|maps| maps.len()), Ok(12));
         for (wrong, part) in [
             ("bumps", "roughness"),
             ("heigth", "height?"),

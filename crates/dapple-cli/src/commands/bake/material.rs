@@ -11,7 +11,7 @@ use anyhow::{Error, Result};
 use dapple::color::NormalY;
 use dapple::hash::Seed;
 use dapple::raster::Named;
-use dapple::recipe::{MapKind, Recipe, RecipeError, RecipeErrorKind};
+use dapple::recipe::{MapKind, Material, Recipe, RecipeError, RecipeErrorKind};
 use serde::Serialize;
 use std::fmt;
 use std::str::FromStr;
@@ -23,6 +23,14 @@ const USUAL: [MapKind; 5] = [
     MapKind::Occlusion,
     MapKind::Albedo,
     MapKind::Roughness,
+];
+
+/// The maps that only some materials have.
+const OPTIONAL: [MapKind; 4] = [
+    MapKind::Emission,
+    MapKind::Opacity,
+    MapKind::Specular,
+    MapKind::Clearcoat,
 ];
 
 /// A replacement for a value in a recipe, given as `PATH=VALUE`.
@@ -88,7 +96,10 @@ pub(in crate::commands) struct MaterialArgs {
     #[serde(flatten)]
     pub(in crate::commands) samples: SamplesArgs,
 
-    /// Comma-separated maps, or `all` [default: height,normal,ao,albedo,roughness].
+    /// Comma-separated maps, or `all`.
+    ///
+    /// By default height, normal, ao, albedo, roughness, and those of emission, opacity, specular and clearcoat that the
+    /// recipe sets.
     #[arg(long, value_name = "MAPS")]
     pub(super) maps: Option<Maps>,
 
@@ -114,9 +125,19 @@ pub(in crate::commands) struct MaterialArgs {
 }
 
 impl MaterialArgs {
-    /// Returns the requested maps, or the default ones.
-    pub(in crate::commands) fn map_kinds(&self) -> &[MapKind] {
-        self.maps.as_ref().map_or(&USUAL, |maps| &maps.0)
+    /// Returns the requested maps, or the default ones. By default, and for `all`, maps that the material lacks are left
+    /// out.
+    pub(in crate::commands) fn map_kinds(&self, material: &Material) -> Vec<MapKind> {
+        match &self.maps {
+            Some(maps) if !maps.are_all() => maps.0.clone(),
+            maps => {
+                let is_wanted = |kind: &MapKind| {
+                    maps.is_some() || USUAL.contains(kind) || OPTIONAL.contains(kind)
+                };
+                let kinds = MapKind::ALL.into_iter().filter(is_wanted);
+                kinds.filter(|&kind| material.has(kind)).collect()
+            }
+        }
     }
 
     /// Returns copies of the options with a single seed each, with the labels of the seeds; a single copy without a
@@ -192,13 +213,13 @@ impl MaterialArgs {
 
     /// Formats the options as command-line arguments.
     pub(in crate::commands) fn words(&self) -> Vec<String> {
-        let maps = self.map_kinds().iter().map(|kind| kind.name());
-        let maps = maps.collect::<Vec<_>>().join(",");
         let set = self.set.iter().map(|setting| format!("--set={setting}"));
         let options = [
             Some(format!("--size={}", self.size)),
             self.samples.word(),
-            self.maps.as_ref().map(|_| format!("--maps={maps}")),
+            self.maps
+                .as_ref()
+                .map(|maps| format!("--maps={}", maps.names().join(","))),
             self.seed.map(|seed| format!("--seed={seed}")),
             self.normal_y
                 .map(|way| format!("--normal-y={}", way.name())),

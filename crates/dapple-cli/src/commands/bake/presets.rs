@@ -6,7 +6,7 @@ use crate::encode::Format;
 use crate::layers::{Channel, Image, Layers};
 use crate::words::NamedValueParser;
 use dapple::color::NormalY;
-use dapple::recipe::MapKind;
+use dapple::recipe::{MapKind, Material};
 use serde::{Serialize, Serializer};
 use std::fmt::Write as _;
 
@@ -84,11 +84,33 @@ const METALLIC_SMOOTHNESS: Layers = Layers::Rgba([
     Channel::OneLess(MapKind::Roughness),
 ]);
 
+/// A clear coat in red, and 1 in the other channels, among them the smoothness in green, for Unity.
+const COAT: Layers = Layers::Rgba([
+    Channel::Of(MapKind::Clearcoat),
+    Channel::Always(1.0),
+    Channel::Always(1.0),
+    Channel::Always(1.0),
+]);
+
+/// The specular texture of glTF, which has its strength in alpha.
+const SPECULAR: Layers = Layers::Rgba([
+    Channel::Always(1.0),
+    Channel::Always(1.0),
+    Channel::Always(1.0),
+    Channel::Of(MapKind::Specular),
+]);
+
+/// Specular as in Unreal and in Blender's Principled BSDF, where 0.5 is an index of refraction of 1.5.
+const HALF_SPECULAR: Layers = Layers::Gray(Channel::Half(MapKind::Specular));
+
 /// The images of glTF, as separate files or embedded in a document.
 const GLTF: &[PresetImage] = &[
-    eight("baseColor", Layers::Map(MapKind::Albedo)),
+    eight("baseColor", Layers::AlbedoOpacity),
     eight("occlusionRoughnessMetallic", Layers::Map(MapKind::Orm)),
     eight("normal", Layers::Map(MapKind::Normal)),
+    eight("emissive", Layers::Map(MapKind::Emission)),
+    eight("specular", SPECULAR),
+    eight("clearcoat", Layers::Map(MapKind::Clearcoat)),
 ];
 
 /// The default values of a preset: no images, no prefix, no document, and green pointing up in normal maps.
@@ -109,12 +131,14 @@ pub(super) static PRESETS: [Preset; 7] = [
         name: "unity",
         about: "Unity: the mask map of HDRP and URP, and metallic with smoothness of the built-in pipeline",
         images: &[
-            eight("BaseMap", Layers::Map(MapKind::Albedo)),
+            eight("BaseMap", Layers::AlbedoOpacity),
             eight("Normal", Layers::Map(MapKind::Normal)),
             eight("MaskMap", MASK),
             eight("MetallicSmoothness", METALLIC_SMOOTHNESS),
             eight("Occlusion", Layers::Map(MapKind::Occlusion)),
             sixteen("Height", Layers::Map(MapKind::Height)),
+            eight("Emission", Layers::Map(MapKind::Emission)),
+            eight("ClearCoat", COAT),
         ],
         ..PLAIN
     },
@@ -129,6 +153,10 @@ pub(super) static PRESETS: [Preset; 7] = [
             eight("Normal", Layers::Map(MapKind::Normal)),
             eight("ORM", Layers::Map(MapKind::Orm)),
             sixteen("Height", Layers::Map(MapKind::Height)),
+            eight("Emissive", Layers::Map(MapKind::Emission)),
+            eight("Opacity", Layers::Map(MapKind::Opacity)),
+            eight("Specular", HALF_SPECULAR),
+            eight("ClearCoat", Layers::Map(MapKind::Clearcoat)),
         ],
         ..PLAIN
     },
@@ -137,10 +165,12 @@ pub(super) static PRESETS: [Preset; 7] = [
         name: "godot",
         about: "Godot: an ORMMaterial3D",
         images: &[
-            eight("albedo", Layers::Map(MapKind::Albedo)),
+            eight("albedo", Layers::AlbedoOpacity),
             eight("normal", Layers::Map(MapKind::Normal)),
             eight("orm", Layers::Map(MapKind::Orm)),
             sixteen("height", Layers::Map(MapKind::Height)),
+            eight("emission", Layers::Map(MapKind::Emission)),
+            eight("clearcoat", COAT),
         ],
         ..PLAIN
     },
@@ -171,6 +201,10 @@ pub(super) static PRESETS: [Preset; 7] = [
             sixteen("normal", Layers::Map(MapKind::Normal)),
             sixteen("height", Layers::Map(MapKind::Height)),
             sixteen("ao", Layers::Map(MapKind::Occlusion)),
+            eight("emission", Layers::Map(MapKind::Emission)),
+            sixteen("alpha", Layers::Map(MapKind::Opacity)),
+            sixteen("specular", HALF_SPECULAR),
+            sixteen("clearcoat", Layers::Map(MapKind::Clearcoat)),
         ],
         ..PLAIN
     },
@@ -184,6 +218,10 @@ pub(super) static PRESETS: [Preset; 7] = [
             sixteen("metallic", Layers::Map(MapKind::Metallic)),
             sixteen("normal", Layers::Map(MapKind::Normal)),
             sixteen("height", Layers::Map(MapKind::Height)),
+            eight("emission", Layers::Map(MapKind::Emission)),
+            sixteen("opacity", Layers::Map(MapKind::Opacity)),
+            sixteen("specular", Layers::Map(MapKind::Specular)),
+            sixteen("clearcoat", Layers::Map(MapKind::Clearcoat)),
         ],
         document: Some(Document::Mtlx),
         ..PLAIN
@@ -222,7 +260,9 @@ impl Serialize for &'static Preset {
 
 /// Returns a table of the images of all presets, for the help.
 pub(super) fn table() -> String {
-    let mut text = "Presets (see --preset):\n".to_owned();
+    let mut text =
+        "Presets (see --preset), with * at images that only some materials have:\n".to_owned();
+    let plain = Material::default();
     for preset in &PRESETS {
         let green = match preset.normal_y {
             NormalY::OpenGl => "up",
@@ -235,7 +275,11 @@ pub(super) fn table() -> String {
                 _ => format!("{}NAME_{part}.png", preset.prefix),
             };
             let (_, depth) = image.format.depth();
-            let _ = writeln!(text, "    {file}: {}, {depth}", image.layers);
+            let star = match image.layers.of(&plain) {
+                Some(_) => "",
+                None => " *",
+            };
+            let _ = writeln!(text, "    {file}: {}, {depth}{star}", image.layers);
         }
     }
     text
