@@ -32,7 +32,14 @@ _IMAGES: dict[str, tuple[_Depth, _Content, str]] = {
     "orm": (8, "data", "Non-Color"),
     "normal": (16, "normal", "Non-Color"),
     "height": (16, "gray", "Non-Color"),
+    "emission": (8, "color", "sRGB"),
+    "opacity": (16, "gray", "Non-Color"),
+    "specular": (16, "gray", "Non-Color"),
+    "clearcoat": (16, "gray", "Non-Color"),
 }
+
+#: The maps that only some materials have.
+_OPTIONAL = ("emission", "opacity", "specular", "clearcoat")
 
 #: The node group that Blender's glTF exporter reads. Occlusion goes only there, so that it never darkens the albedo.
 _GLTF_GROUP = "glTF Material Output"
@@ -105,7 +112,9 @@ def bake_into(
 
     plan = _opengl(what.plan() if isinstance(what, Recipe) else what)
     sides = [index(side) for side in size] if isinstance(size, Sequence) else index(size)
+    values = plan.recipe.to_dict()["material"]
     maps = ["albedo", "orm", "normal", *(["height"] if displacement else [])]
+    maps += [kind for kind in _OPTIONAL if values.get(kind) is not None]
     baked = plan.bake(size, maps)
     low, high = 0.0, 1.0
     if displacement:
@@ -113,9 +122,9 @@ def bake_into(
         low, high = min(low, float(baked["height"].min())), max(high, float(baked["height"].max()))
         baked["height"] = (baked["height"] - np.float32(low)) / np.float32(high - low)
     before = _images_of(made)
-    images = {kind: _image(bpy, kind, values, *_IMAGES[kind]) for kind, values in baked.items()}
-    relief = float(plan.recipe.to_dict()["material"].get("relief", 0.1))
-    _shader(bpy, made, images, relief * (high - low), (0.5 - low) / (high - low), scale)
+    images = {kind: _image(bpy, kind, pixels, *_IMAGES[kind]) for kind, pixels in baked.items()}
+    relief = float(values.get("relief", 0.1))
+    _shader(bpy, made, images, relief * (high - low), (0.5 - low) / (high - low), scale, values)
     # Remove images without users only, since copies of the material may use the others.
     for image in before:
         if image.users == 0:
@@ -220,8 +229,16 @@ def _image(bpy: Any, kind: str, values: Any, depth: _Depth, content: _Content, s
     return image
 
 
-def _shader(bpy: Any, made: Any, images: dict[str, Any], relief: float, middle: float, scale: float) -> None:
-    """Replaces all nodes of a material."""
+def _shader(
+    bpy: Any,
+    made: Any,
+    images: dict[str, Any],
+    relief: float,
+    middle: float,
+    scale: float,
+    values: dict[str, Any],
+) -> None:
+    """Replaces all nodes of a material. `values` are the entries of the recipe's material."""
     made.use_nodes = True
     tree = made.node_tree
     tree.nodes.clear()
@@ -261,6 +278,33 @@ def _shader(bpy: Any, made: Any, images: dict[str, Any], relief: float, middle: 
     bump = node("ShaderNodeNormalMap", -300, -300)
     link(texture("normal", -300).outputs["Color"], bump.inputs["Color"])
     link(bump.outputs["Normal"], shader.inputs["Normal"])
+    if "emission" in images:
+        link(texture("emission", 600).outputs["Color"], shader.inputs["Emission Color"])
+        shader.inputs["Emission Strength"].default_value = values.get("emission_strength") or 1.0
+    if "opacity" in images:
+        opacity = texture("opacity", 900).outputs["Color"]
+        cutoff = values.get("opacity_cutoff")
+        if cutoff is not None:
+            # One minus (opacity < cutoff), the nodes of Blender's glTF exporter for alpha mode MASK.
+            below, rest = node("ShaderNodeMath", -300, 900), node("ShaderNodeMath", -100, 900)
+            below.operation, rest.operation = "LESS_THAN", "SUBTRACT"
+            below.inputs[1].default_value = cutoff
+            rest.inputs[0].default_value = 1.0
+            link(opacity, below.inputs[0])
+            link(below.outputs["Value"], rest.inputs[1])
+            opacity = rest.outputs["Value"]
+        link(opacity, shader.inputs["Alpha"])
+    if "specular" in images:
+        # A level of 0.5 is an index of refraction of 1.5.
+        half = node("ShaderNodeMath", -300, 1200)
+        half.operation = "MULTIPLY"
+        half.inputs[1].default_value = 0.5
+        link(texture("specular", 1200).outputs["Color"], half.inputs[0])
+        link(half.outputs["Value"], shader.inputs["Specular IOR Level"])
+    if "clearcoat" in images:
+        link(texture("clearcoat", 1500).outputs["Color"], shader.inputs["Coat Weight"])
+        roughness = values.get("clearcoat_roughness")
+        shader.inputs["Coat Roughness"].default_value = 0.03 if roughness is None else roughness
     if "height" in images:
         moved = node("ShaderNodeDisplacement", 100, -300)
         moved.inputs["Midlevel"].default_value = middle
