@@ -1,5 +1,6 @@
 //! Errors from reading, planning and baking recipes.
 
+use crate::RendererError;
 use crate::words::similar_words;
 use core::fmt;
 use dapple_color::ColorError;
@@ -155,6 +156,8 @@ pub enum RecipeErrorKind {
     Color(ColorError),
     /// An error from a raster or a window.
     Raster(RasterError),
+    /// An error from the plan's renderer.
+    Renderer(RendererError),
 }
 
 impl RecipeError {
@@ -321,6 +324,7 @@ impl fmt::Display for RecipeErrorKind {
             Self::Synth(error) => error.fmt(f),
             Self::Color(error) => error.fmt(f),
             Self::Raster(error) => error.fmt(f),
+            Self::Renderer(error) => error.fmt(f),
         }
     }
 }
@@ -345,6 +349,7 @@ impl core::error::Error for RecipeError {
             RecipeErrorKind::Synth(error) => Some(error),
             RecipeErrorKind::Color(error) => Some(error),
             RecipeErrorKind::Raster(error) => Some(error),
+            RecipeErrorKind::Renderer(error) => Some(error.get_ref()),
             _ => None,
         }
     }
@@ -361,4 +366,4 @@ macro_rules! from {
     };
 }
 
-from!(WorleyError => Worley, PatternError => Pattern, PupsError => Pups, WaveletError => Wavelet, TileError => Tile, SynthError => Synth, ColorError => Color, RasterError => Raster);
+from!(WorleyError => Worley, PatternError => Pattern, PupsError => Pups, WaveletError => Wavelet, TileError => Tile, SynthError => Synth, ColorError => Color, RasterError => Raster, RendererError => Renderer);

@@ -120,8 +120,8 @@ pub use indexmap;
 pub use input::Input;
 pub use nodes::*;
 pub use plan::{
-    ImageSource, Images, NodeColors, NodeField, Picture, Plan, PlanCache, PlanLimits, Samples,
-    Whole,
+    ImageSource, Images, NodeColors, NodeField, Picture, Plan, PlanCache, PlanLimits, Renderer,
+    RendererError, Samples, Whole,
 };
 pub use recipe::{Material, Recipe, SCHEMA};
 pub use shader::{MaterialShader, ShaderOptions};

@@ -11,6 +11,7 @@ mod evaluate;
 mod field;
 mod neighborhood;
 mod order;
+mod renderer;
 mod samples;
 mod step;
 mod watch;
@@ -27,6 +28,7 @@ pub(crate) use evaluate::Known;
 pub use field::{NodeColors, NodeField};
 pub(crate) use neighborhood::{Neighborhood, with_margin};
 pub(crate) use order::order;
+pub use renderer::{Renderer, RendererError};
 pub use samples::Samples;
 pub(crate) use samples::TileSamples;
 pub(crate) use step::{LinearMap, Moved, Positions, Step, StretchedImage};
@@ -126,6 +128,7 @@ pub struct Plan {
     material: Material,
     limits: PlanLimits,
     cache: Option<PlanCache>,
+    renderer: Option<Arc<dyn Renderer>>,
     watch: Watch,
     /// Whether a node changes with time.
     moves: bool,
@@ -340,6 +343,7 @@ impl Plan {
             material: recipe.material.clone(),
             limits: *limits,
             cache: cache.cloned(),
+            renderer: None,
             watch: watch.clone(),
             moves: builder.moves,
             ids: builder.ids.into(),
@@ -491,8 +495,23 @@ impl Plan {
     }
 
     /// Computes the values of the steps `wanted` at the pixels of a window, in the order of `wanted`. Runs on all cores
-    /// if the feature `rayon` is on. `known` holds the values of steps that the caller has computed already.
+    /// if the feature `rayon` is on, and nodes of the renderer run there. `known` holds the values of steps that the
+    /// caller has computed already.
     pub(crate) fn values(
+        &self,
+        whole: &Whole,
+        window: &Window,
+        wanted: &[usize],
+        known: &Known,
+    ) -> Result<Vec<Values>, RecipeError> {
+        match &self.renderer {
+            None => self.own_values(whole, window, wanted, known),
+            Some(renderer) => self.values_by(&**renderer, whole, window, wanted, known),
+        }
+    }
+
+    /// Computes the values of steps without the renderer.
+    fn own_values(
         &self,
         whole: &Whole,
         window: &Window,
@@ -555,7 +574,9 @@ impl Plan {
     /// Returns the steps that both `wanted` and the height depend on. Callers that store the values of these steps need
     /// not evaluate their inputs again.
     pub(crate) fn shared_with_height(&self, wanted: &[usize]) -> Vec<usize> {
-        step::shared(&self.steps, self.channels.height, wanted)
+        let [of_height, wanted] =
+            [&[self.channels.height][..], wanted].map(|steps| self.own_steps(steps));
+        step::shared(&self.steps, &of_height, &wanted)
     }
 
     /// Returns, for each axis, whether heights past the sides of the tile must be extrapolated.

@@ -426,9 +426,9 @@ mod tests {
             sum(&[b, c]),
             sum(&[a, d]),
         ];
-        assert_eq!(shared(&steps, c, &[d, e]), [b, c]);
-        assert_eq!(shared(&steps, b, &[c]), [b]);
-        assert_eq!(shared(&steps, e, &[c]), [c]);
-        assert_eq!(shared(&steps, a, &[e]), [0; 0]);
+        assert_eq!(shared(&steps, &[c], &[d, e]), [b, c]);
+        assert_eq!(shared(&steps, &[b], &[c]), [b]);
+        assert_eq!(shared(&steps, &[e], &[c]), [c]);
+        assert_eq!(shared(&steps, &[a], &[e]), [0; 0]);
     }
 }

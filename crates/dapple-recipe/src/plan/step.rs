@@ -333,9 +333,9 @@ fn reached(steps: &[Step], wanted: &[usize], leads_to: impl Fn(usize) -> Vec<usi
     (0..steps.len()).filter(|&index| reached[index]).collect()
 }
 
-/// Returns the steps that both `wanted` and `height` depend on, except steps that are cheap to recompute.
-pub(super) fn shared(steps: &[Step], height: usize, wanted: &[usize]) -> Vec<usize> {
-    let of_height = needed(steps, &[height], |_| false);
+/// Returns the steps that both `wanted` and the steps `of_height` depend on, except steps that are cheap to recompute.
+pub(super) fn shared(steps: &[Step], of_height: &[usize], wanted: &[usize]) -> Vec<usize> {
+    let of_height = needed(steps, of_height, |_| false);
     let is_shared =
         |index: usize| !steps[index].is_ready() && of_height.binary_search(&index).is_ok();
     let mut shared = needed(steps, wanted, is_shared);
