@@ -46,9 +46,8 @@ impl Recipe {
     /// `place` is a position in units of the plane, as a cell and a fraction; `place_2d` splits a `vec2<f32>`. The number
     /// `zero` is 0, and must come from a buffer: it keeps compilers from changing the results.
     ///
-    /// Colors of ramps in Oklab are computed with `f32`, and differ by less than 4e-6. All other values have the bits of
-    /// [`Plan::height`], [`Plan::field`] and [`Plan::colors`] at the position `cell + fraction`, up to 2^31 cells of each
-    /// node.
+    /// Values have the bits of [`Plan::height`], [`Plan::field`] and [`Plan::colors`] at the position `cell + fraction`, up
+    /// to 2^31 cells of each node.
     ///
     /// # Errors
     ///

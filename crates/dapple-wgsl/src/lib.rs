@@ -41,7 +41,7 @@
 //! * Cells are from -2^31 to 2^31 - 2, periods at most 2^31.
 //! * WGSL leaves two things open: the direction of rounding, and denormal numbers. All known hardware rounds to nearest
 //!   even. Denormal numbers occur where a fraction is below 2^-24 but not 0, and may then become 0.
-//! * Quotients, powers and numbers of 64 bits below the least normal number are 0. Mixtures in Oklab are not exact.
+//! * Quotients, powers and numbers of 64 bits below the least normal number are 0.
 //! * The tests compare all bits on Mesa's software implementation of Vulkan, lavapipe.
 
 #![no_std]
@@ -156,7 +156,7 @@ entries! {
     Power = "power" [Number],
     Double = "double" [],
     Position2d = "position_2d" [Place2d, Double],
-    Oklab = "oklab" [Exact],
+    Oklab = "oklab" [Double],
 }
 
 impl Module {

@@ -6,7 +6,7 @@ use crate::shader::{Code, NodeShader, Refusal, color_literal, lerp, literal, quo
 use crate::{Input, RecipeError, RecipeErrorKind, Values};
 use core::fmt::Write as _;
 use dapple_color::{ColorRamp, ColorStop, Interpolation, LinearRgb, Outside, Palette, RampSpace};
-use dapple_wgsl::{Module, number_value};
+use dapple_wgsl::{Module, double_value, number_value};
 use serde::{Deserialize, Serialize};
 
 /// Color ramp: a color for each number, from a palette or a list of colors.
@@ -69,7 +69,7 @@ impl NodeKind for Ramped {
         if mixes && self.space == RampSpace::Oklab {
             shader.needs(Module::Oklab);
         }
-        let body = self.body(self.ramp()?.stops());
+        let body = self.body(&self.ramp()?);
         let function = shader.function("ramp", &body);
         let input = shader.number(&self.input)?;
         Ok(Code::color(format!("{function}({input}, zero)")))
@@ -106,39 +106,50 @@ impl Ramped {
 
 impl Ramped {
     /// Writes the function of the ramp, after its name: a color for each interval of the stops.
-    fn body(&self, stops: &[ColorStop]) -> String {
+    fn body(&self, ramp: &ColorRamp) -> String {
+        let stops = ramp.stops();
         let mut text = "(value: f32, zero: u32) -> vec4<f32> {\n".to_owned();
+        let mut arms = Vec::new();
         for (at, after) in stops.iter().enumerate() {
             let position = number_value(after.position);
-            let Some(before) = at.checked_sub(1).map(|at| stops[at]) else {
+            let Some(before) = at.checked_sub(1) else {
                 // NaN gets the color of the first stop, too.
                 let color = color_literal(after.color);
                 let _ = writeln!(text, "    if !(value >= {position}) {{ return {color}; }}");
                 continue;
             };
-            if after.position > before.position {
-                let mixture = self.mixture(before, *after);
-                let _ = writeln!(text, "    if value < {position} {{ {mixture} }}");
+            if after.position > stops[before].position {
+                let mixture = self.mixture(ramp, before);
+                arms.push(format!("    if value < {position} {{ {mixture} }}"));
             }
         }
-        let last = stops.last().map_or(LinearRgb::BLACK, |stop| stop.color);
-        let _ = write!(text, "    return {};\n}}", color_literal(last));
-        text
+        let last = color_literal(stops.last().map_or(LinearRgb::BLACK, |stop| stop.color));
+        if !arms.iter().any(|arm| arm.contains("start = ")) {
+            arms.push(format!("    return {last};\n}}"));
+            return text + &arms.join("\n");
+        }
+        // Mix in one place: a compiler copies the function to every call.
+        text += "    var start: array<vec2<u32>, 3>;\n    var end: array<vec2<u32>, 3>;\n    var mixed = 0.0;\n";
+        let arms = arms.join(" else\n");
+        text + &format!(
+            "{arms} else {{ return {last}; }}\n    return oklab_mix(start, end, mixed);\n}}"
+        )
     }
 
-    /// Writes the statements that return the color between two stops.
-    fn mixture(&self, before: ColorStop, after: ColorStop) -> String {
-        let [from, to] = [before.color, after.color].map(color_literal);
+    /// Writes the statements that return the color after the stop `from`, or that set the arguments of `oklab_mix`.
+    fn mixture(&self, ramp: &ColorRamp, from: usize) -> String {
+        let [before, after] = [from, from + 1].map(|stop| ramp.stops()[stop]);
+        let [start, end] = [before.color, after.color].map(color_literal);
         let is_oklab = self.space == RampSpace::Oklab;
-        if self.interpolation == Interpolation::Stepped || (is_oklab && from == to) {
-            return format!("return {from};");
+        if self.interpolation == Interpolation::Stepped || (is_oklab && start == end) {
+            return format!("return {start};");
         }
-        let [start, end] = [before.position * 0.5, after.position * 0.5];
+        let [first, last] = [before.position * 0.5, after.position * 0.5];
         let above = format!(
             "number_sub(number_mul(value, 0.5, zero), {}, zero)",
-            literal(start)
+            literal(first)
         );
-        let t = quotient(&above, end - start);
+        let t = quotient(&above, last - first);
         let part = match self.interpolation {
             Interpolation::Smooth => {
                 format!("let t = {t}; let part = number_smooth(t, zero);")
@@ -146,25 +157,31 @@ impl Ramped {
             _ => format!("let part = {t};"),
         };
         if !is_oklab {
-            return format!("{part} return {};", lerp(&from, &to, "part"));
+            return format!("{part} return {};", lerp(&start, &end, "part"));
         }
         // The conversion to Oklab and back rounds; the colors of stops are returned unchanged.
-        let [a, b] = [before.color, after.color].map(cone_roots);
-        let mixed = format!("oklab_mix({a}, {b}, part, zero)");
-        format!("{part} if part == 0.0 {{ return {from}; }} return {mixed};")
+        let [a, b] = [from, from + 1].map(|stop| {
+            let [lightness, a, b] = oklab(ramp.stops()[stop].color).map(double_value);
+            format!("array({lightness}, {a}, {b})")
+        });
+        format!("{part} if part == 0.0 {{ return {start}; }} start = {a}; end = {b}; mixed = part;")
     }
 }
 
-/// Returns the cube roots of a color's cone responses, whose sums are the components of Oklab, as a literal.
-fn cone_roots(color: LinearRgb) -> String {
+/// Returns a color in Oklab, with the bits of the ramp: lightness, a and b.
+fn oklab(color: LinearRgb) -> [f64; 3] {
     let [r, g, b] = color.to_array().map(f64::from);
     let [l, m, s] = [
         0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b,
         0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b,
         0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b,
     ]
-    .map(|cone| number_value(libm::cbrt(cone) as f32));
-    format!("vec4({l}, {m}, {s}, 0.0)")
+    .map(libm::cbrt);
+    [
+        0.210_454_255_3 * l + 0.793_617_785_0 * m - 0.004_072_046_8 * s,
+        1.977_998_495_1 * l - 2.428_592_205_0 * m + 0.450_593_709_9 * s,
+        0.025_904_037_1 * l + 0.782_771_766_2 * m - 0.808_675_766_0 * s,
+    ]
 }
 
 /// Serializes lists of colors as hexadecimal sRGB.

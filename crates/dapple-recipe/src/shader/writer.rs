@@ -474,11 +474,7 @@ impl<'a> Writer<'a> {
             out,
             "// A height of 1 is {relief} units of the plane. Colors are linear."
         );
-        out += "// Values have the bits of the CPU at the position `cell + fraction`";
-        out += match self.modules.contains(&Module::Oklab) {
-            true => ";\n// colors that a ramp mixes in Oklab differ by less than 4e-6.\n",
-            false => ".\n",
-        };
+        out += "// Values have the bits of the CPU at the position `cell + fraction`.\n";
         out
     }
 }
