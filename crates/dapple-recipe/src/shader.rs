@@ -41,10 +41,12 @@ impl Recipe {
     /// ```wgsl
     /// struct Material { height: f32, albedo: vec3<f32>, roughness: f32, metallic: f32 }
     /// fn material(place: Place2d, zero: u32) -> Material
+    /// fn material64(at: Position2d, zero: u32) -> Material
     /// ```
     ///
-    /// `place` is a position in units of the plane, as a cell and a fraction; `place_2d` splits a `vec2<f32>`. The number
-    /// `zero` is 0, and must come from a buffer: it keeps compilers from changing the results.
+    /// `place` is a position in units of the plane, as a cell and a fraction; `place_2d` splits a `vec2<f32>`. `at` is a
+    /// position in numbers of 64 bits, each as the upper and the lower word of its bits. The number `zero` is 0, and must
+    /// come from a buffer: it keeps compilers from changing the results.
     ///
     /// Values have the bits of [`Plan::height`], [`Plan::field`] and [`Plan::colors`] at the position `cell + fraction`, up
     /// to 2^31 cells of each node.
@@ -79,8 +81,22 @@ impl Recipe {
         options: &ShaderOptions,
     ) -> Result<MaterialShader, RecipeError> {
         // The plan checks the recipe, and knows which nodes have colors.
-        let plan = Plan::new(self, images, 0.0)?;
-        let mut writer = Writer::new(self, &plan);
+        self.to_wgsl_with(&Plan::new(self, images, 0.0)?, options)
+    }
+
+    /// Generates the material as [`to_wgsl`](Self::to_wgsl) does, with a plan of the recipe that is built already. The
+    /// plan may have another material, so that a shader can compute any nodes.
+    ///
+    /// # Errors
+    ///
+    /// [`NotInShader`](RecipeErrorKind::NotInShader) if no shader computes a node and
+    /// [`textures`](ShaderOptions::textures) is not set.
+    pub fn to_wgsl_with(
+        &self,
+        plan: &Plan,
+        options: &ShaderOptions,
+    ) -> Result<MaterialShader, RecipeError> {
+        let mut writer = Writer::new(self, plan);
         let material = writer.material();
         if !writer.textures().is_empty() && !options.textures {
             let nodes = writer.textures().iter();

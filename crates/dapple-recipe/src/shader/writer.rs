@@ -254,7 +254,7 @@ impl<'a> Writer<'a> {
             recipe,
             plan,
             identifiers: identifiers(recipe),
-            modules: vec![Module::Number, Module::Exact, Module::Place2d],
+            modules: vec![Module::Number, Module::Exact, Module::Position2d],
             constants: IndexMap::new(),
             functions: Vec::new(),
             moved: BTreeMap::new(),
@@ -419,17 +419,17 @@ impl<'a> Writer<'a> {
             }
             out += "}\n\n";
         }
-        let textures = match self.textures.is_empty() {
-            true => "",
-            false => "textures: Textures, ",
+        let [declared, passed] = match self.textures.is_empty() {
+            true => ["", ""],
+            false => ["textures: Textures, ", "textures, "],
         };
         let _ = writeln!(
             out,
-            "fn material(place: Place2d, {textures}zero: u32) -> Material {{"
+            "fn material(place: Place2d, {declared}zero: u32) -> Material {{\n    \
+             return material64(position_2d(place), {passed}zero);\n}}\n\n\
+             // At a position in numbers of 64 bits\n\
+             fn material64(at: Position2d, {declared}zero: u32) -> Material {{"
         );
-        if self.modules.contains(&Module::Position2d) {
-            out += "    let at = position_2d(place);\n";
-        }
         out += material;
         out += "}\n\n";
         for function in &self.functions {
