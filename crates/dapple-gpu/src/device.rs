@@ -1,0 +1,253 @@
+//! Runs shaders on a device, and turns its failures into errors.
+
+use crate::{GpuError, GpuErrorKind};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc;
+
+/// Columns of a workgroup.
+pub(crate) const WORKGROUP: u32 = 64;
+
+/// A device and its queue.
+#[derive(Clone, Debug)]
+pub(crate) struct Device {
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
+}
+
+/// A compute shader with the entry point `main`. It has four storage buffers: words that describe the job, positions,
+/// inputs, and the results.
+#[derive(Clone, Debug)]
+pub(crate) struct Program {
+    pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+impl Device {
+    /// Opens the default adapter.
+    pub(crate) fn headless() -> Result<Self, GpuError> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        let none = |reason: String| GpuError::new(GpuErrorKind::NoAdapter { reason });
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..Default::default()
+        };
+        let adapter = pollster::block_on(instance.request_adapter(&options));
+        let adapter = adapter.map_err(|error| none(error.to_string()))?;
+        // Larger buffers and textures than the default, where the adapter has them
+        let limits = adapter.limits();
+        let device = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            required_limits: wgpu::Limits {
+                max_buffer_size: limits.max_buffer_size,
+                max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
+                max_texture_dimension_2d: limits.max_texture_dimension_2d,
+                ..Default::default()
+            },
+            ..Default::default()
+        }));
+        let (device, queue) = device.map_err(|error| none(error.to_string()))?;
+        Ok(Self { device, queue })
+    }
+
+    /// Runs commands, and returns the first error of the device. Without scopes, errors go to the handler of the caller,
+    /// which may panic.
+    fn scoped<T>(&self, commands: impl FnOnce() -> T) -> (T, Option<wgpu::Error>) {
+        let filters = [
+            wgpu::ErrorFilter::OutOfMemory,
+            wgpu::ErrorFilter::Internal,
+            wgpu::ErrorFilter::Validation,
+        ];
+        let scopes = filters.map(|filter| self.device.push_error_scope(filter));
+        let made = commands();
+        let mut first = None;
+        for scope in scopes.into_iter().rev() {
+            let error = pollster::block_on(scope.pop());
+            first = first.or(error);
+        }
+        (made, first)
+    }
+
+    /// Runs commands, and turns errors of the device into those of this crate.
+    pub(crate) fn checked<T>(
+        &self,
+        during: &'static str,
+        commands: impl FnOnce() -> T,
+    ) -> Result<T, GpuError> {
+        let (made, error) = self.scoped(commands);
+        let Some(error) = error else { return Ok(made) };
+        // Commands of a lost device are invalid.
+        if self.is_lost() {
+            return Err(GpuError::lost(during));
+        }
+        Err(GpuError::new(match error {
+            wgpu::Error::OutOfMemory { .. } => GpuErrorKind::OutOfMemory,
+            error => {
+                let reason = error.to_string();
+                GpuErrorKind::Refused { reason }
+            }
+        }))
+    }
+
+    /// Creates a buffer of `bytes`.
+    pub(crate) fn buffer(&self, bytes: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: bytes,
+            usage,
+            mapped_at_creation: false,
+        })
+    }
+
+    /// Creates a storage buffer with these words; a single 0 in the place of none.
+    pub(crate) fn filled(&self, words: &[u32]) -> wgpu::Buffer {
+        let words = if words.is_empty() { &[0] } else { words };
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+        let buffer = self.buffer(4 * words.len() as u64, usage);
+        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+        self.queue.write_buffer(&buffer, 0, &bytes);
+        buffer
+    }
+
+    /// Waits for a buffer, and reads all its words.
+    pub(crate) fn read(&self, buffer: &wgpu::Buffer) -> Result<Vec<u32>, GpuError> {
+        let lost = || GpuError::lost("a read-back");
+        let (sender, receiver) = mpsc::channel();
+        self.checked("a read-back", || {
+            buffer.map_async(wgpu::MapMode::Read, .., move |mapped| {
+                // Without a receiver, this function has failed already.
+                let _ = sender.send(mapped.is_ok());
+            });
+        })?;
+        self.wait()?;
+        if !receiver.try_recv().unwrap_or(false) {
+            return Err(lost());
+        }
+        let bytes = buffer.get_mapped_range(..).map_err(|_| lost())?;
+        let (words, _) = bytes.as_chunks::<4>();
+        Ok(words.iter().map(|word| u32::from_le_bytes(*word)).collect())
+    }
+
+    /// Waits for all commands.
+    fn wait(&self) -> Result<(), GpuError> {
+        // `poll` of wgpu 30 panics if the device is lost while it waits.
+        let poll = || self.device.poll(wgpu::PollType::wait_indefinitely());
+        let polled = catch_unwind(AssertUnwindSafe(poll));
+        match polled {
+            Ok(Ok(_)) => Ok(()),
+            _ => Err(GpuError::lost("a wait for results")),
+        }
+    }
+
+    /// Returns whether the device cannot read a new buffer.
+    fn is_lost(&self) -> bool {
+        let (sender, receiver) = mpsc::channel();
+        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+        // Without the buffer, its callback would report a failure.
+        let (_buffer, error) = self.scoped(|| {
+            let buffer = self.buffer(4, usage);
+            buffer.map_async(wgpu::MapMode::Read, .., move |mapped| {
+                // Without a receiver, this function has returned already.
+                let _ = sender.send(mapped.is_ok());
+            });
+            buffer
+        });
+        error.is_some() || self.wait().is_err() || !receiver.try_recv().unwrap_or(false)
+    }
+}
+
+impl Program {
+    /// Compiles a shader.
+    pub(crate) fn new(device: &Device, wgsl: &str) -> Result<Self, GpuError> {
+        let entry = |binding| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Storage {
+                    read_only: binding < 3,
+                },
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        };
+        device.checked("the compilation of a shader", || {
+            let on = &device.device;
+            let module = on.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: None,
+                source: wgpu::ShaderSource::Wgsl(wgsl.into()),
+            });
+            let layout = on.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: None,
+                entries: &[0, 1, 2, 3].map(entry),
+            });
+            let of_pipeline = on.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: None,
+                bind_group_layouts: &[Some(&layout)],
+                immediate_size: 0,
+            });
+            let pipeline = on.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: None,
+                layout: Some(&of_pipeline),
+                module: &module,
+                entry_point: Some("main"),
+                compilation_options: Default::default(),
+                cache: None,
+            });
+            Self { pipeline, layout }
+        })
+    }
+
+    /// Records the program for `size` invocations. The four buffers are those of [`Program`].
+    pub(crate) fn record(
+        &self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        buffers: [&wgpu::Buffer; 4],
+        size: [u32; 2],
+    ) {
+        let entries = [0, 1, 2, 3].map(|at: u32| wgpu::BindGroupEntry {
+            binding: at,
+            resource: buffers[at as usize].as_entire_binding(),
+        });
+        let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &self.layout,
+            entries: &entries,
+        });
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups(size[0].div_ceil(WORKGROUP), size[1], 1);
+    }
+
+    /// Runs the program for `size` invocations, and reads `n` words of results.
+    pub(crate) fn run(
+        &self,
+        device: &Device,
+        job: &[u32],
+        positions: &[u32],
+        inputs: &[u32],
+        size: [u32; 2],
+        n: usize,
+    ) -> Result<Vec<u32>, GpuError> {
+        let bytes = 4 * n as u64;
+        let read = device.checked("a computation", || {
+            let [job, positions, inputs] =
+                [job, positions, inputs].map(|words| device.filled(words));
+            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+            let out = device.buffer(bytes, usage);
+            let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+            let read = device.buffer(bytes, usage);
+            let mut encoder = device.device.create_command_encoder(&Default::default());
+            self.record(
+                device,
+                &mut encoder,
+                [&job, &positions, &inputs, &out],
+                size,
+            );
+            encoder.copy_buffer_to_buffer(&out, 0, &read, 0, None);
+            device.queue.submit([encoder.finish()]);
+            read
+        })?;
+        device.read(&read)
+    }
+}
