@@ -14,6 +14,7 @@ macro_rules! builtin {
 builtin! {
     "asphalt"
     "bark"
+    "black-leather"
     "brick-wall"
     "brushed-metal"
     "canvas"
@@ -35,6 +36,7 @@ builtin! {
     "felt"
     "flagstone"
     "floor-tiles"
+    "foam"
     "giraffe"
     "granite"
     "grass"
@@ -57,6 +59,7 @@ builtin! {
     "rock"
     "rock-cliff"
     "roof-tiles"
+    "rubber"
     "rusty-metal"
     "sand-ripples"
     "scales"
