@@ -12,6 +12,7 @@ macro_rules! builtin {
 
 // Sorted by name.
 builtin! {
+    "ashlar-wall"
     "asphalt"
     "bark"
     "black-leather"
@@ -24,6 +25,7 @@ builtin! {
     "coastline"
     "cobblestones"
     "concrete"
+    "concrete-panels"
     "corrugated-metal"
     "cow"
     "cracked-mud"
@@ -35,6 +37,7 @@ builtin! {
     "fallen-leaves"
     "felt"
     "flagstone"
+    "flemish-bricks"
     "floor-tiles"
     "foam"
     "giraffe"
@@ -70,6 +73,7 @@ builtin! {
     "spaceship-hull"
     "stone-and-grass"
     "stone-wall"
+    "stucco"
     "terrazzo"
     "tinfoil"
     "vein-tracery"
