@@ -103,6 +103,10 @@ pub enum Module {
     Position2d,
     /// Mixtures of colors in Oklab.
     Oklab,
+    /// Quotients, square roots and comparisons of numbers of 64 bits.
+    DoubleQuotient,
+    /// Sines of numbers of 64 bits.
+    DoubleSine,
 }
 
 /// Description of a module.
@@ -157,6 +161,9 @@ entries! {
     Double = "double" [],
     Position2d = "position_2d" [Place2d, Double],
     Oklab = "oklab" [Double],
+    Oklab = "oklab" [Exact],
+    DoubleQuotient = "double_quotient" [Double],
+    DoubleSine = "double_sine" [Double],
 }
 
 impl Module {

@@ -65,9 +65,6 @@ impl NodeKind for Wave {
     }
 
     fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
-        if self.form == Waveform::Sine {
-            return Err(Refusal::new("sines have no shader"));
-        }
         let input = shader.number(&self.input)?;
         shader.needs(Module::Double);
         let mut t = format!("double_from({input})");
@@ -80,7 +77,14 @@ impl NodeKind for Wave {
         let t = shader.name("phase", t);
         let t = format!("double_sub({t}, double_floor({t}))");
         Ok(Code::number(match self.form {
-            Waveform::Sine | Waveform::Sawtooth => format!("double_to_float({t})"),
+            Waveform::Sine => {
+                shader.needs(Module::DoubleSine);
+                let half = double_value(0.5);
+                let angle = format!("double_mul({t}, {})", double_value(core::f64::consts::TAU));
+                let sine = format!("double_mul({half}, double_sine({angle}))");
+                format!("double_to_float(double_add({half}, {sine}))")
+            }
+            Waveform::Sawtooth => format!("double_to_float({t})"),
             Waveform::Triangle => {
                 // `1 - |2 t - 1|`
                 let one = double_value(1.0);

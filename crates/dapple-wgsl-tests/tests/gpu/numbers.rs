@@ -258,3 +258,66 @@ fn selections_keep_the_sign_of_zero_and_sums_keep_their_rounding() {
         );
     }
 }
+
+#[test]
+fn sines_have_the_bits_of_libm() {
+    let Some(gpu) = Gpu::new() else { return };
+    let mut stream = Seed(9).stream();
+    let mut input = Vec::new();
+    let mut on_cpu = Vec::new();
+    for i in 0..N {
+        // Phases of all sizes, and angles next to multiples of a quarter of π
+        let turns = match i % 4 {
+            0 => f64::from(stream.next_u32()) / 4_294_967_296.0,
+            1 => f64::from(stream.next_u32() % 9) / 8.0,
+            2 => double(&mut stream, 20).abs() % 1.0,
+            _ => f64::from(stream.next_u32() >> (stream.next_u32() % 24)) / 4_294_967_296.0,
+        };
+        let angle = core::f64::consts::TAU * turns;
+        let angle = f64::from_bits(angle.to_bits() + stream.next_u64() % 3);
+        input.extend(words(angle));
+        on_cpu.extend(words(libm::sin(angle)));
+    }
+    let body = "let sine = double_sine(vec2(values[at], values[at + 1u]));
+        out[base] = sine.x;
+        out[base + 1u] = sine.y;";
+    let on_gpu = run(&gpu, &[Module::DoubleSine], &input, 2, 2, body);
+    assert_eq!(differing(&on_cpu, &on_gpu), 0);
+}
+
+#[test]
+fn quotients_and_roots_of_64_bits_have_the_bits_of_the_cpu() {
+    let Some(gpu) = Gpu::new() else { return };
+    let mut stream = Seed(8).stream();
+    let mut input = Vec::new();
+    let mut on_cpu = Vec::new();
+    for i in 0..N {
+        let a = double(&mut stream, 40);
+        let b = match i % 6 {
+            0 => a,
+            1 => f64::from_bits(a.to_bits() ^ (stream.next_u64() % 8)),
+            2 => -a,
+            _ => double(&mut stream, 70),
+        };
+        let a = if i % 50 == 0 { 0.0 } else { a };
+        // Squares have exact roots, and their neighbors nearly exact ones.
+        let square = match i % 4 {
+            0 => f64::from((a as f32).abs()) * f64::from((a as f32).abs()),
+            1 => f64::from_bits((a * a).to_bits() + stream.next_u64() % 3),
+            _ => a.abs(),
+        };
+        input.extend([a, b, square].into_iter().flat_map(words));
+        on_cpu.extend([a / b, square.sqrt()].into_iter().flat_map(words));
+        on_cpu.push(u32::from(a < b));
+    }
+    let body = "let a = vec2(values[at], values[at + 1u]);
+        let b = vec2(values[at + 2u], values[at + 3u]);
+        let results = array(double_div(a, b), double_root(vec2(values[at + 4u], values[at + 5u])));
+        out[base] = results[0].x;
+        out[base + 1u] = results[0].y;
+        out[base + 2u] = results[1].x;
+        out[base + 3u] = results[1].y;
+        out[base + 4u] = u32(double_is_less(a, b));";
+    let on_gpu = run(&gpu, &[Module::DoubleQuotient], &input, 6, 5, body);
+    assert_eq!(differing(&on_cpu, &on_gpu), 0);
+}
