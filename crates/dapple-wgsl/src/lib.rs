@@ -107,6 +107,10 @@ pub enum Module {
     DoubleQuotient,
     /// Sines of numbers of 64 bits.
     DoubleSine,
+    /// Worley's basis in four dimensions: up to four nearest feature points.
+    Worley4d,
+    /// Distances to edges of Voronoi cells in two dimensions.
+    WorleyEdges2d,
 }
 
 /// Description of a module.
@@ -164,6 +168,9 @@ entries! {
     Oklab = "oklab" [Exact],
     DoubleQuotient = "double_quotient" [Double],
     DoubleSine = "double_sine" [Double],
+    Worley4d = "worley_4d" [Exact, Hash, Place4d, Root, CellId, WorleyParts],
+    WorleyEdges2d = "worley_edges_2d"
+        [Hash, Place2d, WorleyParts, Worley2d, Double, DoubleQuotient],
 }
 
 impl Module {
@@ -271,9 +278,9 @@ pub fn gradient_noise_value(words: &[u32; 16]) -> String {
 #[must_use]
 pub fn worley_value(words: &[u32; 24]) -> String {
     let [first, second, period, low, high] = [0, 4, 8, 12, 16].map(|at| vector(&words[at..at + 4]));
-    let [least, jitter] = [words[20], words[21]];
+    let [least, jitter, metric] = [words[20], words[21], words[22]];
     alloc::format!(
-        "Worley(array({first}, {second}), {period}, array({low}, {high}), {least}u, {jitter}u)"
+        "Worley(array({first}, {second}), {period}, array({low}, {high}), {least}u, {jitter}u, {metric}u)"
     )
 }
 

@@ -1,13 +1,13 @@
 // Worley's cellular basis in two dimensions, with the bits of `Worley2` of the crate dapple-worley.
 
-// A feature point: the Euclidean distance, the vector from the point to the position, and 64 random bits
+// A feature point: the distance, the vector from the point to the position, and 64 random bits
 struct Feature2d {
     distance: f32,
     vector: vec2<f32>,
     id: vec2<u32>,
 }
 
-// A point that a search has found: the squared distance as bits, the vector in units of 2^-21 cells, and the hash words
+// A point that a search has found: the bits of `key_2d`, the vector in units of 2^-21 cells, and the hash words
 // of its cell
 struct Found2d {
     key: u32,
@@ -16,11 +16,12 @@ struct Found2d {
     index: u32,
 }
 
-// Squared length of a vector in units of 2^-21 cells; its bits are ordered as the lengths are
-fn key_2d(steps: vec2<i32>, zero: u32) -> u32 {
-    let cells = vec4(vec2<f32>(steps) * (1.0 / 2097152.0), 0.0, 0.0);
-    let squares = exact_mul(cells, cells, zero);
-    return bitcast<u32>(exact_add(squares, squares.yxzw, zero).x);
+// Length of a vector in units of 2^-21 cells as bits, which are ordered as lengths are; Euclidean lengths are squared
+fn key_2d(steps: vec2<i32>, metric: u32, zero: u32) -> u32 {
+    let cells = abs(vec4(vec2<f32>(steps) * (1.0 / 2097152.0), 0.0, 0.0));
+    if metric == 2u { return bitcast<u32>(max(cells.x, cells.y)); }
+    let terms = select(cells, exact_mul(cells, cells, zero), metric == 0u);
+    return bitcast<u32>(exact_add(terms, terms.yxzw, zero).x);
 }
 
 // Whether a point comes before another one: by distance, then by id, then by vector
@@ -30,14 +31,16 @@ fn is_before_2d(a: Found2d, b: Found2d) -> bool {
     let b_id = cell_bits(b.words, 0x80000000u + b.index);
     if a_id.x != b_id.x { return a_id.x < b_id.x; }
     if a_id.y != b_id.y { return a_id.y < b_id.y; }
-    if a.steps.x != b.steps.x { return a.steps.x < b.steps.x; }
-    return a.steps.y < b.steps.y;
+    if a.steps.x != b.steps.x { return a.steps.x > b.steps.x; }
+    return a.steps.y > b.steps.y;
 }
 
-fn feature_2d(found: Found2d) -> Feature2d {
+fn feature_2d(found: Found2d, metric: u32) -> Feature2d {
     let vector = vec2<f32>(found.steps) * (1.0 / 2097152.0);
     let id = cell_bits(found.words, 0x80000000u + found.index);
-    return Feature2d(exact_root(bitcast<f32>(found.key)), vector, id);
+    var distance = bitcast<f32>(found.key);
+    if metric == 0u { distance = exact_root(distance); }
+    return Feature2d(distance, vector, id);
 }
 
 // The two nearest feature points of a place, nearest first
@@ -60,7 +63,7 @@ fn worley_2d(worley: Worley, place: Place2d, zero: u32) -> array<Feature2d, 2> {
             // Skip cells that cannot contain a nearer point
             let origin = steps - shift * 2097152;
             let gap = max(max(-origin, origin - 2097152), vec2(0));
-            if key_2d(gap, zero) > second.key { continue; }
+            if key_2d(gap, worley.metric, zero) > second.key { continue; }
             let at = wrapped(cell + shift, worley.period.xy);
             let parts = mix_bits(vec4(at, at) ^ vec4(worley.keys[0].xy, worley.keys[1].xy));
             let words = parts.xz ^ parts.yw;
@@ -69,7 +72,7 @@ fn worley_2d(worley: Worley, place: Place2d, zero: u32) -> array<Feature2d, 2> {
                 let random = point_words(words, index) >> vec2(11u);
                 let point = (random * worley.jitter + 1048576u * (1024u - worley.jitter)) >> vec2(10u);
                 let vector = origin - vec2<i32>(point);
-                let found = Found2d(key_2d(vector, zero), vector, words, index);
+                let found = Found2d(key_2d(vector, worley.metric, zero), vector, words, index);
                 if is_before_2d(found, second) {
                     second = found;
                     if is_before_2d(found, first) {
@@ -79,7 +82,8 @@ fn worley_2d(worley: Worley, place: Place2d, zero: u32) -> array<Feature2d, 2> {
                 }
             }
         }
-        if second.key < key_2d(vec2(min(sides.x, sides.y) + ring * 2097152, 0), zero) { break; }
+        let border = vec2(min(sides.x, sides.y) + ring * 2097152, 0);
+        if second.key < key_2d(border, worley.metric, zero) { break; }
     }
-    return array(feature_2d(first), feature_2d(second));
+    return array(feature_2d(first, worley.metric), feature_2d(second, worley.metric));
 }

@@ -1,13 +1,15 @@
-// Parts that Worley's basis shares in two and three dimensions.
+// Parts that Worley's basis shares in all dimensions.
 
 // The basis: the 24 words of `Worley::shader_words` of the crate dapple-worley. There are keys of two hashes and a period
-// in cells (0 for none) along each axis, and the distribution of the number of points in a cell.
+// in cells (0 for none) along each axis, the distribution of the number of points in a cell, and the metric: 0 Euclidean,
+// 1 Manhattan, 2 Chebyshev.
 struct Worley {
     keys: array<vec4<u32>, 2>,
     period: vec4<u32>,
     thresholds: array<vec4<u32>, 2>,
     least: u32,
     jitter: u32,
+    metric: u32,
 }
 
 // Number of points in the cell with the first hash word `word`

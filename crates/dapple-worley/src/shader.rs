@@ -10,8 +10,8 @@ where
     ///
     /// # Errors
     ///
-    /// [`NotInShader`](WorleyErrorKind::NotInShader) if the metric is not Euclidean, the number of points per cell is
-    /// unclamped or varies in space, there are more than three axes, or a period is above 2^31 cells.
+    /// [`NotInShader`](WorleyErrorKind::NotInShader) if the metric is Minkowski's, the number of points per cell is
+    /// unclamped or varies in space, or a period is above 2^31 cells.
     ///
     /// # Examples
     ///
@@ -27,10 +27,9 @@ where
     pub fn shader_words(&self) -> Result<[u32; 24], WorleyError> {
         let lattice = &self.lattice;
         let obstacles = [
-            (N > 3, "four axes"),
             (
-                self.metric != Metric::Euclidean,
-                "metrics other than Euclidean",
+                matches!(self.metric, Metric::Minkowski(_)),
+                "Minkowski's metric",
             ),
             (lattice.density.is_some(), "a density that varies in space"),
             (
@@ -63,6 +62,11 @@ where
             }
         }
         words[20] = least;
+        words[22] = match self.metric {
+            Metric::Manhattan => 1,
+            Metric::Chebyshev => 2,
+            Metric::Euclidean | Metric::Minkowski(_) => 0,
+        };
         Ok(words)
     }
 }

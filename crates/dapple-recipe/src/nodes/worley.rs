@@ -7,7 +7,7 @@ use crate::{RecipeError, RecipeErrorKind};
 use core::fmt;
 use dapple_raster::{Field, FieldExt};
 use dapple_raster::{Range, range};
-use dapple_wgsl::{Module, worley_value};
+use dapple_wgsl::{Module, number_value, worley_value};
 use dapple_worley::{
     Combination, Dimensions, Metric, OctaveSeeds, Octaves, Scatter, Space, Worley, Worley2, Worley4,
 };
@@ -128,55 +128,15 @@ impl NodeKind for WorleyNode {
     }
 
     fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
-        if self.motion.is_some() {
-            return Err(Refusal::new(
-                "Worley's basis in four dimensions has no shader",
-            ));
+        let seed = shader.seed(self.seed.as_ref());
+        let [x, y] = shader.periods(self.frequency.0);
+        match self.motion {
+            None => self.code(shader, Worley2::new(seed).with_period([x, y])?, 0.0),
+            Some(Motion { cells, z }) => {
+                let periods = [x, y, None, Some(cells)];
+                self.code(shader, Worley4::new(seed).with_period(periods)?, z)
+            }
         }
-        let frequency = self.frequency.0;
-        let worley = Worley2::new(shader.seed(self.seed.as_ref()));
-        let worley = self.basis(worley.with_period(shader.periods(frequency))?)?;
-        let combination = match self.value {
-            WorleyValue::Combination(combination) if combination.depth() > 2 => {
-                return Err(Refusal::new("the distances F3 and F4 have no shader"));
-            }
-            WorleyValue::Combination(combination) => combination,
-            WorleyValue::EdgeDistance => {
-                return Err(Refusal::new("distances to edges have no shader"));
-            }
-            WorleyValue::CellValue => {
-                let features = self.features(shader, &worley, 1.0)?;
-                return Ok(Code::number(format!("cell_value({features}[0].id)")));
-            }
-        };
-        let Some(octaves) = self.octaves else {
-            let features = self.features(shader, &worley, 1.0)?;
-            return Ok(Code::number(tone(&features, combination, self.range)));
-        };
-        // Sum the octaves, each with its own period, and its own seed unless they share one.
-        let mut sum = literal(0.0);
-        let (mut ratio, mut weight) = (1.0, 1.0);
-        for index in 0..octaves.count {
-            let periods = worley.periods();
-            let periods = periods.map(|cells| Some((f64::from(cells?) * ratio) as u32));
-            let mut octave = worley.clone().with_period(periods)?;
-            if octaves.seeds == OctaveSeeds::Own {
-                octave = octave.with_seed(worley.seed().child("octave", index.into()));
-            }
-            let features = self.features(shader, &octave, ratio)?;
-            let value = tone(&features, combination, None);
-            let value = format!("number_mul({value}, {}, zero)", literal(weight as f32));
-            sum = shader.name("sum", format!("number_add({sum}, {value}, zero)"));
-            ratio *= octaves.lacunarity;
-            weight *= octaves.gain;
-        }
-        Ok(Code::number(match self.range {
-            None => sum,
-            Some([low, high]) => {
-                let [scale, shift] = [1.0 / (high - low), -low / (high - low) + 0.0].map(literal);
-                format!("number_add({shift}, number_mul({sum}, {scale}, zero), zero)")
-            }
-        }))
     }
 }
 
@@ -236,20 +196,111 @@ impl WorleyNode {
         Ok(Arc::new(solid.slice(place)))
     }
 
-    /// Writes the two nearest feature points at the position times the node's frequency times `ratio`.
-    fn features(
+    /// Writes the node's value from a cellular basis in the plane, or in four dimensions at the time 0. `z` is the
+    /// position of the slice along the third axis.
+    fn code<const N: usize>(
         &self,
         shader: &mut NodeShader<'_, '_>,
-        worley: &Worley2,
+        worley: Worley<N>,
+        z: f64,
+    ) -> Result<Code, Refusal>
+    where
+        Dimensions: Space<N>,
+    {
+        let worley = self.basis(worley)?;
+        let combination = match self.value {
+            WorleyValue::Combination(combination) => combination,
+            WorleyValue::CellValue => {
+                let features = self.features(shader, &worley, 1, 1.0, z)?;
+                return Ok(Code::number(format!("cell_value({features}[0].id)")));
+            }
+            WorleyValue::EdgeDistance if N > 2 => {
+                let reason = "distances to edges in four dimensions have no shader";
+                return Err(Refusal::new(reason));
+            }
+            WorleyValue::EdgeDistance => {
+                shader.needs(Module::WorleyEdges2d);
+                let (worley, place) = self.placed(shader, &worley, 1.0)?;
+                let value = format!("edge_distance_2d({worley}, {place}, zero)");
+                return Ok(Code::number(value));
+            }
+        };
+        let depth = combination.depth();
+        let Some(octaves) = self.octaves else {
+            let features = self.features(shader, &worley, depth, 1.0, z)?;
+            return Ok(Code::number(tone(&features, combination, self.range)));
+        };
+        // Sum the octaves, each with its own period, and its own seed unless they share one.
+        let mut sum = literal(0.0);
+        let (mut ratio, mut weight) = (1.0, 1.0);
+        for index in 0..octaves.count {
+            let periods = worley.periods();
+            let periods = periods.map(|cells| Some((f64::from(cells?) * ratio) as u32));
+            let mut octave = worley.clone().with_period(periods)?;
+            if octaves.seeds == OctaveSeeds::Own {
+                octave = octave.with_seed(worley.seed().child("octave", index.into()));
+            }
+            let features = self.features(shader, &octave, depth, ratio, z)?;
+            let value = tone(&features, combination, None);
+            let value = format!("number_mul({value}, {}, zero)", literal(weight as f32));
+            sum = shader.name("sum", format!("number_add({sum}, {value}, zero)"));
+            ratio *= octaves.lacunarity;
+            weight *= octaves.gain;
+        }
+        Ok(Code::number(match self.range {
+            None => sum,
+            Some([low, high]) => {
+                let [scale, shift] = [1.0 / (high - low), -low / (high - low) + 0.0].map(literal);
+                format!("number_add({shift}, number_mul({sum}, {scale}, zero), zero)")
+            }
+        }))
+    }
+
+    /// Writes the parameters of a basis, and the place at the position times the node's frequency times `ratio`.
+    fn placed<const N: usize>(
+        &self,
+        shader: &mut NodeShader<'_, '_>,
+        worley: &Worley<N>,
         ratio: f64,
-    ) -> Result<String, Refusal> {
+    ) -> Result<(String, String), Refusal>
+    where
+        Dimensions: Space<N>,
+    {
         let worley = worley_value(&worley.shader_words()?);
-        shader.needs(Module::Worley2d);
         let at = shader.position(self.frequency.0);
         let at = shader.scaled(&at, [ratio; 2]);
         let place = shader.name("place", format!("worley_place_2d({at})"));
-        let worley = shader.constant("WORLEY", worley);
-        Ok(shader.name("features", format!("worley_2d({worley}, {place}, zero)")))
+        Ok((shader.constant("WORLEY", worley), place))
+    }
+
+    /// Writes the nearest feature points, at least `depth`, at the position times the node's frequency times `ratio`.
+    fn features<const N: usize>(
+        &self,
+        shader: &mut NodeShader<'_, '_>,
+        worley: &Worley<N>,
+        depth: usize,
+        ratio: f64,
+        z: f64,
+    ) -> Result<String, Refusal>
+    where
+        Dimensions: Space<N>,
+    {
+        let (worley, place) = self.placed(shader, worley, ratio)?;
+        if N == 2 {
+            if depth > 2 {
+                return Err(Refusal::new("the distances F3 and F4 have no shader"));
+            }
+            shader.needs(Module::Worley2d);
+            let features = format!("worley_2d({worley}, {place}, zero)");
+            return Ok(shader.name("features", features));
+        }
+        shader.needs(Module::Worley4d);
+        let (cell, fraction) = split(z * ratio)?;
+        let place = format!(
+            "Place4d(vec4({place}.cell, {cell}, 0), vec4({place}.fraction, {fraction}, 0.0))"
+        );
+        let features = format!("worley_4d({worley}, {place}, {depth}u, zero)");
+        Ok(shader.name("features", features))
     }
 
     /// Returns an error if a single value (`cell_value` or `edge_distance`) is combined with options that apply to
@@ -268,7 +319,24 @@ impl WorleyNode {
 
 const PLACE: Range = range!(finite);
 
-/// Writes a combination of F1 and F2, mapped from `range` to 0 to 1 if there is one.
+/// Writes the cell of a coordinate, and the fraction in units of 2^-21 cells.
+fn split(coordinate: f64) -> Result<(i32, String), Refusal> {
+    const STEPS: f64 = (1 << 21) as f64;
+    let steps = ((coordinate - coordinate.floor()) * STEPS).floor();
+    // The fraction just below a whole number may be rounded up to 1.
+    let cell = coordinate.floor() + f64::from(u8::from(steps == STEPS));
+    if cell.abs() >= f64::from(i32::MAX) {
+        return Err(Refusal::new(
+            "its slice is too far from the origin for a shader",
+        ));
+    }
+    Ok((
+        cell as i32,
+        number_value((steps.rem_euclid(STEPS) / STEPS) as f32),
+    ))
+}
+
+/// Writes a combination of distances, mapped from `range` to 0 to 1 if there is one.
 fn tone(features: &str, combination: Combination, range: Option<[f32; 2]>) -> String {
     let [low, high] = range.unwrap_or([0.0, 1.0]);
     let weights = combination

@@ -1,14 +1,17 @@
-//! Worley's basis: distances, vectors and ids of the two nearest feature points.
+//! Worley's basis: distances, vectors and ids of the nearest feature points, and distances to edges.
 
 use super::{N, Place, differing, places, words};
 use dapple_hash::Seed;
 use dapple_hash::rand_core::Rng;
 use dapple_wgsl::Module;
 use dapple_wgsl_tests::Gpu;
-use dapple_worley::{Dimensions, Feature, Scatter, Space, Vector, Worley, Worley2, Worley3};
+use dapple_worley::{
+    Dimensions, Feature, Metric, Scatter, Space, Vector, Worley, Worley2, Worley3, Worley4,
+};
 
-/// Returns a shader that writes distance, vector and id of both points.
-fn shader(axes: usize, module: Module) -> String {
+/// Returns a shader that writes distance, vector and id of the `n` nearest points. `count` is the argument with their
+/// number, if there is one.
+fn shader(axes: usize, module: Module, n: usize, count: &str) -> String {
     let swizzle = &"xyzw"[..axes];
     module.source()
         + &format!(
@@ -22,9 +25,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
     let words = places[id.x];
     let cell = bitcast<vec4<i32>>(words[0]);
     let fraction = bitcast<vec4<f32>>(words[1]);
-    var features = worley_{axes}d(worley, Place{axes}d(cell.{swizzle}, fraction.{swizzle}), zero);
-    for (var i = 0u; i < 2u; i++) {{
-        let at = {size}u * (2u * id.x + i);
+    var features = worley_{axes}d(worley, Place{axes}d(cell.{swizzle}, fraction.{swizzle}), {count}zero);
+    for (var i = 0u; i < {n}u; i++) {{
+        let at = {size}u * ({n}u * id.x + i);
         out[at] = bitcast<u32>(features[i].distance);
         out[at + 1u] = features[i].id.x;
         out[at + 2u] = features[i].id.y;
@@ -37,13 +40,16 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
         )
 }
 
-fn sampled<const D: usize>(worley: &Worley<D>, places: &[Place<D>]) -> Vec<u32>
+fn sampled<const D: usize, const NEAREST: usize>(
+    worley: &Worley<D>,
+    places: &[Place<D>],
+) -> Vec<u32>
 where
     Dimensions: Space<D>,
 {
     let mut on_cpu = Vec::new();
     for place in places {
-        let features: [Feature<Vector<D>>; 2] = worley.sample(place.position());
+        let features: [Feature<Vector<D>>; NEAREST] = worley.sample(place.position());
         for feature in features {
             let [high, low] = [feature.id >> 32, feature.id & 0xFFFF_FFFF];
             on_cpu.extend([feature.distance.to_bits(), high as u32, low as u32]);
@@ -55,13 +61,17 @@ where
     on_cpu
 }
 
-/// Compares all scatters, several periods, near and far.
-fn compare<const D: usize>(module: Module, new: impl Fn(Seed) -> Worley<D>)
-where
+/// Compares all scatters, several periods and metrics, near and far, at `n` places each.
+fn compare<const D: usize, const NEAREST: usize>(
+    module: Module,
+    count: &str,
+    n: usize,
+    new: impl Fn(Seed) -> Worley<D>,
+) where
     Dimensions: Space<D>,
 {
     let Some(gpu) = Gpu::new() else { return };
-    let shader = shader(D, module);
+    let shader = shader(D, module, NEAREST, count);
     let scatters = [
         Scatter::default(),
         Scatter::Jittered { jitter: 1.0 },
@@ -72,8 +82,12 @@ where
         Scatter::Poisson { density: 8.0 },
         // The least number of points is never drawn, and a threshold is 0.
         Scatter::Poisson { density: 64.0 },
+        // A grid whose points all have the same id
+        Scatter::Jittered { jitter: 0.0 },
+        Scatter::Poisson { density: 0.3 },
     ];
-    let periods = [0, 1, 2, 7, 1 << 31, 3, 1];
+    let periods = [0, 1, 2, 7, 1 << 31, 3, 1, 1, 5];
+    let metrics = [Metric::Euclidean, Metric::Manhattan, Metric::Chebyshev];
     for (seed, (scatter, period)) in (0..).zip(scatters.into_iter().zip(periods)) {
         let mut cells = [None; D];
         for (axis, cells) in cells.iter_mut().enumerate() {
@@ -81,26 +95,91 @@ where
         }
         let worley = new(Seed(seed)).with_period(cells).expect("a period");
         let worley = worley.with_scatter(scatter).expect("a scatter");
+        let metric = metrics[(seed as usize + 2) / 3 % 3];
+        let worley = worley.with_metric(metric).expect("a metric");
         for bits in [2, 29] {
-            let places = places::<D>(seed, bits);
-            let on_cpu = sampled(&worley, &places);
+            let mut places = places::<D>(seed, bits);
+            places.truncate(n);
+            let on_cpu = sampled::<D, NEAREST>(&worley, &places);
             let parameters = worley.shader_words().expect("parameters");
             let inputs = [&[0][..], &parameters, &words(&places)];
-            let on_gpu = gpu.compute(&shader, &inputs, N, 2 * (3 + D));
+            let on_gpu = gpu.compute(&shader, &inputs, n, NEAREST * (3 + D));
             let wrong = differing(&on_cpu, &on_gpu);
-            assert_eq!(wrong, 0, "{scatter:?}, {cells:?}, cells of {bits} bits");
+            assert_eq!(
+                wrong, 0,
+                "{scatter:?}, {metric:?}, {cells:?}, cells of {bits} bits"
+            );
         }
     }
 }
 
 #[test]
 fn worley_2d_has_the_bits_of_the_cpu() {
-    compare(Module::Worley2d, Worley2::new);
+    compare::<2, 2>(Module::Worley2d, "", N, Worley2::new);
 }
 
 #[test]
 fn worley_3d_has_the_bits_of_the_cpu() {
-    compare(Module::Worley3d, Worley3::new);
+    compare::<3, 2>(Module::Worley3d, "", N >> 2, Worley3::new);
+}
+
+#[test]
+fn worley_4d_has_the_bits_of_the_cpu() {
+    compare::<4, 1>(Module::Worley4d, "1u, ", N >> 5, Worley4::new);
+    compare::<4, 4>(Module::Worley4d, "4u, ", N >> 7, Worley4::new);
+}
+
+#[test]
+fn distances_to_edges_have_the_bits_of_the_cpu() {
+    let Some(gpu) = Gpu::new() else { return };
+    let shader = Module::WorleyEdges2d.source()
+        + "
+        @group(0) @binding(0) var<storage> zero: u32;
+        @group(0) @binding(1) var<storage> worley: Worley;
+        @group(0) @binding(2) var<storage> places: array<array<vec4<u32>, 2>>;
+        @group(0) @binding(3) var<storage, read_write> out: array<f32>;
+        @compute @workgroup_size(64)
+        fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+            let words = places[id.x];
+            let place = Place2d(bitcast<vec4<i32>>(words[0]).xy, bitcast<vec4<f32>>(words[1]).xy);
+            out[id.x] = edge_distance_2d(worley, place, zero);
+        }";
+    let scatters = [
+        (Scatter::default(), 0),
+        (Scatter::Jittered { jitter: 1.0 }, 1),
+        (Scatter::Jittered { jitter: 0.0 }, 7),
+        (Scatter::Poisson { density: 0.3 }, 2),
+        (Scatter::Poisson { density: 20.0 }, 1 << 31),
+    ];
+    for (seed, (scatter, period)) in (0..).zip(scatters) {
+        let worley = Worley2::new(Seed(seed)).with_scatter(scatter);
+        let worley = worley.expect("a scatter");
+        let period = (period > 0).then_some(period);
+        let worley = worley.with_period([period; 2]).expect("a period");
+        for bits in [2, 29] {
+            let mut places = places::<2>(seed, bits);
+            places.truncate(N >> 2);
+            let on_cpu = places.iter().map(|at| worley.edge_distance(at.position()));
+            let on_cpu: Vec<u32> = on_cpu.map(f32::to_bits).collect();
+            let parameters = worley.shader_words().expect("parameters");
+            let inputs = [&[0][..], &parameters, &words(&places)];
+            let on_gpu = gpu.compute(&shader, &inputs, places.len(), 1);
+            let wrong = differing(&on_cpu, &on_gpu);
+            assert_eq!(wrong, 0, "{scatter:?}, {period:?}, cells of {bits} bits");
+            // The distance in 32 bits alone is not exact.
+            if seed == 0 && bits == 2 {
+                let rounded = "double_to_float(least) * (1.0 / 2097152.0)";
+                assert_eq!(shader.matches(rounded).count(), 1, "the last line");
+                let on_gpu = gpu.compute(
+                    &shader.replace(rounded, "nearest"),
+                    &inputs,
+                    places.len(),
+                    1,
+                );
+                assert!(differing(&on_cpu, &on_gpu) > places.len() / 100);
+            }
+        }
+    }
 }
 
 #[test]
