@@ -33,6 +33,20 @@ pub struct MaterialShader {
     /// Names of the nodes whose values the caller reads from textures, in the order of the members of the structure
     /// `Textures`; empty if the shader computes all nodes.
     pub textures: Vec<String>,
+    /// Words of the texture `data`, in whole rows: texels of four words in the format `rgba32uint`, 1024 in a row. They
+    /// hold the tiles of wavelet noise and the control points of PUPs. Empty if the function has no such argument.
+    pub data: Vec<u32>,
+}
+
+impl MaterialShader {
+    /// Number of words of a texel of the texture `data`.
+    pub(crate) const DATA_TEXEL: usize = 4;
+
+    /// Number of words of a row of the texture `data`.
+    pub const DATA_ROW: usize = 1024 * Self::DATA_TEXEL;
+
+    /// Maximum number of words of the texture `data`: 8192 rows, which every device supports.
+    pub const DATA_LIMIT: usize = 8192 * Self::DATA_ROW;
 }
 
 impl Recipe {
@@ -47,6 +61,9 @@ impl Recipe {
     /// `place` is a position in units of the plane, as a cell and a fraction; `place_2d` splits a `vec2<f32>`. `at` is a
     /// position in numbers of 64 bits, each as the upper and the lower word of its bits. The number `zero` is 0, and must
     /// come from a buffer: it keeps compilers from changing the results.
+    ///
+    /// Nodes that look up tiles or control points, such as wavelet noise, add the argument `data: texture_2d<u32>` before
+    /// `zero`: a texture of the words in [`MaterialShader::data`]. Looping motion stands still at the time 0.
     ///
     /// Values have the bits of [`Plan::height`], [`Plan::field`] and [`Plan::colors`] at the position `cell + fraction`, up
     /// to 2^31 cells of each node.
@@ -81,11 +98,11 @@ impl Recipe {
         options: &ShaderOptions,
     ) -> Result<MaterialShader, RecipeError> {
         // The plan checks the recipe, and knows which nodes have colors.
-        self.to_wgsl_with(&Plan::new(self, images, 0.0)?, options)
+        self.assemble(&Plan::new(self, images, 0.0)?, images, options)
     }
 
     /// Generates the material as [`to_wgsl`](Self::to_wgsl) does, with a plan of the recipe that is built already. The
-    /// plan may have another material, so that a shader can compute any nodes.
+    /// plan may have another material, so that a shader can compute any nodes. Tables are built without images.
     ///
     /// # Errors
     ///
@@ -96,7 +113,16 @@ impl Recipe {
         plan: &Plan,
         options: &ShaderOptions,
     ) -> Result<MaterialShader, RecipeError> {
-        let mut writer = Writer::new(self, plan);
+        self.assemble(plan, &Images::new(), options)
+    }
+
+    fn assemble(
+        &self,
+        plan: &Plan,
+        images: &Images,
+        options: &ShaderOptions,
+    ) -> Result<MaterialShader, RecipeError> {
+        let mut writer = Writer::new(self, images, plan);
         let material = writer.material();
         if !writer.textures().is_empty() && !options.textures {
             let nodes = writer.textures().iter();
@@ -108,6 +134,7 @@ impl Recipe {
         Ok(MaterialShader {
             wgsl: writer.assemble(&material),
             textures: writer.textures().keys().cloned().collect(),
+            data: writer.data(),
         })
     }
 }

@@ -19,6 +19,7 @@ mod make;
 mod place;
 mod render;
 mod scale;
+mod shader;
 mod tile;
 mod white;
 

@@ -3,6 +3,9 @@
 /// Number of invocations in a workgroup of the shaders.
 const WORKGROUP: usize = 64;
 
+/// Number of texels in a row of the texture `data`.
+const DATA_WIDTH: u32 = 1024;
+
 /// A GPU, or an adapter that emulates one.
 #[derive(Debug)]
 pub struct Gpu {
@@ -59,6 +62,24 @@ impl Gpu {
     /// If the shader is invalid or the device is lost.
     #[must_use]
     pub fn compute(&self, shader: &str, inputs: &[&[u32]], n: usize, words: usize) -> Vec<u32> {
+        self.compute_with_data(shader, inputs, &[], n, words)
+    }
+
+    /// Does the same as [`compute`](Self::compute), with a texture `data` that is bound after the results: texels of four
+    /// words, 1024 in a row. Without words, it is not bound.
+    ///
+    /// # Panics
+    ///
+    /// If the shader is invalid or the device is lost.
+    #[must_use]
+    pub fn compute_with_data(
+        &self,
+        shader: &str,
+        inputs: &[&[u32]],
+        data: &[u32],
+        n: usize,
+        words: usize,
+    ) -> Vec<u32> {
         let storage = wgpu::BufferUsages::STORAGE;
         let mut buffers = Vec::new();
         for input in inputs {
@@ -72,12 +93,12 @@ impl Gpu {
         let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
         let read = self.buffer(bytes, usage);
         let pipeline = self.pipeline(shader);
-        let entries = (0..).zip(&buffers);
-        let entries: Vec<_> = entries
-            .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                binding,
-                resource: buffer.as_entire_binding(),
-            })
+        let texture = (!data.is_empty()).then(|| self.texture(data));
+        let resources = buffers.iter().map(wgpu::Buffer::as_entire_binding);
+        let resources = resources.chain(texture.iter().map(wgpu::BindingResource::TextureView));
+        let entries: Vec<_> = (0..)
+            .zip(resources)
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
             .collect();
         let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
@@ -121,6 +142,36 @@ impl Gpu {
                 compilation_options: Default::default(),
                 cache: None,
             })
+    }
+
+    /// Uploads words as texels of the format rgba32uint.
+    fn texture(&self, data: &[u32]) -> wgpu::TextureView {
+        let mut bytes: Vec<u8> = data.iter().flat_map(|word| word.to_le_bytes()).collect();
+        let row = 16 * DATA_WIDTH as usize;
+        bytes.resize(bytes.len().next_multiple_of(row), 0);
+        let size = wgpu::Extent3d {
+            width: DATA_WIDTH,
+            height: (bytes.len() / row) as u32,
+            depth_or_array_layers: 1,
+        };
+        let texture = self.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba32Uint,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(row as u32),
+            rows_per_image: None,
+        };
+        self.queue
+            .write_texture(texture.as_image_copy(), &bytes, layout, size);
+        texture.create_view(&Default::default())
     }
 
     fn buffer(&self, bytes: usize, usage: wgpu::BufferUsages) -> wgpu::Buffer {

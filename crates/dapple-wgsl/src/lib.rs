@@ -103,6 +103,10 @@ pub enum Module {
     Position2d,
     /// Mixtures of colors in Oklab.
     Oklab,
+    /// Words of a texture that a noise looks up.
+    Data,
+    /// Wavelet noise in two dimensions.
+    WaveletNoise2d,
     /// Quotients, square roots and comparisons of numbers of 64 bits.
     DoubleQuotient,
     /// Sines of numbers of 64 bits.
@@ -166,6 +170,8 @@ entries! {
     Position2d = "position_2d" [Place2d, Double],
     Oklab = "oklab" [Double],
     Oklab = "oklab" [Exact],
+    Data = "data" [],
+    WaveletNoise2d = "wavelet_noise_2d" [Exact, Hash, Fractal, Double, Position2d, Data],
     DoubleQuotient = "double_quotient" [Double],
     DoubleSine = "double_sine" [Double],
     Worley4d = "worley_4d" [Exact, Hash, Place4d, Root, CellId, WorleyParts],

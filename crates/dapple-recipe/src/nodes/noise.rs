@@ -95,7 +95,7 @@ impl NodeKind for FractalNode {
             FractalBasis::Pups => Step::field(octaves(&self.pups(plan), seed)?.normalized()),
             FractalBasis::Wavelet => {
                 let noise = wavelet::noise(plan, seed, frequency, &self.weights(1.0))?;
-                Step::field(noise.map(about_half))
+                Step::field(noise.frequency_per_axis(frequency).map(about_half))
             }
             FractalBasis::Gradient => {
                 let noise = GradientNoise2::new(seed).with_period(plan.periods(frequency)?)?;
@@ -114,7 +114,9 @@ impl NodeKind for FractalNode {
                 return Err(Refusal::new("noise of the basis `pups` has no shader"));
             }
             FractalBasis::Wavelet => {
-                return Err(Refusal::new("noise of the basis `wavelet` has no shader"));
+                let seed = shader.seed(self.seed.as_ref());
+                let noise = wavelet::code(shader, seed, self.frequency.0, &self.weights(1.0))?;
+                return Ok(Code::number(about_half_code(&noise.text)));
             }
         }
         let frequency = self.frequency.0;
@@ -141,9 +143,8 @@ impl NodeKind for FractalNode {
             sum = shader.name("sum", format!("add_octave({sum}, {weight}, {value}, zero)"));
         }
         let scale = literal(self.weights(GradientNoise2::VARIANCE.into())[0]);
-        Ok(Code::number(format!(
-            "number_clamp(number_add(0.5, number_mul({scale}, {sum}, zero), zero), 0.0, 1.0, zero)"
-        )))
+        let sum = format!("number_mul({scale}, {sum}, zero)");
+        Ok(Code::number(about_half_code(&sum)))
     }
 }
 
@@ -181,4 +182,9 @@ impl FractalNode {
 /// Adds ½ to a value, and clamps the result to 0 to 1.
 pub(super) fn about_half(value: f32) -> f32 {
     (0.5 + value).clamp(0.0, 1.0)
+}
+
+/// Writes [`about_half`].
+fn about_half_code(value: &str) -> String {
+    format!("number_clamp(number_add(0.5, {value}, zero), 0.0, 1.0, zero)")
 }

@@ -3,9 +3,11 @@
 use super::{Frequency, NodeKind, NodeSeed};
 use crate::RecipeError;
 use crate::plan::{Builder, Step, Work};
+use crate::shader::{Code, NodeShader, Refusal};
 use dapple_hash::Seed;
 use dapple_raster::FieldExt;
 use dapple_wavelet::WaveletNoise2;
+use dapple_wgsl::Module;
 use serde::{Deserialize, Serialize};
 
 /// Wavelet noise: nearly normally distributed values with mean 0 and, for a single band, variance 1.
@@ -43,22 +45,40 @@ impl NodeKind for WaveletNode {
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let seed = plan.seed(self.seed.as_ref());
-        Ok(Step::field(noise(
-            plan,
-            seed,
-            self.frequency.0,
-            &self.weights,
-        )?))
+        let noise = noise(plan, seed, self.frequency.0, &self.weights)?;
+        Ok(Step::field(noise.frequency_per_axis(self.frequency.0)))
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let seed = shader.seed(self.seed.as_ref());
+        code(shader, seed, self.frequency.0, &self.weights)
     }
 }
 
-/// Builds wavelet noise with these band weights. `frequency` is in cells of the coarsest band per unit of the plane.
+/// Writes wavelet noise, and adds its tile to the data of the shader.
+pub(super) fn code(
+    shader: &mut NodeShader<'_, '_>,
+    seed: Seed,
+    frequency: [f64; 2],
+    weights: &[f32],
+) -> Result<Code, Refusal> {
+    let noise = shader.build(|plan| noise(plan, seed, frequency, weights))?;
+    let first = shader.data(&noise.shader_words())?;
+    shader.needs(Module::WaveletNoise2d);
+    let at = shader.position(frequency);
+    Ok(Code::number(format!(
+        "wavelet_noise_2d(data, {first}u, {at}, zero)"
+    )))
+}
+
+/// Builds wavelet noise with these band weights. `frequency` is in cells of the coarsest band per unit of the plane,
+/// by which the caller multiplies positions.
 pub(super) fn noise(
     plan: &Builder<'_>,
     seed: Seed,
     frequency: [f64; 2],
     weights: &[f32],
-) -> Result<dapple_raster::Scaled<WaveletNoise2>, RecipeError> {
+) -> Result<WaveletNoise2, RecipeError> {
     let size = cells(plan, frequency)?;
     let tile = plan.parts().get_or_make(
         |tile: &Tile| tile.noise.size() == size && tile.seed == seed,
@@ -67,8 +87,7 @@ pub(super) fn noise(
             Ok::<_, RecipeError>(Tile { noise, seed })
         },
     )?;
-    let noise = tile.noise.clone().with_weights(weights)?;
-    Ok(noise.frequency_per_axis(frequency))
+    Ok(tile.noise.clone().with_weights(weights)?)
 }
 
 /// Wavelet noise with a single band, stored with its seed for reuse with other weights.

@@ -1,7 +1,8 @@
 //! Writes the functions of a shader.
 
-use crate::plan::seed_of;
-use crate::{Input, NodeSeed, Plan, Recipe, RecipeError};
+use super::MaterialShader;
+use crate::plan::{Builder, Watch, seed_of};
+use crate::{Images, Input, NodeSeed, Plan, PlanLimits, Recipe, RecipeError};
 use core::fmt::{self, Write as _};
 use dapple_color::LinearRgb;
 use dapple_hash::Seed;
@@ -34,6 +35,7 @@ pub(super) struct Texture {
 /// The parts of a shader.
 pub(super) struct Writer<'a> {
     recipe: &'a Recipe,
+    images: &'a Images,
     plan: &'a Plan,
     /// For each node, its name in identifiers.
     identifiers: BTreeMap<&'a str, String>,
@@ -44,6 +46,8 @@ pub(super) struct Writer<'a> {
     /// For each node that is evaluated at other positions, its function.
     moved: BTreeMap<&'a str, Result<Code, Refusal>>,
     textures: IndexMap<String, Texture>,
+    /// Words of the texture `data`.
+    data: Vec<u32>,
 }
 
 /// The body of a function.
@@ -217,6 +221,40 @@ impl<'a> NodeShader<'_, 'a> {
         name
     }
 
+    /// Adds words to the texture `data`, and returns the number of the texel at which they start. Code that reads the
+    /// texture has `data` as its first argument.
+    pub(crate) fn data(&mut self, words: &[u32]) -> Result<usize, Refusal> {
+        const TEXEL: usize = MaterialShader::DATA_TEXEL;
+        self.needs(Module::Data);
+        let data = &mut self.writer.data;
+        // A node that is also evaluated at other positions has its words already.
+        let mut texels = (0..data.len()).step_by(TEXEL);
+        if let Some(first) = texels.find(|&first| data[first..].starts_with(words)) {
+            return Ok(first / TEXEL);
+        }
+        let first = data.len();
+        if first + words.len() > MaterialShader::DATA_LIMIT {
+            let limit = MaterialShader::DATA_LIMIT;
+            let message = format!("its data exceed the limit of {limit} words of all nodes");
+            return Err(Refusal::new(message));
+        }
+        data.extend_from_slice(words);
+        data.resize(data.len().next_multiple_of(TEXEL), 0);
+        Ok(first / TEXEL)
+    }
+
+    /// Builds a part of the node's step, which has been built for the plan, too.
+    pub(crate) fn build<T>(
+        &self,
+        build: impl FnOnce(&mut Builder<'_>) -> Result<T, RecipeError>,
+    ) -> Result<T, Refusal> {
+        let Writer { recipe, images, .. } = *self.writer;
+        let (limits, watch) = (PlanLimits::default(), Watch::default());
+        let mut builder = Builder::new(recipe, images, 0.0, &limits, None, &watch);
+        builder.enter(self.node, &recipe.nodes[self.node])?;
+        Ok(build(&mut builder)?)
+    }
+
     /// Returns the position, or the position times a frequency for each axis.
     pub(crate) fn position(&mut self, frequency: [f64; 2]) -> String {
         self.needs(Module::Position2d);
@@ -248,10 +286,14 @@ impl<'a> NodeShader<'_, 'a> {
 /// The position in the code of a node at any position.
 const POSITION: &str = "{position}";
 
+/// The parameter of functions that read the texture `data`.
+const DATA: &str = "data: texture_2d<u32>, ";
+
 impl<'a> Writer<'a> {
-    pub(super) fn new(recipe: &'a Recipe, plan: &'a Plan) -> Self {
+    pub(super) fn new(recipe: &'a Recipe, images: &'a Images, plan: &'a Plan) -> Self {
         Self {
             recipe,
+            images,
             plan,
             identifiers: identifiers(recipe),
             modules: vec![Module::Number, Module::Exact, Module::Position2d],
@@ -259,7 +301,15 @@ impl<'a> Writer<'a> {
             functions: Vec::new(),
             moved: BTreeMap::new(),
             textures: IndexMap::new(),
+            data: Vec::new(),
         }
+    }
+
+    /// Returns the words of the texture `data` in whole rows.
+    pub(super) fn data(&self) -> Vec<u32> {
+        let mut data = self.data.clone();
+        data.resize(data.len().next_multiple_of(MaterialShader::DATA_ROW), 0);
+        data
     }
 
     /// Returns the nodes without a shader.
@@ -348,23 +398,31 @@ impl<'a> Writer<'a> {
             self.modules.len(),
             self.constants.len(),
             self.functions.len(),
+            self.data.len(),
         ];
         let mut scope = Scope::default();
         let made = self.node(&mut scope, name).map(|code| {
             let (kind, lines, value) = (code.kind(), scope.lines, code.text);
             let function = format!("{}_at", self.identifiers[name.as_str()]);
+            // Pass the texture on to functions that read it.
+            let reads_data = [&lines, &value].iter().any(|part| part.contains("(data, "));
+            let [parameter, argument] = match reads_data {
+                true => [DATA, "data, "],
+                false => [""; 2],
+            };
             self.functions.push(format!(
-                "fn {function}(at: Position2d, zero: u32) -> {kind} {{\n{lines}    return {value};\n}}"
+                "fn {function}({parameter}at: Position2d, zero: u32) -> {kind} {{\n{lines}    return {value};\n}}"
             ));
             Code {
-                text: format!("{function}({POSITION}, zero)"),
+                text: format!("{function}({argument}{POSITION}, zero)"),
                 is_color: code.is_color,
             }
         });
         match made {
             Ok(_) => self.needs(Module::Position2d),
             Err(_) => {
-                let [modules, constants, functions] = before;
+                let [modules, constants, functions, data] = before;
+                self.data.truncate(data);
                 self.modules.truncate(modules);
                 self.constants.truncate(constants);
                 self.functions.truncate(functions);
@@ -419,16 +477,18 @@ impl<'a> Writer<'a> {
             }
             out += "}\n\n";
         }
+        let data = if self.data.is_empty() { "" } else { DATA };
+        let passed_data = if self.data.is_empty() { "" } else { "data, " };
         let [declared, passed] = match self.textures.is_empty() {
             true => ["", ""],
             false => ["textures: Textures, ", "textures, "],
         };
         let _ = writeln!(
             out,
-            "fn material(place: Place2d, {declared}zero: u32) -> Material {{\n    \
-             return material64(position_2d(place), {passed}zero);\n}}\n\n\
+            "fn material(place: Place2d, {data}{declared}zero: u32) -> Material {{\n    \
+             return material64(position_2d(place), {passed_data}{passed}zero);\n}}\n\n\
              // At a position in numbers of 64 bits\n\
-             fn material64(at: Position2d, {declared}zero: u32) -> Material {{"
+             fn material64(at: Position2d, {data}{declared}zero: u32) -> Material {{"
         );
         out += material;
         out += "}\n\n";
@@ -463,6 +523,14 @@ impl<'a> Writer<'a> {
                 let period = extent[axis];
                 let _ = writeln!(out, "//     repeats every {period} units along {axis_name}");
             }
+        }
+        if !self.data.is_empty() {
+            let rows = self.data.len().div_ceil(MaterialShader::DATA_ROW);
+            let _ = writeln!(
+                out,
+                "// data: texture of the format rgba32uint with 1024 x {rows} texels: `MaterialShader::data`, or the file that\n\
+                 //     `dapple recipe NAME --wgsl -o NAME.wgsl` writes as NAME.bin"
+            );
         }
         if !self.textures.is_empty() {
             out += "// textures: values of nodes at this position, which a shader reads from baked textures\n";

@@ -37,6 +37,11 @@ impl<const N: usize> Tile<N> {
         }
     }
 
+    /// Returns all coefficients, with the margins.
+    pub(super) fn coefficients(&self) -> &[f32] {
+        &self.coefficients
+    }
+
     /// Returns the maximum absolute coefficient.
     pub(super) fn largest(&self) -> f32 {
         let magnitudes = self.coefficients.iter().map(|value| value.abs());

@@ -1,6 +1,7 @@
 //! The shaders of `dapple-wgsl` against the CPU: all bits are equal.
 
 mod gradient_noise;
+mod lookups;
 mod naga_oil;
 mod numbers;
 mod recipes;

@@ -84,7 +84,7 @@ struct Difference {
 }
 
 /// Returns the entry point, which evaluates the material at every place. `width` is the number of words of the textures at
-/// a place, and `textures` the argument with their values.
+/// a place, and `textures` the arguments with the texture of data and their values.
 fn entry_point(width: usize, textures: &str) -> String {
     format!(
         "
@@ -92,6 +92,7 @@ fn entry_point(width: usize, textures: &str) -> String {
 @group(0) @binding(1) var<storage> places: array<array<vec4<u32>, 2>>;
 @group(0) @binding(2) var<storage> values: array<f32>;
 @group(0) @binding(3) var<storage, read_write> out: array<f32>;
+@group(0) @binding(4) var data: texture_2d<u32>;
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
     let words = places[id.x];
@@ -137,12 +138,16 @@ fn compare(gpu: &Gpu, recipe: &Recipe, plan: &Plan, at: &[At]) -> Difference {
     let rows = (0..n).flat_map(|row| columns.iter().map(move |column: &Vec<f32>| column[row]));
     let mut values: Vec<u32> = rows.map(f32::to_bits).collect();
     values.push(0);
-    let textures = match members.is_empty() {
-        true => String::new(),
-        false => format!("Textures({}), ", members.join(", ")),
-    };
+    let mut textures = String::new();
+    if !shader.data.is_empty() {
+        textures += "data, ";
+    }
+    if !members.is_empty() {
+        textures += &format!("Textures({}), ", members.join(", "));
+    }
     let text = shader.wgsl + &entry_point(columns.len(), &textures);
-    let on_gpu = gpu.compute(&text, &[&[0], &words(&places), &values], n, 6);
+    let inputs = [&[0][..], &words(&places), &values];
+    let on_gpu = gpu.compute_with_data(&text, &inputs, &shader.data, n, 6);
     let material = &recipe.material;
     let inputs = [&material.height, &material.roughness, &material.metallic];
     let mut difference = Difference::default();
@@ -240,6 +245,16 @@ const NODES: &str = r##"
     negative.worley = { value = [-1.0, 0.0, 0.0, 0.0], scatter = { jittered = { jitter = 0.0 } } }
     sum.worley = { value = "f2_minus_f1", octaves = { count = 3, lacunarity = 1.5, gain = -0.7, seeds = "same" }, range = [0.1, 0.8] }
     stone.worley = { value = "cell_value", scatter = { poisson = { density = 0.5 } } }
+    blocks.worley = { frequency = 2.0, value = "f2_minus_f1", metric = "manhattan" }
+    boxes.worley = { value = "cell_value", metric = "chebyshev" }
+    joints.worley = { frequency = [1.0, 2.0], value = "edge_distance" }
+    foam.worley = { value = "f1", octaves = { count = 3, gain = 0.4 }, motion = { cells = 1 } }
+    growth.worley = { frequency = [1.0, 0.25], value = [0.25, 0.25, -0.25, 0.25], motion = { cells = 3, z = -7.3 } }
+    sparks.worley = { value = "cell_value", motion = { cells = 2, z = 0.5 }, metric = "manhattan" }
+    sine.wave = { input = "hills", frequency = 3.0, phase = 0.1 }
+    far_sine.wave = { input = "across", frequency = -0.25 }
+    wavelets.wavelet = { frequency = [2.0, 3.7], weights = [1.0, 0.0, -0.5, 0.25] }
+    bands.noise = { basis = "wavelet", frequency = [7.0, 4.0], octaves = 5, gain = 0.8 }
     across.coordinate = { center = [0.1, -2.0], along = [0.7, -1.3] }
     right.coordinate = {}
     sawtooth.wave = { input = "across", frequency = 1.3, phase = 0.37, form = "sawtooth" }
