@@ -124,11 +124,41 @@ impl Bins {
         bins
     }
 
+    /// Returns the numbers of columns and rows of bins.
+    pub(crate) fn size(&self) -> [u32; 2] {
+        self.size.map(|count| count as u32)
+    }
+
+    /// Returns the number of bins per unit of length, along each axis.
+    pub(crate) fn per_unit(&self) -> DVec2 {
+        self.per_unit
+    }
+
+    /// Returns the records of all candidates of a bin, in order. Bins are counted row by row.
+    pub(crate) fn candidates_in(&self, bin: usize) -> Vec<u32> {
+        let mut records = Vec::new();
+        let mut candidates = self.first_of_bin(bin / self.size[0], bin % self.size[0]);
+        loop {
+            let used = candidates.records.iter().zip(candidates.ones);
+            records.extend(used.filter(|(_, one)| *one > 0.0).map(|(record, _)| record));
+            match candidates.next {
+                Some(next) => candidates = self.next_candidates(next),
+                None => return records,
+            }
+        }
+    }
+
     /// Returns the first candidates at a position, which must be in the range of [`Net::local`].
     #[inline(always)]
     pub(crate) fn first_candidates(&self, position: DVec2) -> Candidates {
         let row = self.bin(1, position.y);
-        let Bin(places) = self.bins[row * self.size[0] + self.bin(0, position.x)];
+        self.first_of_bin(row, self.bin(0, position.x))
+    }
+
+    /// Returns the first candidates of a bin.
+    #[inline(always)]
+    fn first_of_bin(&self, row: usize, column: usize) -> Candidates {
+        let Bin(places) = self.bins[row * self.size[0] + column];
         // Read the index of a crowded bin's list from its two halves.
         if places[0] == Bin::ELSEWHERE {
             return self.next_candidates(u32::from(places[1]) | u32::from(places[2]) << 16);

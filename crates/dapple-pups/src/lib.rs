@@ -101,6 +101,8 @@ mod sink;
 mod assign;
 mod recipes;
 
+mod shader;
+
 #[cfg(feature = "schema")]
 mod schema;
 
@@ -129,5 +131,6 @@ pub use recipes::{
     cow_progression, giraffe_progression, iterated_reference, label_ramp, noise, octaves,
     reference_texture, space_giraffe, turbulence,
 };
+pub use shader::{ShaderLayer, ShaderLayers};
 pub use texture::{Texture, VectorTexture};
 pub use weight::AxialWeight;

@@ -109,6 +109,8 @@ pub enum Module {
     WaveletNoise2d,
     /// Quotients, square roots and comparisons of numbers of 64 bits.
     DoubleQuotient,
+    /// Textures of control points in two dimensions.
+    Pups2d,
     /// Sines of numbers of 64 bits.
     DoubleSine,
     /// Worley's basis in four dimensions: up to four nearest feature points.
@@ -173,6 +175,8 @@ entries! {
     Data = "data" [],
     WaveletNoise2d = "wavelet_noise_2d" [Exact, Hash, Fractal, Double, Position2d, Data],
     DoubleQuotient = "double_quotient" [Double],
+    Pups2d = "pups_2d"
+        [Exact, Fractal, Root, Number, Double, Position2d, Data, DoubleQuotient],
     DoubleSine = "double_sine" [Double],
     Worley4d = "worley_4d" [Exact, Hash, Place4d, Root, CellId, WorleyParts],
     WorleyEdges2d = "worley_edges_2d"

@@ -4,7 +4,7 @@
 use super::Octave;
 use crate::{
     Cells, ControlPoint, ControlPoints, LabelTexture, Layers, NetOptions, Orientations, Pups,
-    PupsError, PupsField, PupsOptions, Texture, VectorTexture,
+    PupsError, PupsField, PupsOptions, ShaderLayers, Texture, VectorTexture,
 };
 use dapple_graph::{Graph, delaunay};
 use dapple_points::Domain;
@@ -41,6 +41,9 @@ pub enum NetValues {
 pub trait NetField: Field {
     /// Returns the nets of the texture's layers, the coarsest first. A texture without layers has a single net.
     fn nets(&self) -> Vec<ControlNet>;
+
+    /// Returns the texture as data for the shaders of `dapple-wgsl`.
+    fn shader_layers(&self) -> ShaderLayers;
 
     /// Converts the texture to individual control points; see [`PupsField::to_points`].
     fn to_points(&self, tile: Domain) -> Option<ControlPoints> {
@@ -221,6 +224,10 @@ impl NetField for Texture {
         vec![self.into()]
     }
 
+    fn shader_layers(&self) -> ShaderLayers {
+        ShaderLayers::single(self.into())
+    }
+
     fn to_points(&self, tile: Domain) -> Option<ControlPoints> {
         ControlNet::from(self).to_points(tile)
     }
@@ -229,6 +236,10 @@ impl NetField for Texture {
 impl NetField for LabelTexture {
     fn nets(&self) -> Vec<ControlNet> {
         vec![self.into()]
+    }
+
+    fn shader_layers(&self) -> ShaderLayers {
+        ShaderLayers::single(self.into())
     }
 
     fn to_points(&self, tile: Domain) -> Option<ControlPoints> {
@@ -242,10 +253,18 @@ impl NetField for Layers<Octave> {
         let octaves = self.layers().iter().filter(|octave| octave.scale() == 1.0);
         octaves.map(|octave| octave.texture().into()).collect()
     }
+
+    fn shader_layers(&self) -> ShaderLayers {
+        self.into()
+    }
 }
 
 impl NetField for Layers<LabelTexture> {
     fn nets(&self) -> Vec<ControlNet> {
         self.layers().iter().map(ControlNet::from).collect()
+    }
+
+    fn shader_layers(&self) -> ShaderLayers {
+        self.into()
     }
 }

@@ -50,6 +50,11 @@ impl Octave {
     pub fn scale(&self) -> f64 {
         self.scale
     }
+
+    /// Returns whether the octave is folded.
+    pub(crate) fn folding(&self) -> Folding {
+        self.folding
+    }
 }
 
 /// Computes T' = 2 · |T − ½|, which is between 0 and 1 for values between 0 and 1.

@@ -3,9 +3,11 @@
 use super::NodeKind;
 use crate::RecipeError;
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal};
 use dapple_points::Domain;
 use dapple_raster::field_fn;
 use dapple_raster::{Range, range};
+use dapple_wgsl::{Module, double_value};
 use serde::{Deserialize, Serialize};
 
 /// Distance of a position from a center, in units of the plane.
@@ -28,6 +30,28 @@ impl NodeKind for Distance {
             let [x, y] = offset(position, center, &tile);
             (x * x + y * y).sqrt() as f32
         })))
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        shader.needs(Module::DoubleQuotient);
+        let tile = shader.build(|plan| Ok(plan.domain()))?;
+        let at = shader.position([1.0; 2]);
+        let squares = [("x", 0), ("y", 1)].map(|(axis, index)| {
+            let center = double_value(self.center[index]);
+            let mut offset = format!("double_sub({at}.{axis}, {center})");
+            if tile.wrap[index] {
+                let [size, half] = [tile.size[index], 0.5].map(double_value);
+                let offset_in_tiles = format!("double_div({offset}, {size})");
+                let repeats = format!("double_floor(double_add({offset_in_tiles}, {half}))");
+                offset = format!("double_sub({offset}, double_mul({repeats}, {size}))");
+            }
+            let offset = shader.name("offset", offset);
+            format!("double_mul({offset}, {offset})")
+        });
+        let [x, y] = squares;
+        Ok(Code::number(format!(
+            "double_to_float(double_root(double_add({x}, {y})))"
+        )))
     }
 }
 

@@ -1,11 +1,11 @@
 //! Sums octaves of noise to fractal noise with values from 0 to 1.
 
-use super::{Frequency, NodeKind, NodeSeed, wavelet};
+use super::{Frequency, NodeKind, NodeSeed, pups, wavelet};
 use crate::plan::{Builder, FREQUENCY, Step, Work};
 use crate::shader::{Code, NodeShader, Refusal, literal};
 use crate::{RecipeError, RecipeErrorKind};
 use dapple_noise::GradientNoise2;
-use dapple_pups::{NetOptions, OctavesOptions, PupsRecipe as _, Spacing, octaves};
+use dapple_pups::{NetField as _, NetOptions, OctavesOptions, PupsRecipe as _, Spacing, octaves};
 use dapple_raster::{FieldExt, FractalShape};
 use dapple_raster::{Range, range};
 use dapple_wgsl::{Module, double_value, gradient_noise_value};
@@ -111,7 +111,9 @@ impl NodeKind for FractalNode {
         match self.basis {
             FractalBasis::Gradient => {}
             FractalBasis::Pups => {
-                return Err(Refusal::new("noise of the basis `pups` has no shader"));
+                let seed = shader.seed(self.seed.as_ref());
+                let sum = shader.build(|plan| Ok(octaves(&self.pups(plan), seed)?.normalized()))?;
+                return pups::code(shader, &sum.shader_layers());
             }
             FractalBasis::Wavelet => {
                 let seed = shader.seed(self.seed.as_ref());

@@ -2,9 +2,13 @@
 
 use super::{ImageAlpha, NodeKind};
 use crate::plan::{Builder, Images, Picture, PlanLimits, Step, TIME, Watch, Work};
+use crate::shader::{Code, NodeShader, Refusal, literal};
 use crate::{Recipe, RecipeError, RecipeErrorKind};
 use dapple_points::Domain;
-use dapple_pups::{ControlNet, ControlPoints, PupsField, PupsRecipe, ReferenceImage};
+use dapple_pups::{
+    ControlNet, ControlPoints, Folding, PupsField, PupsRecipe, ReferenceImage, ShaderLayers,
+};
+use dapple_wgsl::Module;
 use serde::{Deserialize, Serialize};
 
 /// Texture guided by an image that covers the tile.
@@ -259,4 +263,41 @@ impl NodeKind for PupsNode {
             PupsField::Colors(texture) => Step::Colors(texture.into()),
         })
     }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        match shader.build(|plan| self.texture().build(plan))? {
+            PupsField::Numbers(field) => code(shader, &field.shader_layers()),
+            PupsField::Colors(_) => Err(Refusal::new("colors of control points have no shader")),
+        }
+    }
+}
+
+/// Writes a texture, and adds its control points to the data of the shader.
+pub(super) fn code(
+    shader: &mut NodeShader<'_, '_>,
+    texture: &ShaderLayers,
+) -> Result<Code, Refusal> {
+    shader.needs(Module::Pups2d);
+    let mut layers = Vec::new();
+    for layer in &texture.layers {
+        let first = shader.data(&layer.words)?;
+        let folded = u32::from(layer.folding == Folding::Folded);
+        // A scale is a power of two.
+        let exponent = (layer.scale as u64).trailing_zeros();
+        layers.extend([first as u32, layer.amplitude.to_bits(), folded, exponent]);
+    }
+    let at = shader.position([1.0; 2]);
+    let Some(maximum) = texture.maximum else {
+        let first = layers[0];
+        let place = format!("pups_position(data, {first}u, {at})");
+        return Ok(Code::number(format!(
+            "pups_value(data, {first}u, {place}, zero)"
+        )));
+    };
+    let count = texture.layers.len();
+    let first = shader.data(&layers)?;
+    let sum = format!("pups_sum(data, {first}u, {count}u, {at}, zero)");
+    // Rounding may make a sum larger than the maximum.
+    let maximum = literal(maximum);
+    Ok(Code::number(format!("number_min({sum}, {maximum}, zero)")))
 }

@@ -40,10 +40,10 @@ fn a_material_of_local_nodes_needs_no_textures() {
 #[test]
 fn refusals_name_each_node_and_the_reason() {
     let text = "
-        nodes.cells.pups = { cells = {} }
+        nodes.cells.pups = { color_noise = {} }
         nodes.net.worley = { value = 'f4' }
         nodes.sum.add = ['cells', 'net', 'cells']
-        material.height = 'sum'";
+        material.albedo = 'sum'";
     let refused = recipe(text).to_wgsl(&Images::new(), &ShaderOptions::default());
     let refused = refused.expect_err("two nodes have no shader");
     let RecipeErrorKind::NotInShader { nodes } = refused.kind() else {
@@ -51,7 +51,7 @@ fn refusals_name_each_node_and_the_reason() {
     };
     let pair = |name: &str, reason: &str| (name.to_owned(), reason.to_owned());
     let expected = [
-        pair("cells", "`pups` has no shader"),
+        pair("cells", "colors of control points have no shader"),
         pair("net", "the distances F3 and F4 have no shader"),
     ];
     assert_eq!(nodes[..], expected);
@@ -63,7 +63,7 @@ fn refusals_name_each_node_and_the_reason() {
     let shader = shader(text, &TEXTURES);
     assert_eq!(shader.textures, ["cells", "net"]);
     assert!(
-        shader.wgsl.contains("    cells_value: f32,"),
+        shader.wgsl.contains("    net_value: f32,"),
         "{}",
         shader.wgsl
     );
@@ -77,7 +77,7 @@ fn refusals_name_each_node_and_the_reason() {
 #[test]
 fn a_node_without_a_shader_at_other_positions_makes_the_node_that_moves_it_a_texture() {
     let text = "
-        nodes.cells.pups = { cells = {} }
+        nodes.cells.worley = { value = 'f4' }
         nodes.color.ramp = { input = 'cells', colors = ['#000000', '#ffffff'] }
         nodes.by.worley = {}
         nodes.bent.warp = { input = 'color', x = 'by', y = 0.0 }
@@ -101,7 +101,7 @@ fn names_of_nodes_become_different_names_in_a_shader() {
     let text = "
         nodes.a-b.worley = {}
         nodes.a_b.worley = {}
-        nodes.fn.pups = { noise = {} }
+        nodes.fn.worley = { value = 'f4' }
         nodes.smooth.add = ['a-b', 'a_b', 'fn']
         material.height = 'smooth'";
     let shader = shader(text, &TEXTURES);
@@ -114,4 +114,44 @@ fn names_of_nodes_become_different_names_in_a_shader() {
         "{}",
         shader.wgsl
     );
+}
+
+#[test]
+fn tiles_and_control_points_become_words_of_a_texture() {
+    let text = "
+        nodes.bands.wavelet = { frequency = 2.0 }
+        nodes.bumps.noise = { basis = 'pups', frequency = 2.0, octaves = 2 }
+        nodes.bent.warp = { input = 'bands', x = 'bumps', y = 'bands' }
+        nodes.sum.add = ['bands', 'bumps', 'bent']
+        material.height = 'sum'";
+    let shader = shader(text, &ShaderOptions::default());
+    let signature = "fn material(place: Place2d, data: texture_2d<u32>, zero: u32) -> Material {";
+    assert!(shader.wgsl.contains(signature), "{}", shader.wgsl);
+    // The texture has whole rows.
+    assert!(!shader.data.is_empty());
+    assert!(shader.data.len().is_multiple_of(MaterialShader::DATA_ROW));
+    // A tile of 8 cells with a margin of one follows the size, the number of bands and one band. At both positions the
+    // noise reads the same tile.
+    assert_eq!(shader.data[..4], [8, 8, 1, 0]);
+    assert_eq!(
+        shader.wgsl.matches("wavelet_noise_2d(data, 0u, ").count(),
+        2
+    );
+    assert!(
+        shader
+            .wgsl
+            .contains("fn bands_at(data: texture_2d<u32>, at: Position2d, zero: u32)")
+    );
+    assert_eq!(
+        shader.wgsl.matches("= number_min(pups_sum(data, ").count(),
+        1
+    );
+}
+
+#[test]
+fn a_material_without_such_nodes_has_no_data() {
+    let text = "nodes.joint.worley = {}\nmaterial.height = 'joint'";
+    let shader = shader(text, &ShaderOptions::default());
+    assert!(shader.data.is_empty());
+    assert!(!shader.wgsl.contains("data"), "{}", shader.wgsl);
 }

@@ -1,10 +1,17 @@
-//! Noise that looks up words in a texture: wavelet noise.
+//! Noise that looks up words in a texture: wavelet noise and textures of control points.
 
-use super::{Place, differing, places, words};
+use super::{Place, differing, places, without_barrier, words};
 use dapple_hash::Seed;
+use dapple_pups::glam::{DVec2, DVec3};
+use dapple_pups::points::Domain;
+use dapple_pups::{
+    AxialWeight, CellsOptions, CowOptions, NetField, NetOptions, NoiseOptions, Orientations,
+    PupsField, PupsRecipe, Spacing,
+};
 use dapple_wavelet::WaveletNoise2;
 use dapple_wgsl::Module;
 use dapple_wgsl_tests::Gpu;
+use std::sync::Arc;
 
 /// Positions of each texture, near the origin and far from it.
 fn everywhere(seed: u64, n: usize) -> Vec<Place<2>> {
@@ -92,4 +99,81 @@ fn wavelet_noise_has_the_bits_of_the_cpu() {
     assert_eq!(shader.matches(sum).count(), 1, "the sum of the rows");
     let other = shader.replace(sum, "exact_add(top, exact_add(middle, bottom, zero), zero)");
     assert!(textures.differing(&gpu, &other) > textures.places.len() / 100);
+}
+
+/// Returns textures of all weights, with and without orientations and fading axes, that repeat or not.
+fn nets() -> Vec<Arc<dyn NetField>> {
+    let domain = |wrap| Domain {
+        origin: DVec2::new(0.3, -7.0),
+        size: DVec2::new(3.0, 5.0),
+        wrap,
+    };
+    let oriented = |strength| NetOptions {
+        orientations: Orientations::Random,
+        strength,
+        ..NetOptions::default()
+    };
+    let quintic = NetOptions {
+        weight: AxialWeight::Quintic,
+        ..NetOptions::default()
+    };
+    let faded = NetOptions {
+        axis_scale: 2.0,
+        fade: 0.5,
+        ..NetOptions::default()
+    };
+    let dips = NetOptions {
+        weight: AxialWeight::Oscillating {
+            dips: 3,
+            depth: 0.7,
+        },
+        orientations: Orientations::Same(DVec3::new(1.0, 0.3, 0.2)),
+        fade: 0.25,
+        ..NetOptions::default()
+    };
+    let noises = [
+        (Domain::paper_torus(), 400, NetOptions::default()),
+        (domain([true, true]), 5, NetOptions::default()),
+        (domain([false, true]), 60, oriented(0.5)),
+        (domain([true, false]), 30, oriented(0.999_999)),
+        (domain([false, false]), 100, quintic),
+        (Domain::paper_torus(), 1, NetOptions::default()),
+        (domain([true, true]), 80, faded),
+        (domain([true, true]), 40, dips),
+    ];
+    let noises = noises.map(|(domain, count, net)| NoiseOptions {
+        domain,
+        spacing: Spacing::Count(count),
+        net,
+    });
+    let mut fields = Vec::new();
+    for (seed, options) in (0..).zip(noises) {
+        fields.push(options.build(&(), Seed(seed)));
+    }
+    fields.push(CellsOptions::of_three_or_four().build(&(), Seed(8)));
+    fields.push(CowOptions::default().build(&(), Seed(9)));
+    let fields = fields.into_iter().map(|field| match field {
+        Ok(PupsField::Numbers(field)) => field,
+        other => panic!("{other:?}"),
+    });
+    fields.collect()
+}
+
+#[test]
+fn textures_of_control_points_have_the_bits_of_the_cpu() {
+    let Some(gpu) = Gpu::new() else { return };
+    let mut textures = Textures::default();
+    for net in nets() {
+        let layers = net.shader_layers();
+        assert_eq!(layers.layers.len(), 1, "a single net");
+        textures.add(&layers.layers[0].words, 1 << 14, |at| net.value(at));
+    }
+    let call = "pups_value(data, first, pups_position(data, first, at), zero)";
+    let shader = shader(Module::Pups2d, call);
+    assert_eq!(textures.differing(&gpu, &shader), 0);
+    // Mesa simplifies the rounding of logarithms, which powers of weights need.
+    if gpu.is_lavapipe() {
+        let wrong = textures.differing(&gpu, &without_barrier(&shader));
+        assert!(wrong > textures.places.len() / 100, "only {wrong} differ");
+    }
 }

@@ -245,6 +245,7 @@ const NODES: &str = r##"
     negative.worley = { value = [-1.0, 0.0, 0.0, 0.0], scatter = { jittered = { jitter = 0.0 } } }
     sum.worley = { value = "f2_minus_f1", octaves = { count = 3, lacunarity = 1.5, gain = -0.7, seeds = "same" }, range = [0.1, 0.8] }
     stone.worley = { value = "cell_value", scatter = { poisson = { density = 0.5 } } }
+    rings.distance = { center = [0.3, -7.1] }
     blocks.worley = { frequency = 2.0, value = "f2_minus_f1", metric = "manhattan" }
     boxes.worley = { value = "cell_value", metric = "chebyshev" }
     joints.worley = { frequency = [1.0, 2.0], value = "edge_distance" }
@@ -255,6 +256,11 @@ const NODES: &str = r##"
     far_sine.wave = { input = "across", frequency = -0.25 }
     wavelets.wavelet = { frequency = [2.0, 3.7], weights = [1.0, 0.0, -0.5, 0.25] }
     bands.noise = { basis = "wavelet", frequency = [7.0, 4.0], octaves = 5, gain = 0.8 }
+    bumps.noise = { basis = "pups", frequency = 3.0, octaves = 3, gain = 0.7 }
+    turbulent.pups.turbulence = { spacing = { count = 20 }, octaves = 2, net = { weight = "quintic" } }
+    patches.pups.cells = { spacing = { distance = 0.5 }, points_per_cell = [2, 3], net = { orientations = "random", strength = 0.9 } }
+    layers.pups.cellular_noise = { spacing = { distance = 1.0 } }
+    slope_of_bumps.warp = { input = "bumps", x = "wavelets", y = 0.3, amount = 0.2 }
     across.coordinate = { center = [0.1, -2.0], along = [0.7, -1.3] }
     right.coordinate = {}
     sawtooth.wave = { input = "across", frequency = 1.3, phase = 0.37, form = "sawtooth" }
