@@ -155,3 +155,6 @@ fn double_to_int(x: vec2<u32>) -> i32 {
 }
 
 fn double_abs(x: vec2<u32>) -> vec2<u32> { return vec2(x.x & 0x7fffffffu, x.y); }
+
+// `a * x + b`
+fn double_term(a: vec2<u32>, x: vec2<u32>, b: vec2<u32>) -> vec2<u32> { return double_add(b, double_mul(x, a)); }

@@ -5,9 +5,6 @@
 // Developed at SunPro, a Sun Microsystems, Inc. business. Permission to use, copy, modify, and distribute this software
 // is freely granted, provided that this notice is preserved.
 
-// `a * x + b`
-fn double_term(a: vec2<u32>, x: vec2<u32>, b: vec2<u32>) -> vec2<u32> { return double_add(b, double_mul(x, a)); }
-
 // Sine of an angle `x + y` from -π/4 to π/4; `y` is the part that `x` has no bits for, if `has_part` is set
 fn near_sine(x: vec2<u32>, y: vec2<u32>, has_part: bool) -> vec2<u32> {
     let z = double_mul(x, x);

@@ -117,6 +117,10 @@ pub enum Module {
     Worley4d,
     /// Distances to edges of Voronoi cells in two dimensions.
     WorleyEdges2d,
+    /// Extremes, smooth steps and lengths of numbers of 64 bits.
+    DoubleFunctions,
+    /// Angles of vectors.
+    DoubleAngle,
 }
 
 /// Description of a module.
@@ -171,7 +175,6 @@ entries! {
     Double = "double" [],
     Position2d = "position_2d" [Place2d, Double],
     Oklab = "oklab" [Double],
-    Oklab = "oklab" [Exact],
     Data = "data" [],
     WaveletNoise2d = "wavelet_noise_2d" [Exact, Hash, Fractal, Double, Position2d, Data],
     DoubleQuotient = "double_quotient" [Double],
@@ -181,6 +184,8 @@ entries! {
     Worley4d = "worley_4d" [Exact, Hash, Place4d, Root, CellId, WorleyParts],
     WorleyEdges2d = "worley_edges_2d"
         [Hash, Place2d, WorleyParts, Worley2d, Double, DoubleQuotient],
+    DoubleFunctions = "double_functions" [Double, DoubleQuotient],
+    DoubleAngle = "double_angle" [Double, DoubleFunctions],
 }
 
 impl Module {

@@ -321,3 +321,38 @@ fn quotients_and_roots_of_64_bits_have_the_bits_of_the_cpu() {
     let on_gpu = run(&gpu, &[Module::DoubleQuotient], &input, 6, 5, body);
     assert_eq!(differing(&on_cpu, &on_gpu), 0);
 }
+
+#[test]
+fn angles_and_extremes_of_64_bits_have_the_bits_of_the_cpu() {
+    let Some(gpu) = Gpu::new() else { return };
+    let mut stream = Seed(8).stream();
+    let mut input = Vec::new();
+    let mut on_cpu = Vec::new();
+    for i in 0..N {
+        let a = match i % 10 {
+            0 => [0.0, -0.0][i / 10 % 2],
+            1 => f64::from(stream.next_u32()),
+            _ => double(&mut stream, 40),
+        };
+        let b = match i % 7 {
+            0 => a + 1e-9,
+            1 => 1.0 / (1.0 + f64::from(stream.next_u32() % 1000)),
+            2 => double(&mut stream, 2) * a,
+            _ => double(&mut stream, 40),
+        };
+        let b = if b == 0.0 { 1.0 } else { b };
+        input.extend(words(a).into_iter().chain(words(b)));
+        for result in [libm::atan2(a, b), a.min(b).max(0.25)] {
+            on_cpu.extend(words(result));
+        }
+    }
+    let body = "let a = vec2(values[at], values[at + 1u]);
+        let b = vec2(values[at + 2u], values[at + 3u]);
+        let results = array(double_angle(a, b), double_max(double_min(a, b), vec2(0x3fd00000u, 0u)));
+        out[base] = results[0].x;
+        out[base + 1u] = results[0].y;
+        out[base + 2u] = results[1].x;
+        out[base + 3u] = results[1].y;";
+    let on_gpu = run(&gpu, &[Module::DoubleAngle], &input, 4, 4, body);
+    assert_eq!(differing(&on_cpu, &on_gpu), 0);
+}
