@@ -3,6 +3,7 @@
 mod alpha;
 mod frame;
 mod numbers;
+mod part;
 mod ramp;
 mod read;
 mod region;
@@ -13,6 +14,7 @@ mod size;
 pub(crate) use alpha::{Alpha, AlphaArgs, image_alpha};
 pub(crate) use frame::Frame;
 pub(crate) use numbers::{Numbers, numbers_of};
+pub(crate) use part::{PartArgs, resampled};
 pub(crate) use ramp::RampArg;
 pub(crate) use read::{FiniteArgs, NonFinite, ReadArgs};
 pub(crate) use region::Region;

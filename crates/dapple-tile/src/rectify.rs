@@ -26,7 +26,7 @@ const LEAST_TURN: f64 = 1.0;
 /// the image, from (0, 0) to its size. The default size is the mean length of opposite sides of the quadrilateral,
 /// rounded. Colors are resampled in linear light.
 ///
-/// All maps of a material that have the same size are rectified alike.
+/// Maps of the same size are rectified by the same homography.
 ///
 /// # Errors
 ///

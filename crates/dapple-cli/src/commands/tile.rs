@@ -1,9 +1,10 @@
 //! `dapple tile`: makes images repeat.
 
+mod best;
 mod method;
 mod synth;
 
-use crate::args::{AlphaArgs, Axes, ImageArgs, ReadArgs, Region, Size};
+use crate::args::{AlphaArgs, Axes, ImageArgs, PartArgs, ReadArgs, Size, resampled};
 use crate::commands::info::seams_json;
 use crate::encode::{Clear, Cover, Format, map_raster};
 use crate::error::{Exit, Hint, usage};
@@ -11,13 +12,15 @@ use crate::input::{self, Kind, Loaded};
 use crate::job::{Context, Job};
 use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
-use anyhow::{Context as _, Error, Result, bail};
-use dapple::color::LinearRgb;
+use anyhow::{Context as _, Error, Result};
+pub(super) use best::best;
+use best::{Made, options};
 use dapple::raster::{Raster, Wrap};
 use dapple::tile::{
-    self, Map, SeamOptions, SeamReports, Seamless, TileError, TileErrorKind, even_out, repeat,
+    self, Map, SeamOptions, SeamReports, TileError, TileErrorKind, even_out, repeat,
 };
-use method::{Candidate, How, MethodArgs};
+pub(super) use method::MethodArgs;
+use method::{Candidate, How};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -30,6 +33,7 @@ Examples:
   dapple tile albedo.png height.png --normal normal.png -o tiles/
   dapple tile photo.png --even --size 2048 -o ground.png
   dapple tile photo.png --wrap x -o wall.exr
+  dapple tile photo.png --rectify 8,4,60,0,62,63,3,58 -o flat.png
   dapple tile photo.png --report
 
 To make a tile of another size or from an example, see `dapple synth`.";
@@ -46,9 +50,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "IMAGE")]
     normal: Vec<PathBuf>,
 
-    /// Use only this part of the images, in pixels.
-    #[arg(long, value_name = "X,Y,W,H")]
-    region: Option<Region>,
+    #[command(flatten)]
+    #[serde(flatten)]
+    part: PartArgs,
 
     /// Remove changes of light over more than PX pixels, such as vignettes [default: a sixth of the shorter side].
     ///
@@ -122,9 +126,8 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         .iter()
         .filter_map(|source| source.loaded.alpha.clone());
     let maps: Vec<Map> = maps.chain(alphas.map(Map::Value)).collect();
-    let candidates = args.method.candidates(maps[0].size());
-    let mut made = best(args, &maps, candidates)?;
-    let mut alphas = made.tiles.split_off(sources.len());
+    let mut made = best(&args.method, &maps, args.wrap.flags(), args.lattice)?;
+    let alphas = made.tiles.split_off(sources.len());
     drop(progress);
     if args.method.is_auto() && !context.quiet {
         job.say(&format!("auto takes {}", made.candidate.name))?;
@@ -144,16 +147,21 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             );
             job.say(&text)?;
         }
-        resize(&sources, &mut made.tiles, &mut alphas, size, wraps)?;
     }
+    let wrap = wraps.map(|repeats| if repeats { Wrap::Repeat } else { Wrap::Clamp });
     let mut alphas = alphas.into_iter();
-    for (source, map) in sources.iter().zip(made.tiles) {
+    for (source, mut map) in sources.iter().zip(made.tiles) {
         let has_alpha = source.loaded.alpha.is_some();
-        let alpha = match has_alpha.then(|| alphas.next()).flatten() {
+        let mut alpha = match has_alpha.then(|| alphas.next()).flatten() {
             Some(Map::Value(alpha)) => Some(alpha),
             _ => None,
         };
         let is_associated = source.loaded.is_associated;
+        if let Some(Size(size)) = args.size {
+            let resize = |map: &Map| tile::resize(map, size, wrap);
+            (map, alpha) =
+                resampled(&map, alpha.as_ref(), is_associated, resize).map_err(advise)?;
+        }
         let Some([output, sheet]) = source.outputs else {
             continue;
         };
@@ -191,7 +199,10 @@ fn sources(args: &Args, job: &mut Job<'_>) -> Result<Vec<Source>> {
     for (path, kind) in inputs {
         let outputs = outputs.next();
         let mut loaded =
-            input::map_with_alpha(path, kind, args.region, args.alpha.alpha, &args.read)?;
+            input::map_with_alpha(path, kind, args.part.region, args.alpha.alpha, &args.read)?;
+        args.part
+            .rectify(&mut loaded)
+            .with_context(|| input::name(path))?;
         let size = loaded.map.size();
         if let Some(radius) = args.even {
             let shorter = size[0].min(size[1]);
@@ -259,92 +270,6 @@ fn map_of(stem: &str) -> &str {
     stem.rsplit_once('_').map_or(stem, |(_, map)| map)
 }
 
-/// The tiles of all maps, computed by one method.
-struct Made {
-    candidate: Candidate,
-    tiles: Vec<Map>,
-    /// The seam reports of all maps; empty unless they were needed to choose the method.
-    reports: Vec<SeamReports>,
-}
-
-/// Computes the tiles with each candidate, and returns those with the best [`Rank`]. Candidates that fail are skipped,
-/// unless all fail.
-fn best(args: &Args, maps: &[Map], mut candidates: Vec<Candidate>) -> Result<Made> {
-    let axes = args.wrap.flags();
-    let make = |candidate: Candidate| -> Result<Made> {
-        let tiles = match &candidate.how {
-            &How::Seamless(method) => Seamless { method, axes }.apply_maps(maps).map_err(advise)?,
-            How::Synth(how) => synth::tiles(maps, axes, how)?,
-        };
-        Ok(Made {
-            tiles,
-            reports: Vec::new(),
-            candidate,
-        })
-    };
-    if let [_] = candidates.as_slice() {
-        return make(candidates.remove(0));
-    }
-    let (mut best, mut refused): (Option<(Rank, Made)>, _) = (None, None);
-    for candidate in candidates {
-        let has_passed = best.as_ref().is_some_and(|(rank, _)| !rank.fails);
-        if candidate.is_last_resort() && has_passed {
-            continue;
-        }
-        let mut made = match make(candidate) {
-            Ok(made) => made,
-            Err(error) => {
-                refused.get_or_insert(error);
-                continue;
-            }
-        };
-        let options = options(args, &made.candidate);
-        let pairs = maps.iter().zip(&made.tiles);
-        let reports = pairs.map(|(map, tile)| SeamReports::beside(map, tile, &options));
-        made.reports = reports.collect::<Result<_, _>>()?;
-        let rank = Rank::of(&made.reports);
-        if best.as_ref().is_none_or(|(least, _)| rank < *least) {
-            best = Some((rank, made));
-        }
-    }
-    match (best, refused) {
-        (Some((_, made)), _) => Ok(made),
-        (None, Some(error)) => Err(error),
-        (None, None) => Err(usage("there is no method")),
-    }
-}
-
-/// The quality of tiles, where smaller is better. Tiles that pass come before tiles that fail.
-#[derive(PartialEq, PartialOrd)]
-struct Rank {
-    fails: bool,
-    /// Badness plus the lost fraction of the finest octave; the maximum over all channels.
-    cost: f64,
-}
-
-impl Rank {
-    fn of(reports: &[SeamReports]) -> Self {
-        let mut cost: f64 = 0.0;
-        for of in reports.iter().flat_map(SeamReports::channels) {
-            let kept = of.report.kept.as_ref();
-            let finest = kept.and_then(|kept| kept.octaves.first());
-            let lost = finest.map_or(0.0, |kept| (1.0 - kept).max(0.0));
-            cost = cost.max(of.report.badness() + lost);
-        }
-        Self {
-            fails: !reports.iter().all(SeamReports::passes),
-            cost,
-        }
-    }
-}
-
-fn options(args: &Args, candidate: &Candidate) -> SeamOptions {
-    SeamOptions {
-        axes: args.wrap.flags(),
-        lattice: args.lattice.map_or(candidate.lattice, |lattice| lattice.0),
-    }
-}
-
 /// Computes the seam reports if they are needed, and prints them if requested. Returns them as JSON, and whether all
 /// tiles pass.
 fn reports(
@@ -357,7 +282,7 @@ fn reports(
     if !is_wanted {
         return Ok((Value::Null, true));
     }
-    let options = options(args, &made.candidate);
+    let options = options(args.wrap.flags(), args.lattice, &made.candidate);
     let plain = SeamOptions {
         lattice: [1; 2],
         ..options
@@ -401,51 +326,6 @@ fn next_step(made: &Candidate, is_auto: bool) -> &'static str {
         }
         How::Seamless(_) => "try --method synth, or --method auto",
     }
-}
-
-/// Resamples all tiles and their alpha channels.
-fn resize(
-    sources: &[Source],
-    tiles: &mut [Map],
-    alphas: &mut [Map],
-    size: [u32; 2],
-    wraps: [bool; 2],
-) -> Result<()> {
-    let wrap = wraps.map(|repeats| if repeats { Wrap::Repeat } else { Wrap::Clamp });
-    let resized = |map: &Map| tile::resize(map, size, wrap).map_err(advise);
-    let mut alphas = alphas.iter_mut();
-    for (source, map) in sources.iter().zip(tiles) {
-        let alpha = match source.loaded.alpha {
-            Some(_) => alphas.next(),
-            None => None,
-        };
-        *map = match (&*map, alpha) {
-            // Colors count by their alpha, so that hidden colors do not bleed in.
-            (Map::Color(colors), Some(alpha)) if !source.loaded.is_associated => {
-                let Map::Value(weights) = &*alpha else {
-                    bail!("alpha has one channel");
-                };
-                let weighted = colors.zip_map(weights, |&color, &weight| color * weight)?;
-                let new = resized(&Map::Color(weighted))?;
-                *alpha = resized(alpha)?;
-                let (Map::Color(sums), Map::Value(weights)) = (&new, &*alpha) else {
-                    bail!("resampling keeps the kind");
-                };
-                let color = |&sum: &LinearRgb, &weight: &f32| match weight > 0.0 {
-                    true => sum * (1.0 / weight),
-                    false => sum,
-                };
-                Map::Color(sums.zip_map(weights, color)?)
-            }
-            (map, alpha) => {
-                if let Some(alpha) = alpha {
-                    *alpha = resized(alpha)?;
-                }
-                resized(map)?
-            }
-        };
-    }
-    Ok(())
 }
 
 /// Builds a sheet of 2 × 2 copies of a map.

@@ -20,6 +20,7 @@ mod interrupt;
 mod lifting;
 mod meshes;
 mod outputs;
+mod photos;
 mod refusals;
 mod results;
 mod shards;

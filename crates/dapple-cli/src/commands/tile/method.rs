@@ -157,7 +157,7 @@ fn basis() -> NamedValueParser<Basis> {
 /// Options of the method.
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "Method")]
-pub(super) struct MethodArgs {
+pub(in crate::commands) struct MethodArgs {
     /// The method.
     #[arg(long, value_parser = method(), default_value = SOFT_CUT)]
     method: &'static str,
@@ -239,7 +239,7 @@ impl MethodArgs {
     }
 
     /// Returns whether the best method is chosen automatically.
-    pub(super) fn is_auto(&self) -> bool {
+    pub(in crate::commands) fn is_auto(&self) -> bool {
         self.method == AUTO
     }
 
@@ -276,7 +276,7 @@ impl MethodArgs {
     /// # Errors
     ///
     /// If such an option is given.
-    pub(super) fn check_used(&self) -> Result<()> {
+    pub(in crate::commands) fn check_used(&self) -> Result<()> {
         let given = [
             ("margin", self.margin.is_some()),
             ("seed", self.seed.is_some()),
