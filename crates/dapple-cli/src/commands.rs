@@ -10,6 +10,7 @@ mod join;
 mod licenses;
 mod man;
 mod noise;
+mod photo;
 mod points;
 mod pups;
 mod recipe;
@@ -44,6 +45,7 @@ pub(crate) enum Command {
     Wavelet(Box<wavelet::Args>),
     Wgsl(wgsl::Args),
     Tile(Box<tile::Args>),
+    Photo(Box<photo::Args>),
     Copies(Box<copies::Args>),
     Blend(Box<blend::Args>),
     BlendMap(Box<blend_map::Args>),
@@ -75,6 +77,7 @@ pub(crate) fn run(command: &Command, context: &Context) -> Result<Exit> {
         Command::Wavelet(args) => wavelet::run(args, context),
         Command::Wgsl(args) => wgsl::run(args),
         Command::Tile(args) => tile::run(args, context),
+        Command::Photo(args) => photo::run(args, context),
         Command::Copies(args) => copies::run(args, context),
         Command::Blend(args) => blend::run(args, context),
         Command::BlendMap(args) => blend_map::run(args, context),

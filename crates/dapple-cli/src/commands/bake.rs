@@ -4,6 +4,7 @@ mod batch;
 mod claim;
 mod contact_sheet;
 mod documents;
+mod files;
 mod images;
 mod maps;
 mod material;
@@ -32,6 +33,7 @@ use dapple::recipe::{
     Recipe, Samples,
 };
 use dapple::tile::Map;
+pub(super) use files::MaterialFiles;
 use maps::Maps;
 pub(super) use material::{MaterialArgs, Setting};
 use presets::Preset;
@@ -317,11 +319,22 @@ impl Work {
         context: &Context,
         progress: &Progress,
     ) -> Result<Option<Raster<LinearRgb>>> {
-        let mut preview = None;
-        let mut made = Made {
+        let made = Made {
             images: None,
             cache: self.args.frames.map(|_| PlanCache::new(MEMORY)),
         };
+        self.bake_with(made, files, context, progress)
+    }
+
+    /// Bakes like [`bake`](Self::bake), with the given images and values.
+    fn bake_with(
+        &self,
+        mut made: Made,
+        files: &OutputArgs,
+        context: &Context,
+        progress: &Progress,
+    ) -> Result<Option<Raster<LinearRgb>>> {
+        let mut preview = None;
         for args in self.args.pictures() {
             let job = Job::new(context, "bake", files);
             let of_frame = self.bake_picture(&args, job, &mut made, progress)?;

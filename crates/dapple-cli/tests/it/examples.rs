@@ -5,7 +5,7 @@
 use crate::support::{Folder, assert_done, stdout};
 use std::fs;
 
-const SUBCOMMANDS: [&str; 21] = [
+const SUBCOMMANDS: [&str; 22] = [
     "bake",
     "watch",
     "studio",
@@ -18,6 +18,7 @@ const SUBCOMMANDS: [&str; 21] = [
     "wavelet",
     "wgsl",
     "tile",
+    "photo",
     "copies",
     "blend",
     "blend-map",
@@ -110,6 +111,7 @@ fn examples_of_wgsl_run() {
 #[test]
 fn examples_of_tile_run() {
     run_examples(&["tile"]);
+    run_examples(&["photo"]);
 }
 
 #[test]

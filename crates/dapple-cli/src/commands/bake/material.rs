@@ -125,6 +125,20 @@ pub(in crate::commands) struct MaterialArgs {
 }
 
 impl MaterialArgs {
+    /// Creates options for a recipe that remains as it is, except for the direction of green.
+    pub(super) fn new(size: Size, maps: Option<Maps>, normal_y: Option<NormalY>) -> Self {
+        Self {
+            size,
+            samples: SamplesArgs::default(),
+            maps,
+            set: Vec::new(),
+            seed: None,
+            normal_y,
+            relief: None,
+            finite: FiniteArgs::default(),
+        }
+    }
+
     /// Returns the requested maps, or the default ones. By default, and for `all`, maps that the material lacks are left
     /// out.
     pub(in crate::commands) fn map_kinds(&self, material: &Material) -> Vec<MapKind> {
