@@ -2,6 +2,7 @@
 
 mod alpha;
 mod frame;
+mod maps;
 mod numbers;
 mod part;
 mod ramp;
@@ -13,6 +14,7 @@ mod size;
 
 pub(crate) use alpha::{Alpha, AlphaArgs, image_alpha};
 pub(crate) use frame::Frame;
+pub(crate) use maps::MapArg;
 pub(crate) use numbers::{Numbers, numbers_of};
 pub(crate) use part::{PartArgs, resampled};
 pub(crate) use ramp::RampArg;

@@ -4,7 +4,7 @@ pub(super) mod alpha;
 pub(super) mod layer;
 mod mixing;
 
-use crate::args::{AlphaArgs, ImageArgs, ReadArgs, Size};
+use crate::args::{AlphaArgs, ImageArgs, MapArg, ReadArgs, Size};
 use crate::encode::{Clear, Cover};
 use crate::error::{Exit, Hint, usage};
 use crate::input::{self, Kind};
@@ -40,6 +40,7 @@ Layers:
                                     the heights are blended like other maps, if all have one
     normal=FILE                     its normals
     NAME=FILE                       another map, such as roughness=FILE
+  Maps may also follow as --map normal=FILE, once for each layer, bottom first.
   The layer without a weight is the ground: it gets what the others leave, 1 less their
   weights. Without any weights all layers get the same.
 
@@ -50,12 +51,16 @@ How the weights are used, unless --weighting says it:
   given   else, as they are: plain splatting";
 
 /// Blend textures by weights, by heights, or along the features of a blend tile.
-#[derive(clap::Args, Debug, Serialize)]
+#[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
     /// The layers, bottom first: an image, with its other maps and options.
     #[arg(value_name = "IMAGE[,KEY=VALUE...]", required = true)]
     layers: Vec<LayerArg>,
+
+    /// Further map, such as normal=FILE; the first of a name belongs to the first image, and so on; repeatable.
+    #[arg(long, value_name = "NAME=IMAGE")]
+    map: Vec<MapArg>,
 
     /// A blend tile, such as one from `dapple blend-map`; any gray image works.
     #[arg(long, value_name = "IMAGE")]
@@ -95,6 +100,10 @@ pub(crate) struct Args {
 ///
 /// If an option, an image or another file is invalid.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
+    let args = &Args {
+        layers: LayerArg::with_maps(&args.layers, &args.map)?,
+        ..args.clone()
+    };
     let mut job = Job::new(context, "blend", &args.image.files);
     let outputs = claim(args, &mut job)?;
     let hint = "--size WxH repeats what is smaller and cuts what is larger";

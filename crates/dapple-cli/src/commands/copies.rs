@@ -4,7 +4,7 @@ mod method;
 
 use super::blend::alpha::{self, AlphaForm};
 use super::blend::layer::{HEIGHT, LayerArg, Material, Reader};
-use crate::args::{AlphaArgs, ImageArgs, ReadArgs, Size, seed};
+use crate::args::{AlphaArgs, ImageArgs, MapArg, ReadArgs, Size, seed};
 use crate::encode::{Clear, Cover};
 use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, Job};
@@ -21,7 +21,7 @@ const EXAMPLES: &str = "\
 Examples:
   dapple copies stones.png --size 256 -o ground.png
   dapple copies rock.png grass.png --size 256x128 --seed 7 -o board.png
-  dapple copies rock.png,normal=rock_normal.png sand.png,normal=normal.png \\
+  dapple copies rock.png sand.png --map normal=rock_normal.png --map normal=normal.png \\
     --size 256 -o ground/
   dapple copies rock.png grass.png sand.png --method borders --tiles -o tiles/
   dapple copies rock.png grass.png --method corners --tiles -o set/
@@ -35,16 +35,21 @@ Which method:
            the default for more
 
 Tiles repeat by themselves, as those of `dapple tile` do. A map of whole tiles repeats, too.
-A tile is an image, and behind commas what belongs to it, as a layer of `dapple blend`:
-height=FILE, normal=FILE, NAME=FILE. All its maps are cut along the same line.";
+Further maps of the tiles follow as --map height=FILE, --map normal=FILE or --map NAME=FILE, once
+for each tile, or behind commas as in a layer of `dapple blend`. All maps of a tile are cut along
+the same line.";
 
 /// Cover a map with varied copies of a tile, or with several tiles in random order.
-#[derive(clap::Args, Debug, Serialize)]
+#[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
     /// The tiles: an image each, with its other maps.
     #[arg(value_name = "IMAGE[,KEY=FILE...]", required = true)]
     images: Vec<LayerArg>,
+
+    /// Further map, such as normal=FILE; the first of a name belongs to the first image, and so on; repeatable.
+    #[arg(long, value_name = "NAME=IMAGE")]
+    map: Vec<MapArg>,
 
     /// Output size in pixels.
     #[arg(
@@ -88,6 +93,10 @@ pub(crate) struct Args {
 ///
 /// If an option, an image or another file is invalid.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
+    let args = &Args {
+        images: LayerArg::with_maps(&args.images, &args.map)?,
+        ..args.clone()
+    };
     let method = args.method.method(args.images.len(), args.tiles)?;
     let names = names(args)?;
     let mut job = Job::new(context, "copies", &args.image.files);

@@ -14,7 +14,7 @@ mod repair_mesh;
 mod surface;
 mod tiles;
 
-use crate::args::{AlphaArgs, ImageArgs, ReadArgs, Region};
+use crate::args::{AlphaArgs, ImageArgs, MapArg, ReadArgs, Region};
 use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, Job};
 use crate::output::{OutputIdx, Target};
@@ -26,7 +26,6 @@ use options::{MatchArgs, PlaneArgs, SurfaceArgs};
 use serde::Serialize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -127,33 +126,6 @@ pub(crate) struct Args {
     #[command(flatten)]
     #[serde(skip)]
     image: ImageArgs,
-}
-
-/// A map of the example, given as `NAME=FILE`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-struct MapArg {
-    name: String,
-    path: PathBuf,
-}
-
-impl FromStr for MapArg {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let is_name = |name: &str| {
-            let is_part = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
-            !name.is_empty() && name.bytes().all(is_part)
-        };
-        match text.split_once('=') {
-            Some((name, path)) if is_name(name) && !path.is_empty() => Ok(Self {
-                name: name.to_owned(),
-                path: PathBuf::from(path),
-            }),
-            _ => Err(format!(
-                "{text:?} is not a map: give NAME=FILE, such as normal=FILE"
-            )),
-        }
-    }
 }
 
 /// Synthesizes a texture.

@@ -4,7 +4,7 @@ mod best;
 mod method;
 mod synth;
 
-use crate::args::{AlphaArgs, Axes, ImageArgs, PartArgs, ReadArgs, Size, resampled};
+use crate::args::{AlphaArgs, Axes, ImageArgs, MapArg, PartArgs, ReadArgs, Size, resampled};
 use crate::commands::info::seams_json;
 use crate::encode::{Clear, Cover, Format, map_raster};
 use crate::error::{Exit, Hint, usage};
@@ -30,7 +30,7 @@ Examples:
   dapple tile photo.png -o tile.png
   dapple tile photo.png --margin 24 --sheet -o cut.png
   dapple tile photo.png --method auto --report -o best.png
-  dapple tile albedo.png height.png --normal normal.png -o tiles/
+  dapple tile albedo.png height.png --map normal=normal.png -o tiles/
   dapple tile photo.png --even --size 2048 -o ground.png
   dapple tile photo.png --wrap x -o wall.exr
   dapple tile photo.png --rectify 8,4,60,0,62,63,3,58 -o flat.png
@@ -46,8 +46,12 @@ pub(crate) struct Args {
     #[arg(value_name = "IMAGE")]
     images: Vec<PathBuf>,
 
-    /// Normal map of the same material; repeatable.
-    #[arg(long, value_name = "IMAGE")]
+    /// Further map of the same material, such as normal=FILE or roughness=FILE; repeatable.
+    #[arg(long, value_name = "NAME=IMAGE")]
+    map: Vec<MapArg>,
+
+    /// Same as --map normal=IMAGE.
+    #[arg(long, value_name = "IMAGE", hide = true)]
     normal: Vec<PathBuf>,
 
     #[command(flatten)]
@@ -189,7 +193,8 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 fn sources(args: &Args, job: &mut Job<'_>) -> Result<Vec<Source>> {
     let images = args.images.iter().map(|path| (path, Kind::ByChannels));
     let normals = args.normal.iter().map(|path| (path, Kind::Normals));
-    let inputs: Vec<_> = images.chain(normals).collect();
+    let maps = args.map.iter().map(|map| (&map.path, map.kind()));
+    let inputs: Vec<_> = images.chain(maps).chain(normals).collect();
     if inputs.is_empty() {
         return Err(usage("missing image").hint("name one, or several that belong together"));
     }

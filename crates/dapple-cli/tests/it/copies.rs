@@ -1,6 +1,6 @@
 //! Maps of varied copies, and sets of tiles.
 
-use crate::support::{Folder, assert_done};
+use crate::support::{Folder, assert_done, assert_refused};
 use dapple::hash::Seed;
 use dapple::image::{Depth, Limits, read_image, write_gray_exr, write_gray_png};
 use dapple::raster::glam::DVec2;
@@ -123,5 +123,80 @@ fn all_maps_of_a_tile_are_cut_alike() {
         let [base, height] =
             ["base", "height"].map(|map| read(&folder, &format!("out/{name}_{map}.png")));
         assert_eq!(base, height, "{tiles}");
+    }
+}
+
+#[test]
+fn maps_are_named_by_an_option_or_behind_commas() {
+    let folder = Folder::with_inputs("maps");
+    for (command, options) in [
+        ("copies", &["--size", "32"][..]),
+        ("blend", &["--weighting", "given"]),
+        ("tile", &["--method", "periodic"]),
+    ] {
+        let (commas, option): (Vec<&str>, Vec<&str>) = match command {
+            "tile" => (
+                vec!["rock.png", "--normal", "normal.png"],
+                vec!["rock.png", "--map", "normal=normal.png"],
+            ),
+            _ => (
+                vec![
+                    "rock.png,normal=normal.png",
+                    "sand.png,normal=rock_normal.png",
+                ],
+                vec![
+                    "rock.png",
+                    "sand.png",
+                    "--map",
+                    "normal=normal.png",
+                    "--map",
+                    "normal=rock_normal.png",
+                ],
+            ),
+        };
+        for (arguments, output) in [(commas, "commas"), (option, "option")] {
+            let output = format!("{command}-{output}/");
+            let arguments = [&[command], &arguments[..], options, &["-o", &output]].concat();
+            assert_done(&folder.run(&arguments), command);
+        }
+        let files = |way: &str| -> Vec<_> {
+            let entries = fs::read_dir(folder.path(&format!("{command}-{way}"))).unwrap();
+            let mut files: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
+            files.sort();
+            files
+                .iter()
+                .map(|file| {
+                    (
+                        file.file_name().unwrap().to_owned(),
+                        fs::read(file).unwrap(),
+                    )
+                })
+                .collect()
+        };
+        assert_eq!(files("commas"), files("option"), "{command}");
+        assert!(files("option").len() >= 2, "{command}");
+    }
+    for (maps, part) in [
+        (
+            &[
+                "rock.png",
+                "--map",
+                "normal=normal.png",
+                "--map",
+                "normal=normal.png",
+            ][..],
+            "2 times, but the number of images is 1",
+        ),
+        (
+            &["rock.png,normal=normal.png", "--map", "normal=normal.png"],
+            "has normal twice",
+        ),
+        (
+            &["rock.png", "--map", "normal.png"],
+            "is not a map: give NAME=FILE",
+        ),
+    ] {
+        let arguments = [&["copies"], maps, &["--size", "32", "-o", "no/"]].concat();
+        assert_refused(&folder.run(&arguments), 2, part, part);
     }
 }

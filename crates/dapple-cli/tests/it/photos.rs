@@ -53,8 +53,8 @@ fn rectify_refuses_bad_corners_and_normals() {
     let with_normals = [
         "tile",
         "photo.png",
-        "--normal",
-        "normal.png",
+        "--map",
+        "normal=normal.png",
         "--rectify",
         CORNERS_TEXT,
         "-o",

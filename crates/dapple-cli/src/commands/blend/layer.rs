@@ -1,7 +1,7 @@
 //! Parses a layer on the command line, such as
 //! `grass.png,weight=mask.png,height=grass_height.png,normal=grass_normal.png`.
 
-use crate::args::{Alpha, ReadArgs, Size};
+use crate::args::{Alpha, MapArg, ReadArgs, Size};
 use crate::encode::map_raster;
 use crate::error::{Hint, usage};
 use crate::input::{self, Kind, Loaded};
@@ -94,6 +94,37 @@ impl FromStr for LayerArg {
 }
 
 impl LayerArg {
+    /// Adds maps to layers: the first map of a name belongs to the first layer, and so on.
+    ///
+    /// # Errors
+    ///
+    /// If there are more maps of a name than layers, or a layer has the map already.
+    pub(in crate::commands) fn with_maps(layers: &[Self], maps: &[MapArg]) -> Result<Vec<Self>> {
+        let mut layers = layers.to_vec();
+        for (index, MapArg { name, path }) in maps.iter().enumerate() {
+            let is_of_name = |map: &&MapArg| map.name == *name;
+            let place = maps[..index].iter().filter(is_of_name).count();
+            let n_layers = layers.len();
+            let Some(layer) = layers.get_mut(place) else {
+                let message = format!(
+                    "--map {name} is given {} times, but the number of images is {n_layers}",
+                    place + 1
+                );
+                return Err(
+                    usage(message).hint("give it at most once for each image, in their order")
+                );
+            };
+            check_key(name).map_err(usage)?;
+            if name == BASE || layer.maps.iter().any(|(other, _)| other == name) {
+                let message = format!("{} has {name} twice", layer.path.display());
+                return Err(usage(message).hint(format!("leave out --map {name} or {name}=")));
+            }
+            layer.maps.push((name.clone(), path.clone()));
+            layer.maps.sort();
+        }
+        Ok(layers)
+    }
+
     /// Returns the file of the first map.
     pub(in crate::commands) fn path(&self) -> &Path {
         &self.path

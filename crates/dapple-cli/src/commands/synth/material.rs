@@ -3,7 +3,7 @@
 //! Reference: The Khronos Group, *glTF 2.0 Specification*, 2021, section 3.9: occlusion is red, roughness green and
 //! metalness blue, so that one image holds all three.
 
-use super::MapArg;
+use crate::args::MapArg;
 use crate::encode::{Format, encode, encode_packed};
 use crate::error::{Hint, usage};
 use crate::input::Loaded;
