@@ -12,7 +12,7 @@ use crate::watch;
 use dapple::raster::Raster;
 use dapple::synth::{
     self, Edges, Endless, EndlessOptions, Options, PlaneTexture, SynthError, SynthErrorKind,
-    synthesize_plane_guided, synthesize_plane_with,
+    repair_levels, synthesize_plane_guided, synthesize_plane_with,
 };
 use dapple::tile::Map;
 use pyo3::prelude::*;
@@ -330,8 +330,8 @@ fn guided(
 /// seed : int, default 0
 ///     As for `synthesize`.
 /// matching : Matching, dict or None, default None
-///     How neighborhoods are compared; by default Matching(). More levels fill larger holes. Only `levels`, `coherence`
-///     and `paper` have an effect.
+///     How neighborhoods are compared; by default Matching(). `levels` follows the size of the hole unless it is
+///     given. Only `levels`, `coherence` and `paper` have an effect.
 /// sources : bool, default False
 ///     Whether to return (image, sources), as for `synthesize`.
 /// progress : callable or None, default None
@@ -371,8 +371,15 @@ pub(crate) fn repair<'py>(
 ) -> Result<Bound<'py, PyAny>> {
     let image = Exemplar::read_image("image", image)?;
     let without = ["evenness", "guides", "method", "space", "axes"];
-    let options = Matching::read(py, matching, &without)?.options(seed)?;
+    let matching = Matching::read(py, matching, &without)?;
     let hole = is_set("hole", hole)?;
+    let options = Options {
+        n_levels: match matching.0.levels {
+            None => repair_levels(&hole),
+            Some(_) => matching.n_levels(),
+        },
+        ..matching.options(seed)?
+    };
     let exemplar = image.matched(Some(&hole))?;
     let texture = watch::run(py, progress, move |heard, _| {
         PlaneTexture::identity(&exemplar)?.repair(&exemplar, &hole, &options, heard)

@@ -237,7 +237,9 @@ pub use options::{Axes, Coherence, Matching, Options, Sources};
 pub use orientation::{Direction, Orientation, Symmetry};
 #[doc(alias("texture synthesis", "inpaint", "inpainting"))]
 pub use plane::synthesize_plane;
-pub use plane::{PlaneTexture, synthesize_plane_guided, synthesize_plane_with, tile_plane};
+pub use plane::{
+    PlaneTexture, repair_levels, synthesize_plane_guided, synthesize_plane_with, tile_plane,
+};
 pub use plane_along::{PlaneAlong, PlaneScales, synthesize_plane_along};
 pub use side_by_side::SideBySide;
 pub use sites::{

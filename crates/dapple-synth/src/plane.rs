@@ -18,6 +18,8 @@ mod pieces;
 mod repair;
 mod tile;
 
+pub use repair::repair_levels;
+
 use crate::candidates::halves;
 use crate::detail;
 use crate::domain::{Colors, Samples, Square, Start, SynthesisDomain, UNKNOWN};

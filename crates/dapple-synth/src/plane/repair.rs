@@ -18,6 +18,72 @@ use crate::{Exemplar, Options, Pyramid, Schedule, SynthError};
 use core::ops::ControlFlow;
 use dapple_raster::Raster;
 
+/// Maximum inscribed radius of a hole on the coarsest level, in pixels, for which [`repair_levels`] adds no level.
+const COARSE_RADIUS: u32 = 6;
+
+/// Minimum shorter side of the coarsest level, in pixels, for [`repair_levels`].
+const COARSE_SIDE: u32 = 16;
+
+/// Returns the number of levels that fills a hole: at least 3, and the smallest number for which the inscribed radius of
+/// the hole is at most 6 pixels on the coarsest level. The shorter side of that level is at least 16 pixels if there are
+/// more than 3 levels.
+///
+/// The radius is the largest distance of a pixel of the hole from the nearest other pixel, the maximum of columns and
+/// rows. Long scratches are as narrow as small spots.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_raster::Raster;
+/// use dapple_synth::repair_levels;
+///
+/// let hole = |side: u32| Raster::from_fn([600, 600], |x, y| x.max(y) < side);
+/// assert_eq!([hole(24)?, hole(25)?, hole(400)?].map(|hole| repair_levels(&hole)), [3, 4, 6]);
+/// # Ok::<(), dapple_raster::RasterError>(())
+/// ```
+#[must_use]
+pub fn repair_levels(hole: &Raster<bool>) -> usize {
+    let radius = inscribed_radius(hole);
+    let [width, height] = hole.size();
+    let shorter = width.min(height);
+    let mut n_levels = Options::default().n_levels;
+    while radius.div_ceil(1 << (n_levels - 1)) > COARSE_RADIUS && shorter >> n_levels >= COARSE_SIDE
+    {
+        n_levels += 1;
+    }
+    n_levels
+}
+
+/// Returns the largest chessboard distance of a pixel of the hole from a pixel that is kept. Pixels outside are not kept.
+fn inscribed_radius(hole: &Raster<bool>) -> u32 {
+    let [width, height] = hole.size().map(|side| side as usize);
+    let far = width.max(height) as u32;
+    let distance = |&is_made: &bool| if is_made { far } else { 0 };
+    let mut distances: Vec<u32> = hole.pixels().iter().map(distance).collect();
+    // Pass the distances on from the top left, and then, in the reverse order, from the bottom right.
+    for _ in 0..2 {
+        for row in 0..height {
+            for column in 0..width {
+                let mut least = u32::MAX;
+                if column > 0 {
+                    least = distances[row * width + column - 1];
+                }
+                if row > 0 {
+                    let above = &distances[(row - 1) * width..row * width];
+                    let near = &above[column.saturating_sub(1)..(column + 2).min(width)];
+                    least = near
+                        .iter()
+                        .fold(least, |least, &distance| least.min(distance));
+                }
+                let distance = &mut distances[row * width + column];
+                *distance = (*distance).min(least.saturating_add(1));
+            }
+        }
+        distances.reverse();
+    }
+    distances.into_iter().max().unwrap_or(0)
+}
+
 /// Side of the square tiles that define the visiting order, in pixels. It is larger than the reach of a 7 × 7
 /// neighborhood, so that consecutive sites, one per tile, do not wait for each other.
 const STRIDE: u32 = 4;
@@ -53,6 +119,8 @@ impl PlaneTexture {
     ///
     /// Use this to remove scratches, or objects that do not belong to a texture: take the photograph [without the
     /// defects](Exemplar::with_mask) as the exemplar, and its [`identity`](Self::identity) as the texture.
+    ///
+    /// Large holes need more levels than the default: [`repair_levels`] returns their number.
     ///
     /// If the options have no schedule, [`Schedule::repair`] is used. Sites are visited in an order in which
     /// consecutive ones are far apart. [`Options::evenness`] has no effect, because a small region need not use the

@@ -12,6 +12,7 @@ use dapple::raster::Raster;
 use dapple::synth::{
     Axes as FieldAxes, Coherence, Edges, EndlessOptions, HierarchyOptions, Matching, Options,
     Symmetry, SynthError, sites_for_exemplar, sites_for_repeats,
+    Symmetry, SynthError, repair_levels, sites_for_repeats,
 };
 use dapple::tile::Map;
 use serde::Serialize;
@@ -238,7 +239,7 @@ pub(super) struct MatchArgs {
     /// Number of resolution levels, 1 to 16; more for larger features [default: 3, or all that fit in endless
     /// textures].
     ///
-    /// Each level has a quarter of the points of the next finer one.
+    /// For the repair of an image, the default follows the size of the hole. Each level has a quarter of the points of the next finer one.
     #[arg(long, hide_short_help = true, value_name = "N")]
     levels: Option<u32>,
 
@@ -472,6 +473,12 @@ impl MatchArgs {
     fn n_levels(&self) -> usize {
         self.levels
             .map_or(Options::default().n_levels, |levels| levels as usize)
+    }
+
+    /// Returns the number of levels for the repair of a hole in an image, which follows its size by default.
+    pub(super) fn repair_levels(&self, hole: &Raster<bool>) -> usize {
+        self.levels
+            .map_or_else(|| repair_levels(hole), |levels| levels as usize)
     }
 
     /// Returns the options for an endless texture. `period` is in pixels, and `None` along axes without a period.

@@ -14,8 +14,8 @@ use dapple::color::LinearRgb;
 use dapple::image::Image;
 use dapple::raster::Raster;
 use dapple::synth::{
-    Edges, Endless, Exemplar, PlaneTexture, SynthError, SynthErrorKind, synthesize_plane_guided,
-    synthesize_plane_with,
+    Edges, Endless, Exemplar, Options, PlaneTexture, SynthError, SynthErrorKind,
+    synthesize_plane_guided, synthesize_plane_with,
 };
 use dapple::tile::Map;
 use serde_json::Value;
@@ -59,6 +59,10 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
             // Each pixel of the first example is its own source, since that example begins at the first pixel.
             let sources = Raster::from_fn(hole.size(), |column, row| [column, row])?;
             let edges = [exemplar.edges(); 2];
+            let options = Options {
+                n_levels: args.matching.repair_levels(hole),
+                ..options
+            };
             PlaneTexture::from_sources(sources, edges, exemplar.size(), exemplar.edges())
                 .and_then(|whole| whole.repair(exemplar, hole, &options, shown(&progress)))
         }

@@ -2,7 +2,8 @@
 
 use crate::{
     Candidates, CoarserCenter, Coherence, Edges, Exemplar, Options, Pass, PlaneTexture, Pyramid,
-    Reads, Schedule, SideBySide, SynthErrorKind, Turned, distance_sq, synthesize_plane, tile_plane,
+    Reads, Schedule, SideBySide, SynthErrorKind, Turned, distance_sq, repair_levels,
+    synthesize_plane, tile_plane,
 };
 use core::ops::ControlFlow;
 use dapple_hash::{Seed, hash2, unit_f32};
@@ -573,4 +574,47 @@ fn small_example_is_repaired_turned_and_beside_another() {
             }
         }
     }
+}
+
+/// The number of levels, from the distance of each pixel of the hole to each other pixel.
+fn naive_levels(hole: &Raster<bool>) -> usize {
+    let [width, height] = hole.size();
+    let places = || (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+    let is_made = |[x, y]: [u32; 2]| hole.row(y)[x as usize];
+    let distance = |[x, y]: [u32; 2]| {
+        let kept = places().filter(|&place| !is_made(place));
+        let distances = kept.map(|place| x.abs_diff(place[0]).max(y.abs_diff(place[1])));
+        distances.min().unwrap_or(width.max(height))
+    };
+    let made = places().filter(|&place| is_made(place));
+    let radius = made.map(distance).max().unwrap_or(0);
+    let fits = |n_levels: &usize| {
+        let coarse = 1_u32 << (n_levels - 1);
+        radius.div_ceil(coarse) <= 6 || width.min(height) / (2 * coarse) < 16
+    };
+    (3..).find(fits).unwrap()
+}
+
+#[test]
+fn repair_levels_follow_the_inscribed_radius_of_the_hole() {
+    let disk = |size: [u32; 2], [x0, y0]: [u32; 2], radius: u32| {
+        Raster::from_fn(size, |x, y| {
+            let [x, y] = [x.abs_diff(x0), y.abs_diff(y0)];
+            x * x + y * y < radius * radius
+        })
+        .unwrap()
+    };
+    let holes = [
+        disk([150, 140], [70, 70], 20),
+        disk([150, 140], [70, 70], 40),
+        disk([150, 140], [20, 130], 60),
+        disk([150, 140], [75, 70], 200),
+        disk([40, 140], [20, 70], 19),
+        // A scratch is narrow, and a hole of no pixels has no radius.
+        Raster::from_fn([150, 140], |x, _| (70..80).contains(&x)).unwrap(),
+        Raster::filled([150, 140], false).unwrap(),
+    ];
+    let levels = holes.each_ref().map(repair_levels);
+    assert_eq!(levels, holes.each_ref().map(naive_levels));
+    assert_eq!(levels, [3, 4, 4, 4, 3, 3, 3]);
 }
