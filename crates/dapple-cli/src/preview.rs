@@ -15,7 +15,7 @@ const SIDE: u32 = 512;
 /// Pixels along the longer side of the baked maps.
 const TILE: u32 = 512;
 
-/// The maps of a preview, of which the last four are optional.
+/// The maps of a preview. The last four are optional.
 const MAPS: [MapKind; 7] = [
     MapKind::Normal,
     MapKind::Albedo,

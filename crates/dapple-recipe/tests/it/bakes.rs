@@ -61,6 +61,10 @@ height = "height"
 albedo = "layered"
 roughness = "rings"
 metallic = "patches"
+emission = "colors"
+opacity = "rings"
+specular = "patches"
+clearcoat = "rings"
 "##;
 
 pub(crate) fn plan(text: &str) -> Plan {

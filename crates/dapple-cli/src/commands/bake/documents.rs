@@ -14,7 +14,7 @@ use dapple::recipe::{MapKind, Recipe};
 const CLEARCOAT_ROUGHNESS: f64 = 0.03;
 
 /// Builds a GLB file of a horizontal rectangle with the extent of the tile. It faces up (+y), and v points toward +z.
-/// The images are those of the preset.
+/// `images` are the images of the preset.
 pub(super) fn glb(
     recipe: &Recipe,
     images: impl Iterator<Item = (Layers, Vec<u8>)>,
