@@ -57,12 +57,33 @@ pub enum RecipeErrorKind {
         /// The name.
         name: String,
     },
+    /// An option refers to a parameter that the recipe does not have.
+    UnknownParameter {
+        /// The name of the parameter.
+        name: String,
+        /// The path of the option, such as `nodes.cells.worley.frequency`.
+        option: String,
+    },
+    /// No option refers to a parameter.
+    UnusedParameter {
+        /// The name of the parameter.
+        name: String,
+    },
+    /// The value of a parameter does not fit an option.
+    Parameter {
+        /// The name of the parameter.
+        name: String,
+        /// The path of the option.
+        option: String,
+        /// The reason.
+        message: String,
+    },
     /// No node has this name.
     UnknownNode {
         /// The name.
         name: String,
     },
-    /// The name of a node does not begin with a letter, or has characters other than letters, digits, `_` and `-`.
+    /// The name of a node or a parameter does not begin with a letter, or has characters other than letters, digits, `_` and `-`.
     Name {
         /// The name.
         name: String,
@@ -266,6 +287,26 @@ impl fmt::Display for RecipeErrorKind {
                 crate::SCHEMA
             ),
             Self::UnknownRecipe { name } => write!(f, "there is no built-in recipe `{name}`"),
+            Self::UnknownParameter { name, option } => {
+                write!(
+                    f,
+                    "there is no parameter `{name}`, which `{option}` refers to"
+                )
+            }
+            Self::UnusedParameter { name } => {
+                write!(
+                    f,
+                    "no option refers to the parameter `{name}`, written as \"${name}\""
+                )
+            }
+            Self::Parameter {
+                name,
+                option,
+                message,
+            } => write!(
+                f,
+                "the parameter `{name}` does not fit `{option}`: {message}"
+            ),
             Self::UnknownNode { name } => write!(f, "there is no node `{name}`"),
             Self::Name { name } => {
                 write!(

@@ -125,6 +125,6 @@ pub use plan::{
 };
 pub use recipe::{Material, Recipe, SCHEMA};
 pub use shader::{MaterialShader, ShaderOptions};
-pub use text::{MAX_TEXT, read_options};
+pub use text::{MAX_TEXT, Parameter, Parameters, read_options};
 pub use values::Values;
 pub use words::similar_words;

@@ -29,6 +29,7 @@ pub use field::{NodeColors, NodeField};
 pub(crate) use neighborhood::{Neighborhood, with_margin};
 pub(crate) use order::order;
 pub use renderer::{Renderer, RendererError};
+pub(crate) use order::{is_name, order};
 pub use samples::Samples;
 pub(crate) use samples::TileSamples;
 pub(crate) use step::{LinearMap, Moved, Positions, Step, StretchedImage};

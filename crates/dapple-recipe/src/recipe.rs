@@ -1,6 +1,6 @@
 //! Recipes as plain data, independent of their text format.
 
-use crate::{Input, MapKind, Node};
+use crate::{Input, MapKind, Node, Parameters};
 use dapple_color::NormalY;
 use dapple_hash::Seed;
 use indexmap::IndexMap;
@@ -71,6 +71,10 @@ pub struct Recipe {
     /// Whether the tile repeats along each axis, x first.
     #[serde(default = "default_wrap")]
     pub wrap: [bool; 2],
+    /// Named values that options share, written in an option as `"$name"`. The options have the values; the references
+    /// are in the parameters.
+    #[serde(skip)]
+    pub parameters: Parameters,
     /// Nodes of the recipe, by name.
     #[serde(default)]
     #[cfg_attr(
@@ -192,6 +196,7 @@ impl Recipe {
             seed,
             extent: default_extent(),
             wrap: default_wrap(),
+            parameters: Parameters::default(),
             nodes: IndexMap::from([(name.to_owned(), node)]),
             material: Material {
                 height: Input::from(name),

@@ -7,6 +7,7 @@ mod reference;
 
 use crate::nodes::{ColorOf, Frequency, ImageAlpha, NodeSeed, WorleyValue};
 use crate::plan::FREQUENCY;
+use crate::text::ALIASES;
 use crate::{Input, Recipe};
 use schemars::transform::{Transform, transform_subschemas};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -28,7 +29,27 @@ impl Recipe {
     pub fn schema() -> Value {
         let mut schema = SchemaGenerator::default().into_root_schema_for::<Self>();
         plain(&mut schema);
-        schema.to_value()
+        let mut schema = schema.to_value();
+        // Parameters are substituted before recipes are read, so the type of recipes does not describe them.
+        schema["properties"]["parameters"] = parameters();
+        schema
+    }
+
+    /// Returns the [schema](Self::schema) of the texts of recipes, for editors: an option is its value, or a reference to a
+    /// [parameter](Self::parameters).
+    #[must_use]
+    pub fn text_schema() -> Value {
+        let mut schema = Self::schema();
+        for option in ["seed", "extent", "wrap"] {
+            allow_reference(&mut schema["properties"][option]);
+        }
+        allow_references(&mut schema["$defs"]);
+        schema["$defs"]["Reference"] = json!({
+            "description": "Reference to a parameter, such as `\"$jitter\"`.",
+            "type": "string",
+            "pattern": "^\\$",
+        });
+        schema
     }
 
     /// Returns a reference of all options of recipes, in Markdown.
@@ -38,12 +59,59 @@ impl Recipe {
     }
 }
 
-/// Aliases that the parser accepts for options, as pairs of option and alias.
-const ALIASES: [(&str, &str); 3] = [
-    ("gain", "persistence"),
-    ("albedo", "basecolor"),
-    ("albedo", "base_color"),
-];
+/// Allows references to parameters in place of all options and elements of lists in a schema.
+fn allow_references(schema: &mut Value) {
+    match schema {
+        Value::Object(entries) => {
+            for (key, inner) in entries {
+                allow_references(inner);
+                match (key.as_str(), inner) {
+                    ("properties", Value::Object(options)) => {
+                        options.values_mut().for_each(allow_reference);
+                    }
+                    ("items", element) => allow_reference(element),
+                    _ => {}
+                }
+            }
+        }
+        Value::Array(all) => all.iter_mut().for_each(allow_references),
+        _ => {}
+    }
+}
+
+/// Allows a reference to a parameter in place of an option. Its description and default remain in place.
+fn allow_reference(option: &mut Value) {
+    let mut outer = json!({});
+    for key in ["description", "default", "deprecated"] {
+        if let Some(about) = option.as_object_mut().and_then(|option| option.remove(key)) {
+            outer[key] = about;
+        }
+    }
+    outer["anyOf"] = json!([option.take(), { "$ref": "#/$defs/Reference" }]);
+    *option = outer;
+}
+
+/// Returns the schema of named parameters.
+fn parameters() -> Value {
+    let value = json!({ "type": ["number", "string", "boolean", "array"] });
+    let mut plain = value.clone();
+    plain["description"] = json!("Number, text, truth value, or list of these.");
+    let number = json!({ "type": "number" });
+    json!({
+        "description": "Named values that options share: an option has the value of a parameter if it is written as `\"$name\"`. A table adds a range and a description.",
+        "type": "object",
+        "additionalProperties": { "anyOf": [plain, {
+            "type": "object",
+            "properties": {
+                "value": value,
+                "range": { "type": "array", "items": number, "minItems": 2, "maxItems": 2 },
+                "doc": { "type": "string" },
+            },
+            "required": ["value"],
+            "additionalProperties": false,
+        }] },
+    })
+}
 
 /// Removes rustdoc markup from descriptions and adds option aliases, in all subschemas.
 fn plain(schema: &mut Schema) {

@@ -4,18 +4,27 @@ use crate::{Node, Place, PupsNode, Recipe, RecipeError, RecipeErrorKind, SCHEMA}
 use content::Content;
 use dapple_raster::text::decode;
 use erased_serde::Serialize;
+use parameters::Fault;
+use refusal::Part;
 use serde::Deserialize as _;
 use serde_json::Value;
 
 mod content;
+mod parameters;
 mod refusal;
 mod set;
+
+#[cfg(feature = "schema")]
+pub(crate) use parameters::ALIASES;
+pub use parameters::{Parameter, Parameters};
 
 /// Maximum size of the text of a recipe, in bytes: 4 MiB.
 pub const MAX_TEXT: usize = 1 << 22;
 
 impl Recipe {
     /// Reads a recipe from TOML text.
+    ///
+    /// Named [parameters](Self::parameters) are replaced by their values before nodes are read.
     ///
     /// The names and inputs of nodes are checked later, by [`Plan::new`](crate::Plan::new).
     ///
@@ -24,17 +33,18 @@ impl Recipe {
     /// [`Text`](RecipeErrorKind::Text) if the text is not valid TOML, or contains a key or value that recipes do not
     /// have, with the line and the nearest valid word; [`Schema`](RecipeErrorKind::Schema) if the schema version
     /// differs from [`SCHEMA`]; [`Count`](RecipeErrorKind::Count) if the text has more than [`MAX_TEXT`]
-    /// bytes.
+    /// bytes; [`UnknownParameter`](RecipeErrorKind::UnknownParameter),
+    /// [`UnusedParameter`](RecipeErrorKind::UnusedParameter) or [`Parameter`](RecipeErrorKind::Parameter) if an option
+    /// refers to a parameter that there is not, a parameter is not used, or its value does not fit an option.
     pub fn from_toml(text: &str) -> Result<Self, RecipeError> {
         let text = decoded(text)?;
         let content: Content = toml::from_str(text).map_err(|error| {
             let byte = error.span().map(|span| span.start);
             text_error(error.message()).at(byte.map(|byte| place_of(text, byte)))
         })?;
-        check_version(&content)?;
-        Self::deserialize(&content).map_err(|refusal| {
+        Self::from_content(content, false).map_err(|Fault { error, refusal }| {
             let byte = refusal.byte_in_toml(text);
-            text_error(&refusal.message).at(byte.map(|byte| place_of(text, byte)))
+            error.at(byte.map(|byte| place_of(text, byte)))
         })
     }
 
@@ -52,9 +62,45 @@ impl Recipe {
             let message = full.split(" at line ").next().unwrap_or(&full);
             text_error(message).at((line > 0).then_some(Place { line, column }))
         })?;
-        check_version(&content)?;
-        Self::deserialize(&content)
-            .map_err(|refusal| text_error(&refusal.message).at(refusal.place_in_json(text)))
+        Self::from_content(content, false)
+            .map_err(|Fault { error, refusal }| error.at(refusal.place_in_json(text)))
+    }
+
+    /// Reads a recipe from a parsed text. Parameters that are not used are dropped if `drops_unused`, and errors otherwise.
+    fn from_content(mut content: Content, drops_unused: bool) -> Result<Self, Fault> {
+        check_version(&content)
+            .map_err(|error| Fault::of(error, &[Part::Key("dapple".to_owned())]))?;
+        let mut parameters = Parameters::substitute(&mut content)?;
+        if drops_unused {
+            parameters.drop_unused();
+        }
+        parameters.check_used()?;
+        let mut recipe = Self::deserialize(&content).or_else(|refusal| {
+            let error = text_error(&refusal.message);
+            Err(parameters.blame(refusal, error))
+        })?;
+        if !parameters.is_empty() {
+            let written = recipe
+                .without_parameters()
+                .map_err(|error| Fault::of(error, &[]))?;
+            parameters.record(&written);
+        }
+        recipe.parameters = parameters;
+        Ok(recipe)
+    }
+
+    /// Returns the recipe as a parsed text, with values in place of parameters.
+    fn without_parameters(&self) -> Result<Content, RecipeError> {
+        let text = serde_json::to_string(data(self));
+        let content = text.and_then(|text| serde_json::from_str(&text));
+        content.map_err(|error| text_error(&error.to_string()))
+    }
+
+    /// Returns the recipe as a parsed text.
+    fn to_content(&self) -> Result<Content, RecipeError> {
+        let mut content = self.without_parameters()?;
+        self.parameters.restore(&mut content);
+        Ok(content)
     }
 
     /// Writes the recipe as TOML.
@@ -63,7 +109,11 @@ impl Recipe {
     ///
     /// [`Text`](RecipeErrorKind::Text) if it contains a value that cannot be written as data, such as a function.
     pub fn to_toml(&self) -> Result<String, RecipeError> {
-        toml::to_string_pretty(data(self)).map_err(|error| text_error(&error.to_string()))
+        let text = match self.parameters.is_empty() {
+            true => toml::to_string_pretty(data(self)),
+            false => toml::to_string_pretty(&self.to_content()?),
+        };
+        text.map_err(|error| text_error(&error.to_string()))
     }
 
     /// Writes the recipe as JSON.
@@ -72,7 +122,11 @@ impl Recipe {
     ///
     /// [`Text`](RecipeErrorKind::Text) if it contains a value that cannot be written as data, such as a function.
     pub fn to_json(&self) -> Result<String, RecipeError> {
-        serde_json::to_string_pretty(data(self)).map_err(|error| text_error(&error.to_string()))
+        let text = match self.parameters.is_empty() {
+            true => serde_json::to_string_pretty(data(self)),
+            false => serde_json::to_string_pretty(&self.to_content()?),
+        };
+        text.map_err(|error| text_error(&error.to_string()))
     }
 }
 

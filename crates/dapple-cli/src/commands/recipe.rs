@@ -115,7 +115,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let Some(name) = args.recipe.as_deref() else {
         return match (args.schema, args.reference) {
             (true, _) => {
-                let text = format!("{:#}\n", Recipe::schema());
+                let text = format!("{:#}\n", Recipe::text_schema());
                 let job = Job::new(context, "recipe", &args.files);
                 put_text(job, "recipe.schema", "json", &text, args)
             }

@@ -21,6 +21,12 @@ pub(crate) fn order(recipe: &Recipe) -> Result<Vec<&str>, RecipeError> {
     Ok(order.names)
 }
 
+/// Returns whether a text is a valid name of a node or a parameter.
+pub(crate) fn is_name(text: &str) -> bool {
+    let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    text.starts_with(|c: char| c.is_ascii_alphabetic()) && text.chars().all(plain)
+}
+
 fn check_names(recipe: &Recipe) -> Result<(), RecipeError> {
     let count = recipe.nodes.len();
     if count > MAX_NODES {
@@ -30,9 +36,8 @@ fn check_names(recipe: &Recipe) -> Result<(), RecipeError> {
             needed: "at most 1024",
         }));
     }
-    let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     for name in recipe.nodes.keys() {
-        if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(plain) {
+        if !is_name(name) {
             return Err(RecipeError::new(RecipeErrorKind::Name {
                 name: name.clone(),
             }));

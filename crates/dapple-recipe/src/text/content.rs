@@ -11,10 +11,11 @@ use serde::de::{
     SeqAccess, Unexpected, VariantAccess, Visitor,
 };
 use serde::forward_to_deserialize_any;
+use serde::ser::{Serialize, Serializer};
 use std::collections::BTreeSet;
 
 /// A parsed value. The keys of a table are unique.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum Content {
     Null,
     Flag(bool),
@@ -29,6 +30,25 @@ pub(super) enum Content {
 impl<'de> Deserialize<'de> for Content {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(ContentVisitor)
+    }
+}
+
+/// Writes the value, without the empty entries of tables, which TOML does not have.
+impl Serialize for Content {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Null => serializer.serialize_unit(),
+            Self::Flag(flag) => serializer.serialize_bool(*flag),
+            Self::Signed(number) => serializer.serialize_i64(*number),
+            Self::Unsigned(number) => serializer.serialize_u64(*number),
+            Self::Number(number) => serializer.serialize_f64(*number),
+            Self::Text(text) => serializer.serialize_str(text),
+            Self::List(list) => serializer.collect_seq(list),
+            Self::Table(table) => {
+                let entries = table.iter().filter(|(_, value)| *value != Self::Null);
+                serializer.collect_map(entries.map(|(key, value)| (key, value)))
+            }
+        }
     }
 }
 
@@ -94,6 +114,46 @@ impl Content {
         };
         let (_, value) = table.iter().find(|(known, _)| known == key)?;
         Some(value)
+    }
+
+    /// Returns the value as a number, if it is one.
+    pub(super) fn number(&self) -> Option<f64> {
+        match self {
+            Self::Signed(number) => Some(*number as f64),
+            Self::Unsigned(number) => Some(*number as f64),
+            Self::Number(number) => Some(*number),
+            _ => None,
+        }
+    }
+
+    /// Returns the value at a path; `None` if there is none.
+    pub(super) fn at(&self, path: &[Part]) -> Option<&Self> {
+        path.iter()
+            .try_fold(self, |value, part| match (value, part) {
+                (value, Part::Key(key)) => value.get(key),
+                (Self::List(list), Part::Index(index)) => list.get(*index),
+                _ => None,
+            })
+    }
+
+    /// Replaces the value at a path. Adds the last key of the path if it is missing, and nothing else.
+    pub(super) fn put(&mut self, path: &[Part], new: Self) {
+        match (self, path) {
+            (value, []) => *value = new,
+            (Self::Table(table), [Part::Key(key), rest @ ..]) => {
+                match table.iter_mut().find(|(known, _)| known == key) {
+                    Some((_, value)) => value.put(rest, new),
+                    None if rest.is_empty() => table.push((key.clone(), new)),
+                    None => {}
+                }
+            }
+            (Self::List(list), [Part::Index(index), rest @ ..]) => {
+                if let Some(value) = list.get_mut(*index) {
+                    value.put(rest, new);
+                }
+            }
+            _ => {}
+        }
     }
 
     /// Returns the value as serde names it in errors.

@@ -18,7 +18,7 @@ pub(super) struct Refusal {
 }
 
 /// A part of a path: from a table or list to a value in it.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum Part {
     Key(String),
     Index(usize),
@@ -47,6 +47,11 @@ impl Refusal {
     pub(super) fn inside(mut self, part: Part) -> Self {
         self.parts.push(part);
         self
+    }
+
+    /// Returns the path of the erroneous value, outermost part first.
+    pub(super) fn path(&self) -> Vec<Part> {
+        self.parts.iter().rev().cloned().collect()
     }
 
     /// Marks the error as being about `key` instead of its value, and prepends the key to the path.

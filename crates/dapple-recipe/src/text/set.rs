@@ -1,7 +1,10 @@
 //! Changes single values of a recipe by their path, as on a command line.
 
-use super::{data, read_options, text_error};
+use super::content::Content;
+use super::parameters::KEY;
+use super::text_error;
 use crate::{Recipe, RecipeError, RecipeErrorKind};
+use serde::Deserialize as _;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
@@ -9,12 +12,13 @@ use std::collections::BTreeMap;
 const TOP: [&str; 6] = ["name", "about", "seed", "extent", "wrap", "material"];
 
 impl Recipe {
-    /// Replaces one value: an option of a node, such as `stones.from`, or a value of the recipe, such as `seed` or
-    /// `material.relief`.
+    /// Replaces one value: a parameter, such as `jitter`, an option of a node, such as `stones.from`, or a value of the
+    /// recipe, such as `seed` or `material.relief`.
     ///
     /// `value` is written as in TOML: a number, `true`, a list such as `[0, 0.3]`, or a table such as `{ jittered = {
     /// jitter = 0.8 } }`. Words need no quotes. If a node and a value of the recipe have the same name, a path with a
-    /// dot refers to the node.
+    /// dot refers to the node. A parameter with the name of a value of the recipe is set as `parameters.NAME`. If the new
+    /// value replaces the last reference to a parameter, the parameter is removed.
     ///
     /// The types of values are checked, as in [`from_toml`](Self::from_toml); ranges are checked later, by a plan.
     ///
@@ -38,13 +42,20 @@ impl Recipe {
     /// # Ok::<(), dapple_recipe::RecipeError>(())
     /// ```
     pub fn set(&mut self, path: &str, value: &str) -> Result<(), RecipeError> {
-        let mut recipe =
-            serde_json::to_value(data(self)).map_err(|error| text_error(&error.to_string()))?;
+        let written = serde_json::to_value(self.to_content()?);
+        let mut recipe = written.map_err(|error| text_error(&error.to_string()))?;
         let (first, options) = path.split_once('.').unwrap_or((path, ""));
         let (target, path) = if self.nodes.contains_key(first) && !options.is_empty() {
             // A node is a table with one key, its kind. The path continues in the options of this kind.
             let kinds = recipe["nodes"][first].as_object_mut();
             (kinds.and_then(|kinds| kinds.values_mut().next()), options)
+        } else if let Some(name) = self.parameter(path)? {
+            let parameter = &mut recipe[KEY][name];
+            // A parameter keeps its range and description.
+            match parameter.is_object() {
+                true => (Some(parameter), "value"),
+                false => (Some(&mut recipe[KEY]), name),
+            }
         } else if TOP.contains(&first) {
             (Some(&mut recipe), path)
         } else if self.nodes.contains_key(first) {
@@ -52,7 +63,9 @@ impl Recipe {
                 format!("`{first}` is a node: name one of its options, as in `{first}.seed`");
             return Err(RecipeError::new(RecipeErrorKind::Text { message }));
         } else {
+            let parameters = self.parameters.iter().map(|(name, _)| name);
             let names = self.nodes.keys().map(String::as_str).chain(TOP);
+            let names = names.chain(parameters);
             let name = first.to_owned();
             return Err(RecipeError::new(RecipeErrorKind::UnknownNode { name }).meant(first, names));
         };
@@ -66,8 +79,33 @@ impl Recipe {
         }
         // Replace the value, and read the whole recipe from the result.
         *target = parsed(value);
-        *self = read_options(&recipe)?;
+        let content =
+            Content::deserialize(recipe).map_err(|error| text_error(&error.to_string()))?;
+        *self = Self::from_content(content, true).map_err(|fault| fault.error)?;
         Ok(())
+    }
+}
+
+impl Recipe {
+    /// Returns the name of the parameter that a path names, as `NAME` or `parameters.NAME`; `None` if it names another
+    /// value.
+    fn parameter<'a>(&self, path: &'a str) -> Result<Option<&'a str>, RecipeError> {
+        let named = path
+            .strip_prefix(KEY)
+            .and_then(|rest| rest.strip_prefix('.'));
+        let Some(name) = named else {
+            let is_parameter = self.parameters.get(path).is_some() && !TOP.contains(&path);
+            return Ok(is_parameter.then_some(path));
+        };
+        if self.parameters.get(name).is_some() {
+            return Ok(Some(name));
+        }
+        let kind = RecipeErrorKind::UnknownParameter {
+            name: name.to_owned(),
+            option: path.to_owned(),
+        };
+        let names = self.parameters.iter().map(|(name, _)| name);
+        Err(RecipeError::new(kind).meant(name, names))
     }
 }
 

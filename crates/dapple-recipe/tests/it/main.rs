@@ -7,6 +7,7 @@ mod local;
 mod memory;
 mod moved;
 mod neighborhoods;
+mod parameters;
 mod patterns;
 mod pictures;
 mod points;

@@ -14,7 +14,7 @@ type Misfit = String;
 /// Checks a recipe in TOML.
 fn validate(text: &str) -> Result<(), Misfit> {
     let value: Value = toml::from_str(text).unwrap_or_else(|error| panic!("{text}: {error}"));
-    let root = Recipe::schema();
+    let root = Recipe::text_schema();
     fits(&root, &root, &value)
 }
 
@@ -156,6 +156,7 @@ fn matches(pattern: &str, text: &str) -> bool {
     };
     match pattern {
         HEX => is_hex(text),
+        r"^\$" => text.starts_with('$'),
         "^[^#]" => !text.is_empty() && !text.starts_with('#'),
         _ if pattern.starts_with("^(drop|over:") => {
             text == "drop" || text.strip_prefix("over:").is_some_and(is_hex)
