@@ -12,6 +12,7 @@ mod heights;
 mod image;
 mod maps;
 mod shards;
+mod supersample;
 
 pub use maps::{MapKind, MapRows};
 pub use shards::Shards;
@@ -21,6 +22,7 @@ use crate::{Plan, RecipeError, Samples, Whole};
 use dapple_raster::Window;
 use heights::Heights;
 use maps::Side;
+use supersample::Supersample;
 
 /// Bake options: the maps, their size, and the memory limit.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,6 +32,10 @@ pub struct BakeOptions {
     pub size: [u32; 2],
     /// Where the samples are placed; at pixel centers by default.
     pub samples: Samples,
+    /// Samples per pixel along each axis, from 1 to 16; 1 by default. Their values are averaged: heights, and colors in
+    /// linear light. Normals, occlusion and curvature are computed from the averaged heights. Numbers that are ids are
+    /// averaged, too.
+    pub supersample: u32,
     /// The region of the tile to bake; the whole tile by default.
     pub region: Option<Region>,
     /// The maps to bake; the height by default.
@@ -76,6 +82,7 @@ impl Default for BakeOptions {
         Self {
             size: [1024; 2],
             samples: Samples::Centers,
+            supersample: 1,
             region: None,
             maps: vec![MapKind::Height],
             memory: BakeMemory::Whole,
@@ -116,7 +123,9 @@ pub struct Bake<'a> {
     tile: TileSamples,
     /// The samples to bake. For samples on corners, the last column and row may be copies of the first ones.
     window: Window,
+    /// Number of pixels per band, so that a band has as many samples as the options allow pixels.
     band_pixels: u32,
+    supersample: Supersample,
     /// The number of rows above and below a band that the neighborhoods of its nodes need.
     margin: u32,
     next_row: u32,
@@ -149,8 +158,11 @@ impl<'a> Bake<'a> {
         if options.memory == BakeMemory::Banded {
             plan.check_local()?;
         }
-        let heights = Heights::new(plan, &tile, &options.maps)?;
-        let whole = plan.whole_at(&tile)?;
+        let supersample = Supersample::new(options.supersample, tile.window.size)?;
+        let samples = supersample.tile(&tile);
+        let heights = Heights::new(plan, &tile, supersample, &options.maps)?;
+        let whole = plan.whole_at(&samples)?;
+        let per_pixel = supersample.per_axis() * supersample.per_axis();
         whole.watch.begin(Pass::Rows, window.size[1] as usize);
         Ok(Self {
             plan,
@@ -158,8 +170,11 @@ impl<'a> Bake<'a> {
             maps: options.maps.clone(),
             tile,
             window,
-            band_pixels: options.band_pixels,
-            margin: plan.margin_rows(&tile.window)?,
+            band_pixels: options.band_pixels / per_pixel,
+            supersample,
+            margin: plan
+                .margin_rows(&samples.window)?
+                .div_ceil(supersample.per_axis()),
             next_row: 0,
             first_heights: heights.clone(),
             heights,
@@ -202,7 +217,8 @@ impl<'a> Bake<'a> {
         let columns = distinct(0, left).min(width);
         // Choose the number of rows.
         let most = self.band_pixels / width;
-        let least = (LEAST_PIXELS / width).min(most);
+        let least_pixels = LEAST_PIXELS / self.supersample.per_axis().pow(2);
+        let least = (least_pixels / width).min(most);
         let around = self.margin.saturating_mul(MARGINS).min(most);
         let rows = height.div_ceil(LEAST_BANDS).clamp(least.max(around), most);
         let rows = rows.max(16).min(height - first_row);

@@ -1,6 +1,7 @@
 //! Computes the heights of a band with its margin, and the values that other maps share with the height.
 
 use super::maps::{NORMAL_HALO, beside_height, curvature_options, maps, occlusion_options};
+use super::supersample::Supersample;
 use super::{MapKind, MapRows};
 use crate::plan::{Known, TileSamples, with_margin};
 use crate::{Plan, RecipeError, Values, Whole};
@@ -30,8 +31,9 @@ pub(super) struct Heights {
     last: Option<Rows>,
     /// The steps that neighborhoods read, such as the input of a blur.
     sources: Vec<usize>,
-    /// How far beyond a band the sources are needed, in columns and rows.
+    /// How far beyond a band the sources are needed, in columns and rows of samples.
     reach: [u32; 2],
+    supersample: Supersample,
     /// The lowest rows of the sources of the previous band.
     last_sources: Option<Rows>,
 }
@@ -55,6 +57,7 @@ impl Heights {
     pub(super) fn new(
         plan: &Plan,
         tile: &TileSamples,
+        supersample: Supersample,
         maps: &[MapKind],
     ) -> Result<Self, RecipeError> {
         let continues = plan.continues_heights();
@@ -69,6 +72,7 @@ impl Heights {
             last: None,
             sources: Vec::new(),
             reach: [0; 2],
+            supersample,
             last_sources: None,
         };
         for map in maps {
@@ -94,9 +98,10 @@ impl Heights {
         if heights.wanted {
             steps.push(plan.channels().height);
         }
-        let (sources, margin) = plan.sources(&window, &steps)?;
+        let (sources, margin) = plan.sources(&supersample.window(&window), &steps)?;
         heights.sources = sources;
-        heights.reach = [0, 1].map(|axis| heights.halo[axis].saturating_add(margin[axis]));
+        let halo = supersample.samples(heights.halo);
+        heights.reach = [0, 1].map(|axis| halo[axis].saturating_add(margin[axis]));
         Ok(heights)
     }
 
@@ -110,12 +115,13 @@ impl Heights {
         kinds: &[MapKind],
     ) -> Result<Vec<(MapKind, MapRows)>, RecipeError> {
         let heights = self.of(plan, whole, band)?;
-        maps(plan, whole, band, tile, &heights, kinds)
+        maps(plan, whole, band, tile, self.supersample, &heights, kinds)
     }
 
     /// Computes the heights of a band with its margin. Reuses rows that it shares with the previous band.
     fn of(&mut self, plan: &Plan, whole: &Whole, band: &Window) -> Result<Margined, RecipeError> {
-        let mut shared = self.sources(plan, whole, band)?.into_vec();
+        let samples = self.supersample.window(band);
+        let mut shared = self.sources(plan, whole, &samples)?.into_vec();
         let halo = self.halo;
         if !self.wanted {
             return Ok(Margined {
@@ -124,7 +130,8 @@ impl Heights {
                 shared: shared.into(),
             });
         }
-        let window = with_margin(band, halo);
+        let pixels = with_margin(band, halo);
+        let window = self.supersample.window(&pixels);
         let mut steps = vec![plan.channels().height];
         if window.n_pixels() <= SHARED_PIXELS {
             let is_new = |step: &&usize| !shared.iter().any(|(known, _)| known == *step);
@@ -132,17 +139,15 @@ impl Heights {
         }
         let mut rows = Rows::from(self.last.take(), &window, &steps);
         rows.complete(plan, whole, &window, &steps, &shared)?;
-        self.last = rows.for_next(band, halo[1]);
+        self.last = rows.for_next(&samples, self.supersample.samples(halo)[1]);
         // Extrapolate the heights past the sides of the tile.
         let mut values = rows.values.into_iter();
-        let heights = match values.next() {
-            Some(Values::Numbers(heights)) => heights,
-            _ => Vec::new(),
-        };
-        let mut raster = Raster::from_vec(window.size, heights)?;
+        let heights = values.next().unwrap_or(Values::Numbers(Vec::new()));
+        let heights = self.supersample.average(heights, pixels.size[0]);
+        let mut raster = Raster::from_vec(pixels.size, heights.into_grays())?;
         let in_window = |axis: usize| {
             let sides = self.sides[axis]?;
-            Some(sides.map(|side| side - window.first[axis]))
+            Some(sides.map(|side| side - pixels.first[axis]))
         };
         continue_heights(&mut raster, [0, 1].map(in_window));
         let values = values.map(|values| (window, Arc::new(values)));
@@ -154,7 +159,7 @@ impl Heights {
         })
     }
 
-    /// Computes the values that the neighborhoods of a band read. Reuses rows that it shares with the previous band.
+    /// Computes the values that the neighborhoods of a band read, whose samples are `band`. Reuses rows that it shares with the previous band.
     /// Returns nothing if they would take too much memory; neighborhoods then compute them themselves.
     fn sources(
         &mut self,

@@ -1,6 +1,7 @@
 //! Defines the kinds of maps, and computes them for a band.
 
 use super::heights::Margined;
+use super::supersample::Supersample;
 use crate::plan::{TileSamples, Watch};
 use crate::{Plan, RecipeError, Values, Whole};
 use dapple_color::{
@@ -295,13 +296,15 @@ pub(super) fn maps(
     whole: &Whole,
     band: &Window,
     tile: &TileSamples,
+    supersample: Supersample,
     heights: &Margined,
     kinds: &[MapKind],
 ) -> Result<Vec<(MapKind, MapRows)>, RecipeError> {
     let wanted = beside_height(plan, kinds);
     let mut values = plan
-        .values(whole, band, &wanted, &heights.shared)?
-        .into_iter();
+        .values(whole, &supersample.window(band), &wanted, &heights.shared)?
+        .into_iter()
+        .map(|values| supersample.average(values, band.size[0]));
     let mut local = || values.next().unwrap_or(Values::Numbers(Vec::new()));
     let mut around = Around {
         plan,

@@ -18,6 +18,7 @@ mod scatter;
 #[cfg(feature = "schema")]
 mod schema;
 mod shader;
+mod supersample;
 mod synth;
 mod text;
 mod words;
