@@ -64,6 +64,8 @@ pub(crate) struct Task {
 pub(crate) struct Wanted<'a> {
     pub(crate) size: Size,
     pub(crate) samples: SamplesArgs,
+    /// The option for several samples per pixel; `None` for one.
+    pub(crate) supersample: Option<String>,
     pub(crate) shard: Size,
     pub(crate) overlap: u32,
     pub(crate) maps: &'a [MapKind],
@@ -91,6 +93,7 @@ impl List {
         let Wanted {
             size,
             samples,
+            supersample,
             shard,
             overlap,
             maps,
@@ -99,11 +102,16 @@ impl List {
         } = wanted;
         let all = (version, recipe, images, size, shard, frames);
         // Leave options at their defaults out of the checksum, so that lists of older versions keep theirs.
-        let described = match (overlap, finite.word(), samples.word()) {
-            (0, None, None) => serde_json::to_vec(&all)?,
-            (overlap, None, None) => serde_json::to_vec(&(all, overlap))?,
-            (overlap, Some(word), None) => serde_json::to_vec(&(all, overlap, word))?,
-            (overlap, word, Some(samples)) => serde_json::to_vec(&(all, overlap, word, samples))?,
+        let described = match (overlap, finite.word(), samples.word(), supersample) {
+            (0, None, None, None) => serde_json::to_vec(&all)?,
+            (overlap, None, None, None) => serde_json::to_vec(&(all, overlap))?,
+            (overlap, Some(word), None, None) => serde_json::to_vec(&(all, overlap, word))?,
+            (overlap, word, Some(samples), None) => {
+                serde_json::to_vec(&(all, overlap, word, samples))?
+            }
+            (overlap, word, samples, Some(supersample)) => {
+                serde_json::to_vec(&(all, overlap, word, samples, supersample))?
+            }
         };
         let list = Self {
             dapple: version.to_owned(),

@@ -49,6 +49,7 @@ Examples:
     --maps height,normal,ao,albedo,roughness
   dapple bake my-rock.toml --maps orm,normal --normal-y directx -o rock/
   dapple bake marble --maps albedo -o marble.png --size 1024x512
+  dapple bake brick-wall --size 512 --supersample 3 -o bricks/
   dapple bake clouds --maps height --size 4096 --region 0,0,512,512 -o part.exr
   dapple bake craters --maps height --size 4096x256 --banded -o wide.exr
   dapple bake rock ice marble -o all/ --size 256 --preview
@@ -91,7 +92,9 @@ pub(crate) struct Args {
     preset: Option<&'static Preset>,
 
     /// Bake this node alone, as a height or, if it has colors, as an albedo map.
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["preset", "maps", "shard", "preview"])]
+    ///
+    /// Its values may be ids, so it is not baked with --supersample.
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["preset", "maps", "shard", "preview", "supersample"])]
     node: Option<String>,
 
     /// Bake only this region, in pixels: bit for bit a crop of the whole.
@@ -296,6 +299,7 @@ impl Work {
         let wanted = args.shard.map(|shard| Wanted {
             size: args.material.size,
             samples: args.material.samples,
+            supersample: args.material.supersample_word(),
             shard: shard.size,
             overlap: shard.overlap,
             maps: &maps,
@@ -566,6 +570,7 @@ impl Args {
         Ok(BakeOptions {
             size: self.material.size.0,
             samples: self.material.samples.samples,
+            supersample: self.material.supersample,
             region: self.part()?,
             maps,
             memory: if self.banded || self.shard.is_some() {

@@ -113,6 +113,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let wanted = Wanted {
         size: args.material.size,
         samples: args.material.samples,
+        supersample: args.material.supersample_word(),
         shard: args.shard,
         overlap: args.overlap,
         maps: &maps,
@@ -158,6 +159,7 @@ fn check(plan: &Plan, args: &Args, region: Option<Region>, maps: &[MapKind]) -> 
     let options = BakeOptions {
         size: args.material.size.0,
         samples: args.material.samples.samples,
+        supersample: args.material.supersample,
         region,
         maps: maps.to_vec(),
         memory: BakeMemory::Banded,

@@ -203,6 +203,7 @@ class Plan:
         *,
         window: _Window | None = None,
         samples: _Samples = "centers",
+        supersample: int = 1,
         as_xarray: Literal[False] = False,
     ) -> dict[str, _F32]: ...
     @overload
@@ -213,6 +214,7 @@ class Plan:
         *,
         window: _Window | None = None,
         samples: _Samples = "centers",
+        supersample: int = 1,
         as_xarray: Literal[True],
     ) -> xarray.Dataset: ...
     @property

@@ -153,7 +153,7 @@ fn region(size: &Bound<'_, PyAny>, window: &Bound<'_, PyAny>) -> Result<Region> 
 #[pymethods]
 impl Plan {
     /// Bakes the maps of the material as float32 arrays: (rows, columns) for `height`, `ao`, `curvature`, `roughness`
-    /// and `metallic`, (rows, columns, 3) for `normal`, `albedo` (linear) and `orm`.
+    /// and `metallic`, (rows, columns, 3) for `normal`, `albedo` and `emission` (both linear) and `orm`.
     ///
     /// Parameters
     /// ----------
@@ -167,6 +167,9 @@ impl Plan {
     /// samples : str, default "centers"
     ///     The sample positions: "centers" of pixels, or "corners" of a grid that reaches the sides of the tile, as
     ///     terrain heights use. With corners, the last row and column equal the first ones where the tile repeats.
+    /// supersample : int, default 1
+    ///     The samples per pixel along each axis, from 1 to 16, whose mean is the pixel. Heights are averaged before
+    ///     normals and occlusion are computed, and colors in linear light.
     /// as_xarray : bool, default False
     ///     Whether to return an `xarray.Dataset` with coordinates in units of the plane instead of a dictionary.
     ///
@@ -180,8 +183,9 @@ impl Plan {
     /// DappleError
     ///     If `size` or `window` is out of range, a map is unknown or named twice, or a node fails; the error's
     ///     `node` names it.
-    #[pyo3(signature = (size, maps = None, *, window = None, samples = None, as_xarray = false),
-        text_signature = "(self, size, maps='height', *, window=None, samples='centers', as_xarray=False)")]
+    #[pyo3(signature = (size, maps = None, *, window = None, samples = None, supersample = 1, as_xarray = false),
+        text_signature = "(self, size, maps='height', *, window=None, samples='centers', supersample=1, as_xarray=False)")]
+    #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn bake<'py>(
         &self,
         py: Python<'py>,
@@ -189,12 +193,14 @@ impl Plan {
         maps: Option<&Bound<'py, PyAny>>,
         window: Option<&Bound<'py, PyAny>>,
         samples: Option<&str>,
+        supersample: u32,
         as_xarray: bool,
     ) -> Result<Bound<'py, PyAny>> {
         let samples = grid::samples(samples)?;
         let options = BakeOptions {
             size: size_of(size)?,
             samples,
+            supersample,
             region: window.map(|window| region(size, window)).transpose()?,
             maps: maps.map_or(Ok(vec![MapKind::Height]), self::maps)?,
             ..BakeOptions::default()

@@ -68,7 +68,10 @@ impl FromStr for Setting {
                 path: path.trim().to_owned(),
                 value: value.trim().to_owned(),
             }),
-            _ => Err("it has the form NODE.OPTION=VALUE, as in stones.from=[0,0.3]".to_owned()),
+            _ => Err(
+                "it has the form NODE.OPTION=VALUE or PARAMETER=VALUE, as in stones.from=[0,0.3]"
+                    .to_owned(),
+            ),
         }
     }
 }
@@ -85,6 +88,14 @@ impl From<Setting> for String {
     }
 }
 
+#[expect(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde passes a reference"
+)]
+fn is_one(number: &u32) -> bool {
+    *number == 1
+}
+
 /// The size, the maps, and what replaces settings of the recipe.
 #[derive(clap::Args, Clone, Debug, Serialize)]
 pub(in crate::commands) struct MaterialArgs {
@@ -96,6 +107,14 @@ pub(in crate::commands) struct MaterialArgs {
     #[serde(flatten)]
     pub(in crate::commands) samples: SamplesArgs,
 
+    /// Samples per pixel along each axis, from 1 to 16, whose mean is the pixel: smooth edges of patterns.
+    ///
+    /// Heights are averaged before normals and occlusion are computed, and colors in linear light. The work grows with
+    /// the square.
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16))]
+    #[serde(skip_serializing_if = "is_one")]
+    pub(in crate::commands) supersample: u32,
+
     /// Comma-separated maps, or `all`.
     ///
     /// By default height, normal, ao, albedo, roughness, and those of emission, opacity, specular and clearcoat that the
@@ -103,8 +122,8 @@ pub(in crate::commands) struct MaterialArgs {
     #[arg(long, value_name = "MAPS")]
     pub(super) maps: Option<Maps>,
 
-    /// Replace a value of the recipe: an option of a node, or a value such as `material.relief`; repeatable.
-    #[arg(long, value_name = "NODE.OPTION=VALUE")]
+    /// Replace a value of the recipe: a parameter, an option of a node, or a value such as `material.relief`; repeatable.
+    #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<Setting>,
 
     /// Random seed, or a range such as 1-20 for a variant with each seed [default: the recipe's].
@@ -172,6 +191,12 @@ impl MaterialArgs {
         }
     }
 
+    /// Formats the number of samples per pixel as a command-line argument; `None` if it is 1.
+    pub(in crate::commands) fn supersample_word(&self) -> Option<String> {
+        let per_axis = self.supersample;
+        (per_axis > 1).then(|| format!("--supersample={per_axis}"))
+    }
+
     /// Refuses a range of seeds.
     ///
     /// # Errors
@@ -231,6 +256,7 @@ impl MaterialArgs {
         let options = [
             Some(format!("--size={}", self.size)),
             self.samples.word(),
+            self.supersample_word(),
             self.maps
                 .as_ref()
                 .map(|maps| format!("--maps={}", maps.names().join(","))),
