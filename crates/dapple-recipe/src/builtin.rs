@@ -64,6 +64,7 @@ builtin! {
     "old-brick-wall"
     "painted-planks"
     "pebbles"
+    "perforated-metal"
     "planks"
     "plaster"
     "plywood"
