@@ -287,26 +287,9 @@ impl fmt::Display for RecipeErrorKind {
                 crate::SCHEMA
             ),
             Self::UnknownRecipe { name } => write!(f, "there is no built-in recipe `{name}`"),
-            Self::UnknownParameter { name, option } => {
-                write!(
-                    f,
-                    "there is no parameter `{name}`, which `{option}` refers to"
-                )
-            }
-            Self::UnusedParameter { name } => {
-                write!(
-                    f,
-                    "no option refers to the parameter `{name}`, written as \"${name}\""
-                )
-            }
-            Self::Parameter {
-                name,
-                option,
-                message,
-            } => write!(
-                f,
-                "the parameter `{name}` does not fit `{option}`: {message}"
-            ),
+            Self::UnknownParameter { .. }
+            | Self::UnusedParameter { .. }
+            | Self::Parameter { .. } => of_parameter(self, f),
             Self::UnknownNode { name } => write!(f, "there is no node `{name}`"),
             Self::Name { name } => {
                 write!(
@@ -367,6 +350,33 @@ impl fmt::Display for RecipeErrorKind {
             Self::Raster(error) => error.fmt(f),
             Self::Renderer(error) => error.fmt(f),
         }
+    }
+}
+
+/// Formats an error about a parameter.
+fn of_parameter(kind: &RecipeErrorKind, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    match kind {
+        RecipeErrorKind::UnknownParameter { name, option } => {
+            write!(
+                f,
+                "there is no parameter `{name}`, which `{option}` refers to"
+            )
+        }
+        RecipeErrorKind::UnusedParameter { name } => {
+            write!(
+                f,
+                "no option refers to the parameter `{name}`, written as \"${name}\""
+            )
+        }
+        RecipeErrorKind::Parameter {
+            name,
+            option,
+            message,
+        } => write!(
+            f,
+            "the parameter `{name}` does not fit `{option}`: {message}"
+        ),
+        _ => Ok(()),
     }
 }
 

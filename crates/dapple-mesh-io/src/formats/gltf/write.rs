@@ -5,7 +5,7 @@ use crate::single::{narrow, origin};
 use crate::split::with_vertex_normals;
 use crate::{MeshIoError, MeshIoErrorKind};
 use dapple_color::LinearRgba;
-use dapple_mesh::{AlphaMode, EncodedImage, Mesh, Model};
+use dapple_mesh::{AlphaMode, EncodedImage, Material, Mesh, Model};
 use glam::DVec3;
 use serde_json::{Map, Value, json};
 
@@ -190,6 +190,32 @@ fn material(model: &Model, bin: &mut Bin) -> Value {
     if let Some(texture) = occlusion {
         value["occlusionTexture"] = texture;
     }
+    add_extensions(&mut value, material, texture);
+    if material.double_sided || is_open(&model.mesh) {
+        value["doubleSided"] = true.into();
+    }
+    let is_clear = material.base_color_factor.alpha < 1.0;
+    match material.alpha {
+        AlphaMode::Mask => {
+            value["alphaMode"] = "MASK".into();
+            if material.alpha_cutoff != 0.5 {
+                value["alphaCutoff"] = material.alpha_cutoff.max(0.0).into();
+            }
+        }
+        AlphaMode::Blend => value["alphaMode"] = "BLEND".into(),
+        _ if is_clear => value["alphaMode"] = "BLEND".into(),
+        _ => {}
+    }
+    value
+}
+
+/// Adds emission, specular and clear coat to a material, with the extensions that they need. `texture` adds an image and
+/// returns the reference to its texture.
+fn add_extensions(
+    value: &mut Value,
+    material: &Material,
+    mut texture: impl FnMut(&Option<EncodedImage>) -> Option<Value>,
+) {
     let mut extensions = Map::new();
     if let Some(texture) = texture(&material.emission) {
         value["emissiveTexture"] = texture;
@@ -216,22 +242,6 @@ fn material(model: &Model, bin: &mut Bin) -> Value {
     if !extensions.is_empty() {
         value["extensions"] = extensions.into();
     }
-    if material.double_sided || is_open(&model.mesh) {
-        value["doubleSided"] = true.into();
-    }
-    let is_clear = material.base_color_factor.alpha < 1.0;
-    match material.alpha {
-        AlphaMode::Mask => {
-            value["alphaMode"] = "MASK".into();
-            if material.alpha_cutoff != 0.5 {
-                value["alphaCutoff"] = material.alpha_cutoff.max(0.0).into();
-            }
-        }
-        AlphaMode::Blend => value["alphaMode"] = "BLEND".into(),
-        _ if is_clear => value["alphaMode"] = "BLEND".into(),
-        _ => {}
-    }
-    value
 }
 
 /// Returns whether a mesh has a boundary edge.
