@@ -26,10 +26,10 @@ pub(super) const DOCUMENTED: Documented = Documented {
 };
 
 /// Number of images in a row.
-const COLUMNS: usize = 8;
+const COLUMNS: usize = 9;
 
 /// Width and height of an image, in pixels, low enough for a small file.
-const SIDE: u32 = 72;
+const SIDE: u32 = 60;
 
 /// Number of shades of each channel; with fewer, pale grays get a tint.
 const COLORS: f32 = 16.0;
