@@ -68,7 +68,7 @@ pub enum Op {
         /// The options of the node.
         value: Json,
     },
-    /// Removes a node.
+    /// Removes a node. Inputs that refer to it get their defaults.
     RemoveNode {
         /// The name of the node.
         name: String,
@@ -96,6 +96,11 @@ pub enum Op {
         input: Vec<Part>,
         /// The name of a node, a color or a number.
         from: Json,
+    },
+    /// Removes the link of an input. The input gets its default.
+    Disconnect {
+        /// The path of the input from the root, such as `["nodes", "sum", "add", 0]`.
+        path: Vec<Part>,
     },
     /// Converts a PUPs texture to one whose control points are part of the text. The image stays the same.
     MakePoints {
@@ -139,10 +144,11 @@ fn apply_one(document: &mut DocumentMut, op: &Op) -> Result<(), StudioError> {
         Op::Remove { path } => root.remove(path),
         Op::Insert { path, index, value } => root.insert(path, *index, value),
         Op::AddNode { name, kind, value } => nodes::add(document, name, kind, value),
-        Op::RemoveNode { name } => root.remove(&["nodes".into(), Part::Key(name.clone())]),
+        Op::RemoveNode { name } => nodes::remove(document, name),
         Op::RenameNode { name, to } => nodes::rename(document, name, to),
         Op::DuplicateNode { name, to } => nodes::duplicate(document, name, to),
         Op::Connect { node, input, from } => nodes::connect(document, node, input, from),
+        Op::Disconnect { path } => nodes::disconnect(document, path),
         Op::MakePoints { node, points } => {
             let missing = || StudioError::new("the points of the texture are not known");
             let points = points

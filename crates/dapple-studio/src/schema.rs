@@ -22,6 +22,8 @@ pub(crate) struct Found<'a> {
     pub(crate) role: Role,
     pub(crate) value: Option<&'a Json>,
     pub(crate) is_written: bool,
+    /// Whether the recipe is invalid without the value. Elements of arrays are required.
+    pub(crate) is_required: bool,
 }
 
 /// A kind of node, for a menu.
@@ -50,6 +52,8 @@ pub(crate) fn roles(recipe: &Json) -> Vec<Found<'_>> {
 #[derive(Default)]
 struct Walk<'a> {
     path: Vec<Part>,
+    /// Whether the table or array around the current value requires it.
+    is_required: bool,
     found: Vec<Found<'a>>,
 }
 
@@ -78,7 +82,10 @@ impl<'a> Walk<'a> {
                 let others = schema.get("additionalProperties");
                 for (key, value) in entries {
                     if let Some(inner) = properties.and_then(|all| all.get(key)).or(others) {
-                        self.within(Part::Key(key.clone()), |walk| walk.value(inner, value));
+                        let is_required = requirements(schema).any(|required| required == key);
+                        self.within(Part::Key(key.clone()), is_required, |walk| {
+                            walk.value(inner, value);
+                        });
                     }
                 }
                 // Only a variant whose required keys are present can have missing properties.
@@ -90,7 +97,7 @@ impl<'a> Walk<'a> {
             Json::Array(list) => {
                 if let Some(inner) = schema.get("items") {
                     for (index, value) in list.iter().enumerate() {
-                        self.within(Part::Index(index), |walk| walk.value(inner, value));
+                        self.within(Part::Index(index), true, |walk| walk.value(inner, value));
                     }
                 }
             }
@@ -110,7 +117,7 @@ impl<'a> Walk<'a> {
                 && !entries.contains_key(key)
             {
                 let default = inner.get("default").filter(|value| !value.is_null());
-                self.within(Part::Key(key.clone()), |walk| {
+                self.within(Part::Key(key.clone()), false, |walk| {
                     walk.note(role, default, false);
                 });
             }
@@ -124,12 +131,15 @@ impl<'a> Walk<'a> {
             role,
             value,
             is_written,
+            is_required: self.is_required,
         });
     }
 
-    fn within(&mut self, part: Part, visit: impl FnOnce(&mut Self)) {
+    fn within(&mut self, part: Part, is_required: bool, visit: impl FnOnce(&mut Self)) {
         self.path.push(part);
+        let outer = core::mem::replace(&mut self.is_required, is_required);
         visit(self);
+        self.is_required = outer;
         self.path.pop();
     }
 }

@@ -3,8 +3,8 @@
 use super::{Op, Part, Place, apply_one};
 use crate::StudioError;
 use crate::data::{json_of_table, table_of};
-use crate::schema::{Role, roles};
-use dapple::recipe::KINDS;
+use crate::schema::{Found, Role, roles};
+use dapple::recipe::{KINDS, NEW_NODES};
 use serde_json::{Map, Value as Json, json};
 use toml_edit::{DocumentMut, InlineTable, Item, Key, Table, Value};
 
@@ -44,6 +44,59 @@ fn set_blank_line(node: &mut Table) {
             kind.decor_mut().set_prefix("\n");
         }
     }
+}
+
+/// Removes a node. Inputs that refer to it get their defaults.
+pub(super) fn remove(document: &mut DocumentMut, name: &str) -> Result<(), StudioError> {
+    let path = vec!["nodes".into(), name.into()];
+    apply_one(document, &Op::Remove { path })?;
+    let data = json_of_table(document);
+    let is_link = |found: &Found<'_>| found.value.and_then(Json::as_str) == Some(name);
+    reset(document, &data, is_link)
+}
+
+/// Removes the link of the input at a path.
+pub(super) fn disconnect(document: &mut DocumentMut, path: &[Part]) -> Result<(), StudioError> {
+    let data = json_of_table(document);
+    reset(document, &data, |found| found.path == path)
+}
+
+/// Resets the inputs that satisfy `is_link`: an optional input loses its value, and a required one gets the value that
+/// it has in a new node.
+fn reset(
+    document: &mut DocumentMut,
+    data: &Json,
+    is_link: impl Fn(&Found<'_>) -> bool,
+) -> Result<(), StudioError> {
+    for found in roles(data) {
+        if found.role != Role::Input || !found.is_written || !is_link(&found) {
+            continue;
+        }
+        let path = found.path;
+        let op = if found.is_required {
+            let value = initial(&path).unwrap_or_else(|| json!(0.5));
+            Op::Set { path, value }
+        } else {
+            Op::Remove { path }
+        };
+        apply_one(document, &op)?;
+    }
+    Ok(())
+}
+
+/// Returns the value of an input in a new node of the same kind. Further elements of a list are like its last one.
+fn initial(path: &[Part]) -> Option<Json> {
+    let [_, _, Part::Key(kind), inner @ ..] = path else {
+        return None;
+    };
+    let mut kinds = KINDS.into_iter().zip(NEW_NODES);
+    let (_, (_, start)) = kinds.find(|(name, _)| name == kind)?;
+    let start: Json = serde_json::from_str(start).ok()?;
+    let value = inner.iter().try_fold(&start, |value, part| match part {
+        Part::Key(key) => value.get(key),
+        Part::Index(index) => value.get(index).or_else(|| value.as_array()?.last()),
+    });
+    value.cloned()
 }
 
 /// Renames a node and all inputs that refer to it. Its random stream stays derived from the old name.

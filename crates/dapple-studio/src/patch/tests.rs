@@ -3,6 +3,7 @@
 use super::{Op, Part, apply, spliced};
 use crate::Document;
 use crate::data::json_of_table;
+use crate::schema::{Found, Role, roles};
 use dapple::recipe::{Images, Plan, Recipe};
 use proptest::prelude::*;
 use serde_json::{Value as Json, json};
@@ -207,6 +208,40 @@ fn nodes_come_and_go_with_their_lines() {
     assert!(
         text.contains("\n\n[nodes.again.levels]\ninput = \"cells\"\n\n[material]"),
         "{text}"
+    );
+}
+
+#[test]
+fn recipes_stay_valid_without_any_of_their_nodes() {
+    for name in Recipe::builtin_names() {
+        let text = Recipe::builtin_text(name).unwrap();
+        for node in Recipe::from_toml(text).unwrap().nodes.keys() {
+            let name = node.clone();
+            let new = apply(text, &[Op::RemoveNode { name }]).unwrap();
+            assert!(Recipe::from_toml(&new).is_ok(), "{new}");
+            let data = data(&new);
+            let is_link = |found: &Found<'_>| {
+                found.role == Role::Input && found.value == Some(&json!(node))
+            };
+            assert!(!roles(&data).iter().any(is_link), "{new}");
+        }
+    }
+}
+
+#[test]
+fn a_removed_link_leaves_the_default() {
+    let disconnect = |at: &str| apply(TEXT, &[Op::Disconnect { path: path(at) }]).unwrap();
+    assert_eq!(
+        disconnect("nodes.sum.add.0"),
+        with_line("    \"cells\", # first", "    0.0, # first")
+    );
+    assert_eq!(
+        disconnect("nodes.tint.ramp.input"),
+        with_line("input = \"cells\", colors", "input = 0.5, colors")
+    );
+    assert_eq!(
+        disconnect("material.height"),
+        with_line("height = \"sum\" # the height\n", "")
     );
 }
 
