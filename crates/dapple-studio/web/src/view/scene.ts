@@ -11,6 +11,7 @@ import {
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import type { Picture } from '../core/pictures';
+import { weld } from './weld';
 
 /** How a material is applied to a shape. */
 export interface Lay {
@@ -54,7 +55,9 @@ export class LitScene {
     this.#material.onBeforeCompile = (shader) => {
       shader.uniforms['displacementLevel'] = this.#level;
       shader.vertexShader = shader.vertexShader.replace('#include <displacementmap_vertex>', DISPLACEMENT).replace('#include <displacementmap_pars_vertex>', `#include <displacementmap_pars_vertex>
-uniform float displacementLevel;`);
+uniform float displacementLevel;
+attribute vec3 weldedNormal;
+attribute vec2 weldedUv;`);
     };
     this.#scene.add(this.#mesh, this.#light, new AmbientLight(0xffffff, 0.05));
     this.#controls = new OrbitControls(this.#camera, canvas);
@@ -110,7 +113,9 @@ uniform float displacementLevel;`);
       new OBJLoader().parse(await file.text()).traverse(collect);
     } else {
       const { GLTFLoader } = await import('three/addons/loaders/GLTFLoader.js');
-      (await new GLTFLoader().parseAsync(await file.arrayBuffer(), '')).scene.traverse(collect);
+      // Materials of the file are not shown. Loading their textures would violate the content security policy.
+      const plain = { name: 'plain', loadMaterial: () => Promise.resolve(this.#material) };
+      (await new GLTFLoader().register(() => plain).parseAsync(await file.arrayBuffer(), '')).scene.traverse(collect);
     }
     const largest = found.toSorted((a, b) => count(b) - count(a))[0];
     if (!largest) throw new Error('there is no mesh in the file');
@@ -168,6 +173,7 @@ uniform float displacementLevel;`);
     if (lay.shape === 'model' && this.#model) this.#mesh.geometry = this.#model.clone();
     else if (lay.shape === 'plane') this.#mesh.geometry = new PlaneGeometry(2, 2 * lay.aspect, columns, rows);
     else this.#mesh.geometry = new SphereGeometry(1, columns, rows);
+    weld(this.#mesh.geometry);
     this.#mesh.rotation.x = lay.shape === 'plane' ? -0.5 : 0;
   }
 
@@ -193,8 +199,9 @@ function segments({ shape, displaced }: Lay): [number, number] {
  */
 const DISPLACEMENT = `
 #ifdef USE_DISPLACEMENTMAP
-  float height = textureLod(displacementMap, vDisplacementMapUv, displacementLevel).x;
-  transformed += normalize(objectNormal) * (height * displacementScale + displacementBias);
+  vec2 place = (displacementMapTransform * vec3(weldedUv, 1.0)).xy;
+  float height = textureLod(displacementMap, place, displacementLevel).x;
+  transformed += weldedNormal * (height * displacementScale + displacementBias);
 #endif
 `;
 
@@ -254,6 +261,9 @@ function fitted(geometry: BufferGeometry): BufferGeometry {
   geometry.computeBoundingSphere();
   const radius = geometry.boundingSphere?.radius ?? 1;
   geometry.scale(1.15 / radius, 1.15 / radius, 1.15 / radius);
-  if (!geometry.getAttribute('normal')) geometry.computeVertexNormals();
+  const isSmooth = !geometry.getAttribute('normal');
+  if (isSmooth) geometry.computeVertexNormals();
+  weld(geometry);
+  if (isSmooth) geometry.setAttribute('normal', geometry.getAttribute('weldedNormal'));
   return geometry;
 }
