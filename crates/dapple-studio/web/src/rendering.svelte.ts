@@ -67,13 +67,18 @@ export class Rendering {
     this.#seen ||= isOfView;
     this.#full = message.rev ?? rev;
     this.#generation = message.generation;
-    if (!this.#marking || this.pictures.names().length === 0) return;
-    this.markNow();
-    this.#marking = false;
+    this.#marks();
   }
 
-  /** Stores the current images, for comparison with later ones. */
+  /** Stores the current images for comparison with later ones, as soon as they are not drafts. */
   markNow(): void {
+    this.#marking = true;
+    this.#marks();
+  }
+
+  #marks(): void {
+    if (!this.#marking || !this.#seen || !this.#areThere()) return;
+    this.#marking = false;
     this.mark = this.pictures.snapshot();
   }
 
@@ -82,6 +87,7 @@ export class Rendering {
     const alone = frame.map === MAP.preview || frame.map >= MAP.thumbnail;
     const size = this.#began.get(frame.generation)?.size ?? this.#view?.size ?? [frame.w, frame.h];
     this.pictures.add(name, frame, alone ? [frame.w * frame.scale, frame.h * frame.scale] : size);
+    this.#marks();
   }
 
   /** Whether all images of the last report have arrived. An image delayed by flow control arrives after the report. */
