@@ -6,7 +6,7 @@ import type { Frame, Graph, Hello, Json, Op, Path, Points, Problem, Reply, Reque
 import { MAP } from './core/protocol';
 import { at, entry, Schemas, type Range } from './core/schema';
 import type { Transport } from './core/transport';
-import { recall, remember, type Unsaved } from './core/unsaved';
+import { recall, recallOpen, remember, rememberOpen, type Opening, type Unsaved } from './core/unsaved';
 import { Looking, MODES } from './looking.svelte';
 import { Rendering } from './rendering.svelte';
 
@@ -15,6 +15,9 @@ export type Sheet = 'none' | 'keys' | 'export' | 'save' | 'copy' | 'add' | 'star
 
 /** Display time of a status message, in milliseconds. */
 const NOTED = 6000;
+
+/** Maximum number of values that are tried after a slider was refused. */
+const TRIALS = 10;
 
 /** The whole state of the page. */
 export class Studio {
@@ -44,7 +47,7 @@ export class Studio {
   schemas = $derived(this.hello ? new Schemas(this.hello.schema) : null);
   readonly document: StudioDocument;
   /** The recipe to open once the user agrees to discard changes. */
-  leaving: { builtin?: string; file?: string; text?: string } | null = null;
+  leaving: Opening | null = null;
   /** The file as changed on disk by another program. */
   disk = $state.raw<{ text: string; hash: string; file: string } | null>(null);
   /** Counts connections, so that views are requested again after each. */
@@ -59,8 +62,20 @@ export class Studio {
   readonly #draft = new Draft();
   /** Collects the edits of a widget that are tried but not applied. */
   #tried: Op[] | null = null;
+  /** Time of the last user action that changes the images, until they are painted. */
+  #since = performance.now();
+  /** Time from the last user action to the full images on the screen, in milliseconds. */
+  painted = $state<number | null>(null);
+  /** The number of edits that wait for the connection. */
+  pending = $state(0);
+  /** Called when the studio has accepted or refused the newest text, or with null when another edit was made. */
+  #judged: ((accepted: boolean | null) => void) | null = null;
+  #verdict = { rev: -1, accepted: true };
+  #trying = false;
   #listeners = new Set<(message: Reply) => void>();
   #kept: Unsaved | null = null;
+  /** The recipe that was open before the page was reloaded, if it is not the one that the studio opens. */
+  #reopened: Opening | null = null;
   /** Whether the connection was restored: the page keeps its text instead of the text of the new session. */
   #resuming = false;
 
@@ -76,6 +91,7 @@ export class Studio {
     transport.onpicture = (picture) => this.#picture(picture);
     transport.onstate = (state) => {
       this.connection = state;
+      this.pending = this.document.pending;
       if (state === 'open') this.again += 1;
     };
   }
@@ -105,6 +121,7 @@ export class Studio {
   send(message: Request): void {
     if (message.type === 'view') this.rendering.asked(message);
     if (message.type === 'view' || message.type === 'doc' || message.type === 'patch') this.settled = false;
+    if (message.type === 'view' || message.type === 'doc') this.#since = performance.now();
     this.transport.send(message);
   }
 
@@ -149,12 +166,52 @@ export class Studio {
   patch(ops: Op[], gesture: number | null = null, drag = false): void {
     if (this.#tried) return void this.#tried.push(...ops);
     if (this.reading) return;
+    if (!this.#trying) this.#judged?.(null);
     this.looking.dragging = drag;
+    this.#since = performance.now();
     this.document.patch(ops, gesture, drag);
+    this.pending = this.document.pending;
   }
 
   set(path: Path, value: Json, gesture: number | null = null, drag = false): void {
     this.patch([{ op: 'set', path, value }], gesture, drag);
+  }
+
+  /**
+   * Called when a slider has set a number to `wanted`. If the recipe is refused then, sets the nearest accepted number
+   * between `good` and `wanted`. Another edit ends the search.
+   */
+  async settle(name: string, good: number, wanted: number, integer: boolean, set: (value: number) => void): Promise<void> {
+    const accepts = (value: number): Promise<boolean | null> => {
+      this.#judged?.(null);
+      this.#trying = true;
+      set(value);
+      this.#trying = false;
+      return new Promise((done) => {
+        this.#judged = done;
+        this.#judge();
+      });
+    };
+    let bad = wanted;
+    let accepted = await accepts(wanted);
+    if (accepted !== false) return;
+    const why = this.problems[0]?.message ?? '';
+    for (let i = 0; i < TRIALS; i += 1) {
+      const middle = integer ? Math.trunc((good + bad) / 2) : Number(((good + bad) / 2).toPrecision(2));
+      if (middle === good || middle === bad) break;
+      accepted = await accepts(middle);
+      if (accepted === null) return;
+      if (accepted) good = middle;
+      else bad = middle;
+    }
+    if ((await accepts(good)) === true) this.say(`${name} stays at ${good}: ${why}`);
+  }
+
+  /** Reports whether the newest text was accepted, once that is known. */
+  #judge(): void {
+    if (this.document.pending > 0 || this.#verdict.rev < this.document.made) return;
+    this.#judged?.(this.#verdict.accepted);
+    this.#judged = null;
   }
 
   /** Returns the edits that `change` would make, without applying them. */
@@ -200,14 +257,15 @@ export class Studio {
   }
 
   /** Opens a recipe and discards changes. */
-  open(what: { builtin?: string; file?: string; text?: string }): void {
+  open(what: Opening): void {
     this.sheet = 'none';
     this.selected = null;
+    this.#reopened = null;
     this.send({ type: 'open', ...what });
   }
 
   /** Asks before discarding changes, then opens a recipe. */
-  leave(what: { builtin?: string; file?: string; text?: string }): void {
+  leave(what: Opening): void {
     this.leaving = what;
     this.sheet = 'leave';
   }
@@ -253,12 +311,19 @@ export class Studio {
     if (message.type === 'document' && this.#resuming) return this.#resume();
     this.document.receive(message);
     this.#take(message);
+    this.pending = this.document.pending;
     this.#settle();
+    this.#judge();
     for (const then of this.#listeners) then(message);
   }
 
   #settle(): void {
-    this.settled = this.#editor !== null && !this.document.busy && this.rendering.shows(this.document.made);
+    const before = this.settled;
+    this.settled = this.#editor !== null && this.document.pending === 0 && this.rendering.shows(this.document.made);
+    if (!this.settled || before) return;
+    // The images are painted in the next frame; the task after it runs when the frame is done.
+    const since = this.#since;
+    requestAnimationFrame(() => setTimeout(() => (this.painted = performance.now() - since)));
   }
 
   #take(message: Reply): void {
@@ -288,6 +353,7 @@ export class Studio {
         return this.rendering.began(message);
       case 'rendered':
         this.rendering.rendered(message, this.document.rev);
+        if (message.rev !== undefined) this.#verdict = { rev: message.rev, accepted: true };
         if (this.looking.playing) this.looking.took(message.ms);
         if (!message.draft && !this.looking.playing && !this.looking.dragging) this.said = `Rendered in ${Math.round(message.ms)} ms`;
         return;
@@ -300,6 +366,7 @@ export class Studio {
       case 'saved':
         Object.assign(this.document, { file: message.file, hash: message.hash, kept: this.document.text });
         this.say(`Saved ${message.file}`);
+        this.#listed(message.file);
         return this.#named();
       case 'disk':
         return this.#onDisk(message);
@@ -321,8 +388,20 @@ export class Studio {
     this.#editor?.lock(this.reading);
     this.#resuming = again && this.document.text !== '';
     if (!again && message.open === null) this.sheet = 'start';
+    if (!again && !this.reading && !this.alone) this.#reopened = recallOpen(message.open);
     if (!again && !this.reading) this.#kept = recall();
+    if (this.#reopened) {
+      this.sheet = 'none';
+      this.send({ type: 'open', ...this.#reopened });
+    }
     if (this.#resuming && message.open === null) this.#resume();
+    this.send({ type: 'gallery', size: 128 });
+  }
+
+  /** Adds a file to the list of recipes, and requests its thumbnail. */
+  #listed(file: string): void {
+    if (!this.hello || this.hello.files.includes(file)) return;
+    this.hello = { ...this.hello, files: [...this.hello.files, file].sort() };
     this.send({ type: 'gallery', size: 128 });
   }
 
@@ -358,7 +437,10 @@ export class Studio {
   /** Restores unsaved changes after a reload. Undo reverts them. */
   #restore(): void {
     const kept = this.#kept;
-    this.#kept = null;
+    const opened = this.#reopened;
+    // The recipe of the command line comes first. Wait for the one that was open before the reload.
+    if (opened && (opened.file ?? opened.builtin) !== (this.document.file ?? this.document.name)) return;
+    this.#reopened = this.#kept = null;
     if (!kept || kept.name !== this.document.name || kept.file !== this.document.file) return;
     this.document.replace(kept.text);
     this.say('Changes from before the reload are back');
@@ -367,11 +449,15 @@ export class Studio {
   #named(): void {
     this.name = this.document.name;
     this.file = this.document.file;
+    const what = this.file !== null ? { file: this.file } : { builtin: this.name };
+    const known = this.file !== null || this.hello?.builtins.some(({ name }) => name === this.name);
+    if (this.hello && !this.#reopened) rememberOpen(this.hello.open, known ? what : null);
     this.textChanged();
   }
 
   #problems(rev: number, items: Problem[]): void {
     if (rev < this.document.made) return;
+    this.#verdict = { rev, accepted: items.length === 0 };
     const before = this.problems.length;
     this.problems = items;
     this.#editor?.problems(items);

@@ -87,9 +87,9 @@ export class StudioDocument {
     return this.text !== this.kept;
   }
 
-  /** Whether patches are in flight or waiting. */
-  get busy(): boolean {
-    return this.#flight !== null || this.#waiting.length > 0;
+  /** The number of patches that are not part of the text yet. */
+  get pending(): number {
+    return this.#waiting.length + (this.#flight ? 1 : 0);
   }
 
   /** Called by the editor when its text changed by typing, undo or redo. */
@@ -144,9 +144,8 @@ export class StudioDocument {
 
   /** Resumes after the connection was lost and restored. */
   resume(): void {
-    this.#flight = null;
-    this.sendText();
-    this.#next();
+    this.rev += 1;
+    this.#resend();
   }
 
   #edited(rev: number, changes: Change[]): void {
@@ -160,9 +159,13 @@ export class StudioDocument {
 
   /** Resends the text and then the patch, because the patch was based on another revision. */
   #again(rev: number): void {
+    this.rev = Math.max(this.rev, rev) + 1;
+    this.#resend();
+  }
+
+  #resend(): void {
     const flight = this.#flight;
     this.#flight = null;
-    this.rev = Math.max(this.rev, rev) + 1;
     this.sendText();
     if (flight) this.#waiting.unshift(flight);
     this.#next();

@@ -93,7 +93,7 @@ export function shown(value: number): string {
 }
 
 /**
- * Frequencies at which a wrapping tile contains a whole number of cells: multiples of `unit` / `side`, at least
+ * Numbers at which a wrapping tile contains a whole number of cells: multiples of `unit` / `side`, at least
  * `least` / `side`.
  */
 export interface Whole {
@@ -102,7 +102,7 @@ export interface Whole {
   least: number;
 }
 
-/** Rounds a frequency to the nearest one with a whole number of cells. */
+/** Rounds a number to the nearest one with a whole number of cells. */
 export function snapped(value: number, whole: Whole | null): number {
   if (!whole) return value;
   return Math.max(whole.least, Math.round((value * whole.side) / whole.unit) * whole.unit) / whole.side;
@@ -116,4 +116,19 @@ export function wholeCells(sides: number[], wavelet: boolean): Whole | null {
   const side = Math.min(...sides);
   if (sides.length === 0 || sides.some((one) => Math.abs(one / side - Math.round(one / side)) > 1e-9)) return null;
   return wavelet ? { unit: 2, side, least: 4 } : { unit: 1, side, least: 1 };
+}
+
+/** Maximum number of cells of a node along the shortest side that fits all nodes. */
+const MOST_CELLS = 240;
+
+/** The sides of a wrapping tile that fit all these frequencies. Wavelets need an even number of cells, at least 4. */
+export function wholeSide(nodes: { frequency: number; wavelet: boolean }[]): Whole | null {
+  const pairs = nodes.map(({ frequency, wavelet }) => (wavelet ? frequency / 2 : frequency));
+  const [first] = pairs;
+  if (first === undefined) return null;
+  const fits = (side: number) => pairs.every((one) => Math.abs(one * side - Math.round(one * side)) < 1e-9);
+  const shortest = Array.from({ length: MOST_CELLS }, (_, index) => (index + 1) / first).find(fits);
+  if (shortest === undefined) return null;
+  const twice = nodes.some(({ wavelet }, index) => wavelet && Math.round((pairs[index] ?? 0) * shortest) < 2);
+  return { unit: 1, side: 1 / shortest, least: twice ? 2 : 1 };
 }

@@ -19,6 +19,9 @@ export interface Transport {
   close(): void;
 }
 
+/** Messages about the state of the page, which it sends again after reconnecting. */
+const STATE = ['doc', 'patch', 'view', 'ack'];
+
 /** Delay in milliseconds before reconnecting. */
 const AGAIN = 1000;
 
@@ -61,7 +64,7 @@ export class Socket implements Transport {
 
   send(message: Request): void {
     if (this.#socket?.readyState === WebSocket.OPEN) this.#socket.send(JSON.stringify(message));
-    else this.#waiting.push(message);
+    else if (!this.#opened || !STATE.includes(message.type)) this.#waiting.push(message);
   }
 
   exportUrl(id: string, name: string): string {
@@ -106,7 +109,6 @@ export class Socket implements Transport {
     };
     socket.onclose = async () => {
       if (this.#closed || this.#socket !== socket) return;
-      this.#waiting = [];
       const state = !opened && (await answers()) ? 'refused' : 'closed';
       if (this.#closed || this.#socket !== socket) return;
       tell(() => this.onstate(state));

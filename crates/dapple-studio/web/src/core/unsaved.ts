@@ -27,3 +27,24 @@ export function recall(): Unsaved | null {
   const kept = sessionStorage.getItem(KEY);
   return kept === null ? null : (JSON.parse(kept) as Unsaved);
 }
+
+/** A recipe to open: exactly one of these. */
+export interface Opening {
+  builtin?: string;
+  file?: string;
+  text?: string;
+}
+
+const OPEN = 'dapple-open';
+
+/** Stores which recipe is open in this tab, and which one the command line of the studio names. */
+export function rememberOpen(named: string | null, what: Opening | null): void {
+  if (what && (what.file ?? what.builtin) !== named) sessionStorage.setItem(OPEN, JSON.stringify({ named, what }));
+  else sessionStorage.removeItem(OPEN);
+}
+
+/** Returns the recipe that was open before the reload, unless the studio was started with another one since. */
+export function recallOpen(named: string | null): Opening | null {
+  const kept = JSON.parse(sessionStorage.getItem(OPEN) ?? 'null') as { named: string | null; what: Opening } | null;
+  return kept?.named === named ? kept.what : null;
+}

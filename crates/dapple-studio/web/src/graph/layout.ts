@@ -21,10 +21,10 @@ export function layout(graph: Graph): Map<string, { x: number; y: number }> {
   for (const node of graph.nodes) drawing.setNode(node.name, { width: NODE.width, height: heightOf(node.inputs.length) });
   const maps = Object.entries(graph.material);
   drawing.setNode(MATERIAL, { width: NODE.width, height: heightOf(maps.length) });
-  for (const node of graph.nodes) {
-    for (const input of node.inputs) if (input.node !== null) drawing.setEdge(input.node, node.name);
-  }
-  for (const [, input] of maps) if (input.node !== null) drawing.setEdge(input.node, MATERIAL);
+  // An invalid recipe may name nodes that do not exist.
+  const link = (from: string | null, to: string) => from !== null && drawing.hasNode(from) && drawing.setEdge(from, to);
+  for (const node of graph.nodes) for (const input of node.inputs) link(input.node, node.name);
+  for (const [, input] of maps) link(input.node, MATERIAL);
   dagre.layout(drawing);
   return new Map(
     drawing.nodes().map((name) => {
