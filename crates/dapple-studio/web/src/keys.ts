@@ -34,8 +34,11 @@ export const KEYS: { title: string; keys: [string, string][] }[] = [
     title: 'Nodes',
     keys: [
       ['A', 'Add a node'],
-      ['Ctrl D', 'Duplicate the selected node'],
-      ['Delete', 'Remove it'],
+      ['Ctrl D', 'Duplicate the selected nodes'],
+      ['Ctrl C, Ctrl V', 'Copy and paste them, also into another recipe'],
+      ['Delete', 'Remove the selected nodes or links'],
+      ['← → ↑ ↓', 'Move the node that has the focus'],
+      ['Shift, drag', 'Select all nodes in a rectangle; Ctrl adds one'],
       ['[ ]', 'Select the node before or after'],
     ],
   },
@@ -50,7 +53,20 @@ export const KEYS: { title: string; keys: [string, string][] }[] = [
 ];
 
 /** The sections of the page that F6 cycles through. */
-const PARTS = '.top button, .viewer [role=tab][aria-selected=true], .graph .add, .parameters input, .text .editor';
+const PARTS = '.top button, .viewer [role=tab][aria-selected=true], .graph .add button, .parameters input, .text .editor';
+
+/** Copies the selected nodes, unless text is selected or typed. */
+export function copying(studio: Studio, event: ClipboardEvent): void {
+  const text = busy(event.target) || !(getSelection()?.isCollapsed ?? true) ? null : studio.copied();
+  if (text === null) return;
+  event.clipboardData?.setData('text/plain', text);
+  event.preventDefault();
+}
+
+/** Pastes nodes. */
+export function pasting(studio: Studio, event: ClipboardEvent): void {
+  if (!busy(event.target) && studio.paste(event.clipboardData?.getData('text/plain') ?? '')) event.preventDefault();
+}
 
 /** Whether the focused element uses keys itself, for typing or selecting. */
 function busy(target: EventTarget | null): boolean {
@@ -113,9 +129,7 @@ export function pressed(studio: Studio, event: KeyboardEvent): boolean {
       studio.step(event.key === ']' ? 1 : -1);
       return true;
     case 'Delete':
-      if (studio.selected === null || event.defaultPrevented) return false;
-      studio.patch([{ op: 'remove_node', name: studio.selected }]);
-      return true;
+      return !event.defaultPrevented && !studio.reading && studio.remove();
     case 'Escape':
       studio.select(null);
       return true;

@@ -7,11 +7,20 @@ import { MAP } from './core/protocol';
 import { at, entry, Schemas, type Range } from './core/schema';
 import type { Transport } from './core/transport';
 import { recall, recallOpen, remember, rememberOpen, type Opening, type Unsaved } from './core/unsaved';
+import { placed, withPlaces } from './graph/placed';
+import { setIn } from './fields/edit';
 import { Looking, MODES } from './looking.svelte';
 import { Rendering } from './rendering.svelte';
 
 /** A dialog over the page. */
 export type Sheet = 'none' | 'keys' | 'export' | 'save' | 'copy' | 'add' | 'start' | 'leave' | 'disk';
+
+/** The end of a link: a node, its input if the link leads to it, and a position in the graph. */
+export interface Dropped {
+  node: string;
+  input: Path | null;
+  at: { x: number; y: number };
+}
 
 /** Display time of a status message, in milliseconds. */
 const NOTED = 6000;
@@ -31,6 +40,12 @@ export class Studio {
   seams = $state.raw<Seam[] | null>(null);
   points = $state.raw<Points | null>(null);
   selected = $state<string | null>(null);
+  /** The nodes and the links that are selected in the graph. */
+  chosen = $state.raw<{ nodes: string[]; links: Path[] }>({ nodes: [], links: [] });
+  /** The end of a link that was dropped on empty space, with the place, for the node to add there. */
+  dropped = $state.raw<Dropped | null>(null);
+  /** Counts recipes that were opened. */
+  opened = $state(0);
   sheet = $state<Sheet>('none');
   /** The path of the parameter whose help is open. */
   helped = $state('');
@@ -283,9 +298,70 @@ export class Studio {
     this.say('Marked: hold B to compare with what is seen now');
   }
 
-  /** Adds a copy of the selected node. */
+  /** Removes the selected links or nodes. Returns whether there were any. */
+  remove(): boolean {
+    const { nodes, links } = this.chosen;
+    const names = nodes.length > 0 || links.length > 0 ? nodes : this.selected === null ? [] : [this.selected];
+    const ops: Op[] = [...links.map((path): Op => ({ op: 'disconnect', path })), ...names.map((name): Op => ({ op: 'remove_node', name }))];
+    if (ops.length > 0) this.patch(ops);
+    return ops.length > 0;
+  }
+
+  /** Adds copies of the selected nodes. Links among them are copied, too. */
   duplicate(): void {
-    if (this.selected !== null) this.#name('duplicate_node', this.selected, this.freeName(this.selected));
+    const many = this.chosen.nodes.length > 1;
+    if (!many && this.selected !== null) return this.#name('duplicate_node', this.selected, this.freeName(this.selected));
+    const to = this.#freeNames(this.chosen.nodes);
+    const copies = [...to].map(([name, copy]): Op => ({ op: 'duplicate_node', name, to: copy }));
+    const links = (this.graph?.nodes ?? []).filter(({ name }) => to.has(name)).flatMap(({ name, inputs }) => inputs.flatMap(({ path, node }): Op[] => {
+      const copy = to.get(node ?? '');
+      return copy === undefined ? [] : [{ op: 'set', path: ['nodes', to.get(name) ?? '', ...path], value: copy }];
+    }));
+    this.patch([...copies, ...links]);
+  }
+
+  /** Returns the selected nodes as text for the clipboard. */
+  copied(): string | null {
+    const names = this.chosen.nodes.length > 0 ? this.chosen.nodes : this.selected === null ? [] : [this.selected];
+    const nodes = (this.graph?.nodes ?? []).filter(({ name }) => names.includes(name));
+    const copies = nodes.map(({ name, kind, inputs }) => ({ name, kind, value: this.value(['nodes', name, kind]), links: inputs.filter(({ node }) => node !== null).map(({ path, node }) => [path.slice(1), node]) }));
+    return copies.length > 0 ? JSON.stringify({ dapple_nodes: copies }) : null;
+  }
+
+  /** Adds nodes from the text of the clipboard. Returns whether there were any. */
+  paste(text: string): boolean {
+    if (!text.startsWith('{"dapple_nodes":') || this.reading) return false;
+    const { dapple_nodes: nodes } = JSON.parse(text) as { dapple_nodes: { name: string; kind: string; value: Json; links: [Path, string][] }[] };
+    const to = this.#freeNames(nodes.map(({ name }) => name));
+    // A link to a node that was not copied stays if this recipe has a node of that name.
+    const target = (name: string): Json => to.get(name) ?? (this.graph?.order.includes(name) ? name : 0.5);
+    const ops = nodes.map(({ name, kind, value, links }): Op => {
+      const linked = links.reduce((inner, [path, node]) => setIn(inner, path, target(node)), value);
+      return { op: 'add_node', name: to.get(name) ?? name, kind, value: linked };
+    });
+    this.wanted = to.values().next().value ?? null;
+    this.patch(ops);
+    return true;
+  }
+
+  /** Positions of nodes that were moved by hand. */
+  get places(): ReturnType<typeof placed> {
+    return placed(this.document.text);
+  }
+
+  /** Keeps positions of nodes in the text, or none for the automatic layout. */
+  place(spots: ReturnType<typeof placed>, gesture: number | null = null): void {
+    if (!this.reading) this.document.replace(withPlaces(this.document.text, spots), gesture);
+  }
+
+  #freeNames(names: string[]): Map<string, string> {
+    const taken = new Set(this.graph?.order ?? []);
+    const free = (name: string) => {
+      const found = this.freeName(name, taken);
+      taken.add(found);
+      return found;
+    };
+    return new Map(names.map((name) => [name, free(name)]));
   }
 
   /** Renames the selected node. */
@@ -295,14 +371,17 @@ export class Studio {
 
   #name(op: 'duplicate_node' | 'rename_node', name: string, to: string): void {
     this.wanted = to;
-    this.patch([{ op, name, to }]);
+    const gesture = newGesture();
+    const places = this.places;
+    const place = places.get(name);
+    if (place && op === 'rename_node') this.place(new Map([...places].map(([key, at]) => [key === name ? to : key, at])), gesture);
+    this.patch([{ op, name, to }], gesture);
     const pups = this.value(['nodes', name, 'pups']);
     if (pups !== undefined && entry(pups, 'points') === undefined) this.say(`A pups texture draws by its name: ${to} looks different`);
   }
 
   /** Returns an unused name for a node. */
-  freeName(wanted: string): string {
-    const taken = new Set(this.graph?.order ?? []);
+  freeName(wanted: string, taken = new Set(this.graph?.order ?? [])): string {
     const names = [wanted, ...Array.from({ length: 999 }, (_, i) => `${wanted}_${i + 2}`)];
     return names.find((name) => !taken.has(name)) ?? `${wanted}_${Date.now()}`;
   }
@@ -331,6 +410,7 @@ export class Studio {
       case 'hello':
         return this.#hello(message);
       case 'document':
+        this.opened += 1;
         this.looking.window = null;
         this.rendering.reset();
         this.#named();

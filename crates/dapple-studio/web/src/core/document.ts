@@ -136,9 +136,15 @@ export class StudioDocument {
     }
   }
 
-  /** Replaces the whole text in a single undo step. */
-  replace(text: string): void {
-    this.host.apply([{ from: 0, to: this.text.length, insert: text }], null);
+  /** Replaces the text in a single undo step, or in that of a gesture. Equal ends of the texts stay untouched. */
+  replace(text: string, gesture: number | null = null): void {
+    const old = this.text;
+    if (text === old) return;
+    let from = 0;
+    while (from < old.length && old[from] === text[from]) from += 1;
+    let tail = 0;
+    while (tail < Math.min(old.length, text.length) - from && old.at(-1 - tail) === text.at(-1 - tail)) tail += 1;
+    this.host.apply([{ from, to: old.length - tail, insert: text.slice(from, text.length - tail) }], gesture);
     this.typed();
   }
 

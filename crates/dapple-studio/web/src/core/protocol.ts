@@ -20,6 +20,7 @@ export type Op =
   | { op: 'rename_node'; name: string; to: string }
   | { op: 'duplicate_node'; name: string; to: string }
   | { op: 'connect'; node: string; input: Path; from: Json }
+  | { op: 'disconnect'; path: Path }
   | { op: 'make_points'; node: string };
 
 /** A rectangle of the tile in pixels: its first column and row, and its size. */

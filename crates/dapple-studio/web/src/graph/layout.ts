@@ -3,7 +3,7 @@ import dagre from '@dagrejs/dagre';
 import type { Graph } from '../core/protocol';
 
 /** The size of a node in the graph, and the height of an input row. */
-export const NODE = { width: 150, height: 50, row: 11 };
+export const NODE = { width: 176, height: 54, row: 11 };
 
 /** The height of a node with this number of inputs. */
 export function heightOf(inputs: number): number {
@@ -13,8 +13,11 @@ export function heightOf(inputs: number): number {
 /** The name of the node that represents the material. */
 export const MATERIAL = '#material';
 
+/** Positions of nodes by name. */
+export type Spots = Map<string, { x: number; y: number }>;
+
 /** Positions of the nodes, laid out from left to right. Equal graphs have equal layouts. */
-export function layout(graph: Graph): Map<string, { x: number; y: number }> {
+export function layout(graph: Graph): Spots {
   const drawing = new dagre.graphlib.Graph();
   drawing.setGraph({ rankdir: 'LR', nodesep: 12, ranksep: 40, marginx: 8, marginy: 8 });
   drawing.setDefaultEdgeLabel(() => ({}));
@@ -32,4 +35,17 @@ export function layout(graph: Graph): Map<string, { x: number; y: number }> {
       return [name, { x: x - width / 2, y: y - height / 2 }];
     }),
   );
+}
+
+/** Adds nodes without a position to a layout made by hand: to the right of their inputs, and below all others. */
+export function fill(graph: Graph, hand: Spots, dropped: { x: number; y: number } | null): Spots {
+  const spots = new Map(hand);
+  const names = [...graph.order, MATERIAL].filter((name) => !hand.has(name));
+  for (const name of names) {
+    const inputs = graph.nodes.find((node) => node.name === name)?.inputs ?? Object.values(graph.material);
+    const left = inputs.flatMap(({ node }) => spots.get(node ?? '')?.x ?? []);
+    const bottom = Math.max(...[...spots.values()].map(({ y }) => y));
+    spots.set(name, dropped ?? { x: left.length > 0 ? Math.max(...left) + NODE.width + 40 : 0, y: bottom + NODE.height + 24 });
+  }
+  return spots;
 }
