@@ -216,7 +216,7 @@ pub(crate) use outputs;
 
 /// Defines the enum of all kinds, their names in recipes, and access to a node as a [`NodeKind`].
 macro_rules! nodes {
-    ($($(#[$doc:meta])* $name:literal $variant:ident($options:ident) in $group:literal as $start:literal,)*) => {
+    ($($(#[$doc:meta])* $name:literal $variant:ident($options:ident) in $group:literal as $start:literal $(also $tags:literal)?,)*) => {
         /// Node of a recipe: a table with a single entry, whose key is the kind of node.
         ///
         /// Most nodes compute a number at every position. `ramp`, `color`, `hsl`, `image` and `synth` with a color image,
@@ -237,6 +237,9 @@ macro_rules! nodes {
         /// For each of [`KINDS`], its group, such as `shape`, and the initial options of a new node, as JSON.
         pub const NEW_NODES: [(&str, &str); KINDS.len()] = [$(($group, $start)),*];
 
+        /// For each of [`KINDS`], words of other programs for it, separated by commas. Empty if there are none.
+        pub const NODE_TAGS: [&str; KINDS.len()] = [$(concat!($($tags)?)),*];
+
         impl Node {
             pub(crate) fn kind(&self) -> &dyn NodeKind {
                 match self {
@@ -256,131 +259,192 @@ macro_rules! nodes {
 
 nodes! {
     /// Worley's cellular basis: distances to scattered feature points.
-    "worley" Worley(WorleyNode) in "cells and noise" as "{}",
+    "worley" Worley(WorleyNode) in "cells and noise" as "{}"
+        also "voronoi, cellular, cells, crystal",
     /// Partition-of-unity texture, such as cells, noise or an animal coat.
-    "pups" Pups(PupsNode) in "cells and noise" as r#"{"cells":{}}"#,
+    "pups" Pups(PupsNode) in "cells and noise" as r#"{"cells":{}}"#
+        also "grunge, spots, animal, giraffe, cow, cells",
     /// Band-limited wavelet noise.
-    "wavelet" Wavelet(WaveletNode) in "cells and noise" as "{}",
+    "wavelet" Wavelet(WaveletNode) in "cells and noise" as "{}"
+        also "fbm, band-limited noise",
     /// Fractal noise from 0 to 1: octaves of PUPs, gradient noise or wavelet noise.
-    "noise" Noise(FractalNode) in "cells and noise" as "{}",
+    "noise" Noise(FractalNode) in "cells and noise" as "{}"
+        also "perlin, simplex, fbm, clouds, grunge, turbulence, fractal",
     /// Bricks, tiles or planks in a regular bond.
-    "bricks" Bricks(BricksNode) in "patterns" as "{}",
+    "bricks" Bricks(BricksNode) in "patterns" as "{}"
+        also "brick, tile generator, planks, herringbone, wall",
     /// Woven cloth: plain weave, twill, satin or basket weave.
-    "weave" Weave(WeaveNode) in "patterns" as "{}",
+    "weave" Weave(WeaveNode) in "patterns" as "{}"
+        also "fabric, cloth, textile, twill",
     /// Simple shape, such as a star, as a signed distance or a mask.
-    "shape" Shape(ShapeNode) in "patterns" as "{}",
+    "shape" Shape(ShapeNode) in "patterns" as "{}"
+        also "sdf, circle, box, polygon, star, mask",
     /// Another value of a node that has several, such as the random number of a brick.
-    "output" Output(Output) in "patterns" as r#"{"of":0.5}"#,
+    "output" Output(Output) in "patterns" as r#"{"of":0.5}"#
+        also "random, id, uv",
     /// Gabor noise: waves of about one length and direction, such as wood fiber or ripples.
-    "gabor" Gabor(GaborNode) in "cells and noise" as "{}",
+    "gabor" Gabor(GaborNode) in "cells and noise" as "{}"
+        also "fiber, ripples, brushed, anisotropic noise",
     /// Shapes stamped at scattered points, such as gravel, leaves, rivets or scratches.
-    "scatter" Scatter(ScatterNode) in "patterns" as "{}",
+    "scatter" Scatter(ScatterNode) in "patterns" as "{}"
+        also "tile sampler, splatter, stamp, gravel, scratches, dirt",
     /// Coordinate of a position along a direction.
-    "coordinate" Coordinate(Coordinate) in "position" as r#"{"along":[1.0,0.0]}"#,
+    "coordinate" Coordinate(Coordinate) in "position" as r#"{"along":[1.0,0.0]}"#
+        also "gradient, linear, uv, position",
     /// Distance of a position from a center.
-    "distance" Distance(Distance) in "position" as r#"{"center":[0.5,0.5]}"#,
+    "distance" Distance(Distance) in "position" as r#"{"center":[0.5,0.5]}"#
+        also "radial gradient, circle",
     /// Image file, stretched over the tile.
-    "image" Image(ImageNode) in "color and images" as r#"{"file":"image.png"}"#,
+    "image" Image(ImageNode) in "color and images" as r#"{"file":"image.png"}"#
+        also "bitmap, texture, photo",
     /// Texture synthesized from an example image.
-    "synth" Synth(SynthNode) in "color and images" as r#"{"file":"image.png"}"#,
+    "synth" Synth(SynthNode) in "color and images" as r#"{"file":"image.png"}"#
+        also "texture synthesis, quilting, by example",
     /// Constant color.
-    "color" Color(ColorOf) in "color and images" as r##""#c08040""##,
+    "color" Color(ColorOf) in "color and images" as r##""#c08040""##
+        also "uniform color, solid, rgb",
     /// Sum of all inputs.
-    "add" Add(Add) in "arithmetic" as "[0.0,0.0]",
+    "add" Add(Add) in "arithmetic" as "[0.0,0.0]"
+        also "linear dodge, plus, sum",
     /// First input minus the second.
-    "subtract" Subtract(Subtract) in "arithmetic" as "[0.0,0.0]",
+    "subtract" Subtract(Subtract) in "arithmetic" as "[0.0,0.0]"
+        also "minus, difference",
     /// Product of all inputs.
-    "multiply" Multiply(Multiply) in "arithmetic" as "[1.0,1.0]",
+    "multiply" Multiply(Multiply) in "arithmetic" as "[1.0,1.0]"
+        also "times, product, math",
     /// First input divided by the second; 0 where the second is 0.
     "divide" Divide(Divide) in "arithmetic" as "[1.0,1.0]",
     /// Minimum of all inputs.
-    "minimum" Minimum(Minimum) in "arithmetic" as "[0.0,1.0]",
+    "minimum" Minimum(Minimum) in "arithmetic" as "[0.0,1.0]"
+        also "min, darken",
     /// Maximum of all inputs.
-    "maximum" Maximum(Maximum) in "arithmetic" as "[0.0,1.0]",
+    "maximum" Maximum(Maximum) in "arithmetic" as "[0.0,1.0]"
+        also "max, lighten",
     /// Smooth minimum of all inputs, which joins shapes with a fillet.
-    "smooth_minimum" SmoothMinimum(SmoothMinimum) in "arithmetic" as r#"{"inputs":[0.0,1.0]}"#,
+    "smooth_minimum" SmoothMinimum(SmoothMinimum) in "arithmetic" as r#"{"inputs":[0.0,1.0]}"#
+        also "smooth union, metaballs",
     /// Smooth maximum of all inputs, which intersects shapes with a fillet.
-    "smooth_maximum" SmoothMaximum(SmoothMaximum) in "arithmetic" as r#"{"inputs":[0.0,1.0]}"#,
+    "smooth_maximum" SmoothMaximum(SmoothMaximum) in "arithmetic" as r#"{"inputs":[0.0,1.0]}"#
+        also "smooth intersection",
     /// Absolute value of a number.
-    "absolute" Absolute(Absolute) in "arithmetic" as "0.0",
+    "absolute" Absolute(Absolute) in "arithmetic" as "0.0"
+        also "abs",
     /// Number raised to a power.
-    "power" Power(Power) in "arithmetic" as r#"{"input":0.5,"exponent":2.0}"#,
+    "power" Power(Power) in "arithmetic" as r#"{"input":0.5,"exponent":2.0}"#
+        also "gamma, exponent, contrast",
     /// Periodic wave of a number, such as a sine or a sawtooth.
-    "wave" Wave(Wave) in "shape" as r#"{"input":0.5}"#,
+    "wave" Wave(Wave) in "shape" as r#"{"input":0.5}"#
+        also "sine, sin, stripes, sawtooth, triangle",
     /// Number mapped from one range to another.
-    "levels" Levels(Levels) in "shape" as r#"{"input":0.5}"#,
+    "levels" Levels(Levels) in "shape" as r#"{"input":0.5}"#
+        also "map range, remap, histogram, contrast, brightness, auto levels",
     /// Number mapped by a smooth curve through points.
-    "curve" Curve(SplineCurve) in "shape" as r#"{"input":0.5,"points":[[0.0,0.0],[0.5,0.6],[1.0,1.0]]}"#,
+    "curve" Curve(SplineCurve) in "shape" as r#"{"input":0.5,"points":[[0.0,0.0],[0.5,0.6],[1.0,1.0]]}"#
+        also "curves, rgb curves, spline, transfer",
     /// 1 where a number is above a threshold, 0 where it is below.
-    "threshold" Threshold(Threshold) in "shape" as r#"{"input":0.5}"#,
+    "threshold" Threshold(Threshold) in "shape" as r#"{"input":0.5}"#
+        also "mask, step, binarize, histogram scan, edge",
     /// Number rounded to the nearest of evenly spaced values.
-    "quantize" Quantize(Quantize) in "shape" as r#"{"input":0.5}"#,
+    "quantize" Quantize(Quantize) in "shape" as r#"{"input":0.5}"#
+        also "posterize, steps, terrace, round",
     /// 1 minus a number or a color.
-    "invert" Invert(Invert) in "arithmetic" as "0.0",
+    "invert" Invert(Invert) in "arithmetic" as "0.0"
+        also "negative, one minus",
     /// One of several inputs, chosen by a number.
-    "select" Select(Select) in "shape" as r#"{"inputs":[0.0,1.0],"by":0.5}"#,
+    "select" Select(Select) in "shape" as r#"{"inputs":[0.0,1.0],"by":0.5}"#
+        also "switch, multi switch, id mask",
     /// Cross-section of a bump, such as a spot or a channel, as a function of a number.
-    "profile" Profile(ProfileOf) in "shape" as r#"{"input":0.5,"shape":{"spots":{"radius":0.5}}}"#,
+    "profile" Profile(ProfileOf) in "shape" as r#"{"input":0.5,"shape":{"spots":{"radius":0.5}}}"#
+        also "bump, bevel",
     /// Interpolation between two inputs.
-    "mix" Mix(Mix) in "shape" as r#"{"from":0.0,"to":1.0,"by":0.5}"#,
+    "mix" Mix(Mix) in "shape" as r#"{"from":0.0,"to":1.0,"by":0.5}"#
+        also "lerp, blend, mask, interpolate, opacity",
     /// Number clamped to a range.
-    "clamp" Clamp(Clamp) in "shape" as r#"{"input":0.5}"#,
+    "clamp" Clamp(Clamp) in "shape" as r#"{"input":0.5}"#
+        also "saturate, limit",
     /// Another node, sampled at displaced positions.
-    "warp" Warp(Warp) in "shape" as r#"{"input":0.5,"x":0.0,"y":0.0}"#,
+    "warp" Warp(Warp) in "shape" as r#"{"input":0.5,"x":0.0,"y":0.0}"#
+        also "distort, displace, domain warp, directional warp",
     /// Another node, rotated, repeated more often and shifted.
-    "transform" Transform(Transform) in "shape" as r#"{"input":0.5}"#,
+    "transform" Transform(Transform) in "shape" as r#"{"input":0.5}"#
+        also "rotate, scale, translate, offset, uv transform",
     /// Another node, evaluated at the positions that two numbers give.
-    "sample" SampleAt(SampleAt) in "shape" as r#"{"input":0.5,"x":0.0,"y":0.0}"#,
+    "sample" SampleAt(SampleAt) in "shape" as r#"{"input":0.5,"x":0.0,"y":0.0}"#
+        also "uv lookup, pixel processor",
     /// Another node, mirrored at a center.
-    "mirror" Mirror(MirroredNode) in "shape" as r#"{"input":0.5}"#,
+    "mirror" Mirror(MirroredNode) in "shape" as r#"{"input":0.5}"#
+        also "symmetry, flip",
     /// Another node, bent around a center.
-    "polar" Polar(Polar) in "shape" as r#"{"input":0.5}"#,
+    "polar" Polar(Polar) in "shape" as r#"{"input":0.5}"#
+        also "radial, cartesian to polar",
     /// Sector of another node, repeated around a center.
-    "kaleidoscope" Kaleidoscope(Kaleidoscope) in "shape" as r#"{"input":0.5}"#,
+    "kaleidoscope" Kaleidoscope(Kaleidoscope) in "shape" as r#"{"input":0.5}"#
+        also "symmetry, mandala",
     /// Fractal sum of a node at several scales.
-    "fractal" Fractal(FractalOf) in "shape" as r#"{"input":0.5}"#,
+    "fractal" Fractal(FractalOf) in "shape" as r#"{"input":0.5}"#
+        also "fbm, octaves, turbulence",
     /// Color for each number, from a color ramp.
-    "ramp" Ramp(Ramped) in "color and images" as r##"{"input":0.5,"colors":["#202020","#f0f0f0"]}"##,
+    "ramp" Ramp(Ramped) in "color and images" as r##"{"input":0.5,"colors":["#202020","#f0f0f0"]}"##
+        also "gradient map, color ramp, colorize, palette",
     /// Gaussian blur, in all directions or along one.
-    "blur" Blur(Blur) in "neighborhood" as r#"{"input":0.5,"radius":0.02}"#,
+    "blur" Blur(Blur) in "neighborhood" as r#"{"input":0.5,"radius":0.02}"#
+        also "gaussian, directional blur, soften, smooth",
     /// Blur along the slope of a height: values run downhill.
-    "slope_blur" SlopeBlur(SlopeBlur) in "neighborhood" as r#"{"input":0.5,"height":0.5,"radius":0.05}"#,
+    "slope_blur" SlopeBlur(SlopeBlur) in "neighborhood" as r#"{"input":0.5,"height":0.5,"radius":0.05}"#
+        also "erosion, flow",
     /// Input sharpened by an unsharp mask.
-    "sharpen" Sharpen(Sharpen) in "neighborhood" as r#"{"input":0.5,"radius":0.02}"#,
+    "sharpen" Sharpen(Sharpen) in "neighborhood" as r#"{"input":0.5,"radius":0.02}"#
+        also "unsharp mask, high pass",
     /// Where the input changes: the length of its gradient.
-    "edges" Edges(Edges) in "neighborhood" as r#"{"input":0.5,"radius":0.02}"#,
+    "edges" Edges(Edges) in "neighborhood" as r#"{"input":0.5,"radius":0.02}"#
+        also "edge detect, sobel, outline",
     /// Maximum of the input within a radius.
-    "dilate" Dilate(Dilate) in "neighborhood" as r#"{"input":0.5,"radius":0.02}"#,
+    "dilate" Dilate(Dilate) in "neighborhood" as r#"{"input":0.5,"radius":0.02}"#
+        also "expand, grow, maximum filter",
     /// Minimum of the input within a radius.
-    "erode" Erode(Erode) in "neighborhood" as r#"{"input":0.5,"radius":0.02}"#,
+    "erode" Erode(Erode) in "neighborhood" as r#"{"input":0.5,"radius":0.02}"#
+        also "shrink, minimum filter",
     /// Distance to where a mask is above ½, up to a radius.
-    "distance_to" DistanceTo(DistanceTo) in "neighborhood" as r#"{"input":0.5,"radius":0.1}"#,
+    "distance_to" DistanceTo(DistanceTo) in "neighborhood" as r#"{"input":0.5,"radius":0.1}"#
+        also "distance field, bevel, edge wear",
     /// Steepness of a height, from 0 where it is level to 1 where it is vertical.
-    "slope" Slope(Slope) in "neighborhood" as r#"{"input":0.5}"#,
+    "slope" Slope(Slope) in "neighborhood" as r#"{"input":0.5}"#
+        also "normal, steepness, gradient",
     /// Curvature of a height: ½ where it is flat, more on edges, less in grooves.
-    "curvature" Curvature(Curvature) in "neighborhood" as r#"{"input":0.5}"#,
+    "curvature" Curvature(Curvature) in "neighborhood" as r#"{"input":0.5}"#
+        also "edge wear, convexity, cavity",
     /// Ambient occlusion of a height: the visible fraction of the sky.
-    "occlusion" Occlusion(Occlusion) in "neighborhood" as r#"{"input":0.5}"#,
+    "occlusion" Occlusion(Occlusion) in "neighborhood" as r#"{"input":0.5}"#
+        also "ao, ambient occlusion, cavity, dirt",
     /// Number spread evenly from 0 to 1 over the tile.
-    "equalize" Equalize(Equalize) in "whole tile" as r#"{"input":0.5}"#,
+    "equalize" Equalize(Equalize) in "whole tile" as r#"{"input":0.5}"#
+        also "histogram, auto levels",
     /// Number for each connected region of a mask.
-    "flood_fill" FloodFill(FloodFill) in "whole tile" as r#"{"input":0.5}"#,
+    "flood_fill" FloodFill(FloodFill) in "whole tile" as r#"{"input":0.5}"#
+        also "region, island, id, random",
     /// Component of a color as a number, such as its luminance or hue.
-    "channel" Channel(ChannelOf) in "color and images" as r##"{"input":"#808080"}"##,
+    "channel" Channel(ChannelOf) in "color and images" as r##"{"input":"#808080"}"##
+        also "luminance, grayscale, split, separate rgb, hue",
     /// Color with another hue, saturation and lightness.
-    "hsl" Hsl(HslChange) in "color and images" as r##"{"input":"#808080"}"##,
+    "hsl" Hsl(HslChange) in "color and images" as r##"{"input":"#808080"}"##
+        also "hue, saturation, lightness, color correct",
     /// Texture made to repeat seamlessly.
-    "tile" Tile(Tiled) in "whole tile" as r#"{"input":0.5}"#,
+    "tile" Tile(Tiled) in "whole tile" as r#"{"input":0.5}"#
+        also "seamless, make it tile, repeat",
     /// Copies of a tile with equal borders and different interiors.
-    "disturb" Disturb(Disturbed) in "whole tile" as r#"{"input":0.5}"#,
+    "disturb" Disturb(Disturbed) in "whole tile" as r#"{"input":0.5}"#
+        also "variation, wang tiles",
     /// Texture with the borders of another texture.
     "match_borders" MatchBorders(Framed) in "whole tile" as r#"{"input":0.5,"border":0.5}"#,
     /// Pieces of several textures in random order, joined by corner tiles.
-    "corner_tiles" CornerTiles(CornerTilesOf) in "whole tile" as r#"{"inputs":[0.25,0.75]}"#,
+    "corner_tiles" CornerTiles(CornerTilesOf) in "whole tile" as r#"{"inputs":[0.25,0.75]}"#
+        also "wang tiles, stochastic tiling",
     /// Blend map of a texture: low in cracks, where another texture shows first.
-    "blend_map" BlendMap(BlendMapOf) in "whole tile" as r#"{"input":0.5,"feature_size":0.5}"#,
+    "blend_map" BlendMap(BlendMapOf) in "whole tile" as r#"{"input":0.5,"feature_size":0.5}"#
+        also "height blend",
     /// Layers blended by weights.
-    "blend" Blend(Blended) in "whole tile" as r#"{"layers":[{"input":0.5}]}"#,
+    "blend" Blend(Blended) in "whole tile" as r#"{"layers":[{"input":0.5}]}"#
+        also "layers, height blend",
 }
 
 impl Node {

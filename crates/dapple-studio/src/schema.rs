@@ -1,7 +1,7 @@
 //! Queries the schema of recipes for the paths of inputs and seeds, and for the kinds of nodes.
 
 use crate::Part;
-use dapple::recipe::{KINDS, NEW_NODES, Recipe};
+use dapple::recipe::{KINDS, NEW_NODES, NODE_TAGS, Recipe};
 use serde::Serialize;
 use serde_json::Value as Json;
 use std::sync::OnceLock;
@@ -32,6 +32,8 @@ pub(crate) struct Kind {
     name: &'static str,
     /// The group of the kind, such as `color`.
     group: &'static str,
+    /// Words of other programs for it, separated by commas.
+    tags: &'static str,
     /// The options of a new node of this kind.
     value: Json,
 }
@@ -176,12 +178,14 @@ fn requirements(schema: &Json) -> impl Iterator<Item = &str> {
 
 /// Returns all kinds of nodes, in the order in which recipes list them.
 pub(crate) fn kinds() -> Vec<Kind> {
-    let kind = |(name, (group, example))| Kind {
+    let kind = |((name, (group, example)), tags)| Kind {
         name,
         group,
+        tags,
         value: serde_json::from_str(example).unwrap_or_default(),
     };
-    KINDS.into_iter().zip(NEW_NODES).map(kind).collect()
+    let all = KINDS.into_iter().zip(NEW_NODES).zip(NODE_TAGS);
+    all.map(kind).collect()
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use crate::job::{Context, Job, put_text, say};
 use crate::shader_language::ShaderLanguage;
 use anyhow::Result;
 use dapple::hash::Seed;
-use dapple::recipe::{Plan, Recipe, ShaderOptions};
+use dapple::recipe::{KINDS, NODE_TAGS, Plan, Recipe, ShaderOptions};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -37,7 +37,7 @@ pub(crate) struct Args {
     #[arg(value_name = "RECIPE", required_unless_present_any = ["list", "schema", "reference"])]
     recipe: Option<String>,
 
-    /// List the built-in recipes by family; with a word, those whose name, description or tags contain it.
+    /// List the built-in recipes by family; with a word, those whose name, description or tags contain it, and nodes.
     #[arg(long, value_name = "WORD", num_args = 0..=1, conflicts_with = "recipe")]
     list: Option<Option<String>>,
 
@@ -193,6 +193,17 @@ fn list(word: Option<&str>) -> Result<Exit> {
             let family = recipe.tags.first().cloned().unwrap_or_default();
             let line = format!("  {name:<18} {}", recipe.about);
             families.entry(family).or_default().push(line);
+        }
+    }
+    // List the nodes that the word is about, also by the words of other programs.
+    if let Some(word) = word.map(str::to_lowercase) {
+        let nodes = KINDS.into_iter().zip(NODE_TAGS);
+        let nodes = nodes.filter(|(kind, tags)| kind.contains(&word) || tags.contains(&word));
+        let lines: Vec<_> = nodes
+            .map(|(kind, tags)| format!("  {kind:<18} {tags}"))
+            .collect();
+        if !lines.is_empty() {
+            families.insert("nodes of recipes".to_owned(), lines);
         }
     }
     if families.is_empty() {

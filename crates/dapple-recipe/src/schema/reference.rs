@@ -1,5 +1,6 @@
 //! Renders the schema of recipes as a reference of all options, in Markdown.
 
+use crate::nodes::{KINDS, NODE_TAGS};
 use core::fmt::Write as _;
 use serde_json::{Map, Value};
 
@@ -41,6 +42,10 @@ impl Reference<'_> {
                 continue;
             };
             let _ = write!(page, "\n### `{name}`\n\n{}\n", text(kind));
+            let tags = KINDS.into_iter().zip(NODE_TAGS);
+            for (_, tags) in tags.filter(|(kind, tags)| *kind == name && !tags.is_empty()) {
+                let _ = write!(page, "\nIn other programs: {tags}.\n");
+            }
             let table = self.followed(inner);
             if table["properties"].is_object() {
                 self.options(page, table);

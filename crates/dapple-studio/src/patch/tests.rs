@@ -220,9 +220,8 @@ fn recipes_stay_valid_without_any_of_their_nodes() {
             let new = apply(text, &[Op::RemoveNode { name }]).unwrap();
             assert!(Recipe::from_toml(&new).is_ok(), "{new}");
             let data = data(&new);
-            let is_link = |found: &Found<'_>| {
-                found.role == Role::Input && found.value == Some(&json!(node))
-            };
+            let is_link =
+                |found: &Found<'_>| found.role == Role::Input && found.value == Some(&json!(node));
             assert!(!roles(&data).iter().any(is_link), "{new}");
         }
     }
