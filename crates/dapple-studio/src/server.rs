@@ -217,6 +217,14 @@ impl Shared {
         self.host.images(recipe, self.of_images(recipe)?)
     }
 
+    /// Writes the files of an export into a folder in the folder of the recipe, if the page may write.
+    fn write(&self, to: &str, files: &[ExportedFile], overwrite: bool) -> Result<(), StudioError> {
+        if self.options.mode != Mode::Studio {
+            return Err(StudioError::new("here recipes are only looked at"));
+        }
+        self.folder.write(to, files, overwrite)
+    }
+
     /// Waits until the last page is closed, if `once` is set. Otherwise never returns.
     async fn ended(&self) {
         loop {

@@ -52,6 +52,8 @@ fn encoding(export: &Export) -> Result<(Encoding, &'static str), StudioError> {
         preset: None,
         normal_y: None,
         frame: None,
+        frames: None,
+        folder: None,
         ..
     } = export
     else {

@@ -264,6 +264,7 @@ fn words(export: &Export) -> Vec<String> {
             .frame
             .map(|[number, count]| format!("{number}/{count}")),
     );
+    add("frames", export.frames.map(|frames| frames.to_string()));
     words
 }
 

@@ -5,6 +5,7 @@
     reason = "recipes are read here, from their folder alone"
 )]
 
+use super::ExportedFile;
 use super::page::content_type;
 use crate::StudioError;
 use axum::http::StatusCode;
@@ -131,6 +132,42 @@ impl Folder {
         dapple::image::replace(&path, text.as_bytes())
             .map_err(|error| StudioError::new(format!("{name} cannot be written: {error}")))?;
         Ok(hash(text.as_bytes()))
+    }
+
+    /// Writes files into a folder in this one, which is created if it is missing. Without `overwrite`, fails before
+    /// anything is written if one of the files is there.
+    pub(super) fn write(
+        &self,
+        to: &str,
+        files: &[ExportedFile],
+        overwrite: bool,
+    ) -> Result<(), StudioError> {
+        let is_plain = |c: char| c.is_alphanumeric() || " _-.".contains(c);
+        let is_name = !to.is_empty() && !to.starts_with('.') && to.chars().all(is_plain);
+        if !is_name || to.len() > 200 {
+            let error = StudioError::new(format!("{to:?} is no name for a folder"));
+            return Err(error.with_hint("take letters, digits, `_` and `-`"));
+        }
+        let cannot = |error: &dyn std::fmt::Display| {
+            StudioError::new(format!("{to} cannot be written: {error}"))
+        };
+        let folder = self.path.join(to);
+        fs::create_dir_all(&folder).map_err(|error| cannot(&error))?;
+        // A link may lead elsewhere.
+        let folder = folder.canonicalize().map_err(|error| cannot(&error))?;
+        if folder.parent() != Some(&self.path) {
+            return Err(cannot(&"it is not in the folder of the recipe"));
+        }
+        let is_there = |file: &&ExportedFile| fs::symlink_metadata(folder.join(&file.name)).is_ok();
+        if !overwrite && let Some(file) = files.iter().find(is_there) {
+            let message = format!("{to}/{} is there already", file.name);
+            return Err(StudioError::new(message).with_reason("exists"));
+        }
+        for file in files {
+            dapple::image::replace(&folder.join(&file.name), &file.bytes)
+                .map_err(|error| cannot(&error))?;
+        }
+        Ok(())
     }
 
     /// Rejects a recipe that names images outside of the folder.

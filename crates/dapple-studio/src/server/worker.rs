@@ -292,6 +292,9 @@ impl Inside {
             let shared = &self.shared;
             let folder = shared.of_images(recipe)?;
             let files = shared.host.export(recipe, folder, export, &self.stop)?;
+            if let Some(folder) = &export.folder {
+                shared.write(folder, &files, export.overwrite)?;
+            }
             let (id, files) = shared.exports.keep(files);
             Ok(Reply::Exported { id, files })
         };

@@ -1,6 +1,6 @@
 // What an artist does first: sliders, deleting nodes, own models, comparing, saving under another name, exporting.
 import assert from 'node:assert/strict';
-import { mkdtempSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, describe, test } from 'node:test';
@@ -160,6 +160,36 @@ describe('an artist', { skip, timeout: 240_000 }, () => {
       second?.end();
     }
   });
+
+  test('finds nodes by the words of other programs', () => within(RECIPE, async (page) => {
+    for (const [word, kind] of [['voronoi', 'worley'], ['perlin', 'noise'], ['tile sampler', 'scatter'], ['gradient map', 'ramp'], ['map range', 'levels'], ['rotate', 'transform']]) {
+      await page.locator('body').press('a');
+      await page.locator('dialog[open]').waitFor();
+      await page.keyboard.type(word);
+      assert.equal(await page.locator('#choices li strong').first().textContent(), kind, word);
+      await page.keyboard.press('Escape');
+      await page.locator('dialog').waitFor({ state: 'detached' });
+    }
+  }));
+
+  test('exports any size, raw heights, and into a folder', () => within(RECIPE, async (page, studio) => {
+    await page.keyboard.press('Control+e');
+    const dialog = page.locator('dialog');
+    await dialog.locator('select').nth(0).selectOption({ label: 'another size' });
+    await dialog.getByLabel('Width in pixels').fill('96');
+    await dialog.getByLabel('Height in pixels').fill('65');
+    await dialog.locator('select').nth(2).selectOption('r16');
+    await dialog.getByLabel('Folder beside the recipe').fill('maps');
+    await dialog.getByRole('button', { name: 'Bake 96 × 65' }).click();
+    await dialog.getByText('Written to maps/').waitFor();
+    assert.equal(statSync(join(studio.folder, 'maps', 'recipe_height.r16')).size, 96 * 65 * 2);
+    await dialog.getByRole('button', { name: /^Bake/ }).click();
+    await dialog.getByRole('button', { name: 'Replace them' }).click();
+    await dialog.getByText('Written to maps/').waitFor();
+    await dialog.getByLabel('Folder beside the recipe').fill('../out');
+    await dialog.getByRole('button', { name: /^Bake/ }).click();
+    await dialog.getByText('is no name for a folder').waitFor();
+  }));
 
   test('files of another preset are not offered', () => within(RECIPE, async (page) => {
     await page.keyboard.press('Control+e');

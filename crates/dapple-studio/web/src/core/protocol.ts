@@ -86,12 +86,19 @@ export interface ExportOptions {
   preset?: string;
   /** The format, such as `png8`. Not allowed together with a preset. */
   format?: string;
+  /** The number of frames of a loop. */
+  frames?: number;
+  /** A folder beside the recipe, into which the files are written. */
+  folder?: string;
+  overwrite?: boolean;
 }
 
 /** A kind of node. */
 export interface Kind {
   name: string;
   group: string;
+  /** Words of other programs for the kind. */
+  tags?: string;
   value?: Json;
 }
 
