@@ -350,7 +350,7 @@ pub(crate) struct NodeOption {
     entry: Flag,
     /// Whether a list may have any length.
     any_length: bool,
-    /// Whether the flag chooses among tables, whose options have flags of their own.
+    /// Whether the flag chooses among tables, whose options have separate flags.
     is_choice: bool,
 }
 

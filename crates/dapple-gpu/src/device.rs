@@ -1,6 +1,7 @@
 //! Runs shaders on a device, and turns its failures into errors.
 
 use crate::{GpuError, GpuErrorKind};
+use dapple_recipe::MaterialShader;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc;
 
@@ -15,11 +16,12 @@ pub(crate) struct Device {
 }
 
 /// A compute shader with the entry point `main`. It has four storage buffers: words that describe the job, positions,
-/// inputs, and the results.
+/// inputs, and the results. A fifth binding is the texture of the words that nodes look up.
 #[derive(Clone, Debug)]
 pub(crate) struct Program {
     pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
+    data: wgpu::TextureView,
 }
 
 impl Device {
@@ -107,6 +109,37 @@ impl Device {
         buffer
     }
 
+    /// Creates a texture of these words, as [`MaterialShader::data`] has them; one texel of 0 in the place of none.
+    fn data(&self, words: &[u32]) -> wgpu::TextureView {
+        let words = if words.is_empty() { &[0; 4] } else { words };
+        let width = words.len().min(MaterialShader::DATA_ROW) / 4;
+        let rows = words.len().div_ceil(MaterialShader::DATA_ROW);
+        let size = |width: usize, height: usize| wgpu::Extent3d {
+            width: width as u32,
+            height: height as u32,
+            depth_or_array_layers: 1,
+        };
+        let texture = self.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: size(width, rows),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba32Uint,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(16 * width as u32),
+            rows_per_image: None,
+        };
+        let to = texture.as_image_copy();
+        self.queue.write_texture(to, &bytes, layout, size(width, rows));
+        texture.create_view(&Default::default())
+    }
+
     /// Waits for a buffer, and reads all its words.
     pub(crate) fn read(&self, buffer: &wgpu::Buffer) -> Result<Vec<u32>, GpuError> {
         let lost = || GpuError::lost("a read-back");
@@ -155,9 +188,9 @@ impl Device {
 }
 
 impl Program {
-    /// Compiles a shader.
-    pub(crate) fn new(device: &Device, wgsl: &str) -> Result<Self, GpuError> {
-        let entry = |binding| wgpu::BindGroupLayoutEntry {
+    /// Compiles a shader, and uploads the words that it looks up.
+    pub(crate) fn new(device: &Device, wgsl: &str, data: &[u32]) -> Result<Self, GpuError> {
+        let buffer = |binding| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::COMPUTE,
             ty: wgpu::BindingType::Buffer {
@@ -169,6 +202,16 @@ impl Program {
             },
             count: None,
         };
+        let texture = wgpu::BindGroupLayoutEntry {
+            binding: 4,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Uint,
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            count: None,
+        };
         device.checked("the compilation of a shader", || {
             let on = &device.device;
             let module = on.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -177,7 +220,7 @@ impl Program {
             });
             let layout = on.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                 label: None,
-                entries: &[0, 1, 2, 3].map(entry),
+                entries: &[buffer(0), buffer(1), buffer(2), buffer(3), texture],
             });
             let of_pipeline = on.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: None,
@@ -192,7 +235,11 @@ impl Program {
                 compilation_options: Default::default(),
                 cache: None,
             });
-            Self { pipeline, layout }
+            Self {
+                pipeline,
+                layout,
+                data: device.data(data),
+            }
         })
     }
 
@@ -204,10 +251,11 @@ impl Program {
         buffers: [&wgpu::Buffer; 4],
         size: [u32; 2],
     ) {
-        let entries = [0, 1, 2, 3].map(|at: u32| wgpu::BindGroupEntry {
-            binding: at,
-            resource: buffers[at as usize].as_entire_binding(),
-        });
+        let buffers = buffers.map(wgpu::Buffer::as_entire_binding);
+        let data = wgpu::BindingResource::TextureView(&self.data);
+        let resources = buffers.into_iter().chain([data]);
+        let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
+        let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
         let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &self.layout,

@@ -104,7 +104,7 @@ pub(crate) fn test(
 ) -> Result<Exactness, GpuError> {
     let numbers = numbers();
     let words = OPERATIONS.len() + 2;
-    let program = Program::new(device, &change(shader()))?;
+    let program = Program::new(device, &change(shader()), &[])?;
     let columns: Vec<u32> = numbers.iter().flatten().map(|x| x.to_bits()).collect();
     let out = program.run(
         device,

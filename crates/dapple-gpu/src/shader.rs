@@ -29,6 +29,8 @@ pub(crate) struct Nodes {
 pub(crate) struct Text {
     pub(crate) inputs: Vec<String>,
     wgsl: String,
+    /// Words of the texture that it looks up.
+    data: Vec<u32>,
 }
 
 /// A compiled shader.
@@ -95,14 +97,18 @@ impl Nodes {
             ..recipe.clone()
         };
         let shader = recipe.to_wgsl_with(plan, &ShaderOptions { textures: true })?;
-        let wgsl = shader.wgsl + &self.entry_point(plan, &shader.textures);
-        let inputs = shader.textures;
-        Ok(Text { inputs, wgsl })
+        let has_data = !shader.data.is_empty();
+        let wgsl = shader.wgsl + &self.entry_point(plan, &shader.textures, has_data);
+        Ok(Text {
+            inputs: shader.textures,
+            wgsl,
+            data: shader.data,
+        })
     }
 
     /// Writes the entry point. The job is `zero`, the numbers of columns and rows, and the length of a row of results.
     /// Every channel of an input is a separate block, and so are the results of a node.
-    fn entry_point(&self, plan: &Plan, inputs: &[String]) -> String {
+    fn entry_point(&self, plan: &Plan, inputs: &[String], has_data: bool) -> String {
         let mut textures = Vec::new();
         let mut block = 0;
         let mut channel = || {
@@ -119,8 +125,16 @@ impl Nodes {
             true => String::new(),
             false => format!("Textures({}), ", textures.join(", ")),
         };
+        let [declared, data] = match has_data {
+            true => [
+                "@group(0) @binding(4) var gpu_data: texture_2d<u32>;",
+                "gpu_data, ",
+            ],
+            false => [""; 2],
+        };
         let mut out = format!(
             "
+{declared}
 @group(0) @binding(0) var<storage> gpu_job: array<u32>;
 @group(0) @binding(1) var<storage> gpu_positions: array<vec2<u32>>;
 @group(0) @binding(2) var<storage> gpu_inputs: array<f32>;
@@ -132,7 +146,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
     let at = Position2d(gpu_positions[id.x], gpu_positions[columns + id.y]);
     let pixels = columns * gpu_job[2];
     let pixel = columns * id.y + id.x;
-    let result = material64(at, {textures}gpu_job[0]);
+    let result = material64(at, {data}{textures}gpu_job[0]);
     let block = gpu_job[3] * gpu_job[2];
     let result_at = gpu_job[3] * id.y + id.x;
 "
@@ -167,7 +181,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
         let text = self.text(recipe, plan)?;
         let channels = |input: &String| if plan.is_color(input) { 3 } else { 1 };
         Ok(Shader {
-            program: Program::new(device, &text.wgsl)?,
+            program: Program::new(device, &text.wgsl, &text.data)?,
             n_inputs: text.inputs.iter().map(channels).sum(),
             inputs: text.inputs,
             n_numbers: self.numbers.len() as u64,

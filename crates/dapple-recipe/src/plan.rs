@@ -27,7 +27,6 @@ use evaluate::Grid;
 pub(crate) use evaluate::Known;
 pub use field::{NodeColors, NodeField};
 pub(crate) use neighborhood::{Neighborhood, with_margin};
-pub(crate) use order::order;
 pub use renderer::{Renderer, RendererError};
 pub(crate) use order::{is_name, order};
 pub use samples::Samples;

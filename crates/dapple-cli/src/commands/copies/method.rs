@@ -48,13 +48,13 @@ impl NodeFlags for MethodFlags {
     const FLAGS: &'static [Flag] = &[
         Flag::new("disturb/frozen", "frozen")
             .only_with("method", &["disturb"])
-            .with_default("4, or an eighth of the shorter side"),
+            .with_default("4, or 1/8 of the shorter side"),
         Flag::new("disturb/margin", "margin")
             .only_with("method", &["disturb"])
-            .with_default("a quarter of the shorter side"),
+            .with_default("1/4 of the shorter side"),
         Flag::new("match_borders/options/width", "width")
             .only_with("method", &["borders"])
-            .with_default("a quarter of the shorter side"),
+            .with_default("1/4 of the shorter side"),
         Flag::new("match_borders/options/source", "source").only_with("method", &["borders"]),
         Flag::new("corner_tiles/width", "share")
             .only_with("method", &["corners"])
