@@ -423,11 +423,11 @@ fn gray_layers_become_color_where_others_are() {
 fn an_option_of_a_blend_that_is_not_given_has_its_default() {
     let folder = Folder::with_inputs("defaults");
     let run = |options: &[&str]| {
-        let layers = ["blend", "rock.png,height=rock_height.png"];
-        let output = ["grass.png,height=mask.png", "--force", "-o", "out.png"];
+        let layers = ["blend", "height.exr,height=rock_height.png"];
+        let output = ["grain.png,height=grain.png", "--force", "-o", "out.png"];
         let arguments = [&layers[..], &output, options].concat();
         assert_done(&folder.run(&arguments), "blend");
-        std::fs::read(folder.path("out.png")).unwrap()
+        fs::read(folder.path("out.png")).unwrap()
     };
     for (chosen, given, other) in [
         (&["--tile", "cracks.png"][..], ["--gain", "8"], "4"),
