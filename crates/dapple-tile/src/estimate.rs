@@ -60,7 +60,7 @@ const OCCLUSION: f64 = 1.0 / 20.0;
 /// Octave at which slopes are measured.
 const SLOPE_OCTAVE: usize = 1;
 
-/// Weight of fine depth beside the local contrast in the roughness.
+/// Weight of fine depth in the roughness, relative to local contrast.
 const CAVITY: f64 = 0.3;
 
 /// Local contrast, squared and relative to its mean, that is added before the logarithm.

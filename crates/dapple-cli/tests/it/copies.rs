@@ -176,6 +176,11 @@ fn maps_are_named_by_an_option_or_behind_commas() {
         assert_eq!(files("commas"), files("option"), "{command}");
         assert!(files("option").len() >= 2, "{command}");
     }
+}
+
+#[test]
+fn maps_that_belong_to_no_image_are_refused() {
+    let folder = Folder::with_inputs("maps-bad");
     for (maps, part) in [
         (
             &[
