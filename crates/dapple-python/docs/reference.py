@@ -16,7 +16,7 @@ GROUPS = {
     "Textures of control points": [],
     "Materials": ["Recipe", "read_recipe", "read_recipe_images", "Plan", "MapInfo", "map_names", "shards", "ShardList", "Shard"],
     "Pictures": ["read_image", "write_image", "write_maps", "decode_image", "encode_image", "ramp", "palettes", "linear_from_srgb", "srgb_from_linear", "normal_map", "ambient_occlusion", "curvature"],
-    "Tiles": ["make_tile", "seam_report", "SeamReport", "repeat", "disturb", "lay_tiles", "match_borders", "CornerTiles", "blend", "blend_map", "rank_equalize"],
+    "Tiles": ["make_tile", "even_out", "rectify", "resize", "estimate_material", "seam_report", "SeamReport", "repeat", "disturb", "lay_tiles", "match_borders", "CornerTiles", "blend", "blend_map", "rank_equalize"],
     "Bands of frequencies": ["wavelet_tile", "wavelet_analyze", "wavelet_synthesize", "wavelet_halve", "wavelet_double", "Bands"],
     "Synthesis and meshes": ["synthesize", "repair", "synthesize_along", "synthesize_on", "repair_on", "Exemplar", "Matching", "Directions", "Atlas", "Model", "read_model", "MeshFile", "mesh_report"],
     "Threads and errors": ["threads", "set_threads", "DappleError", "DappleWarning"],

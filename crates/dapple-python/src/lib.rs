@@ -19,6 +19,7 @@ mod maps;
 mod meshes;
 mod models;
 mod options;
+mod photos;
 mod pictures;
 mod points;
 mod pups;
@@ -60,6 +61,8 @@ mod _native {
     use crate::meshes::{mesh_report, read_model};
     #[pymodule_export]
     use crate::models::{_model_from_parts, Model, repair_on, synthesize_along, synthesize_on};
+    #[pymodule_export]
+    use crate::photos::{estimate_material, even_out, rectify, resize};
     #[pymodule_export]
     use crate::points::{
         _graph_from_description, Domain, Graph, Points, delaunay, extend_poisson_disk, gabriel,
