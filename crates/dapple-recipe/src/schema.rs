@@ -59,7 +59,7 @@ impl Recipe {
     }
 }
 
-/// Allows references to parameters in place of all options and elements of lists in a schema.
+/// Allows references to parameters as values of all options and elements of lists in a schema.
 fn allow_references(schema: &mut Value) {
     match schema {
         Value::Object(entries) => {
@@ -79,7 +79,7 @@ fn allow_references(schema: &mut Value) {
     }
 }
 
-/// Allows a reference to a parameter in place of an option. Its description and default remain in place.
+/// Allows a reference to a parameter as the value of an option. The description and the default stay at the option.
 fn allow_reference(option: &mut Value) {
     let mut outer = json!({});
     for key in ["description", "default", "deprecated"] {

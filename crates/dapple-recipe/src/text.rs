@@ -89,7 +89,7 @@ impl Recipe {
         Ok(recipe)
     }
 
-    /// Returns the recipe as a parsed text, with values in place of parameters.
+    /// Returns the recipe as a parsed text, with the values of parameters.
     fn without_parameters(&self) -> Result<Content, RecipeError> {
         let text = serde_json::to_string(data(self));
         let content = text.and_then(|text| serde_json::from_str(&text));
