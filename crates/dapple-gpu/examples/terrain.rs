@@ -6,6 +6,7 @@
 //! ```sh
 //! cargo run -p dapple-gpu --example terrain
 //! ```
+#![expect(clippy::print_stdout, reason = "an example shows its results")]
 
 use dapple_gpu::recipe::raster::{Field, Window};
 use dapple_gpu::recipe::{Images, Plan, Recipe};
