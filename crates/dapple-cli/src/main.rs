@@ -21,6 +21,7 @@ mod estimate;
 mod exemplar;
 mod field;
 mod finite;
+mod gpu;
 mod input;
 mod job;
 mod layers;

@@ -17,6 +17,7 @@ use crate::baking::{STILL, advise, advise_shard, read_images, read_recipe, repor
 use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
 use crate::estimate::print_estimate;
+use crate::gpu;
 use crate::job::{Context, Job};
 use crate::preview::{self, Thing};
 use crate::progress::Progress;
@@ -125,6 +126,13 @@ pub(crate) struct Args {
     #[arg(long)]
     banded: bool,
 
+    /// Compute nodes on a GPU, with the same bytes.
+    ///
+    /// Nodes without a shader, normals and occlusion are computed on the CPU. Needs a program with the feature `gpu`.
+    #[arg(long)]
+    #[serde(skip)]
+    gpu: bool,
+
     /// Continue with the other recipes if one fails.
     #[arg(long)]
     keep_going: bool,
@@ -171,6 +179,9 @@ struct Work {
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.check_document()?;
     args.check_samples()?;
+    if args.gpu {
+        gpu::check()?;
+    }
     let names = recipes::expanded(&args.recipes)?;
     let variants = args.material.variants();
     let n_works = names.len() * variants.len();
@@ -374,7 +385,10 @@ impl Work {
         let plan = Plan::new_with_progress(recipe, images, time, &limits, cache, listen);
         // Report a stop as such, before an error of the plan is attributed to an option.
         progress.check()?;
-        let plan = plan.map_err(|error| args.material.blame(error))?;
+        let mut plan = plan.map_err(|error| args.material.blame(error))?;
+        if args.gpu {
+            plan = gpu::on_gpu(recipe, &plan)?;
+        }
         if args.frames.is_some() && args.frame.is_none_or(Frame::is_first) && !plan.moves() {
             job.note_work(STILL);
         }

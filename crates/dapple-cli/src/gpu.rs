@@ -1,0 +1,37 @@
+//! Bakes on a GPU.
+
+use crate::error::{Hint, usage};
+use anyhow::Result;
+use dapple::recipe::{Plan, Recipe};
+
+/// Checks that this program can use a GPU.
+///
+/// # Errors
+///
+/// If it was built without the feature `gpu`.
+pub(crate) fn check() -> Result<()> {
+    match cfg!(feature = "gpu") {
+        true => Ok(()),
+        false => Err(usage("this program was built without --gpu")
+            .hint("install it with `cargo install --path crates/dapple-cli --features gpu`")),
+    }
+}
+
+/// Returns the plan with its nodes on the GPU, with the same bits.
+///
+/// # Errors
+///
+/// If there is no GPU, or its bits differ from the CPU.
+#[cfg(feature = "gpu")]
+pub(crate) fn on_gpu(recipe: &Recipe, plan: &Plan) -> Result<Plan> {
+    let on_gpu = dapple_gpu::Gpu::headless()
+        .and_then(|gpu| dapple_gpu::GpuPlan::new(&gpu, recipe, plan))
+        .map_err(|error| anyhow::Error::new(error).hint("bake it without --gpu"))?;
+    Ok(on_gpu.plan().clone())
+}
+
+/// Returns the plan; [`check`] has refused it.
+#[cfg(not(feature = "gpu"))]
+pub(crate) fn on_gpu(_: &Recipe, plan: &Plan) -> Result<Plan> {
+    check().map(|()| plan.clone())
+}
