@@ -121,6 +121,8 @@ pub enum Module {
     DoubleFunctions,
     /// Angles of vectors.
     DoubleAngle,
+    /// Curves through points.
+    Spline,
 }
 
 /// Description of a module.
@@ -186,6 +188,7 @@ entries! {
         [Hash, Place2d, WorleyParts, Worley2d, Double, DoubleQuotient],
     DoubleFunctions = "double_functions" [Double, DoubleQuotient],
     DoubleAngle = "double_angle" [Double, DoubleFunctions],
+    Spline = "spline" [Double, DoubleFunctions],
 }
 
 impl Module {

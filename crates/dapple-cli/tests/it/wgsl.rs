@@ -147,6 +147,7 @@ fn shaders_in_glsl_have_all_functions_and_are_valid() {
         "position-2d",
         "power",
         "oklab",
+        "spline",
     ];
     let noise = [
         &["wgsl"][..],

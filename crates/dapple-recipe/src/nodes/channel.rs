@@ -2,6 +2,7 @@
 
 use super::{NodeKind, hsl, inputs};
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal, literal};
 use crate::{Input, RecipeError, Values};
 use dapple_color::LinearRgb;
 use serde::{Deserialize, Serialize};
@@ -53,6 +54,28 @@ impl NodeKind for ChannelOf {
             ))
         });
         Ok(step.with_numbers())
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let parts = match self.channel {
+            ColorChannel::Hue | ColorChannel::Saturation | ColorChannel::Value => {
+                return Err(Refusal::new("components of sRGB colors have no shader"));
+            }
+            ColorChannel::Red => "x",
+            ColorChannel::Green => "y",
+            ColorChannel::Blue => "z",
+            ColorChannel::Luminance => "",
+        };
+        let color = shader.any(&self.input)?.to_color();
+        let color = shader.name("color", color);
+        if !parts.is_empty() {
+            return Ok(Code::number(format!("{color}.{parts}")));
+        }
+        let [r, g, b] = [("x", 0.2126), ("y", 0.7152), ("z", 0.0722)]
+            .map(|(part, weight)| format!("number_mul({}, {color}.{part}, zero)", literal(weight)));
+        Ok(Code::number(format!(
+            "number_add(number_add({r}, {g}, zero), {b}, zero)"
+        )))
     }
 }
 

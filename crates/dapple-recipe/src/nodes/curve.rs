@@ -7,8 +7,10 @@
 
 use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal, literal};
 use crate::{Input, RecipeError, RecipeErrorKind};
 use dapple_raster::{Range, range};
+use dapple_wgsl::{Module, double_value};
 use serde::{Deserialize, Serialize};
 
 /// Number mapped by a smooth curve through points, which does not overshoot them.
@@ -37,6 +39,35 @@ impl NodeKind for SplineCurve {
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let spline = Spline::new(&self.points)?;
         plan.each(&self.input, move |value| spline.at(value.into()) as f32)
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let spline = Spline::new(&self.points)?;
+        let input = shader.number(&self.input)?;
+        let (first, last) = (self.points[0], self.points[self.points.len() - 1]);
+        let parts = (1..self.points.len()).map(|after| spline.part(after).map(double_value));
+        let parts = parts.map(|parts| format!("SplinePart({})", parts.join(", ")));
+        let parts: Vec<_> = parts.collect();
+        let bounds = self.points[1..self.points.len() - 1].iter();
+        let bounds: Vec<_> = bounds.map(|&[at, _]| literal(at)).collect();
+        shader.needs(Module::Spline);
+        let parts_name = shader.constant("PARTS", format!("array({})", parts.join(", ")));
+        let index = match bounds.is_empty() {
+            true => "0u".to_owned(),
+            false => {
+                let count = bounds.iter().map(|bound| format!("u32(x >= {bound})"));
+                count.collect::<Vec<_>>().join(" + ")
+            }
+        };
+        let [(from, start), (to, end)] =
+            [first, last].map(|[at, value]| (literal(at), literal(value)));
+        let body = format!(
+            "(x: f32, zero: u32) -> f32 {{\n    if x < {from} {{ return {start}; }}\n    \
+             if x >= {to} {{ return {end}; }}\n    var parts = {parts_name};\n    \
+             return spline_value(parts[{index}], x);\n}}"
+        );
+        let curve = shader.function("curve", &body);
+        Ok(Code::number(format!("{curve}({input}, zero)")))
     }
 }
 
@@ -88,6 +119,15 @@ impl Spline {
         Ok(Self { points, slopes })
     }
 
+    /// Returns the part that ends at a point: the first input and value, the width, the last value, and the slopes at
+    /// both ends times the width.
+    fn part(&self, after: usize) -> [f64; 6] {
+        let [[x0, y0], [x1, y1]] = [self.points[after - 1], self.points[after]];
+        let width = x1 - x0;
+        let [from, to] = [self.slopes[after - 1] * width, self.slopes[after] * width];
+        [x0, y0, width, y1, from, to]
+    }
+
     /// Returns the value of the curve.
     fn at(&self, x: f64) -> f64 {
         let after = self.points.partition_point(|&[at, _]| at <= x);
@@ -95,14 +135,12 @@ impl Spline {
             // Before the first point, or not a number
             return if x.is_nan() { x } else { self.points[0][1] };
         };
-        let [x0, y0] = self.points[before];
-        let Some(&[x1, y1]) = self.points.get(after) else {
-            return y0;
-        };
-        let width = x1 - x0;
+        if after == self.points.len() {
+            return self.points[before][1];
+        }
+        let [x0, y0, width, y1, from, to] = self.part(after);
         let t = (x - x0) / width;
         let rest = 1.0 - t;
-        let [from, to] = [self.slopes[before] * width, self.slopes[after] * width];
         let ends = y0 * (1.0 + 2.0 * t) * rest * rest + y1 * (3.0 - 2.0 * t) * t * t;
         ends + t * rest * (from * rest - to * t)
     }

@@ -2,6 +2,7 @@
 
 use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError, Values};
 use dapple_color::LinearRgb;
 use serde::{Deserialize, Serialize};
@@ -27,5 +28,13 @@ impl NodeKind for Invert {
                 }
             })
         }))
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let input = shader.any(&self.0)?;
+        Ok(match input.is_color {
+            true => Code::color(format!("exact_sub(vec4(1.0), {}, zero)", input.text)),
+            false => Code::number(format!("number_sub(1.0, {}, zero)", input.text)),
+        })
     }
 }

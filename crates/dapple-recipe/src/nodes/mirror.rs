@@ -2,7 +2,9 @@
 
 use super::{NodeKind, distance, inputs};
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError};
+use dapple_wgsl::double_value;
 use serde::{Deserialize, Serialize};
 
 /// Another node, whose part to the right of and below a center is mirrored to the other side.
@@ -40,5 +42,20 @@ impl NodeKind for MirroredNode {
                 false => position[axis],
             })
         })
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let input = shader.moved(&self.input)?;
+        let offset = distance::offset_code(shader, Some(self.center));
+        let at = shader.position([1.0; 2]);
+        let [x, y] = [0, 1].map(|axis| match self.axes[axis] {
+            true => {
+                let center = double_value(self.center[axis]);
+                format!("double_add({center}, double_abs({}))", offset[axis])
+            }
+            false => format!("{at}.{}", ["x", "y"][axis]),
+        });
+        let at = shader.name("position", format!("Position2d({x}, {y})"));
+        Ok(input(&at))
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{KINDS, NEW_NODES, Node, NodeKind, inputs};
 use crate::plan::{Builder, Step, Work};
+use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError, RecipeErrorKind};
 use serde::{Deserialize, Serialize};
 
@@ -40,6 +41,14 @@ impl NodeKind for Output {
             }
             None => plan.constant(&self.of),
         }
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let (node, kind) = match shader.node_of(&self.of) {
+            Some((name, node)) => (name, self.node(node)?),
+            None => return shader.any(&self.of),
+        };
+        kind.shader(&mut shader.as_node(node))
     }
 }
 

@@ -2,8 +2,10 @@
 
 use super::{NodeKind, distance, inputs};
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError};
 use dapple_raster::{Range, range};
+use dapple_wgsl::{Module, double_value};
 use serde::{Deserialize, Serialize};
 
 /// Another node, bent around a center: its width runs around the center, and its height outward.
@@ -47,5 +49,22 @@ impl NodeKind for Polar {
             let turns = turns - turns.floor();
             [turns * around, (x * x + y * y).sqrt()]
         })
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let input = shader.moved(&self.input)?;
+        let [x, y] = distance::offset_code(shader, self.center);
+        shader.needs(Module::DoubleAngle);
+        let turn = double_value(core::f64::consts::TAU);
+        let turns = shader.name(
+            "turns",
+            format!("double_div(double_angle({y}, {x}), {turn})"),
+        );
+        let ([width, _], _) = shader.tile();
+        let around = double_value(f64::from(self.repeat) * width);
+        let around = format!("double_mul(double_sub({turns}, double_floor({turns})), {around})");
+        let at = format!("Position2d({around}, double_length({x}, {y}))");
+        let at = shader.name("position", at);
+        Ok(input(&at))
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal, literal, quotient};
 use crate::{Input, RecipeError};
 use dapple_raster::{Range, range};
 use serde::{Deserialize, Serialize};
@@ -34,5 +35,13 @@ impl NodeKind for Quantize {
         plan.each(&self.input, move |value| {
             (value * last + 0.5).floor() / last
         })
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let input = shader.number(&self.input)?;
+        let last = (self.steps - 1) as f32;
+        let step = format!("number_mul({input}, {}, zero)", literal(last));
+        let step = format!("floor(number_add({step}, 0.5, zero))");
+        Ok(Code::number(quotient(&step, last)))
     }
 }

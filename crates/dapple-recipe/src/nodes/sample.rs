@@ -2,8 +2,10 @@
 
 use super::{NodeKind, inputs};
 use crate::plan::{Builder, Moved, Positions, Step};
+use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError};
 use dapple_raster::{Range, range};
+use dapple_wgsl::Module;
 use serde::{Deserialize, Serialize};
 
 /// Another node, evaluated at the position `(x, y) · scale`.
@@ -48,5 +50,17 @@ impl NodeKind for SampleAt {
                 scale: self.scale,
             },
         }))
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let input = shader.moved(&self.input)?;
+        let [x, y] = [shader.number(&self.x)?, shader.number(&self.y)?];
+        shader.needs(Module::Position2d);
+        let given = shader.name(
+            "position",
+            format!("Position2d(double_from({x}), double_from({y}))"),
+        );
+        let at = shader.scaled(&given, self.scale);
+        Ok(input(&at))
     }
 }

@@ -2,6 +2,7 @@
 
 use super::NodeKind;
 use crate::plan::{Builder, Step, at_least_one};
+use crate::shader::{Code, NodeShader, Refusal, literal};
 use crate::{Input, RecipeError, Values};
 use serde::{Deserialize, Serialize};
 
@@ -32,6 +33,22 @@ impl NodeKind for Select {
         Ok(plan.local(inputs, |inputs| {
             Ok(selected(inputs[0].numbers(), &inputs[1..]))
         }))
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let by = shader.number(&self.by)?;
+        let (inputs, is_color) = shader.alike(&self.inputs)?;
+        let count = literal(inputs.len() as f32);
+        let place = shader.name("choice", format!("number_mul({by}, {count}, zero)"));
+        let mut choices = (0_u16..).zip(inputs);
+        let Some((_, mut text)) = choices.next() else {
+            return Err(Refusal::new("it has no inputs"));
+        };
+        for (index, input) in choices {
+            let bound = literal(index.into());
+            text = format!("select({text}, {input}, {place} >= {bound})");
+        }
+        Ok(Code { text, is_color })
     }
 }
 

@@ -5,6 +5,7 @@
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal, literal, quotient};
 use crate::{Input, RecipeError};
 use dapple_raster::{PairOperation, Range, range};
 use serde::{Deserialize, Serialize};
@@ -53,6 +54,10 @@ impl NodeKind for SmoothMinimum {
             PairOperation::Minimum.apply(a, b) - fillet(a, b, radius)
         })
     }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        fold(shader, &self.inputs, self.radius, ["min", "sub"])
+    }
 }
 
 impl NodeKind for SmoothMaximum {
@@ -67,6 +72,10 @@ impl NodeKind for SmoothMaximum {
             PairOperation::Maximum.apply(a, b) + fillet(a, b, radius)
         })
     }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        fold(shader, &self.inputs, self.radius, ["max", "add"])
+    }
 }
 
 /// Returns the difference between the minimum and the smooth minimum of two numbers.
@@ -77,4 +86,32 @@ fn fillet(a: f32, b: f32, radius: f32) -> f32 {
     } else {
         0.0
     }
+}
+
+/// Writes the smooth minimum or maximum of the inputs, pairwise, from the first to the last. The operations are those of
+/// the module `Number`: the selection, and the one that adds or subtracts the fillet.
+fn fold(
+    shader: &mut NodeShader<'_, '_>,
+    inputs: &[Input],
+    radius: f64,
+    [selection, change]: [&str; 2],
+) -> Result<Code, Refusal> {
+    let (inputs, _) = shader.alike(inputs)?;
+    let radius = radius as f32;
+    let result = inputs.into_iter().reduce(|a, b| {
+        let fillet = match radius == 0.0 {
+            true => literal(0.0),
+            false => {
+                let gap = format!("abs(number_sub({a}, {b}, zero))");
+                let overlap = format!("number_sub({}, {gap}, zero)", literal(radius));
+                let overlap = shader.name("overlap", overlap);
+                let square = format!("number_mul({overlap}, {overlap}, zero)");
+                let fillet = quotient(&square, 4.0 * radius);
+                format!("number(select(0.0, {fillet}, {overlap} > 0.0), zero)")
+            }
+        };
+        let end = format!("number_{selection}({a}, {b}, zero)");
+        shader.name("end", format!("number_{change}({end}, {fillet}, zero)"))
+    });
+    Ok(Code::number(result.unwrap_or_default()))
 }

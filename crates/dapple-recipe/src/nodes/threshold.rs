@@ -2,6 +2,7 @@
 
 use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal, literal, quotient};
 use crate::{Input, RecipeError, Values};
 use dapple_raster::{Range, range};
 use serde::{Deserialize, Serialize};
@@ -43,6 +44,21 @@ impl NodeKind for Threshold {
                     .collect(),
             ))
         }))
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let (input, threshold) = (shader.number(&self.input)?, shader.number(&self.threshold)?);
+        let above = format!("number_sub({input}, {threshold}, zero)");
+        let above = shader.name("above", above);
+        let hard = format!("number(select(0.0, 1.0, {above} >= 0.0), zero)");
+        if self.width == 0.0 {
+            return Ok(Code::number(hard));
+        }
+        let t = format!("number_add({}, 0.5, zero)", quotient(&above, self.width));
+        let width = literal(self.width);
+        Ok(Code::number(format!(
+            "select(number_smooth({t}, zero), {hard}, 2.0 * abs({above}) >= {width})"
+        )))
     }
 }
 

@@ -1,8 +1,13 @@
 //! Writes the functions of a shader.
 
+<<<<<<< HEAD
 use super::MaterialShader;
 use crate::plan::{Builder, Watch, seed_of};
 use crate::{Images, Input, NodeSeed, Plan, PlanLimits, Recipe, RecipeError};
+=======
+use crate::plan::seed_of;
+use crate::{Input, Node, NodeSeed, Plan, Recipe, RecipeError};
+>>>>>>> 3263517c (recipe: write nodes that fold, compare and choose as shaders)
 use core::fmt::{self, Write as _};
 use dapple_color::LinearRgb;
 use dapple_hash::Seed;
@@ -155,6 +160,27 @@ impl<'a> NodeShader<'_, 'a> {
     pub(crate) fn periods(&self, frequency: [f64; 2]) -> [Option<u32>; 2] {
         let Recipe { extent, wrap, .. } = self.writer.recipe;
         [0, 1].map(|axis| wrap[axis].then(|| (extent[axis] * frequency[axis]) as u32))
+    }
+
+    /// Returns the size of the tile, and along which axes it repeats.
+    pub(crate) fn tile(&self) -> ([f64; 2], [bool; 2]) {
+        (self.writer.recipe.extent, self.writer.recipe.wrap)
+    }
+
+    /// Returns the node that an input names, and its name.
+    pub(crate) fn node_of(&self, input: &Input) -> Option<(&'a str, &'a Node)> {
+        let recipe: &'a Recipe = self.writer.recipe;
+        let (name, node) = recipe.nodes.get_key_value(input.node()?)?;
+        Some((name, node))
+    }
+
+    /// Writes as if the node called `node` were the current one, with its seed.
+    pub(crate) fn as_node(&mut self, node: &'a str) -> NodeShader<'_, 'a> {
+        NodeShader {
+            writer: self.writer,
+            scope: self.scope,
+            node,
+        }
     }
 
     /// Returns the refusal of a kind of node that has no shader.

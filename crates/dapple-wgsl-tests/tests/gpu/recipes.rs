@@ -302,14 +302,47 @@ const NODES: &str = r##"
     metallic = 1.0
 "##;
 
-#[test]
-fn every_node_with_a_shader_has_the_bits_of_the_cpu() {
-    let Some(gpu) = Gpu::new() else { return };
-    let mut recipe = Recipe::from_toml(NODES).expect("a recipe");
+/// Nodes that evaluate others elsewhere, that compare and that choose.
+const FOLDS: &str = r##"
+    dapple = 1
+    extent = [5.0, 3.0]
+    wrap = [true, false]
+    [nodes]
+    hills.noise = { basis = "gradient", frequency = [2.0, 3.7], octaves = 2 }
+    cells.worley = { frequency = [1.0, 1.7], value = "cell_value" }
+    red.ramp = { input = "hills", colors = ["#a04020", "#20c0f0"], space = "linear" }
+    hard.threshold = { input = "hills", threshold = "cells" }
+    soft.threshold = { input = "hills", threshold = 0.45, width = 0.3 }
+    terraces.quantize = { input = "hills", steps = 7 }
+    halves.quantize = { input = "distance", steps = 9 }
+    less.invert = "hills"
+    distance.distance = { center = [4.5, 0.25] }
+    one.select = { inputs = ["hills", 0.25, "less", "distance"], by = "cells" }
+    bump.curve = { input = "hills", points = [[0.2, 0.1], [0.4, 0.15], [0.5, 0.9], [0.8, 0.3]] }
+    line.curve = { input = "distance", points = [[0.1, 0.0], [3.0, 1.0]] }
+    joined.smooth_minimum = { inputs = ["hills", "cells", "less"], radius = 0.3 }
+    cut.smooth_maximum = { inputs = ["hills", "cells"], radius = 0.25 }
+    sharp.smooth_maximum = { inputs = ["hills", "cells"], radius = 0.0 }
+    green.channel = { input = "red", channel = "green" }
+    light.channel = { input = "red" }
+    mapped.sample = { input = "cells", x = "hills", y = "distance", scale = [2.0, 0.3] }
+    mirrored.mirror = { input = "hills", center = [1.1, 0.0] }
+    left.mirror = { input = "hills", axes = [true, false], center = [1.1, 0.0] }
+    ring.polar = { input = "hills", repeat = 3 }
+    turned.kaleidoscope = { input = "hills", sectors = 5, center = [2.2, 1.3] }
+    first.output = { of = "cells", value = "f1" }
+    inverted.invert = "red"
+    tint.select = { inputs = ["inverted", "red", "hard"], by = "cells" }
+    [material]
+    albedo = "tint"
+"##;
+
+/// Compares all nodes of a recipe, three at a time, and its color.
+fn compare_nodes(gpu: &Gpu, text: &str, at: &[At]) {
+    let mut recipe = Recipe::from_toml(text).expect("a recipe");
     let plan = Plan::new(&recipe, &Images::new(), 0.0).expect("a plan");
     let numbers = plan.node_names().filter(|name| !plan.is_color(name));
     let numbers: Vec<_> = numbers.map(Input::from).collect();
-    // Three nodes at a time
     for nodes in numbers.chunks(3) {
         recipe.material.height = nodes[0].clone();
         recipe.material.roughness = nodes[nodes.len() / 2].clone();
@@ -317,7 +350,25 @@ fn every_node_with_a_shader_has_the_bits_of_the_cpu() {
         let shader = recipe.to_wgsl(&Images::new(), &ShaderOptions::default());
         assert!(shader.is_ok(), "{nodes:?}: {shader:?}");
         let plan = Plan::new(&recipe, &Images::new(), 0.0).expect("a plan");
+<<<<<<< HEAD
         let difference = compare(&gpu, &recipe, &plan, &everywhere());
         assert_eq!(difference, Difference::default(), "{nodes:?}");
+=======
+        let difference = compare(gpu, &recipe, &plan, at);
+        assert_eq!(difference.numbers, 0, "{nodes:?}");
+        assert_eq!(difference.colors, 0, "{nodes:?}: a linear color");
+>>>>>>> 3263517c (recipe: write nodes that fold, compare and choose as shaders)
     }
+}
+
+#[test]
+fn every_node_with_a_shader_has_the_bits_of_the_cpu() {
+    let Some(gpu) = Gpu::new() else { return };
+    compare_nodes(&gpu, NODES, &everywhere());
+}
+
+#[test]
+fn nodes_that_fold_compare_and_choose_have_the_bits_of_the_cpu() {
+    let Some(gpu) = Gpu::new() else { return };
+    compare_nodes(&gpu, FOLDS, &everywhere());
 }
