@@ -19,6 +19,7 @@ pub use bond::{Bond, BrickValue};
 
 use crate::PatternError;
 use crate::lattice::{self, Split, random, smoothstep, wrapped_cell};
+use crate::lattice::{period_words, seed_words, shader_words};
 use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::{Field, Range, RasterError, RasterViewMut, Window, range};
 
@@ -188,6 +189,33 @@ impl Bricks {
             bricks: *self,
             value,
         }
+    }
+
+    /// Returns the words of `Bricks` in the shaders of `dapple-wgsl`, in pairs.
+    #[must_use]
+    pub fn shader_words(&self) -> [[u32; 2]; 16] {
+        let options = self.options;
+        let [course, end] = ["course", "end"].map(|part| seed_words(self.seed.child(part, 0).0));
+        let [x, y] = options.frequency.map(shader_words);
+        let [width, height] = self.cell.map(shader_words);
+        [
+            seed_words(self.seed.0),
+            period_words(options.period),
+            [options.bond as u32, options.length],
+            x,
+            y,
+            width,
+            height,
+            shader_words(self.unit),
+            shader_words(0.5 * options.joint),
+            shader_words(0.25 * (1.0 - options.joint) * options.jitter),
+            shader_words(options.bevel * self.unit),
+            shader_words(options.rounding * self.unit),
+            shader_words(options.offset),
+            shader_words(0.5 * options.variation),
+            course,
+            end,
+        ]
     }
 
     fn sample(&self, value: BrickValue, position: [f64; 2]) -> f32 {

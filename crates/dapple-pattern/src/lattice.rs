@@ -105,6 +105,21 @@ pub fn direction(degrees: f64) -> [f64; 2] {
     }
 }
 
+/// Returns the upper and the lower word of a number, as shaders take it.
+pub(crate) fn shader_words(number: f64) -> [u32; 2] {
+    seed_words(number.to_bits())
+}
+
+/// Returns the upper and the lower word of 64 bits.
+pub(crate) fn seed_words(bits: u64) -> [u32; 2] {
+    [(bits >> 32) as u32, bits as u32]
+}
+
+/// Returns a period for a shader; 0 stands for none.
+pub(crate) fn period_words(period: [Option<u32>; 2]) -> [u32; 2] {
+    period.map(|cells| cells.unwrap_or(0))
+}
+
 /// Renders the values at the pixel centers of a window, on all cores if the feature `rayon` is enabled.
 pub(crate) fn render(
     window: &Window,

@@ -12,6 +12,7 @@
 
 use crate::PatternError;
 use crate::lattice::{self, Split, random, smoothstep, wrapped};
+use crate::lattice::{period_words, seed_words, shader_words};
 use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::{Field, Range, RasterError, RasterViewMut, Window, range};
 
@@ -207,6 +208,35 @@ impl Weave {
             weave: *self,
             value,
         }
+    }
+
+    /// Returns the words of `Weave` in the shaders of `dapple-wgsl`, in pairs.
+    #[must_use]
+    pub fn shader_words(&self) -> [[u32; 2]; 7] {
+        // The numbers of a draft are at most 64.
+        let (draft, step) = match self.repeat {
+            Repeat::Checks { size } => ([0, size], 0),
+            Repeat::Shifted {
+                over,
+                threads,
+                step,
+            } => ([threads, over], step),
+        };
+        let WeaveOptions {
+            width,
+            roundness,
+            jitter,
+            ..
+        } = self.options;
+        [
+            seed_words(self.seed.0),
+            period_words(self.options.period),
+            draft.map(|number| number as u32),
+            [step as u32, 0],
+            shader_words(width),
+            shader_words(roundness),
+            shader_words(jitter),
+        ]
     }
 
     fn sample(&self, value: WeaveValue, position: [f64; 2]) -> f32 {

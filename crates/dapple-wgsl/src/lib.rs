@@ -123,6 +123,16 @@ pub enum Module {
     DoubleAngle,
     /// Curves through points.
     Spline,
+    /// Parts that patterns share: lattice positions and random numbers of 64 bits.
+    Lattice,
+    /// Parts that all bonds of bricks share.
+    Bricks,
+    /// Bonds of rectangular bricks.
+    Rectangles,
+    /// Roof tiles and slates.
+    RoofTiles,
+    /// Woven cloth.
+    Weave,
 }
 
 /// Description of a module.
@@ -189,6 +199,11 @@ entries! {
     DoubleFunctions = "double_functions" [Double, DoubleQuotient],
     DoubleAngle = "double_angle" [Double, DoubleFunctions],
     Spline = "spline" [Double, DoubleFunctions],
+    Lattice = "lattice" [CellId, WorleyParts, Double],
+    Bricks = "bricks" [Hash, Double, DoubleFunctions, Lattice],
+    Rectangles = "rectangles" [Double, Position2d, DoubleFunctions, Lattice, Bricks],
+    RoofTiles = "roof_tiles" [Double, Position2d, DoubleFunctions, Lattice, Bricks],
+    Weave = "weave" [Hash, Double, Position2d, DoubleFunctions, Lattice],
 }
 
 impl Module {
@@ -300,6 +315,17 @@ pub fn worley_value(words: &[u32; 24]) -> String {
     alloc::format!(
         "Worley(array({first}, {second}), {period}, array({low}, {high}), {least}u, {jitter}u, {metric}u)"
     )
+}
+
+/// Returns the parameters of a pattern, such as `Bricks`, as a constructor of WGSL. The words are those of `shader_words` of
+/// the pattern in `dapple-pattern`, in pairs.
+#[must_use]
+pub fn pattern_value(name: &str, words: &[[u32; 2]]) -> String {
+    let pairs = words.iter();
+    let pairs: Vec<_> = pairs
+        .map(|[first, second]| alloc::format!("vec2({first:#x}u, {second:#x}u)"))
+        .collect();
+    alloc::format!("{name}({})", pairs.join(", "))
 }
 
 /// Returns a finite number as a literal of WGSL that has the same bits, except for the sign of zero.

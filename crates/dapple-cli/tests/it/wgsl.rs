@@ -148,6 +148,9 @@ fn shaders_in_glsl_have_all_functions_and_are_valid() {
         "power",
         "oklab",
         "spline",
+        "rectangles",
+        "roof-tiles",
+        "weave",
     ];
     let noise = [
         &["wgsl"][..],

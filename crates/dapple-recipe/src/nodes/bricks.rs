@@ -3,7 +3,9 @@
 use super::{Frequency, NodeKind, NodeSeed, outputs};
 use crate::RecipeError;
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal};
 use dapple_pattern::{Bond, BrickOptions, BrickValue, Bricks};
+use dapple_wgsl::{Module, pattern_value};
 use serde::{Deserialize, Serialize};
 
 /// Bricks, tiles or planks in a regular bond.
@@ -71,9 +73,52 @@ impl NodeKind for BricksNode {
     outputs!(BrickValue);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
-        let options = BrickOptions {
+        let options = self.options(plan.periods(self.frequency.0)?);
+        let bricks = Bricks::new(plan.seed(self.seed.as_ref()), options)?;
+        Ok(Step::field(bricks.field(self.value)))
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let (module, kind) = match self.bond {
+            Bond::Hexagons => return Err(Refusal::new("hexagons have no shader")),
+            Bond::RoofTiles | Bond::Slates => (Module::RoofTiles, "roof"),
+            _ => (Module::Rectangles, "rectangle"),
+        };
+        let options = self.options(shader.periods(self.frequency.0));
+        let bricks = Bricks::new(shader.seed(self.seed.as_ref()), options)?;
+        shader.needs(module);
+        let at = shader.position(self.frequency.0);
+        let bricks = pattern_value("Bricks", &bricks.shader_words());
+        let bricks = shader.constant("BRICKS", bricks);
+        if self.value == BrickValue::EdgeDistance {
+            return Ok(Code::number(format!(
+                "{kind}_edge_distance({bricks}, {at})"
+            )));
+        }
+        let brick = shader.name("brick", format!("{kind}_brick({bricks}, {at})"));
+        let random = |index: u32| format!("brick_random({bricks}, {brick}.id, {index}u)");
+        Ok(Code::number(match self.value {
+            BrickValue::Height | BrickValue::EdgeDistance => {
+                format!("double_to_float(double_unit({brick}.height))")
+            }
+            BrickValue::Random => random(0),
+            BrickValue::Random2 => random(1),
+            BrickValue::Random3 => random(2),
+            BrickValue::U => format!("double_to_float({brick}.u)"),
+            BrickValue::V => format!("double_to_float({brick}.v)"),
+            BrickValue::Column => format!("f32({brick}.id.x)"),
+            BrickValue::Row => format!("f32({brick}.id.y)"),
+            BrickValue::Direction => format!("select(0.0, 1.0, {brick}.is_upright)"),
+        }))
+    }
+}
+
+impl BricksNode {
+    /// Returns the options with a period.
+    fn options(&self, period: [Option<u32>; 2]) -> BrickOptions {
+        BrickOptions {
             frequency: self.frequency.0,
-            period: plan.periods(self.frequency.0)?,
+            period,
             bond: self.bond,
             offset: self.offset,
             length: self.length,
@@ -82,8 +127,6 @@ impl NodeKind for BricksNode {
             bevel: self.bevel,
             rounding: self.rounding,
             jitter: self.jitter,
-        };
-        let bricks = Bricks::new(plan.seed(self.seed.as_ref()), options)?;
-        Ok(Step::field(bricks.field(self.value)))
+        }
     }
 }

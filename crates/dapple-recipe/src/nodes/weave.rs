@@ -3,7 +3,9 @@
 use super::{Frequency, NodeKind, NodeSeed, outputs};
 use crate::RecipeError;
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal};
 use dapple_pattern::{Draft, Weave, WeaveOptions, WeaveValue};
+use dapple_wgsl::{Module, pattern_value};
 use serde::{Deserialize, Serialize};
 
 /// Woven cloth: warp threads along y and weft threads along x, which pass over and under each other.
@@ -71,9 +73,37 @@ impl NodeKind for WeaveNode {
     outputs!(WeaveValue);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
-        let options = WeaveOptions {
+        let options = self.options(plan.periods(self.frequency.0)?);
+        let weave = Weave::new(plan.seed(self.seed.as_ref()), options)?;
+        Ok(Step::field(weave.field(self.value)))
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let options = self.options(shader.periods(self.frequency.0));
+        let weave = Weave::new(shader.seed(self.seed.as_ref()), options)?;
+        shader.needs(Module::Weave);
+        let at = shader.position(self.frequency.0);
+        let weave = shader.constant("WEAVE", pattern_value("Weave", &weave.shader_words()));
+        let thread = shader.name("thread", format!("weave_thread({weave}, {at})"));
+        let random =
+            |index: u32| format!("state_number(cell_state({weave}.seed, {thread}.id), {index}u)");
+        Ok(Code::number(match self.value {
+            WeaveValue::Height => format!("double_to_float({thread}.height)"),
+            WeaveValue::Random => random(0),
+            WeaveValue::Random2 => random(1),
+            WeaveValue::Direction => format!("f32({thread}.id.x)"),
+            WeaveValue::U => format!("double_to_float({thread}.along)"),
+            WeaveValue::V => format!("thread_part({thread}.across)"),
+        }))
+    }
+}
+
+impl WeaveNode {
+    /// Returns the options with a period.
+    fn options(&self, period: [Option<u32>; 2]) -> WeaveOptions {
+        WeaveOptions {
             frequency: self.frequency.0,
-            period: plan.periods(self.frequency.0)?,
+            period,
             draft: self.draft,
             over: self.over,
             under: self.under,
@@ -81,8 +111,6 @@ impl NodeKind for WeaveNode {
             width: self.width,
             roundness: self.roundness,
             jitter: self.jitter,
-        };
-        let weave = Weave::new(plan.seed(self.seed.as_ref()), options)?;
-        Ok(Step::field(weave.field(self.value)))
+        }
     }
 }

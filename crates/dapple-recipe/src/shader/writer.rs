@@ -11,6 +11,7 @@ use crate::{Input, Node, NodeSeed, Plan, Recipe, RecipeError};
 use core::fmt::{self, Write as _};
 use dapple_color::LinearRgb;
 use dapple_hash::Seed;
+use dapple_pattern::PatternError;
 use dapple_raster::RasterError;
 use dapple_wgsl::{Module, double_value, number_value, source};
 use dapple_worley::WorleyError;
@@ -114,7 +115,7 @@ macro_rules! from {
     };
 }
 
-from!(RecipeError, WorleyError, RasterError);
+from!(RecipeError, WorleyError, RasterError, PatternError);
 
 /// Returns a number as a literal. A compiler that knows a zero may leave out a sum, and with it the sign of the result.
 pub(crate) fn literal(number: f32) -> String {

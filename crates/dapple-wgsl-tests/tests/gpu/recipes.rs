@@ -372,3 +372,83 @@ fn nodes_that_fold_compare_and_choose_have_the_bits_of_the_cpu() {
     let Some(gpu) = Gpu::new() else { return };
     compare_nodes(&gpu, FOLDS, &everywhere());
 }
+
+/// Values of the bricks of a bond and of the threads of a draft.
+const VALUES: &[(&str, &str)] = &[
+    (
+        "bricks",
+        "bond = 'stack', frequency = [0.8, 3.0], jitter = 0.7, bevel = 0.3",
+    ),
+    (
+        "bricks",
+        "bond = 'running', frequency = [1.2, 2.0], offset = 0.3, joint = 0.3",
+    ),
+    (
+        "bricks",
+        "bond = 'flemish', frequency = [1.6, 2.0], rounding = 0.2, jitter = 1.0",
+    ),
+    (
+        "bricks",
+        "bond = 'herringbone', frequency = [2.4, 2.0], length = 3, joint = 0.4",
+    ),
+    (
+        "bricks",
+        "bond = 'basket', frequency = [1.6, 2.0], length = 2, jitter = 0.2",
+    ),
+    (
+        "bricks",
+        "bond = 'planks', frequency = [0.8, 3.0], variation = 0.9, jitter = 0.1",
+    ),
+    (
+        "bricks",
+        "bond = 'roof_tiles', frequency = [1.0, 2.0], joint = 0.2, jitter = 0.3",
+    ),
+    (
+        "bricks",
+        "bond = 'slates', frequency = [1.2, 2.0], joint = 0.2, rounding = 0.3",
+    ),
+    ("weave", "frequency = [1.6, 2.0], jitter = 0.5"),
+    (
+        "weave",
+        "draft = 'satin', frequency = [1.0, 3.0], roundness = 0.6",
+    ),
+    (
+        "weave",
+        "draft = 'basket', over = 3, frequency = [1.2, 4.0], width = 0.7",
+    ),
+];
+
+#[test]
+fn bricks_and_weaves_have_the_bits_of_the_cpu() {
+    let Some(gpu) = Gpu::new() else { return };
+    // Positions in repeated tiles, near and far
+    let at: Vec<_> = everywhere().into_iter().skip(2).collect();
+    for (kind, options) in VALUES {
+        let values = match *kind {
+            "bricks" => ["edge_distance", "u", "random2"],
+            _ => ["v", "u", "random"],
+        };
+        let outputs =
+            values.map(|value| format!("{value}.output = {{ of = 'a', value = '{value}' }}"));
+        let text = format!(
+            "dapple = 1
+            extent = [5.0, 3.0]
+            wrap = [true, false]
+            [nodes]
+            a.{kind} = {{ {options} }}
+            {}
+            [material]
+            albedo = 'a'",
+            outputs.join("\n")
+        );
+        let mut recipe = Recipe::from_toml(&text).expect("a recipe");
+        recipe.material.height = Input::from(values[0]);
+        recipe.material.roughness = Input::from(values[1]);
+        recipe.material.metallic = Input::from(values[2]);
+        let shader = recipe.to_wgsl(&Images::new(), &ShaderOptions::default());
+        assert!(shader.is_ok(), "{options}: {shader:?}");
+        let plan = Plan::new(&recipe, &Images::new(), 0.0).expect("a plan");
+        let difference = compare(&gpu, &recipe, &plan, &at);
+        assert_eq!((difference.numbers, difference.colors), (0, 0), "{options}");
+    }
+}
