@@ -5,11 +5,14 @@ use crate::args::{FiniteArgs, OutputArgs, seed};
 use crate::baking::{advise, is_json, read_images, read_recipe};
 use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, Job, put_text, say};
+use crate::output::Target;
 use crate::shader_language::ShaderLanguage;
 use anyhow::Result;
 use dapple::hash::Seed;
 use dapple::recipe::{KINDS, NODE_TAGS, Plan, Recipe, ShaderOptions};
+use dapple::recipe::{MaterialShader, Plan, Recipe, ShaderOptions};
 use serde::Serialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 const EXAMPLES: &str = "\
@@ -26,7 +29,8 @@ Examples:
 A built-in recipe is printed as it was written, with its comments; change it and give the
 file to `dapple bake`. With --rust it becomes a Rust program that holds it as text and bakes it
 with the crate `dapple`. With --wgsl it becomes a function for shaders, with the same bits: height,
-color, roughness and metalness at a position. With the first line `#:schema recipe.schema.json` in a recipe, editors that use
+color, roughness and metalness at a position. The tiles and control points that it looks up are written
+next to it, as flagstone.bin: little-endian words of a texture of the format rgba32uint. With the first line `#:schema recipe.schema.json` in a recipe, editors that use
 Taplo complete and check it.";
 
 /// List the built-in recipes; print a recipe as TOML, JSON, Rust or WGSL, or the schema of all; check one of your own.
@@ -53,7 +57,7 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with = "to")]
     rust: bool,
 
-    /// Print the material as a function of WGSL, in one file without bindings.
+    /// Print the material as a function of WGSL, in one file without bindings; with --output, write the texture that it looks up next to it.
     #[arg(long, conflicts_with_all = ["to", "rust"])]
     wgsl: bool,
 
@@ -148,9 +152,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             textures: args.textures,
         };
         let shader = recipe.to_wgsl(&images, &options).map_err(advise)?;
-        let job = Job::new(context, "recipe", &args.files);
-        let text = args.language.translate(shader.wgsl)?;
-        return put_text(job, &recipe.name, args.language.extension(), &text, args);
+        return put_shader(args, context, &recipe.name, shader);
     }
     let is_as_written =
         !args.rust && args.format().is_none() && args.seed.is_none() && args.set.is_empty();
@@ -167,6 +169,30 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     };
     let job = Job::new(context, "recipe", &args.files);
     put_text(job, &recipe.name, ending, &text, args)
+}
+
+/// Writes a shader, and next to it the words of its texture.
+fn put_shader(args: &Args, context: &Context, name: &str, shader: MaterialShader) -> Result<Exit> {
+    let mut job = Job::new(context, "recipe", &args.files);
+    let target = match args.files.output {
+        Some(_) => args.files.target(name, args.language.extension())?,
+        None => Target::Stdout,
+    };
+    let output = job.claim_text(&target)?;
+    // Standard output takes the text alone.
+    if !shader.data.is_empty() && target != Target::Stdout {
+        let words = job.claim(&target.clone().with_ending("bin"))?;
+        let bytes: Vec<u8> = shader
+            .data
+            .iter()
+            .flat_map(|word| word.to_le_bytes())
+            .collect();
+        job.write(words, &bytes)?;
+    }
+    job.claim_sidecar(&target)?;
+    job.write(output, args.language.translate(shader.wgsl)?.as_bytes())?;
+    job.finish(args, Value::Null)?;
+    Ok(Exit::Done)
 }
 
 impl Args {

@@ -3,7 +3,7 @@
 use crate::support::{Folder, assert_done, assert_refused, stdout};
 use dapple::hash::Seed;
 use dapple::noise::GradientNoise3;
-use dapple::recipe::Recipe;
+use dapple::recipe::{Images, Recipe, ShaderOptions};
 
 /// Prints modules of noise and validates them.
 fn valid(folder: &Folder, arguments: &[&str]) -> String {
@@ -121,16 +121,37 @@ fn the_recipe_of_the_readme_is_the_material_of_its_shader() {
 #[test]
 fn nodes_without_a_shader_are_refused_by_name_unless_they_are_textures() {
     let folder = Folder::new("recipe-wgsl-refused");
-    let refused = folder.run(&["recipe", "flagstone", "--wgsl"]);
+    let refused = folder.run(&["recipe", "rock-cliff", "--wgsl"]);
     for part in [
-        "`swell`: noise of the basis `pups` has no shader",
+        "`ledges`: ",
         "with --textures, the shader takes their values as arguments",
     ] {
         assert_refused(&refused, 2, part, "a node without a shader");
     }
-    let text = valid_output(&folder, &["recipe", "flagstone", "--wgsl", "--textures"]);
+    let text = valid_output(&folder, &["recipe", "rock-cliff", "--wgsl", "--textures"]);
     assert!(text.contains("fn material(place: Place2d, textures: Textures, zero: u32)"));
-    assert!(text.contains("    swell_value: f32,\n"), "{text}");
+    assert!(text.contains("    ledges_value: f32,\n"), "{text}");
+}
+
+#[test]
+fn tiles_and_control_points_of_a_material_are_written_beside_its_shader() {
+    let folder = Folder::new("recipe-wgsl-data");
+    let output = folder.run(&["recipe", "flagstone", "--wgsl", "-o", "floor.wgsl"]);
+    assert_done(&output, "a shader and its data");
+    let text = std::fs::read_to_string(folder.path("floor.wgsl")).expect("a shader");
+    assert!(text.contains("fn material(place: Place2d, data: texture_2d<u32>, zero: u32)"));
+    let words = std::fs::read(folder.path("floor.bin")).expect("the words");
+    let recipe = Recipe::builtin("flagstone").expect("a recipe");
+    let shader = recipe.to_wgsl(&Images::new(), &ShaderOptions::default());
+    let shader = shader.expect("a shader");
+    let expected: Vec<u8> = shader
+        .data
+        .iter()
+        .flat_map(|word| word.to_le_bytes())
+        .collect();
+    assert!(words == expected, "the words of the library");
+    // Whole rows of 1024 texels of 16 bytes
+    assert!(words.len().is_multiple_of(1024 * 16));
 }
 
 #[cfg(feature = "shader-languages")]
@@ -144,6 +165,11 @@ fn shaders_in_glsl_have_all_functions_and_are_valid() {
         "fractal",
         "worley-2d",
         "worley-3d",
+        "worley-4d",
+        "worley-edges-2d",
+        "wavelet-noise-2d",
+        "pups-2d",
+        "double-sine",
         "position-2d",
         "power",
         "oklab",
