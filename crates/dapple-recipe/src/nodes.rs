@@ -237,7 +237,7 @@ macro_rules! nodes {
         /// For each of [`KINDS`], its group, such as `shape`, and the initial options of a new node, as JSON.
         pub const NEW_NODES: [(&str, &str); KINDS.len()] = [$(($group, $start)),*];
 
-        /// For each of [`KINDS`], words of other programs for it, separated by commas. Empty if there are none.
+        /// For each of [`KINDS`], its names in other programs, separated by commas; may be empty.
         pub const NODE_TAGS: [&str; KINDS.len()] = [$(concat!($($tags)?)),*];
 
         impl Node {

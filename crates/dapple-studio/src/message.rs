@@ -201,7 +201,7 @@ pub struct Export {
     pub normal_y: Option<String>,
     /// The frame of a looping animation to export, as its number, starting at 1, and the number of frames.
     pub frame: Option<[u32; 2]>,
-    /// The number of frames of a looping animation, all of which are exported.
+    /// Exports all frames of a looping animation: their number.
     pub frames: Option<u32>,
     /// A folder in the folder of the recipe, into which the files are written. By default, they are only offered for
     /// download.

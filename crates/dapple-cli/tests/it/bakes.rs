@@ -106,8 +106,9 @@ fn recipes_are_listed_by_family_and_by_words() {
         families.is_sorted() && families.contains(&"stone"),
         "{families:?}"
     );
-    // A tag, a name and a word of the sentence, in upper or lower case.
+    // A tag, a name and a word of the sentence, in upper or lower case, and a node by a word of other programs.
     for (word, name) in [
+        ("Voronoi", "worley"),
         ("timber", "wood-grain"),
         ("Marble", "marble"),
         ("joints", "flagstone"),
