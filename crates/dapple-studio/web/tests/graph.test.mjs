@@ -4,7 +4,7 @@ import { mkdtempSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
-import { endBrowser, open, serve, settled, skip, text } from './harness.mjs';
+import { endBrowser, open, select, serve, settled, skip, text } from './harness.mjs';
 
 const RECIPE = `dapple = 1
 
@@ -61,6 +61,7 @@ describe('the graph', { skip, timeout: 240_000 }, () => {
     // The first pixels of a drag only begin it.
     assert.ok(nowY - y > 40 && nowY - y < 63, `${nowY - y}`);
     const before = await text(page);
+    await select(page, 'base');
     const name = page.locator('.parameters .name');
     await name.fill('ground');
     await name.press('Enter');
