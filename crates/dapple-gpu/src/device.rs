@@ -136,7 +136,8 @@ impl Device {
             rows_per_image: None,
         };
         let to = texture.as_image_copy();
-        self.queue.write_texture(to, &bytes, layout, size(width, rows));
+        self.queue
+            .write_texture(to, &bytes, layout, size(width, rows));
         texture.create_view(&Default::default())
     }
 

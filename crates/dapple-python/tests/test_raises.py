@@ -291,7 +291,7 @@ CALLS = [
     ("Recipe.plan", "recipe('a.noise.octaves = 99').plan()", "DappleError", "in the node `a`: the number of octaves is 99, but it must be from 1 to 16"),
     ("Plan.bake", "plan().bake(0)", "DappleError", "the size is 0, but it must be a whole number of at least 1, or 2 numbers, rows before columns"),
     ("Plan.bake", "plan().bake(4, window=np.s_[0:9, 0:2])", "DappleError", "the end of the region is 9, but it must be within the tile, past its first pixel"),
-    ("Plan.bake", "plan().bake(4, 'heigth')", "DappleError", "the map is `heigth`, but it must be one of height, normal, ao, curvature, albedo, roughness, metallic, orm; did you"),
+    ("Plan.bake", "plan().bake(4, 'heigth')", "DappleError", "the map is `heigth`, but it must be one of height, normal, ao, curvature, albedo, roughness, metallic, orm, emission, opacity, specular, clearcoat; did you"),
     ("Plan.bake", "plan().bake(4, ['height', 'height'])", "DappleError", "the map `height` is asked for twice"),
     ("Plan.bake", "recipe('a.disturb = { input = 0.5, copies = [3, 3] }').plan().bake(64)", "DappleError", "in the node `a`: the number of pixels along a side of a copy is 21.333333333333332, but it must be a whole number (size"),
     ("Plan.field", "plan().field('b')", "DappleError", "there is no node `b`"),

@@ -42,8 +42,8 @@ fn brick_inset(bricks: Bricks, state: vec2<u32>, side: u32) -> vec2<u32> {
 
 // Rise from 0 at the border of a face to 1 past the bevel
 fn brick_rise(bricks: Bricks, depth: vec2<u32>) -> vec2<u32> {
-    if !double_less(vec2(0u), depth) { return vec2(0u); }
-    if !double_less(depth, bricks.bevel) { return vec2(0x3ff00000u, 0u); }
+    if !double_is_less(vec2(0u), depth) { return vec2(0u); }
+    if !double_is_less(depth, bricks.bevel) { return vec2(0x3ff00000u, 0u); }
     return double_smooth(double_div(depth, bricks.bevel));
 }
 

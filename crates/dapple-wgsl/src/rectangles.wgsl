@@ -28,11 +28,11 @@ fn plank_cell(bricks: Bricks, first: Split, y: Split) -> BrickCell {
     var column = x.cell;
     var left = plank_border(bricks, column, course);
     var right = double_add(one, plank_border(bricks, column + 1, course));
-    if double_less(x.offset, left) {
+    if double_is_less(x.offset, left) {
         column -= 1;
         right = left;
         left = double_sub(plank_border(bricks, column, course), one);
-    } else if !double_less(x.offset, right) {
+    } else if !double_is_less(x.offset, right) {
         column += 1;
         left = right;
         right = double_add(vec2(0x40000000u, 0u), plank_border(bricks, column + 1, course));
@@ -75,7 +75,7 @@ fn flemish_cell(bricks: Bricks, first: Split, y: Split) -> BrickCell {
     var column = x.cell & ~1;
     var center = vec2(0x3fe55555u, 0x55555555u);
     var half_width = center;
-    if !double_less(along, vec2(0x3ff55555u, 0x55555555u)) {
+    if !double_is_less(along, vec2(0x3ff55555u, 0x55555555u)) {
         column += 1;
         center = vec2(0x3ffaaaaau, 0xaaaaaaabu);
         half_width = vec2(0x3fd55555u, 0x55555555u);
@@ -165,7 +165,7 @@ fn rectangle_edge_distance(bricks: Bricks, at: Position2d) -> f32 {
         cell.y = double_sub(cell.y, step_y);
         let depth = brick_depth(bricks, cell).depth;
         if i == 0 {
-            if !double_less(depth, vec2(0u)) { return double_to_float(depth); }
+            if !double_is_less(depth, vec2(0u)) { return double_to_float(depth); }
             reach = double_negated(depth);
             nearest = depth;
         }

@@ -32,12 +32,12 @@ fn roof_brick(bricks: Bricks, at: Position2d) -> Brick {
     let y = split_of(at.y);
     // The tile of the course, or the tile of the next course, which lies below it
     var tile = roof_tile(bricks, x, y, 0, 0);
-    if double_less(tile.depth, vec2(0u)) {
+    if double_is_less(tile.depth, vec2(0u)) {
         let lower = roof_tile(bricks, x, y, 0, 1);
-        if !double_less(lower.depth, vec2(0u)) { tile = lower; }
+        if !double_is_less(lower.depth, vec2(0u)) { tile = lower; }
     }
     var height = vec2(0u);
-    if !double_less(tile.depth, vec2(0u)) {
+    if !double_is_less(tile.depth, vec2(0u)) {
         let rise = double_mul(half, brick_rise(bricks, tile.depth));
         height = double_add(double_mul(half, tile.down), rise);
     }
@@ -57,7 +57,7 @@ fn roof_edge_distance(bricks: Bricks, at: Position2d) -> f32 {
     let above = double_negated(depths[0]);
     let own = depths[1];
     let lower = depths[2];
-    if !double_less(own, vec2(0u)) { return double_to_float(double_min(own, above)); }
-    if !double_less(lower, vec2(0u)) { return double_to_float(double_min(lower, double_negated(own))); }
+    if !double_is_less(own, vec2(0u)) { return double_to_float(double_min(own, above)); }
+    if !double_is_less(lower, vec2(0u)) { return double_to_float(double_min(lower, double_negated(own))); }
     return double_to_float(double_max(own, lower));
 }

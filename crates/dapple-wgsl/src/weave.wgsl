@@ -49,7 +49,7 @@ fn thread_of(weave: Weave, axis: i32, own: Split, along: Split) -> Thread {
     let room = double_mul(weave.jitter, double_sub(one, width));
     let center = double_add(half, double_mul(room, double_sub(state_double(state, 3u), half)));
     let across = double_div(double_sub(own.offset, center), double_mul(half, width));
-    if !double_less(double_abs(across), one) { return Thread(id, across, along.offset, vec2(0u)); }
+    if !double_is_less(double_abs(across), one) { return Thread(id, across, along.offset, vec2(0u)); }
     // Interpolate between the crossings before and after the position
     let before = split_shifted(along, double_negated(half));
     let start = thread_level(weave, axis, own.cell, before.cell);
@@ -67,10 +67,10 @@ fn weave_thread(weave: Weave, at: Position2d) -> Thread {
     for (var axis = 0; axis < 2; axis++) { threads[axis] = thread_of(weave, axis, places[axis], places[1 - axis]); }
     let warp = threads[0];
     let weft = threads[1];
-    if double_less(weft.height, warp.height) { return warp; }
-    if double_less(warp.height, weft.height) { return weft; }
+    if double_is_less(weft.height, warp.height) { return warp; }
+    if double_is_less(warp.height, weft.height) { return weft; }
     // In a hole, the nearer thread
-    if double_less(double_abs(weft.across), double_abs(warp.across)) { return weft; }
+    if double_is_less(double_abs(weft.across), double_abs(warp.across)) { return weft; }
     return warp;
 }
 

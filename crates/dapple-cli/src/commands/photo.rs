@@ -230,6 +230,7 @@ fn recipe(args: &Args, size: [u32; 2], relief: f64) -> Recipe {
         seed: Seed::default(),
         extent: size.map(|side| f64::from(side) / shorter),
         wrap: args.wrap.flags(),
+        parameters: Default::default(),
         nodes: names
             .map(|name| (name.to_owned(), image(name)))
             .into_iter()

@@ -33,24 +33,10 @@ impl NodeKind for Distance {
     }
 
     fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
-        shader.needs(Module::DoubleQuotient);
-        let tile = shader.build(|plan| Ok(plan.domain()))?;
-        let at = shader.position([1.0; 2]);
-        let squares = [("x", 0), ("y", 1)].map(|(axis, index)| {
-            let center = double_value(self.center[index]);
-            let mut offset = format!("double_sub({at}.{axis}, {center})");
-            if tile.wrap[index] {
-                let [size, half] = [tile.size[index], 0.5].map(double_value);
-                let offset_in_tiles = format!("double_div({offset}, {size})");
-                let repeats = format!("double_floor(double_add({offset_in_tiles}, {half}))");
-                offset = format!("double_sub({offset}, double_mul({repeats}, {size}))");
-            }
-            let offset = shader.name("offset", offset);
-            format!("double_mul({offset}, {offset})")
-        });
-        let [x, y] = squares;
+        shader.needs(Module::DoubleFunctions);
+        let [x, y] = offset_code(shader, Some(self.center));
         Ok(Code::number(format!(
-            "double_to_float(double_root(double_add({x}, {y})))"
+            "double_to_float(double_length({x}, {y}))"
         )))
     }
 }
@@ -76,5 +62,28 @@ pub(super) fn offset(position: [f64; 2], center: [f64; 2], tile: &Domain) -> [f6
         }
         let repeats = (offset / tile.size[axis] + 0.5).floor();
         offset - repeats * tile.size[axis]
+    })
+}
+
+/// Writes the vector to the position from the nearest copy of a center, in numbers of 64 bits.
+pub(super) fn offset_code(
+    shader: &mut NodeShader<'_, '_>,
+    center: Option<[f64; 2]>,
+) -> [String; 2] {
+    let at = shader.position([1.0; 2]);
+    let (size, wrap) = shader.tile();
+    let center = center.unwrap_or(size.map(|side| 0.5 * side));
+    [0, 1].map(|axis| {
+        let [center, side] = [center[axis], size[axis]].map(double_value);
+        let offset = format!("double_sub({at}.{}, {center})", ["x", "y"][axis]);
+        let offset = shader.name("offset", offset);
+        if !wrap[axis] {
+            return offset;
+        }
+        shader.needs(Module::DoubleFunctions);
+        let half = double_value(0.5);
+        let repeats = format!("double_floor(double_add(double_div({offset}, {side}), {half}))");
+        let from_copy = format!("double_sub({offset}, double_mul({repeats}, {side}))");
+        shader.name("offset", from_copy)
     })
 }

@@ -1,13 +1,8 @@
 //! Writes the functions of a shader.
 
-<<<<<<< HEAD
 use super::MaterialShader;
 use crate::plan::{Builder, Watch, seed_of};
-use crate::{Images, Input, NodeSeed, Plan, PlanLimits, Recipe, RecipeError};
-=======
-use crate::plan::seed_of;
-use crate::{Input, Node, NodeSeed, Plan, Recipe, RecipeError};
->>>>>>> 3263517c (recipe: write nodes that fold, compare and choose as shaders)
+use crate::{Images, Input, Node, NodeSeed, Plan, PlanLimits, Recipe, RecipeError};
 use core::fmt::{self, Write as _};
 use dapple_color::LinearRgb;
 use dapple_hash::Seed;

@@ -350,14 +350,8 @@ fn compare_nodes(gpu: &Gpu, text: &str, at: &[At]) {
         let shader = recipe.to_wgsl(&Images::new(), &ShaderOptions::default());
         assert!(shader.is_ok(), "{nodes:?}: {shader:?}");
         let plan = Plan::new(&recipe, &Images::new(), 0.0).expect("a plan");
-<<<<<<< HEAD
-        let difference = compare(&gpu, &recipe, &plan, &everywhere());
-        assert_eq!(difference, Difference::default(), "{nodes:?}");
-=======
         let difference = compare(gpu, &recipe, &plan, at);
-        assert_eq!(difference.numbers, 0, "{nodes:?}");
-        assert_eq!(difference.colors, 0, "{nodes:?}: a linear color");
->>>>>>> 3263517c (recipe: write nodes that fold, compare and choose as shaders)
+        assert_eq!(difference, Difference::default(), "{nodes:?}");
     }
 }
 

@@ -50,6 +50,7 @@ impl FromArgMatches for MaterialFiles {
             frames: None,
             banded: false,
             keep_going: false,
+            gpu: false,
             sheet: matches.get_flag("sheet"),
             preview: matches.get_one("preview").copied(),
             contact_sheet: false,

@@ -149,6 +149,7 @@ impl MaterialArgs {
         Self {
             size,
             samples: SamplesArgs::default(),
+            supersample: 1,
             maps,
             set: Vec::new(),
             seed: None,

@@ -11,8 +11,7 @@ use dapple::mesh::Surface;
 use dapple::raster::Raster;
 use dapple::synth::{
     Axes as FieldAxes, Coherence, Edges, EndlessOptions, HierarchyOptions, Matching, Options,
-    Symmetry, SynthError, sites_for_exemplar, sites_for_repeats,
-    Symmetry, SynthError, repair_levels, sites_for_repeats,
+    Symmetry, SynthError, repair_levels, sites_for_exemplar, sites_for_repeats,
 };
 use dapple::tile::Map;
 use serde::Serialize;

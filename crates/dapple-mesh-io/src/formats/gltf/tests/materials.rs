@@ -1,6 +1,7 @@
 //! Tests of materials.
 
 use super::*;
+use dapple_mesh::AlphaMode;
 
 #[test]
 fn further_materials_of_faces_are_listed() {
