@@ -24,6 +24,9 @@ const SHIPPED: [(&str, &str, &str); 2] = [
     ),
 ];
 
+/// Packages of optional features that distributed programs are built without.
+const NOT_SHIPPED: [&str; 2] = ["dapple-gpu", "spirv"];
+
 const HEAD: &str = "\
 Licenses of the crates of other people in this program.
 Made by `cargo xtask licenses` from the packages that Cargo.lock names; not edited by hand.
@@ -111,7 +114,10 @@ fn shipped<'a>(metadata: &'a Value, root: &str) -> anyhow::Result<Vec<&'a Value>
     // Follow normal dependencies from the root.
     let (mut seen, mut waiting) = (BTreeSet::new(), vec![*root]);
     while let Some(id) = waiting.pop() {
-        if !seen.insert(id) {
+        let name = packages
+            .get(id)
+            .and_then(|package| package["name"].as_str());
+        if name.is_some_and(|name| NOT_SHIPPED.contains(&name)) || !seen.insert(id) {
             continue;
         }
         let needed = nodes.get(id).and_then(|node| node["deps"].as_array());

@@ -71,7 +71,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("with the heights of the GPU, at height {}", on_gpu.2);
     assert_eq!(
         (column, row, height.to_bits()),
-        (on_gpu.0, on_gpu.1, on_gpu.2.to_bits())
+        (on_gpu.0, on_gpu.1, on_gpu.2.to_bits()),
+        "the ray of the CPU lands elsewhere"
     );
     let on_cpu = ground.to_raster(&window)?;
     let same = heights.pixels().iter().zip(on_cpu.pixels());

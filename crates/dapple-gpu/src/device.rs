@@ -268,20 +268,18 @@ impl Program {
         pass.dispatch_workgroups(size[0].div_ceil(WORKGROUP), size[1], 1);
     }
 
-    /// Runs the program for `size` invocations, and reads `n` words of results.
+    /// Runs the program for `size` invocations, and reads `n` words of results. `words` describe the job, the positions and
+    /// the inputs.
     pub(crate) fn run(
         &self,
         device: &Device,
-        job: &[u32],
-        positions: &[u32],
-        inputs: &[u32],
+        words: [&[u32]; 3],
         size: [u32; 2],
         n: usize,
     ) -> Result<Vec<u32>, GpuError> {
         let bytes = 4 * n as u64;
         let read = device.checked("a computation", || {
-            let [job, positions, inputs] =
-                [job, positions, inputs].map(|words| device.filled(words));
+            let [job, positions, inputs] = words.map(|words| device.filled(words));
             let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
             let out = device.buffer(bytes, usage);
             let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;

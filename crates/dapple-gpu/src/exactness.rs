@@ -108,9 +108,7 @@ pub(crate) fn test(
     let columns: Vec<u32> = numbers.iter().flatten().map(|x| x.to_bits()).collect();
     let out = program.run(
         device,
-        &[0, N as u32],
-        &columns,
-        &[0],
+        [&[0, N as u32], &columns, &[0]],
         [N as u32, 1],
         N * words,
     )?;

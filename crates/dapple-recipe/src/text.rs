@@ -75,9 +75,9 @@ impl Recipe {
             parameters.drop_unused();
         }
         parameters.check_used()?;
-        let mut recipe = Self::deserialize(&content).or_else(|refusal| {
+        let mut recipe = Self::deserialize(&content).map_err(|refusal| {
             let error = text_error(&refusal.message);
-            Err(parameters.blame(refusal, error))
+            parameters.blame(refusal, error)
         })?;
         if !parameters.is_empty() {
             let written = recipe

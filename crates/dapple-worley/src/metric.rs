@@ -131,6 +131,16 @@ impl Metric {
         matches!(self, Self::Minkowski(_))
     }
 
+    /// Returns the number of the metric in shaders; `None` for the metric that they lack.
+    pub(crate) fn shader_word(self) -> Option<u32> {
+        match self {
+            Self::Euclidean => Some(0),
+            Self::Manhattan => Some(1),
+            Self::Chebyshev => Some(2),
+            Self::Minkowski(_) => None,
+        }
+    }
+
     /// Returns the term of a difference along one axis. It is also the key of a vector along that axis.
     #[inline(always)]
     pub(crate) fn term(self, difference: f32) -> f32 {

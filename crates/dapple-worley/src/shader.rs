@@ -1,6 +1,6 @@
 //! The parameters of a basis as a structure for shaders.
 
-use crate::{Dimensions, Metric, Scatter, Space, Worley, WorleyError, WorleyErrorKind};
+use crate::{Dimensions, Scatter, Space, Worley, WorleyError, WorleyErrorKind};
 
 impl<const N: usize> Worley<N>
 where
@@ -27,10 +27,7 @@ where
     pub fn shader_words(&self) -> Result<[u32; 24], WorleyError> {
         let lattice = &self.lattice;
         let obstacles = [
-            (
-                matches!(self.metric, Metric::Minkowski(_)),
-                "Minkowski's metric",
-            ),
+            (self.metric.shader_word().is_none(), "Minkowski's metric"),
             (lattice.density.is_some(), "a density that varies in space"),
             (
                 matches!(self.scatter, Scatter::Unclamped { .. }),
@@ -62,11 +59,7 @@ where
             }
         }
         words[20] = least;
-        words[22] = match self.metric {
-            Metric::Manhattan => 1,
-            Metric::Chebyshev => 2,
-            Metric::Euclidean | Metric::Minkowski(_) => 0,
-        };
+        words[22] = self.metric.shader_word().unwrap_or(0);
         Ok(words)
     }
 }

@@ -11,8 +11,9 @@ const HYBRID: &str = r##"
     extent = [4.0, 4.0]
     [nodes]
     cells.worley = { frequency = 4.0, value = "f2_minus_f1" }
-    bumps.noise = { basis = "pups", frequency = 5.0, octaves = 2 }
-    sum.add = ["cells", "bumps"]
+    bumps.gabor = { frequency = 5.0 }
+    swell.noise = { basis = "pups", frequency = 5.0, octaves = 2 }
+    sum.add = ["cells", "bumps", "swell"]
     color.ramp = { input = "sum", colors = ["#204060", "#f0e0d0"], space = "linear" }
     [material]
     height = "sum"

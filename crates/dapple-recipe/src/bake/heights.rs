@@ -51,6 +51,8 @@ pub(super) struct Margined {
     pub(super) halo: [u32; 2],
     /// The values of shared steps in the band and a margin.
     pub(super) shared: Box<Known>,
+    /// Samples of the pixels of maps that are not computed from the heights.
+    pub(super) supersample: Supersample,
 }
 
 impl Heights {
@@ -115,7 +117,7 @@ impl Heights {
         kinds: &[MapKind],
     ) -> Result<Vec<(MapKind, MapRows)>, RecipeError> {
         let heights = self.of(plan, whole, band)?;
-        maps(plan, whole, band, tile, self.supersample, &heights, kinds)
+        maps(plan, whole, band, tile, &heights, kinds)
     }
 
     /// Computes the heights of a band with its margin. Reuses rows that it shares with the previous band.
@@ -125,6 +127,7 @@ impl Heights {
         let halo = self.halo;
         if !self.wanted {
             return Ok(Margined {
+                supersample: self.supersample,
                 raster: None,
                 halo,
                 shared: shared.into(),
@@ -153,14 +156,15 @@ impl Heights {
         let values = values.map(|values| (window, Arc::new(values)));
         shared.extend(steps[1..].iter().copied().zip(values));
         Ok(Margined {
+            supersample: self.supersample,
             raster: Some(raster),
             halo,
             shared: shared.into(),
         })
     }
 
-    /// Computes the values that the neighborhoods of a band read, whose samples are `band`. Reuses rows that it shares with the previous band.
-    /// Returns nothing if they would take too much memory; neighborhoods then compute them themselves.
+    /// Computes the values that the neighborhoods of a band read, whose samples are `band`. Reuses rows that it shares with
+    /// the previous band. Returns nothing if they would take too much memory; neighborhoods then compute them themselves.
     fn sources(
         &mut self,
         plan: &Plan,

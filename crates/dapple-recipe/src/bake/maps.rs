@@ -1,7 +1,6 @@
 //! Defines the kinds of maps, and computes them for a band.
 
 use super::heights::Margined;
-use super::supersample::Supersample;
 use crate::plan::{TileSamples, Watch};
 use crate::{Plan, RecipeError, Values, Whole};
 use dapple_color::{
@@ -296,10 +295,10 @@ pub(super) fn maps(
     whole: &Whole,
     band: &Window,
     tile: &TileSamples,
-    supersample: Supersample,
     heights: &Margined,
     kinds: &[MapKind],
 ) -> Result<Vec<(MapKind, MapRows)>, RecipeError> {
+    let supersample = heights.supersample;
     let wanted = beside_height(plan, kinds);
     let mut values = plan
         .values(whole, &supersample.window(band), &wanted, &heights.shared)?

@@ -63,7 +63,7 @@ fn substituted(text: &str) -> String {
     ] {
         text = text.replace(name, value);
     }
-    assert!(!text.contains('$'));
+    assert!(!text.contains('$'), "{text}");
     text
 }
 

@@ -50,7 +50,7 @@ fn mistakes_are_told_where_they_are_written() {
             json!("a"),
         ),
         ("dapple = 1\n[material]\nheight = [\n", "\n", json!(null)),
-        ("dapple = 2\n[material]\n", "dapple = 2", json!(null)),
+        ("dapple = 2\n[material]\n", "2", json!(null)),
     ] {
         let mut page = Page::default();
         let replies = page.ask(json!({ "type": "doc", "rev": 1, "text": text }));

@@ -209,18 +209,22 @@ fn has_single_positions(plan: &Plan, recipe: &Recipe) -> bool {
         })
 }
 
+/// Returns the built-in recipes that are compared: all of them with `DAPPLE_ALL_RECIPES=1`, or else a few, since lavapipe
+/// takes many seconds to compile the shader of one.
+fn builtin_names() -> impl Iterator<Item = &'static str> {
+    let all = std::env::var_os("DAPPLE_ALL_RECIPES").is_some();
+    Recipe::builtin_names().step_by(if all { 1 } else { 12 })
+}
+
 #[test]
 fn builtin_recipes_have_the_bits_of_the_cpu() {
     let Some(gpu) = Gpu::new() else { return };
-    for name in Recipe::builtin_names() {
+    for name in builtin_names() {
         let recipe = Recipe::builtin(name).expect("a recipe");
         // The values of nodes that depend on the whole tile, which a texture has, are not known at single positions.
         let plan = Plan::new(&recipe, &Images::new(), 0.0).expect("a plan");
+        // Recipes that blend by height need the whole tile.
         if plan.height().is_err() {
-            assert_eq!(
-                name, "stone-and-grass",
-                "the only recipe that blends by height"
-            );
             continue;
         }
         let mut at = everywhere();
