@@ -24,9 +24,6 @@ const SHIPPED: [(&str, &str, &str); 2] = [
     ),
 ];
 
-/// Packages of optional features that distributed programs are built without.
-const NOT_SHIPPED: [&str; 2] = ["dapple-gpu", "spirv"];
-
 const HEAD: &str = "\
 Licenses of the crates of other people in this program.
 Made by `cargo xtask licenses` from the packages that Cargo.lock names; not edited by hand.
@@ -60,7 +57,8 @@ pub(crate) fn licenses(shell: &Shell, check: bool) -> anyhow::Result<()> {
             "cargo metadata --format-version 1 --locked --manifest-path {manifest}"
         );
         let metadata = serde_json::from_str(&json.quiet().read()?)?;
-        let text = texts(shell, &metadata, package).with_context(|| package.to_owned())?;
+        let shipped = shipped(shell, manifest, &metadata, package)?;
+        let text = texts(shell, &shipped).with_context(|| package.to_owned())?;
         if !check {
             shell.write_file(file, text)?;
         } else if shell.read_file(file).ok().as_deref() != Some(&text) {
@@ -70,10 +68,10 @@ pub(crate) fn licenses(shell: &Shell, check: bool) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Returns the license file for a package. It has each license text once, preceded by the crates that use it.
-fn texts(shell: &Shell, metadata: &Value, package: &str) -> anyhow::Result<String> {
+/// Returns the license file for packages. It has each license text once, preceded by the crates that use it.
+fn texts(shell: &Shell, shipped: &[&Value]) -> anyhow::Result<String> {
     let mut texts: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    for package in shipped(metadata, package)? {
+    for package in shipped {
         let of = |key: &str| package[key].as_str().unwrap_or_default();
         let line = format!(
             "{} {}  {}  {}",
@@ -97,44 +95,34 @@ fn texts(shell: &Shell, metadata: &Value, package: &str) -> anyhow::Result<Strin
     Ok(all)
 }
 
-/// Returns the registry packages compiled into `root` on any platform, sorted by name and version.
-fn shipped<'a>(metadata: &'a Value, root: &str) -> anyhow::Result<Vec<&'a Value>> {
-    let by_id = |list: &'a Value| -> BTreeMap<&str, &Value> {
-        let items = list.as_array().into_iter().flatten();
-        items
-            .filter_map(|item| Some((item["id"].as_str()?, item)))
-            .collect()
-    };
-    let (packages, nodes) = (
-        by_id(&metadata["packages"]),
-        by_id(&metadata["resolve"]["nodes"]),
+/// Returns the registry packages compiled into `root` on any platform, sorted by name and version. Unlike the metadata,
+/// the tree leaves out features that only other members of the workspace enable.
+fn shipped<'a>(
+    shell: &Shell,
+    manifest: &str,
+    metadata: &'a Value,
+    root: &str,
+) -> anyhow::Result<Vec<&'a Value>> {
+    let tree = cmd!(
+        shell,
+        "cargo tree --locked --manifest-path {manifest} --package {root} --edges normal --target all --prefix none"
     );
-    let found = packages.iter().find(|(_, package)| package["name"] == root);
-    let (root, _) = found.with_context(|| format!("there is no package {root}"))?;
-    // Follow normal dependencies from the root.
-    let (mut seen, mut waiting) = (BTreeSet::new(), vec![*root]);
-    while let Some(id) = waiting.pop() {
-        let name = packages
-            .get(id)
-            .and_then(|package| package["name"].as_str());
-        if name.is_some_and(|name| NOT_SHIPPED.contains(&name)) || !seen.insert(id) {
-            continue;
-        }
-        let needed = nodes.get(id).and_then(|node| node["deps"].as_array());
-        for dependency in needed.into_iter().flatten() {
-            let mut kinds = dependency["dep_kinds"].as_array().into_iter().flatten();
-            // Normal dependencies have no kind; tests and build scripts do.
-            if kinds.any(|kind| kind["kind"].is_null()) {
-                waiting.extend(dependency["pkg"].as_str());
-            }
-        }
-    }
-    let mut shipped: Vec<_> = seen
-        .iter()
-        .filter_map(|id| packages.get(id).copied())
+    let tree = tree.quiet().read()?;
+    // A line begins with a name and a version, such as `serde v1.0.0`.
+    let in_tree: BTreeSet<_> = tree
+        .lines()
+        .filter_map(|line| line.split_once(" v"))
+        .map(|(name, rest)| (name, rest.split(' ').next().unwrap_or(rest)))
         .collect();
-    shipped.retain(|package| !package["source"].is_null());
-    shipped.sort_by_key(|package| (package["name"].as_str(), package["version"].as_str()));
+    let key = |package: &'a Value| Some((package["name"].as_str()?, package["version"].as_str()?));
+    let mut shipped: Vec<_> = metadata["packages"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter(|package| !package["source"].is_null())
+        .filter(|&package| key(package).is_some_and(|key| in_tree.contains(&key)))
+        .collect();
+    shipped.sort_by_key(|&package| key(package));
     Ok(shipped)
 }
 
