@@ -167,8 +167,6 @@ fn shaders_in_glsl_have_all_functions_and_are_valid() {
         "worley-3d",
         "worley-4d",
         "worley-edges-2d",
-        "wavelet-noise-2d",
-        "pups-2d",
         "double-sine",
         "position-2d",
         "power",
@@ -186,7 +184,7 @@ fn shaders_in_glsl_have_all_functions_and_are_valid() {
     .concat();
     let material = [
         "recipe",
-        "flagstone",
+        "rock-cliff",
         "--wgsl",
         "--textures",
         "--language",
@@ -204,8 +202,6 @@ fn shaders_in_glsl_have_all_functions_and_are_valid() {
         for function in functions {
             assert!(text.contains(function), "{function} is missing: {text}");
         }
-        // naga does not read precisions of parameters.
-        let text = text.replace("highp ", "");
         let text = format!("#version 450\n{text}\nvoid main() {{}}");
         let options = naga::front::glsl::Options::from(naga::ShaderStage::Fragment);
         let parsed = naga::front::glsl::Frontend::default().parse(&options, &text);
@@ -214,6 +210,31 @@ fn shaders_in_glsl_have_all_functions_and_are_valid() {
         let capabilities = naga::valid::Capabilities::empty();
         let result = naga::valid::Validator::new(flags, capabilities).validate(&module);
         assert!(result.is_ok(), "{result:?}");
+    }
+}
+
+#[cfg(feature = "shader-languages")]
+#[test]
+fn shaders_in_glsl_look_up_tiles_in_a_sampler() {
+    let folder = Folder::new("glsl-data");
+    let noise = ["wgsl", "wavelet-noise-2d", "pups-2d", "--language", "glsl"];
+    let material = ["recipe", "flagstone", "--wgsl", "--language", "glsl"];
+    // naga writes parameters that are samplers, but does not read them.
+    for (arguments, functions) in [
+        (
+            &noise[..],
+            &["float wavelet_noise_2d(", "float pups_value("][..],
+        ),
+        (&material, &["Material material("]),
+    ] {
+        let output = folder.run(arguments);
+        assert_done(&output, "a shader");
+        let text = stdout(&output);
+        for function in functions {
+            let (_, rest) = text.split_once(function).expect(function);
+            assert!(rest.contains("highp usampler2D data"), "{function}");
+        }
+        assert!(text.contains("texelFetch(data, "), "{text}");
     }
 }
 

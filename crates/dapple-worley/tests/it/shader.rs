@@ -6,13 +6,13 @@ use dapple_worley::{Metric, Scatter, Worley2, Worley3, Worley4};
 #[test]
 fn shader_words_refuse_what_the_shader_lacks() {
     let worley = Worley2::new(Seed(7));
-    let metric = worley.clone().with_metric(Metric::Manhattan);
+    let metric = worley.clone().with_metric(Metric::Minkowski(3.0));
     let unclamped = Scatter::Unclamped { density: 2.0 };
     let unclamped = worley.clone().with_scatter(unclamped);
     let period = worley.clone().with_period([Some((1 << 31) + 1), None]);
     let varying = worley.with_varying_density(|_| 2.0);
     let refused = [
-        (metric, "metrics other than Euclidean"),
+        (metric, "Minkowski's metric"),
         (unclamped, "unclamped numbers of points"),
         (period, "periods above 2^31 cells"),
         (Ok(varying), "a density that varies in space"),
@@ -22,8 +22,19 @@ fn shader_words_refuse_what_the_shader_lacks() {
         let error = error.expect_err(what).to_string();
         assert_eq!(error, format!("the shader does not support {what}"));
     }
-    let error = Worley4::new(Seed(7)).shader_words().expect_err("four axes");
-    assert_eq!(error.to_string(), "the shader does not support four axes");
+}
+
+#[test]
+fn shader_words_end_with_the_number_of_the_metric() {
+    for (metric, word) in [
+        (Metric::Euclidean, 0),
+        (Metric::Manhattan, 1),
+        (Metric::Chebyshev, 2),
+    ] {
+        let worley = Worley4::new(Seed(7)).with_metric(metric);
+        let words = worley.expect("a metric").shader_words().expect("words");
+        assert_eq!(words[22..], [word, 0], "{metric:?}");
+    }
 }
 
 #[test]
