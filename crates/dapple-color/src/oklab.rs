@@ -6,17 +6,20 @@
 
 use crate::LinearRgb;
 
-/// Converts a color, which may be outside a screen's gamut, to lightness, a and b.
-pub(crate) fn oklab_from_linear(color: LinearRgb) -> [f64; 3] {
-    let [r, g, b] = color.to_array().map(f64::from);
-    let l = libm::cbrt(0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b);
-    let m = libm::cbrt(0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b);
-    let s = libm::cbrt(0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b);
-    [
-        0.210_454_255_3 * l + 0.793_617_785_0 * m - 0.004_072_046_8 * s,
-        1.977_998_495_1 * l - 2.428_592_205_0 * m + 0.450_593_709_9 * s,
-        0.025_904_037_1 * l + 0.782_771_766_2 * m - 0.808_675_766_0 * s,
-    ]
+impl LinearRgb {
+    /// Converts the color, which may be outside a screen's gamut, to Oklab: lightness (0 for black, 1 for white), a and b.
+    #[must_use]
+    pub fn to_oklab(self) -> [f64; 3] {
+        let [r, g, b] = self.to_array().map(f64::from);
+        let l = libm::cbrt(0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b);
+        let m = libm::cbrt(0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b);
+        let s = libm::cbrt(0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b);
+        [
+            0.210_454_255_3 * l + 0.793_617_785_0 * m - 0.004_072_046_8 * s,
+            1.977_998_495_1 * l - 2.428_592_205_0 * m + 0.450_593_709_9 * s,
+            0.025_904_037_1 * l + 0.782_771_766_2 * m - 0.808_675_766_0 * s,
+        ]
+    }
 }
 
 /// Converts lightness, a and b to a color.
@@ -34,7 +37,7 @@ pub(crate) fn linear_from_oklab([lightness, a, b]: [f64; 3]) -> LinearRgb {
 
 #[cfg(test)]
 mod tests {
-    use super::{linear_from_oklab, oklab_from_linear};
+    use super::linear_from_oklab;
     use crate::LinearRgb;
     use proptest::prelude::*;
 
@@ -79,7 +82,7 @@ mod tests {
             ([0.0, 0.0, 1.0], [0.452_01, -0.032_46, -0.311_53]),
             ([1.0, 1.0, 1.0], [1.0, 0.0, 0.0]),
         ] {
-            let found = oklab_from_linear(LinearRgb::from(color));
+            let found = LinearRgb::from(color).to_oklab();
             for (found, expected) in found.iter().zip(expected) {
                 assert!(
                     (found - expected).abs() < 6e-6,
@@ -91,7 +94,7 @@ mod tests {
 
     #[test]
     fn value_stability_oklab() {
-        let lab = oklab_from_linear(LinearRgb::new(0.25, 0.5, 0.75));
+        let lab = LinearRgb::new(0.25, 0.5, 0.75).to_oklab();
         assert_eq!(
             lab.map(f64::to_bits),
             [
@@ -112,7 +115,7 @@ mod tests {
     proptest! {
         #[test]
         fn oklab_is_its_definition_and_leads_back(r in 0.0_f32..1.0, g in 0.0_f32..1.0, b in 0.0_f32..1.0) {
-            let lab = oklab_from_linear(LinearRgb::new(r, g, b));
+            let lab = LinearRgb::new(r, g, b).to_oklab();
             let expected = by_definition([r, g, b].map(f64::from));
             for (found, expected) in lab.iter().zip(expected) {
                 // The matrices through XYZ have seven digits, and a cube root near black amplifies their rounding.

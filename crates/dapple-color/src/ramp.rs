@@ -7,7 +7,7 @@
 //!
 //! Reference: our own; for Oklab see `oklab.rs`.
 
-use crate::oklab::{linear_from_oklab, oklab_from_linear};
+use crate::oklab::linear_from_oklab;
 use crate::srgb::{linear_from_srgb, srgb_from_linear};
 use crate::{ColorError, ColorErrorKind, LinearRgb};
 use dapple_raster::Raster;
@@ -285,7 +285,7 @@ impl RampSpace {
     /// Converts a color to this mixing space.
     fn of_linear(self, color: LinearRgb) -> [f64; 3] {
         match self {
-            Self::Oklab => oklab_from_linear(color),
+            Self::Oklab => color.to_oklab(),
             Self::Srgb => color
                 .to_array()
                 .map(|part| signed(part.into(), srgb_from_linear)),

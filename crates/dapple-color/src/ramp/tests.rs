@@ -104,8 +104,7 @@ fn every_space_mixes_as_it_is_defined() {
                 "{code} and {expected}"
             );
         }
-        let [from, to, mixed] =
-            [from, to, at(RampSpace::Oklab)].map(crate::oklab::oklab_from_linear);
+        let [from, to, mixed] = [from, to, at(RampSpace::Oklab)].map(LinearRgb::to_oklab);
         for axis in 0..3 {
             let expected = from[axis] + (to[axis] - from[axis]) * f64::from(part);
             // The mixed color is rounded to single precision.

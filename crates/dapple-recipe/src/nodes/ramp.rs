@@ -161,27 +161,11 @@ impl Ramped {
         }
         // The conversion to Oklab and back rounds; the colors of stops are returned unchanged.
         let [a, b] = [from, from + 1].map(|stop| {
-            let [lightness, a, b] = oklab(ramp.stops()[stop].color).map(double_value);
+            let [lightness, a, b] = ramp.stops()[stop].color.to_oklab().map(double_value);
             format!("array({lightness}, {a}, {b})")
         });
         format!("{part} if part == 0.0 {{ return {start}; }} start = {a}; end = {b}; mixed = part;")
     }
-}
-
-/// Returns a color in Oklab, with the bits of the ramp: lightness, a and b.
-fn oklab(color: LinearRgb) -> [f64; 3] {
-    let [r, g, b] = color.to_array().map(f64::from);
-    let [l, m, s] = [
-        0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b,
-        0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b,
-        0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b,
-    ]
-    .map(libm::cbrt);
-    [
-        0.210_454_255_3 * l + 0.793_617_785_0 * m - 0.004_072_046_8 * s,
-        1.977_998_495_1 * l - 2.428_592_205_0 * m + 0.450_593_709_9 * s,
-        0.025_904_037_1 * l + 0.782_771_766_2 * m - 0.808_675_766_0 * s,
-    ]
 }
 
 /// Serializes lists of colors as hexadecimal sRGB.
