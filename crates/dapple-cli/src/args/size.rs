@@ -52,6 +52,20 @@ impl FromStr for Extent {
     }
 }
 
+impl Size {
+    /// Returns a note if an image of the size `from` is stretched when it is resampled to this size.
+    pub(crate) fn stretch_note(self, from: [u32; 2]) -> Option<String> {
+        let [width, height] = from;
+        let is_stretched =
+            u64::from(width) * u64::from(self.0[1]) != u64::from(height) * u64::from(self.0[0]);
+        is_stretched.then(|| {
+            format!(
+                "the tile of {width} × {height} pixels is stretched: cut out another part with --region to keep the shape"
+            )
+        })
+    }
+}
+
 impl fmt::Display for Size {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [width, height] = self.0;

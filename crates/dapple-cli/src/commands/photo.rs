@@ -119,13 +119,12 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.method.check_used()?;
     args.files.check()?;
     let progress = Progress::spinner("estimating", context);
-    let read = (args.part.region, args.alpha, &args.read);
     let mut loaded = input::map(
         &args.photo,
         Kind::Colors,
-        read.0,
-        read.1,
-        read.2,
+        args.part.region,
+        args.alpha,
+        &args.read,
         ALPHA_HINT,
     )?;
     args.part
@@ -145,14 +144,9 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     };
     drop(progress);
     let size = tiles[0].size();
-    if let Some(Size(wanted)) = args.size
-        && !context.quiet
-        && !has_same_shape(size, wanted)
-    {
-        let [width, height] = size;
-        eprintln_if_possible(&format!(
-            "note: the tile of {width} × {height} pixels is stretched: cut out another part with --region to keep the shape"
-        ));
+    let note = args.size.and_then(|wanted| wanted.stretch_note(size));
+    if let Some(note) = note.filter(|_| !context.quiet) {
+        eprintln_if_possible(&format!("note: {note}"));
     }
     // One unit is the shorter side of the tile, and a height of 1 is as many pixels high as in the photograph.
     let recipe = recipe(args, size, relief / shorter_side(size));
@@ -183,11 +177,6 @@ impl EstimateArgs {
 
 fn shorter_side([width, height]: [u32; 2]) -> f64 {
     f64::from(width.min(height))
-}
-
-/// Returns whether two sizes have the same aspect ratio.
-fn has_same_shape(a: [u32; 2], b: [u32; 2]) -> bool {
-    u64::from(a[0]) * u64::from(b[1]) == u64::from(a[1]) * u64::from(b[0])
 }
 
 fn maps_of(estimate: Estimate) -> Vec<Map> {

@@ -140,17 +140,11 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let wraps = args.wrap.flags();
     let clear = Clear::Bleed { wraps };
     let (report, passes) = reports(args, &sources, &mut made, &job)?;
-    if let Some(Size(size)) = args.size {
-        let from = made.tiles[0].size();
-        if !context.quiet
-            && u64::from(from[0]) * u64::from(size[1]) != u64::from(from[1]) * u64::from(size[0])
-        {
-            let [width, height] = from;
-            let text = format!(
-                "the tile of {width} × {height} pixels is stretched: cut out another part with --region to keep the shape"
-            );
-            job.say(&text)?;
-        }
+    let note = args
+        .size
+        .and_then(|size| size.stretch_note(made.tiles[0].size()));
+    if let Some(note) = note.filter(|_| !context.quiet) {
+        job.say(&note)?;
     }
     let wrap = wraps.map(|repeats| if repeats { Wrap::Repeat } else { Wrap::Clamp });
     let mut alphas = alphas.into_iter();
