@@ -3,6 +3,10 @@
 use crate::error::{Hint, usage};
 use anyhow::Result;
 use dapple::recipe::{Plan, Recipe};
+#[cfg(feature = "gpu")]
+use dapple_gpu::{Gpu, GpuError, GpuPlan};
+#[cfg(feature = "gpu")]
+use std::sync::OnceLock;
 
 /// Checks that this program can use a GPU.
 ///
@@ -24,8 +28,11 @@ pub(crate) fn check() -> Result<()> {
 /// If there is no GPU, or its bits differ from the CPU.
 #[cfg(feature = "gpu")]
 pub(crate) fn on_gpu(recipe: &Recipe, plan: &Plan) -> Result<Plan> {
-    let on_gpu = dapple_gpu::Gpu::headless()
-        .and_then(|gpu| dapple_gpu::GpuPlan::new(&gpu, recipe, plan))
+    // Frames, recipes and variants share one device.
+    static GPU: OnceLock<Result<Gpu, GpuError>> = OnceLock::new();
+    let gpu = GPU.get_or_init(Gpu::headless).clone();
+    let on_gpu = gpu
+        .and_then(|gpu| GpuPlan::new(&gpu, recipe, plan))
         .map_err(|error| anyhow::Error::new(error).hint("bake it without --gpu"))?;
     Ok(on_gpu.plan().clone())
 }
