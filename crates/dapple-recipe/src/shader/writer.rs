@@ -311,6 +311,9 @@ const POSITION: &str = "{position}";
 /// The parameter of functions that read the texture `data`.
 const DATA: &str = "data: texture_2d<u32>, ";
 
+/// The argument for this parameter.
+const DATA_PASSED: &str = "data, ";
+
 impl<'a> Writer<'a> {
     pub(super) fn new(recipe: &'a Recipe, images: &'a Images, plan: &'a Plan) -> Self {
         Self {
@@ -429,7 +432,7 @@ impl<'a> Writer<'a> {
             // Pass the texture on to functions that read it.
             let reads_data = [&lines, &value].iter().any(|part| part.contains("(data, "));
             let [parameter, argument] = match reads_data {
-                true => [DATA, "data, "],
+                true => [DATA, DATA_PASSED],
                 false => [""; 2],
             };
             self.functions.push(format!(
@@ -499,18 +502,20 @@ impl<'a> Writer<'a> {
             }
             out += "}\n\n";
         }
-        let data = if self.data.is_empty() { "" } else { DATA };
-        let passed_data = if self.data.is_empty() { "" } else { "data, " };
-        let [declared, passed] = match self.textures.is_empty() {
-            true => ["", ""],
+        let [data, data_passed] = match self.data.is_empty() {
+            true => [""; 2],
+            false => [DATA, DATA_PASSED],
+        };
+        let [textures, textures_passed] = match self.textures.is_empty() {
+            true => [""; 2],
             false => ["textures: Textures, ", "textures, "],
         };
         let _ = writeln!(
             out,
-            "fn material(place: Place2d, {data}{declared}zero: u32) -> Material {{\n    \
-             return material64(position_2d(place), {passed_data}{passed}zero);\n}}\n\n\
+            "fn material(place: Place2d, {data}{textures}zero: u32) -> Material {{\n    \
+             return material64(position_2d(place), {data_passed}{textures_passed}zero);\n}}\n\n\
              // At a position in numbers of 64 bits\n\
-             fn material64(at: Position2d, {data}{declared}zero: u32) -> Material {{"
+             fn material64(at: Position2d, {data}{textures}zero: u32) -> Material {{"
         );
         out += material;
         out += "}\n\n";
