@@ -15,7 +15,7 @@ pub struct GpuError {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum GpuErrorKind {
-    /// There is no graphics adapter.
+    /// No graphics adapter was found.
     NoAdapter {
         /// The message of `wgpu`.
         reason: String,

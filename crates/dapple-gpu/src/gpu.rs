@@ -44,7 +44,7 @@ impl Gpu {
     ///
     /// # Errors
     ///
-    /// [`NoAdapter`](GpuErrorKind::NoAdapter) if there is none, or the same errors as [`new`](Self::new).
+    /// [`NoAdapter`](GpuErrorKind::NoAdapter) without a graphics adapter, or the same errors as [`new`](Self::new).
     pub fn headless() -> Result<Self, GpuError> {
         Self::tested(Device::headless()?)
     }

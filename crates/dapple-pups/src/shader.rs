@@ -7,7 +7,7 @@ use crate::{AxialWeight, Folding, LabelTexture, Layers, Octave, Pups, PupsError,
 pub struct ShaderLayers {
     /// The layers, from the coarsest to the finest.
     pub layers: Vec<ShaderLayer>,
-    /// Largest sum of the layers, to which it is clamped. `None` if the texture is its only layer.
+    /// Maximum of the sum of the layers; larger sums are clamped. `None` if the texture is its only layer.
     pub maximum: Option<f32>,
 }
 
@@ -27,8 +27,8 @@ pub struct ShaderLayer {
 impl Pups {
     /// Returns the control points and their values as words of the texture `data` of the shaders of `dapple-wgsl`.
     ///
-    /// `values` are those of the control points. If `is_label` is set, the value at a position is that of the strongest
-    /// point, instead of the weighted mean. The module `pups_2d` describes the order of the words. Numbers of 64 bits
+    /// `values` has a value for each control point. If `is_label` is set, a position has the value of its strongest point
+    /// instead of the weighted mean. The module `pups_2d` describes the order of the words. Numbers of 64 bits
     /// have their upper word first.
     ///
     /// # Errors
@@ -56,7 +56,7 @@ impl Pups {
             words.extend(doubles(pair.to_array()));
         }
         words.extend([dips, f32::to_bits(depth), 0, 0]);
-        // The candidates of all bins, and where those of each bin start
+        // The candidates of all bins, and the first candidate of each bin
         let lists: Vec<_> = (0..(columns * rows) as usize)
             .map(|bin| bins.candidates_in(bin))
             .collect();

@@ -1,6 +1,6 @@
 //! Estimates the height, the roughness and the albedo of a surface from a single photograph.
 //!
-//! A photograph does not determine the shape of a surface: paint and shadow look alike. The estimate is a linear filter
+//! A photograph does not determine the shape of a surface: paint and shadow look the same. The estimate is a linear filter
 //! of the log luminance, without a learned model.
 //!
 //! Sources:
@@ -371,7 +371,7 @@ fn delit(
     Ok(divided.par_map(|&color| color * scale as f32))
 }
 
-/// Returns the slope of the least-squares line of `values` over `of`; 0 if `of` is constant.
+/// Returns the slope of the regression line of `values` over `of`; 0 if `of` is constant.
 fn regression(values: &Raster<f32>, of: &Raster<f32>) -> Result<f64, TileError> {
     let [mean, statistics] = [values, of].map(Raster::statistics);
     let product = values.zip_map(of, |&value, &of| {

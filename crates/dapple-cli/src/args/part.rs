@@ -17,7 +17,7 @@ pub(crate) struct PartArgs {
 
     /// Straighten a flat surface that is seen at an angle: its four corners in pixels, clockwise from the top left.
     ///
-    /// The result is as large as the mean lengths of opposite sides. Normal maps are refused: rectify the heights.
+    /// The size of the result is the mean length of opposite sides. Normal maps are refused: rectify the heights.
     #[arg(long, value_name = "X0,Y0,...,X3,Y3", conflicts_with = "region")]
     pub(crate) rectify: Option<Numbers<f64, 8>>,
 }
@@ -45,11 +45,11 @@ impl PartArgs {
     }
 }
 
-/// Resamples a map and its alpha. Straight colors count by their alpha.
+/// Resamples a map and its alpha. Straight colors are weighted by their alpha.
 ///
 /// # Errors
 ///
-/// Those of `resample`.
+/// If `resample` fails.
 pub(crate) fn resampled(
     map: &Map,
     alpha: Option<&Raster<f32>>,

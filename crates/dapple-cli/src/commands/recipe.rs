@@ -56,7 +56,8 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with = "to")]
     rust: bool,
 
-    /// Print the material as a function of WGSL, in one file without bindings; with --output, write the texture that it looks up next to it.
+    /// Print the material as a function of WGSL, in one file without bindings; with --output, write the texture that it
+    /// looks up next to it.
     #[arg(long, conflicts_with_all = ["to", "rust"])]
     wgsl: bool,
 

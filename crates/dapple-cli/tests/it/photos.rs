@@ -114,7 +114,7 @@ fn photo_cuts_all_maps_alike_and_takes_normals_from_the_heights_of_the_tile() {
     assert_eq!(read_colors(&folder, "out/grass_albedo.exr"), *albedo);
     assert_eq!(read_gray(&folder, "out/grass_height.exr"), *height);
     assert_eq!(read_gray(&folder, "out/grass_roughness.exr"), *roughness);
-    // Normals and occlusion are those of the tile, whose heights repeat. A unit is the shorter side.
+    // Normals and occlusion follow from the heights of the tile, which repeat. A unit is the shorter side.
     let size = height.size();
     let shorter = f64::from(size[0].min(size[1]));
     let plane = HeightPlane {

@@ -71,8 +71,8 @@ pub(super) fn code(
     )))
 }
 
-/// Builds wavelet noise with these band weights. `frequency` is in cells of the coarsest band per unit of the plane,
-/// by which the caller multiplies positions.
+/// Builds wavelet noise with these band weights. `frequency` is in cells of the coarsest band per unit of the plane;
+/// the caller multiplies positions by it.
 pub(super) fn noise(
     plan: &Builder<'_>,
     seed: Seed,

@@ -126,7 +126,7 @@ impl Content {
         }
     }
 
-    /// Returns the value at a path; `None` if there is none.
+    /// Returns the value at a path; `None` if a key or an index of the path is missing.
     pub(super) fn at(&self, path: &[Part]) -> Option<&Self> {
         path.iter()
             .try_fold(self, |value, part| match (value, part) {

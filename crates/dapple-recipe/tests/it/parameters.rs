@@ -193,7 +193,7 @@ fn errors_of_parameters_have_the_parameter_and_the_option() {
         ("curve", "nodes.stones.levels.curve")
     );
     assert!(message.contains("did you mean `smooth`?"), "{message}");
-    // The position is that of the reference, also if an element of a list does not fit.
+    // The error has the position of the reference, also if an element of a list does not fit.
     let unfit = refused(&TEXT.replace("from = [0.0, 0.25]", "from = [0.0, true]"));
     let line = TEXT
         .lines()

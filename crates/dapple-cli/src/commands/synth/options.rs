@@ -238,7 +238,8 @@ pub(super) struct MatchArgs {
     /// Number of resolution levels, 1 to 16; more for larger features [default: 3, or all that fit in endless
     /// textures].
     ///
-    /// For the repair of an image, the default follows the size of the hole. Each level has a quarter of the points of the next finer one.
+    /// For the repair of an image, the default follows the size of the hole. Each level has a quarter of the points of the
+    /// next finer one.
     #[arg(long, hide_short_help = true, value_name = "N")]
     levels: Option<u32>,
 
