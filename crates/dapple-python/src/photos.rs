@@ -158,7 +158,7 @@ pub(crate) fn resize<'py>(
 /// >>> import numpy as np, dapple_textures as dp
 /// >>> wall = np.random.default_rng(1).random((48, 64, 3))
 /// >>> dp.rectify(wall, [(10, 5), (60, 0), (60, 48), (10, 40)]).shape
-/// (42, 51, 3)
+/// (42, 50, 3)
 #[pyfunction]
 #[pyo3(signature = (image, corners, *, size = None))]
 pub(crate) fn rectify<'py>(

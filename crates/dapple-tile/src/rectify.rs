@@ -44,8 +44,8 @@ const LEAST_TURN: f64 = 1.0;
 ///
 /// let photo = Map::Value(Raster::from_fn([64, 48], |x, y| (x + y) as f32)?);
 /// let wall = rectify(&photo, [[10.0, 5.0], [60.0, 0.0], [60.0, 48.0], [10.0, 40.0]], None)?;
-/// // The left side is 35 pixels long and the right side 48.
-/// assert_eq!(wall.size(), [51, 42]);
+/// // The top is 50.2 pixels long, the bottom 50.6, the left side 35 and the right side 48.
+/// assert_eq!(wall.size(), [50, 42]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn rectify(
