@@ -49,7 +49,9 @@ async function within(recipe, then) {
 
 /** Clicks into a slider at a fraction of its width. */
 async function click(page, path, at) {
-  const box = await page.locator(`[data-path="${path}"] input[type=range]`).boundingBox();
+  const slider = page.locator(`[data-path="${path}"] input[type=range]`);
+  await slider.scrollIntoViewIfNeeded();
+  const box = await slider.boundingBox();
   await page.mouse.click(box.x + box.width * at, box.y + box.height / 2);
   await settled(page);
 }
