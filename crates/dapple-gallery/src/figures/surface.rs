@@ -10,10 +10,8 @@ mod fig_04;
 mod fig_05;
 mod fig_extra_along;
 mod fig_extra_charts;
-mod fig_extra_endless;
 mod fig_extra_exemplars;
 mod fig_extra_guides;
-mod fig_extra_lifted;
 mod fig_extra_repair;
 mod fig_extra_sharp;
 mod fig_extra_sizes;
@@ -45,10 +43,8 @@ pub(super) const PAPER: Paper = Paper {
         fig_05::FIGURE,
         fig_extra_along::FIGURE,
         fig_extra_charts::FIGURE,
-        fig_extra_endless::FIGURE,
         fig_extra_exemplars::FIGURE,
         fig_extra_guides::FIGURE,
-        fig_extra_lifted::FIGURE,
         fig_extra_repair::FIGURE,
         fig_extra_sharp::FIGURE,
         fig_extra_sizes::FIGURE,

@@ -7,8 +7,8 @@ use dapple_preview::Surface;
 use dapple_raster::{Raster, Wrap};
 use dapple_synth::mesh::{self, Mesh};
 use dapple_synth::{
-    Atlas, Coherence, Direction, Edges, Exemplar, Hierarchy, HierarchyOptions, MeshExemplar,
-    Options, Orientation, Sources, Symmetry, Synthesizer, bake_colors,
+    Atlas, Coherence, Direction, Edges, Exemplar, Hierarchy, HierarchyOptions, Options,
+    Orientation, Sources, Symmetry, Synthesizer, bake_colors,
 };
 use glam::{DVec2, DVec3};
 
@@ -47,7 +47,6 @@ pub(super) struct SiteGuide {
 pub(super) struct Textured {
     pub(super) synthesizer: Synthesizer,
     pub(super) map: Raster<LinearRgb>,
-    pub(super) atlas: Atlas,
     uvs: Vec<[DVec2; 3]>,
 }
 
@@ -99,68 +98,8 @@ impl Textured {
         Self {
             map: map.map(|color| LinearRgb::from_srgb(color.to_srgb::<u8>())),
             uvs: atlas.uvs(),
-            atlas,
             synthesizer,
         }
-    }
-
-    /// Returns two textured meshes: one with a stain where `is_stain` is true, and one with the stain replaced from
-    /// the rest of the texture.
-    pub(super) fn stained(self, is_stain: fn(DVec3) -> bool) -> Result<[Self; 2]> {
-        let surface = self.synthesizer.surface();
-        let is_clean = Raster::from_fn(self.map.size(), |column, row| {
-            let point = self.atlas.point(surface, [column, row]);
-            !point.is_some_and(|point| is_stain(surface.position(point)))
-        })?;
-        let choose = |clean: &Raster<LinearRgb>, other: &Raster<LinearRgb>| {
-            let texel = |x: u32, y: u32| {
-                let from = if is_clean.row(y)[x as usize] {
-                    clean
-                } else {
-                    other
-                };
-                from.row(y)[x as usize]
-            };
-            Raster::from_fn(self.map.size(), texel)
-        };
-        let gray = Raster::filled(self.map.size(), LinearRgb::gray(0.25))?;
-        let stained = choose(&self.map, &gray)?;
-        let texture = Exemplar::new(&stained, Edges::Cut)?.with_mask(&is_clean)?;
-        let exemplar = MeshExemplar::new(self.synthesizer.clone(), &self.uvs, &texture)?;
-        let options = Options {
-            n_levels: self.synthesizer.hierarchy().levels().len(),
-            ..Options::default()
-        };
-        let repaired = exemplar.repair(&options, |_| ControlFlow::Continue(()))?;
-        let new = bake_colors(&self.synthesizer, &repaired, &stained, &self.atlas)?;
-        let repaired = choose(&stained, &new)?;
-        let with_map = |map| Self {
-            map,
-            ..self.clone()
-        };
-        Ok([with_map(stained), with_map(repaired)])
-    }
-
-    /// Lifts the texture, which must be a regular one, onto another model, with a texture map of the same size.
-    pub(super) fn lifted(
-        &self,
-        mesh: Mesh,
-        directions: &[Direction],
-        sites: &HierarchyOptions,
-    ) -> Result<Self> {
-        let texture = Exemplar::new(&self.map, Edges::Cut)?;
-        let exemplar = MeshExemplar::new(self.synthesizer.clone(), &self.uvs, &texture)?;
-        let synthesizer = Synthesizer::new(mesh::Surface::new(mesh)?, directions, sites)?;
-        let options = Options {
-            n_levels: sites.n_levels,
-            // The texture is regular; regularity is not measured on surfaces.
-            coherence: Coherence::Factor(0.0),
-            ..Options::default()
-        };
-        let lifted = synthesizer.lift(&exemplar, &[], &options, |_| ControlFlow::Continue(()))?;
-        let atlas = Atlas::uniform(synthesizer.surface(), self.map.width())?;
-        let map = bake_colors(&synthesizer, &lifted, &self.map, &atlas)?;
-        Ok(Self::new(synthesizer, atlas, &map))
     }
 
     /// Returns the color of the texture map where a ray hits the model.
