@@ -28,6 +28,7 @@ mod weight;
 use crate::draw::shrink;
 use crate::{Panel, Paper};
 use dapple_points::Domain;
+use dapple_pups::LabelTexture;
 use dapple_raster::{Field, RasterError, Window};
 
 /// The paper, with its figures in order.
@@ -74,6 +75,18 @@ fn picture_of_labels(
 ) -> Result<Panel, RasterError> {
     let fine = texture.to_raster(&fine_square(size)?)?;
     Ok(Panel::gray(label, shrink(&fine, SIDE)?).repeating())
+}
+
+/// Draws, at each position of the paper's square, the value 0 or 1 whose control points have the larger sum of weights.
+fn summed(label: &str, texture: &LabelTexture, size: u32) -> anyhow::Result<Panel> {
+    let value = |&label: &u32| texture.values()[label as usize];
+    let values = texture.labels().iter().map(value).collect();
+    let share = texture
+        .pups()
+        .texture(values)?
+        .to_raster(&fine_square(size)?)?;
+    let labels = share.map(|&share| if share > 0.5 { 1.0 } else { 0.0 });
+    Ok(Panel::gray(label, shrink(&labels, SIDE)?))
 }
 
 /// Number of samples along each side of a pixel, used to smooth hard edges.

@@ -146,19 +146,9 @@ fn verdict(report: &SeamReport) -> String {
     }
 }
 
-/// Builds a sheet `width` pixels wide with a tile at the upper left and, on the right, two by two copies of it.
-fn beside(tile: &Raster<f32>, width: u32) -> anyhow::Result<Raster<f32>> {
-    let map = repeat(tile, tile.size().map(|side| 2 * side))?;
-    let left = width.saturating_sub(map.width());
-    Ok(Raster::from_fn([width, map.height()], |column, row| {
-        if column >= left {
-            map.row(row)[(column - left) as usize]
-        } else if column < tile.width() && row < tile.height() {
-            tile.row(row)[column as usize]
-        } else {
-            1.0
-        }
-    })?)
+/// Returns copies of a tile, two rows of them, in an image `width` pixels wide.
+fn tiled(tile: &Raster<f32>, width: u32) -> anyhow::Result<Raster<f32>> {
+    Ok(repeat(tile, [width, 2 * tile.height()])?)
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! Progressive textures: cows whose control points are closer together toward the right.
 //!
-//! The points are on a cylinder, so the texture repeats from top to bottom, but not from left to right.
+//! As in figure 11, a position gets the label whose control points have the larger sum of weights. The points are on a
+//! cylinder, so the texture repeats from top to bottom, but not from left to right.
 
-use super::picture_of_labels;
+use super::summed;
 use crate::figure::source;
 use crate::{Figure, Panel};
 use dapple_pups::{ProgressionOptions, cow_progression, hash::Seed};
@@ -20,7 +21,7 @@ pub(super) const FIGURE: Figure = Figure {
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let texture = |seed| cow_progression(&ProgressionOptions::default(), seed);
     Ok(vec![
-        picture_of_labels("first", &texture(Seed(15))?, size)?.repeating_along([false, true]),
-        picture_of_labels("second", &texture(Seed(155))?, size)?.repeating_along([false, true]),
+        summed("first", &texture(Seed(15))?, size)?.repeating_along([false, true]),
+        summed("second", &texture(Seed(155))?, size)?.repeating_along([false, true]),
     ])
 }

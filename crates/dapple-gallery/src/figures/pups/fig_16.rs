@@ -1,6 +1,8 @@
 //! A progressive space giraffe: the centers of its spots are closer together toward the right.
+//!
+//! As in figure 11, a position gets the label whose control points have the larger sum of weights.
 
-use super::picture_of_labels;
+use super::summed;
 use crate::figure::source;
 use crate::{Figure, Panel};
 use dapple_pups::{ProgressionOptions, giraffe_progression, hash::Seed};
@@ -25,6 +27,6 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     };
     let texture = giraffe_progression(&options, Seed(16))?;
     Ok(vec![
-        picture_of_labels("", &texture, size)?.repeating_along([false, true]),
+        summed("", &texture, size)?.repeating_along([false, true]),
     ])
 }

@@ -1,6 +1,6 @@
-//! Points on orbits: three images of a loop in time, and a line of the texture through the whole loop (time goes
-//! down). Where the triangulation changes, the line jumps, unless the axes of an edge fade before it disappears. The
-//! last images show the rate of change of the line.
+//! Points on orbits: three images of a loop in time, and the rate of change of a line of the texture through the whole
+//! loop (time goes down). Where the triangulation changes, the line jumps, unless the axes of an edge fade before it
+//! disappears.
 //!
 //! "The main difficulty here lies in smoothing out sudden changes in the texture arising from sudden changes in the
 //! control net topology" (section 5). The fading axes are compared with the same moving points with axes that do not
@@ -38,12 +38,6 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let window = square(size)?.crop([0, i64::from(size / 2)], [size, 1])?;
     let fading = through_time(&window, size, moving)?;
     let jumping = through_time(&window, size, |time| still(&moving(time)?))?;
-    for (label, lines) in [
-        ("axes that do not fade", &jumping),
-        ("axes that fade", &fading),
-    ] {
-        panels.push(Panel::gray(label, lines.clone()).repeating());
-    }
     for (label, lines) in [
         ("change in time, without fading", &jumping),
         ("change in time, with fading", &fading),

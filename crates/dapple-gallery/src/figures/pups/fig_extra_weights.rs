@@ -1,5 +1,5 @@
-//! Axial weights instead of the cubic: the quintic, whose curvature is also continuous, and one that oscillates, for
-//! finer features between the same control points.
+//! Axial weights instead of the cubic: weights that oscillate between two control points, for finer features from the
+//! same points. The quintic, whose curvature is also continuous, can hardly be told from the cubic.
 
 use super::picture;
 use crate::figure::source;
@@ -8,24 +8,18 @@ use dapple_pups::{AxialWeight, NetOptions, NoiseOptions, Spacing, hash::Seed, no
 
 pub(super) const FIGURE: Figure = Figure {
     number: "extra",
-    parameters: &[
-        ("minimum distance", "0.2"),
-        ("oscillating weight", "3 dips of depth 0.9"),
-    ],
+    parameters: &[("minimum distance", "0.2"), ("depth of the dips", "0.9")],
     source: source!(),
     render,
 };
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
-    let oscillating = AxialWeight::Oscillating {
-        dips: 3,
-        depth: 0.9,
-    };
+    let oscillating = |dips| AxialWeight::Oscillating { dips, depth: 0.9 };
     let mut panels = Vec::new();
     for (label, weight) in [
         ("cubic", AxialWeight::Cubic),
-        ("quintic", AxialWeight::Quintic),
-        ("oscillating", oscillating),
+        ("one dip", oscillating(1)),
+        ("three dips", oscillating(3)),
     ] {
         let options = NoiseOptions {
             spacing: Spacing::from(0.2),

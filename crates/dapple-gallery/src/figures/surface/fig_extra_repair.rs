@@ -66,9 +66,9 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     ])
 }
 
-/// Returns one and a half copies of a tile along each side, with a seam in the middle.
+/// Returns copies of a tile in an image of one and a half times [`SIDE`], with a seam in the middle.
 fn copies(tile: &Raster<LinearRgb>, size: u32) -> anyhow::Result<Raster<LinearRgb>> {
-    let side = i64::from(tile.width().max(tile.height())) * 3 / 2;
+    let side = i64::from(SIDE) * 3 / 2;
     let picture = Raster::from_fn([side as u32; 2], |x, y| {
         let [x, y] = [x, y].map(|at| i64::from(at) - side / 2);
         *tile.at(x, y, [Wrap::Repeat; 2])

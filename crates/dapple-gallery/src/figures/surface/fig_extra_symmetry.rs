@@ -5,14 +5,11 @@
 
 use super::exemplar::EXEMPLARS;
 use super::stage::{lit, views};
-use super::textured::Job;
-use crate::draw::sheet;
+use super::textured::{Job, Textured};
 use crate::figure::source;
 use crate::{Figure, Panel};
 use anyhow::Context;
-use dapple_color::LinearRgb;
 use dapple_models::bunny;
-use dapple_raster::Raster;
 use dapple_synth::{Coherence, Edges, HierarchyOptions, Sources, Symmetry};
 
 pub(super) const FIGURE: Figure = Figure {
@@ -20,7 +17,7 @@ pub(super) const FIGURE: Figure = Figure {
     parameters: &[
         ("exemplars", "96² and 64², which repeat"),
         ("points", "65,536"),
-        ("views", "from four sides"),
+        ("views", "from the front and from behind"),
     ],
     source: source!(),
     render,
@@ -40,22 +37,21 @@ const PANELS: [(&str, &str, u32, Symmetry); 4] = [
 ];
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
-    let panel = |&(label, exemplar, side, symmetry): &(&str, &str, u32, Symmetry)| {
-        Ok(Panel::color(
-            label,
-            four_sides(size, exemplar, side, symmetry)?,
-        ))
-    };
-    PANELS.iter().map(panel).collect()
+    let mut panels = Vec::new();
+    for (label, exemplar, side, symmetry) in PANELS {
+        let textured = textured(size, exemplar, side, symmetry)?;
+        let mesh = textured.synthesizer.surface().mesh();
+        let [front, _, behind, _] = views(mesh);
+        for (label, view) in [(label, front), ("from behind", behind)] {
+            let picture = lit(mesh, &view, [size; 2], |surface| textured.color(surface))?;
+            panels.push(Panel::color(label, picture));
+        }
+    }
+    Ok(panels)
 }
 
-/// Renders a textured model from four sides.
-fn four_sides(
-    size: u32,
-    exemplar: &str,
-    side: u32,
-    symmetry: Symmetry,
-) -> anyhow::Result<Raster<LinearRgb>> {
+/// Synthesizes a texture on the model along a field with the given symmetry.
+fn textured(size: u32, exemplar: &str, side: u32, symmetry: Symmetry) -> anyhow::Result<Textured> {
     let exemplar = EXEMPLARS.iter().find(|found| found.name == exemplar);
     let job = Job {
         mesh: bunny((14_000 * size / 512).clamp(2000, 14_000) as usize)?,
@@ -74,12 +70,5 @@ fn four_sides(
         mask: None,
         guides: Vec::new(),
     };
-    let textured = job.run_symmetric(symmetry)?;
-    let mesh = textured.synthesizer.surface().mesh();
-    let views = views(mesh);
-    sheet([size; 2], [2, 2], 0, LinearRgb::BLACK, |at, size| {
-        lit(mesh, &views[at as usize], size, |surface| {
-            textured.color(surface)
-        })
-    })
+    Ok(job.run_symmetric(symmetry)?)
 }

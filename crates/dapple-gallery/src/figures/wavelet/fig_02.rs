@@ -1,7 +1,7 @@
-//! Large blend maps, each tiled from Rn: on the left each blend tile, of a texture and of Perlin noise, on the right
-//! the map tiled by it. One level softens the seams but does not remove them.
+//! Large blend maps, each tiled from Rn: eight copies of a blend tile of a texture, and of one of Perlin noise. One
+//! level softens the seams but does not remove them.
 
-use super::{BLEND_TILE, beside, originals, report, tile_side};
+use super::{BLEND_TILE, originals, report, tile_side, tiled};
 use crate::figure::source;
 use crate::{Figure, Panel};
 use dapple_tile::{Method, Seamless};
@@ -10,7 +10,7 @@ pub(super) const FIGURE: Figure = Figure {
     number: "2",
     parameters: &[
         ("tile", "128 × 128"),
-        ("map", "256 × 256"),
+        ("map", "512 × 256"),
         (
             "filters",
             "quadratic B-spline, one level, Cook and DeRose's phase",
@@ -27,7 +27,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         .into_iter()
         .map(|(name, original)| {
             let tile = seamless.apply(&original)?;
-            let picture = beside(&tile, size)?;
+            let picture = tiled(&tile, size)?;
             Ok(Panel::gray(name, picture).with_note(report(&original, &tile)?))
         })
         .collect()

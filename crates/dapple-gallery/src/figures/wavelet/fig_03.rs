@@ -5,7 +5,7 @@
 //! phase), and removes the finest detail. A cut removes the step and preserves the detail, but needs a margin, here a
 //! quarter of the tile, in which the original continues.
 
-use super::{BLEND_TILE, beside, cut, originals, report, tile_side};
+use super::{BLEND_TILE, cut, originals, report, tile_side, tiled};
 use crate::figure::source;
 use crate::{Figure, Panel};
 use dapple_tile::{Method, Seamless};
@@ -15,7 +15,7 @@ pub(super) const FIGURE: Figure = Figure {
     parameters: &[
         ("1, 2", "blend tiles of stone and pebble"),
         ("3, 4", "Perlin noise of one octave and of five"),
-        ("tile, map", "128 × 128, 256 × 256"),
+        ("tile, map", "128 × 128, 512 × 256"),
         ("margin of the cut", "32 pixels"),
     ],
     source: source!(),
@@ -36,7 +36,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
                 _ => Seamless::new(cut).apply(wide)?,
             };
             let label = format!("{letter}{number}: {name}");
-            let picture = beside(&tile, size)?;
+            let picture = tiled(&tile, size)?;
             let source = if letter == 'c' { wide } else { &original };
             panels.push(Panel::gray(label, picture).with_note(report(source, &tile)?));
         }
