@@ -1,28 +1,28 @@
 //! Lists all figures, paper by paper.
 
 mod fractal;
-mod house;
+mod materials;
 pub(crate) mod pups;
 pub(crate) mod surface;
 mod wavelet;
 mod worley;
 
-pub(crate) use house::lit;
+pub(crate) use materials::lit;
 
 use crate::{Figure, Paper};
 
-/// Returns the papers in page order.
+/// Returns the materials and the papers in page order: first what is made with the library, then how.
 // A function that is not inlined, because a unit test compiles everything that a `static` of its crate references, and
 // every user of a `const` compiles it again.
 #[inline(never)]
 #[must_use]
 pub fn papers() -> &'static [Paper] {
     &[
-        worley::PAPER,
-        wavelet::PAPER,
+        materials::PAPER,
         surface::PAPER,
+        worley::PAPER,
         pups::PAPER,
-        house::PAPER,
+        wavelet::PAPER,
     ]
 }
 

@@ -15,8 +15,8 @@
 //! ```
 //! use dapple_gallery::{LOCK_SIZE, figures};
 //!
-//! let card = figures().find(|figure| figure.name() == "house-fig-01").ok_or("no such figure")?;
-//! let panels = card.render(LOCK_SIZE)?;
+//! let cells = figures().find(|figure| figure.name() == "worley-fig-01").ok_or("no such figure")?;
+//! let panels = cells.render(LOCK_SIZE)?;
 //! assert_eq!(panels[0].size(), [LOCK_SIZE; 2]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

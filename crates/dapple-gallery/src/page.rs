@@ -1,6 +1,6 @@
 //! Generates the page that shows the figures: one HTML file that needs only the images next to it.
 //!
-//! It shows thumbnails by paper. A thumbnail links to the full image; arrow keys go to adjacent images, and images
+//! It opens with what dapple is and with some of its best images, and shows thumbnails by paper below. A thumbnail links to the full image; arrow keys go to adjacent images, and images
 //! that repeat can be shown tiled. Each figure has its source and the command that renders it. Without scripts,
 //! thumbnails are plain links, and controls that need scripts are hidden.
 
@@ -30,6 +30,19 @@ pub struct Image {
     pub size: [u32; 2],
 }
 
+/// Images at the top of the page, as names of a figure and labels of its image. Images that were not rendered are
+/// left out.
+const FEATURED: [(&str, &str); 8] = [
+    ("surface-fig-05", "octopus"),
+    ("materials-fig-01", "cobblestones"),
+    ("worley-fig-07", ""),
+    ("materials-fig-01", "chipped-paint"),
+    ("surface-fig-05", "bunny"),
+    ("materials-fig-01", "stone-wall"),
+    ("pups-fig-10", ""),
+    ("materials-fig-01", "black-marble"),
+];
+
 /// Returns the page for the given figures. `root` is the path from the page's folder to the workspace root, and may
 /// be empty.
 #[must_use]
@@ -48,6 +61,8 @@ pub fn html(entries: &[Entry], root: &str) -> String {
         }
     }
     include_str!("page/template.html")
+        .replace("{{root}}", &escape(root))
+        .replace("{{featured}}", &featured(entries))
         .replace("{{contents}}", &contents)
         .replace("{{figures}}", &sections)
 }
@@ -55,6 +70,32 @@ pub fn html(entries: &[Entry], root: &str) -> String {
 fn link(paper: &Paper, n_figures: usize) -> String {
     let (key, title) = (escape(paper.key), escape(paper.title));
     format!("<li><a href=\"#{key}\">{title}</a> <small>{n_figures}</small></li>\n")
+}
+
+/// Returns the images at the top, each a link to its figure.
+fn featured(entries: &[Entry]) -> String {
+    let image = |(name, label): (&str, &str)| {
+        let entry = entries.iter().find(|entry| entry.figure.name() == name)?;
+        let mut images = entry.images.iter();
+        let image = images.find(|image| image.label.starts_with(label))?;
+        let (file, alt) = (escape(&image.file), alt(entry.figure, image));
+        let link = format!("<a href=\"#{name}\"><img src=\"{file}\" alt=\"{alt}\"></a>\n");
+        Some(link)
+    };
+    FEATURED.into_iter().filter_map(image).collect()
+}
+
+/// Returns an image's description for readers who do not see it: its label, and the first sentence of the caption.
+fn alt(figure: &Figure, image: &Image) -> String {
+    let caption = figure.caption();
+    let sentence = caption
+        .split_once(". ")
+        .map_or(&*caption, |(first, _)| first);
+    let sentence = sentence.trim_end_matches('.').replace('`', "");
+    match &*image.label {
+        "" => escape(&sentence),
+        label => escape(&format!("{label}: {sentence}")),
+    }
 }
 
 fn section(paper: &Paper, figures: &str) -> String {
@@ -71,7 +112,7 @@ fn section(paper: &Paper, figures: &str) -> String {
 fn article(entry: &Entry, root: &str) -> String {
     let figure = entry.figure;
     let name = escape(&figure.name());
-    let caption = escape(&figure.caption());
+    let caption = with_code(&escape(&figure.caption()));
     let number = match figure.number {
         "extra" => "Extra".to_owned(),
         number => format!("Figure {}", escape(number)),
@@ -81,8 +122,8 @@ fn article(entry: &Entry, root: &str) -> String {
         2 | 3 => " class=\"wide\"",
         _ => " class=\"full\"",
     };
-    let thumbnails = entry.images.iter().map(|image| thumbnail(image, &number));
-    let images: String = thumbnails.collect();
+    let thumbnails = entry.images.iter();
+    let images: String = thumbnails.map(|image| thumbnail(figure, image)).collect();
     let parameters: String = figure.parameters.iter().copied().map(parameter).collect();
     let code = code(figure, root);
     format!(
@@ -92,11 +133,10 @@ fn article(entry: &Entry, root: &str) -> String {
     )
 }
 
-fn thumbnail(image: &Image, number: &str) -> String {
+fn thumbnail(figure: &Figure, image: &Image) -> String {
     let (file, label) = (escape(&image.file), escape(&image.label));
     let [width, height] = image.size;
-    let alt = format!("{number} {label}");
-    let alt = alt.trim_end();
+    let alt = alt(figure, image);
     let note = match image.note.trim_end() {
         "" => String::new(),
         note => format!("<pre class=\"note\">{}</pre>", escape(note)),
@@ -157,6 +197,15 @@ const RECIPE: &str = "recipe";
 /// HTML of a button that copies the text before it.
 const COPY: &str = "<button class=\"scripted\" data-copy>Copy</button>";
 
+/// Replaces backticks around code by elements.
+fn with_code(text: &str) -> String {
+    let mut parts = text.split('`');
+    let first = parts.next().unwrap_or_default().to_owned();
+    (0..).zip(parts).fold(first, |html, (number, part)| {
+        html + ["<code>", "</code>"][number % 2] + part
+    })
+}
+
 /// Escapes a text for an HTML element or an attribute in double quotes.
 fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
@@ -174,7 +223,16 @@ fn escape(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::escape;
+    use super::{escape, with_code};
+
+    #[test]
+    fn code_in_captions_becomes_elements() {
+        assert_eq!(
+            with_code("run `a b`, then `c`"),
+            "run <code>a b</code>, then <code>c</code>"
+        );
+        assert_eq!(with_code("no code"), "no code");
+    }
 
     #[test]
     fn text_is_escaped() {
