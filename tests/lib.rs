@@ -25,6 +25,7 @@ readmes! {
     pups: "../crates/dapple-pups/README.md",
     raster: "../crates/dapple-raster/README.md",
     recipe: "../crates/dapple-recipe/README.md",
+    wgsl: "../crates/dapple-wgsl/README.md",
     chunks: "../docs/terrain-chunks.md",
     others: "../docs/from-other-noise-libraries.md",
 }

@@ -2,7 +2,7 @@
 //! sampled correctly.
 //!
 //! ```sh
-//! cargo test -p dapple-tests --features gpu --test gpu
+//! cargo test -p dapple-tests --test gpu
 //! ```
 //!
 //! Without an adapter the tests print a note and pass. On Linux without a GPU, the packages `libvulkan1` and

@@ -104,15 +104,16 @@ fn run(shell: &Shell, step: Step) -> anyhow::Result<()> {
         Step::Fmt => cmd!(shell, "cargo fmt --all --check"),
         Step::Clippy => cmd!(
             shell,
-            "cargo clippy --workspace --all-targets --features dapple-bench/peers -- -D warnings"
+            "cargo clippy --workspace --all-targets --features dapple-bench/peers,dapple-wgsl-tests/gpu -- -D warnings"
         ),
         Step::Doc => return doc(shell),
         Step::Tidy => return tidy::tidy(shell),
         Step::Licenses => return crate::licenses::licenses(shell, true),
-        // Only these tests compile `wgpu`. They skip themselves without a graphics adapter.
+        // With the whole workspace, whose features decide what is compiled again. The tests skip themselves without a
+        // graphics adapter.
         Step::Shaders => cmd!(
             shell,
-            "cargo test --package dapple-wgsl-tests --features gpu"
+            "cargo test --workspace --features dapple-wgsl-tests/gpu --test gpu"
         ),
         Step::Features => return features(shell),
         Step::Package => return package(shell),

@@ -1,7 +1,7 @@
 //! Runs shaders on a GPU, for the tests that compare `dapple-wgsl` with the CPU.
 //!
 //! ```sh
-//! cargo test -p dapple-wgsl-tests --features gpu
+//! cargo xtask ci shaders
 //! ```
 //!
 //! Without an adapter the tests print a note and pass, unless `DAPPLE_NO_SKIP=1` is set. On Linux without a GPU, the
@@ -9,13 +9,6 @@
 
 #![forbid(unsafe_code)]
 
-#[cfg(feature = "gpu")]
 mod gpu;
 
-#[cfg(feature = "gpu")]
 pub use gpu::Gpu;
-
-/// Runs the program of the README.
-#[cfg(all(doctest, feature = "gpu"))]
-#[doc = include_str!("../../dapple-wgsl/README.md")]
-mod readme {}
