@@ -174,7 +174,7 @@ fn features(shell: &Shell) -> anyhow::Result<()> {
         for set in feature_sets(member) {
             cmd!(
                 shell,
-                "cargo clippy --quiet --no-deps --package {package} --no-default-features --features {set} -- -D warnings"
+                "cargo clippy --quiet --package {package} --no-default-features --features {set} -- -D warnings"
             )
             .run()?;
         }
