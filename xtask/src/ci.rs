@@ -109,7 +109,7 @@ fn run(shell: &Shell, step: Step) -> anyhow::Result<()> {
         Step::Doc => return doc(shell),
         Step::Tidy => return tidy::tidy(shell),
         Step::Licenses => return crate::licenses::licenses(shell, true),
-        // With the whole workspace, whose features decide what is compiled again. The tests skip themselves without a
+        // With the features of the whole workspace, so that no crate is compiled again. The tests skip themselves without a
         // graphics adapter.
         Step::Shaders => cmd!(
             shell,

@@ -80,7 +80,7 @@ pub struct Material {
     pub occlusion: Option<EncodedImage>,
     /// Texture of the emitted light, encoded as sRGB.
     pub emission: Option<EncodedImage>,
-    /// Factor multiplied with the emission texture [default: 1].
+    /// Multiplier of the emission texture [default: 1].
     pub emission_strength: f32,
     /// Texture with the strength of the specular reflection of nonmetals in alpha.
     pub specular: Option<EncodedImage>,

@@ -388,9 +388,9 @@ struct Point {
 pub(crate) struct Stamp {
     /// Position of the center in cells.
     center: [f64; 2],
-    /// Gradient of the coordinate along the stamp, which is −1 and 1 at its ends, per cell.
+    /// Gradient, per cell, of the coordinate u along the stamp. At the ends of the stamp, u is −1 and 1.
     u_axis: [f64; 2],
-    /// Gradient of the coordinate across the stamp, which is −1 and 1 at its sides, per cell.
+    /// Gradient, per cell, of the coordinate v across the stamp. At the sides of the stamp, v is −1 and 1.
     v_axis: [f64; 2],
     outline: Outline,
     height: f32,
@@ -451,8 +451,7 @@ pub struct StampField {
 impl NearCells for StampField {
     type Item = Stamp;
 
-    /// Stamps are listed in the order in which they are stamped or, where that order decides, from the last one to the
-    /// first.
+    /// Appends the stamps in stamping order, or the topmost first if the order affects the value.
     fn near(&self, cell: [i64; 2], center: [f64; 2], half: [f64; 2], near: &mut Vec<Stamp>) {
         let stamps = &self.stamps;
         let has_offset = i64::from(stamps.options.row_offset != 0.0);

@@ -1,4 +1,4 @@
-//! Textures of control points as words of a texture for shaders.
+//! Packs textures of control points into 32-bit words, which shaders read from a data texture.
 
 use crate::{AxialWeight, Folding, LabelTexture, Layers, Octave, Pups, PupsError, Texture};
 

@@ -10,7 +10,7 @@ pub struct Change {
     pub from: usize,
     /// End of the replaced part, exclusive.
     pub to: usize,
-    /// The text that replaces it.
+    /// Text that is inserted instead.
     pub insert: String,
 }
 

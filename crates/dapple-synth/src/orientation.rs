@@ -76,7 +76,7 @@ pub struct Orientation {
 }
 
 impl Orientation {
-    /// Axis for connected components without a direction: down, in files with y up.
+    /// Default direction of connected components for which none is given: −y, which is down in files with y up.
     pub const AXIS: DVec3 = DVec3::NEG_Y;
 
     /// Interpolates `directions` over the surface. Connected components without any direction are oriented along

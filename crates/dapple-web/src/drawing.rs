@@ -58,7 +58,7 @@ pub(crate) struct Drawing {
     pending: RefCell<Vec<Picture>>,
 }
 
-/// The next step.
+/// The part of a job that is rendered next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Next {
     /// The draft. If there is no draft, the whole job.

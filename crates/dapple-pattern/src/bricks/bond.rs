@@ -54,9 +54,9 @@ dapple_raster::named! {
         U = "u",
         /// Position across the face, from 0 to 1; clamped in the joints.
         V = "v",
-        /// Number of the column, from 0; the whole number counts up to the period.
+        /// Index of the column, a whole number modulo the period.
         Column = "column",
-        /// Number of the course, from 0; the whole number counts up to the period.
+        /// Index of the course, a whole number modulo the period.
         Row = "row",
         /// Direction of the long axis: 0 for horizontal, 1 for vertical.
         Direction = "direction",

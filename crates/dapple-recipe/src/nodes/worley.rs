@@ -273,7 +273,8 @@ impl WorleyNode {
         Ok((shader.constant("WORLEY", worley), place))
     }
 
-    /// Writes the nearest feature points, at least `depth`, at the position times the node's frequency times `ratio`.
+    /// Writes shader code for the nearest feature points, at least `depth` of them. The position is scaled by the node's
+    /// frequency and by `ratio`, the relative frequency of an octave.
     fn features<const N: usize>(
         &self,
         shader: &mut NodeShader<'_, '_>,

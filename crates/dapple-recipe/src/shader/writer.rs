@@ -41,7 +41,7 @@ pub(super) struct Writer<'a> {
     /// For each node, its name in identifiers.
     identifiers: BTreeMap<&'a str, String>,
     modules: Vec<Module>,
-    /// For each value of a constant, its name.
+    /// Names of the shader's constants, by value, so that equal values share a constant.
     constants: IndexMap<String, String>,
     functions: Vec<String>,
     /// For each node that is evaluated at other positions, its function.

@@ -1,4 +1,4 @@
-//! Exported models whose parts match, also after a round trip through files.
+//! Tests that the maps and texture coordinates of exported models match, also after a round trip through files.
 
 use super::*;
 use crate::shapes::{pixel_per_site, row, sphere, square, synthesizer};

@@ -10,7 +10,7 @@ use super::margin;
 /// Radius of the ball, in units. Including rounding, the diameter is less than 2^15.
 const RADIUS: f64 = 16_000.0;
 
-/// Maximum number of units per unit length; prevents overflow.
+/// Maximum number of units per input unit; prevents overflow.
 const FINEST: f64 = 1e30;
 
 /// Radius of the ball, in multiples of the root mean square length of the points. Few points are outside, and the
@@ -20,7 +20,7 @@ const SPREADS: f64 = 4.0;
 /// Maximum error of a coordinate, in units: 0.5 from rounding, and less than 0.01 from the arithmetic.
 const ERROR: f64 = 0.51;
 
-/// A ball around the origin, and the number of units per unit length.
+/// Parameters of the quantization: the radius of the ball around the origin, and the number of units per input unit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lattice {
     radius: f64,
@@ -28,7 +28,8 @@ pub(crate) struct Lattice {
 }
 
 impl Lattice {
-    /// Creates the ball for points, given the length of the longest point and the root mean square of all lengths.
+    /// Chooses the radius and the scale for a set of vectors, from their maximum length `longest` and the root mean square
+    /// `spread` of their lengths.
     pub(crate) fn new(longest: f64, spread: f64) -> Self {
         let radius = longest.min(SPREADS * spread);
         let per_unit = (RADIUS / radius).min(FINEST);
@@ -57,7 +58,7 @@ impl Lattice {
         ERROR * (n as f64).sqrt()
     }
 
-    /// Returns the number of units per unit length.
+    /// Returns the scale: how many quantization units one unit of the input spans.
     pub(crate) fn per_unit(&self) -> f64 {
         self.per_unit
     }

@@ -13,7 +13,8 @@ use glam::DVec2;
 /// useful. Sites out of reach of the square have no influence.
 const MOST: f64 = 0.5;
 
-/// Rotations during half of a walking step, along P and along O.
+/// Rotations of the orientation field over half of a step between two samples of a neighborhood: `right` for steps along
+/// the axis P, `down` for steps along the axis O.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Turning {
     pub(crate) right: Turn,

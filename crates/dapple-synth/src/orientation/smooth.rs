@@ -257,7 +257,8 @@ impl System<DVec2> for Smooth<'_> {
     }
 }
 
-/// Returns the initial power of `site`: the power of the axis plus noise.
+/// Returns the initial direction of `site` as a complex power, which is the same for all equivalent directions: that of
+/// the axis, 1, plus noise.
 fn first(site: i64) -> DVec2 {
     let part = |index| {
         f64::from(unit_f32(

@@ -7,7 +7,7 @@ use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::tile::Map;
 
-/// How the mixed colors relate to alpha.
+/// Alpha representation of the mixed colors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::commands) enum AlphaForm {
     /// The image has no alpha.

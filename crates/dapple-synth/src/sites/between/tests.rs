@@ -21,7 +21,7 @@ impl HasPosition for Site {
     }
 }
 
-/// Returns the midpoints of the edges of a triangulation that the limits on length and circle center allow.
+/// Returns the midpoints of the edges of a Delaunay triangulation that satisfy the limits on length and circle center.
 fn middles_by_spade(positions: &[DVec2], spacing: f64) -> Vec<[f64; 2]> {
     let mut triangulation = DelaunayTriangulation::<Site>::new();
     for &position in positions {
