@@ -14,6 +14,7 @@
 //! whose Voronoi cells share a side of positive length. It is the same for all images and does not depend on the
 //! origin of the domain.
 
+mod hull;
 mod images;
 mod order;
 mod patch;
@@ -66,9 +67,9 @@ pub fn delaunay(points: &PointSet) -> Result<Graph, GraphError> {
 
 /// Same as [`delaunay`], but fails if `is_cancelled` returns true.
 ///
-/// On domains that wrap along both axes, the callback is called about once per 8192 points, possibly from several
-/// threads. On other domains, all points belong to a single triangulation, which cannot be canceled and takes about a
-/// second for a million points; the callback is called before and after it.
+/// The callback is called about once per 8192 points, possibly from several threads. On domains that wrap along one axis
+/// alone, and for points that are collinear, on a circle or in few places, all points belong to a single triangulation,
+/// which cannot be canceled and takes about a second for a million points; the callback is called before and after it.
 ///
 /// # Errors
 ///
@@ -148,7 +149,11 @@ impl From<TooThin> for Refusal {
 fn rows(lattice: &Lattice, sites: &[DVec2], is_cancelled: &IsCancelled) -> Result<Rows, Refusal> {
     let margin = MARGIN * (lattice.size.x * (lattice.size.y / sites.len().max(1) as f64)).sqrt();
     if let Some(tiles) = Tiles::new(lattice, sites.len(), margin) {
-        return tiles.rows(sites, is_cancelled);
+        match tiles.rows(sites, is_cancelled) {
+            // Without wrapping, one triangulation accepts all points.
+            Err(Refusal::Thin) if !lattice.wraps() => {}
+            result => return result,
+        }
     }
     whole(lattice, sites, margin, is_cancelled)
 }
@@ -165,7 +170,7 @@ fn whole(
     let images = cover.images(lattice, sites)?;
     let mut patch = Patch::new(lattice, cover, &images, sites.len())?;
     check(is_cancelled)?;
-    Ok(patch.rows(&LazyGrid::new(lattice, sites))?)
+    Ok(patch.rows(&LazyGrid::new(lattice, sites), None)?)
 }
 
 /// Initial margin of images around the domain, in multiples of the mean point spacing (the square root of the area
@@ -174,7 +179,7 @@ const MARGIN: f64 = 1.6;
 
 #[cfg(test)]
 mod tests {
-    use super::{MARGIN, delaunay_cancellable, rows, whole};
+    use super::{MARGIN, Refusal, Tiles, delaunay_cancellable, rows, whole};
     use crate::GraphErrorKind;
     use crate::lattice::Lattice;
     use crate::{PointIdx, PointSet, delaunay};
@@ -218,6 +223,80 @@ mod tests {
         }
     }
 
+    /// Returns sets of 40,000 to 50,000 points in the plane, with many points on circles, on the border of the hull, and in clusters.
+    fn flat_sets() -> Vec<(&'static str, Vec<DVec2>)> {
+        let uniform = random(50_000, 1, DVec2::ONE).positions().to_vec();
+        let grid = |x: i32, y: i32| DVec2::new(f64::from(x), f64::from(y)) / 256.0;
+        let grid: Vec<_> = (0..40_000).map(|i| grid(i % 200, i / 200)).collect();
+        // Turn by a Pythagorean angle, so that the border is not along the axes.
+        let turned = grid
+            .iter()
+            .map(|at| DVec2::new(0.5 * at.x - 0.25 * at.y, 0.25 * at.x + 0.5 * at.y));
+        let turned = turned.map(|at| at + DVec2::X * 0.25).collect();
+        let disc = uniform
+            .iter()
+            .copied()
+            .filter(|at| (at - 0.5).length() < 0.5)
+            .collect();
+        let clustered = uniform.iter().map(|at| at * at).collect();
+        let with_far_corners = (uniform.iter().map(|at| 0.25 + 0.5 * at))
+            .chain([DVec2::ZERO, DVec2::X, DVec2::ONE])
+            .collect();
+        vec![
+            ("uniform", uniform),
+            ("grid", grid),
+            ("turned grid", turned),
+            ("disc", disc),
+            ("clustered", clustered),
+            ("far corners", with_far_corners),
+        ]
+    }
+
+    #[test]
+    fn tiles_in_the_plane_equal_the_whole() {
+        let mut refused = Vec::new();
+        for (name, positions) in flat_sets() {
+            for size in [DVec2::ONE, DVec2::new(4.0, 0.25)] {
+                let positions = positions.iter().map(|&at| at * size).collect();
+                let points =
+                    PointSet::new(Domain::rectangle(DVec2::ZERO, size), positions).unwrap();
+                let lattice = Lattice::new(points.domain());
+                let sites = lattice.sites(&points);
+                let expected = whole(&lattice, &sites, 1.0, &|| false).unwrap();
+                let margin = MARGIN * lattice.vector(lattice.size).element_product().sqrt();
+                let margin = lattice.steps(DVec2::splat(margin / 200.0)).x;
+                let tiles = Tiles::new(&lattice, sites.len(), margin).unwrap();
+                let Ok(tiled) = tiles.rows(&sites, &|| false) else {
+                    refused.push((name, size.x));
+                    continue;
+                };
+                assert!(
+                    tiled.offsets == expected.offsets && tiled.axes == expected.axes,
+                    "{name}, {size}"
+                );
+            }
+        }
+        // Sites whose neighbors are far beyond the margin of most tiles
+        assert_eq!(refused, [("grid", 4.0), ("clustered", 1.0)]);
+    }
+
+    #[test]
+    fn points_in_the_plane_that_tiles_refuse_are_one_triangulation() {
+        let on_circle = |i: i32| {
+            // Rational points of the unit circle
+            let t = f64::from(i) / 20_000.0 - 1.0;
+            0.5 + 0.5 * DVec2::new(1.0 - t * t, 2.0 * t) / (1.0 + t * t)
+        };
+        let circle: Vec<DVec2> = (0..40_000).map(on_circle).collect();
+        let points = PointSet::new(Domain::rectangle(DVec2::ZERO, DVec2::ONE), circle).unwrap();
+        let lattice = Lattice::new(points.domain());
+        let sites = lattice.sites(&points);
+        let tiles = Tiles::new(&lattice, sites.len(), MARGIN * 1e12).unwrap();
+        assert_eq!(tiles.rows(&sites, &|| false).unwrap_err(), Refusal::Thin);
+        let expected = whole(&lattice, &sites, 1.0, &|| false).unwrap();
+        assert_eq!(delaunay(&points).unwrap().axes, expected.axes);
+    }
+
     #[test]
     fn cancelled_graphs_stop_at_the_next_tile() {
         let points = random(100_000, 1, DVec2::ONE);
@@ -225,16 +304,20 @@ mod tests {
         // The third call cancels.
         let error = delaunay_cancellable(&points, &|| n_calls.fetch_add(1, Relaxed) >= 2);
         assert_eq!(error.unwrap_err().kind(), &GraphErrorKind::Cancelled);
-        // There are 9 tiles. After the third call, each remaining tile makes one call and does no other work.
-        assert_eq!(n_calls.load(Relaxed), 9);
+        // There are two calls before the 9 tiles. After the third call, each remaining tile makes one call and does no
+        // other work.
+        assert_eq!(n_calls.load(Relaxed), 11);
         let same = delaunay_cancellable(&points, &|| false).unwrap();
         assert_eq!(same, delaunay(&points).unwrap());
         let flat = PointSet::new(
             Domain::rectangle(DVec2::ZERO, DVec2::ONE),
             points.positions().to_vec(),
         );
-        let error = delaunay_cancellable(&flat.unwrap(), &|| true).unwrap_err();
+        let n_calls = AtomicUsize::new(0);
+        let cancel = || n_calls.fetch_add(1, Relaxed) >= 2;
+        let error = delaunay_cancellable(&flat.unwrap(), &cancel).unwrap_err();
         assert_eq!(error.kind(), &GraphErrorKind::Cancelled);
+        assert_eq!(n_calls.load(Relaxed), 11);
     }
 
     #[test]

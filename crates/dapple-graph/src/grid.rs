@@ -33,6 +33,11 @@ impl Budget {
         (1 << 21) + 32_u64.saturating_mul(n.saturating_mul(n))
     }
 
+    /// Creates the budget for a tile of a set that does not wrap: a few milliseconds.
+    pub(crate) fn of_tile() -> Self {
+        Self { left: 1 << 20 }
+    }
+
     fn take(&mut self, images: u64) -> Result<(), TooThin> {
         self.left = self.left.checked_sub(images).ok_or(TooThin)?;
         Ok(())
@@ -109,6 +114,36 @@ impl<'a> Grid<'a> {
             image.x += 1.0;
             if image.x > x_last {
                 image = DVec2::new(x_first, image.y + 1.0);
+            }
+        }
+        Ok(())
+    }
+
+    /// Calls `visit` with the index and position of every site in a disk, and possibly of some sites near it. Images are
+    /// not visited.
+    ///
+    /// Fails like [`visit_box`](Self::visit_box).
+    pub(crate) fn visit_disk(
+        &self,
+        center: DVec2,
+        radius: f64,
+        budget: &mut Budget,
+        mut visit: impl FnMut(u32, DVec2),
+    ) -> Result<(), TooThin> {
+        // A step is more than the rounding error of the rows' borders.
+        let radius = radius + 1.0;
+        let first = self.bucket(1, center.y - radius);
+        for row in first..=self.bucket(1, center.y + radius) {
+            let low = row as f64 / self.per_step.y;
+            let high = (row + 1) as f64 / self.per_step.y;
+            let across = (low - center.y).max(center.y - high).max(0.0);
+            let along = ((radius - across).max(0.0) * (radius + across)).sqrt();
+            let [first, last] = [-along, along].map(|along| self.bucket(0, center.x + along));
+            let first = self.groups.range(row * self.cells[0] + first).start;
+            let end = self.groups.range(row * self.cells[0] + last).end;
+            budget.take((end - first) as u64 + 1)?;
+            for &index in &self.groups.items[first..end] {
+                visit(index, self.sites[index as usize]);
             }
         }
         Ok(())

@@ -1,5 +1,6 @@
 //! Finds the images of points that a patch needs.
 
+use super::hull::Hull;
 use super::patch::Image;
 use super::star::Star;
 use crate::grid::{Budget, LazyGrid, TooThin, triangulated_limit};
@@ -26,6 +27,19 @@ impl Cover {
             low: low - margin,
             high: high + margin,
         }
+    }
+
+    /// Creates the rectangle of a tile, extended by a margin along all axes.
+    pub(super) fn of_tile(low: DVec2, high: DVec2, margin: f64) -> Self {
+        Self {
+            low: low - margin,
+            high: high + margin,
+        }
+    }
+
+    /// Returns whether there are positions outside of the rectangle.
+    pub(super) fn is_bounded(&self) -> bool {
+        self.low.max(-self.high).max_element() > f64::NEG_INFINITY
     }
 
     /// Returns the distance from a position in the rectangle to the rectangle's border.
@@ -81,6 +95,8 @@ pub(super) struct Missing<'g, 'a> {
     lattice: &'a Lattice,
     cover: Cover,
     grid: &'g LazyGrid<'a>,
+    /// The hull of all sites, on a domain that does not wrap.
+    hull: Option<&'g Hull>,
     /// Maximum extent, along each axis, of the circumcircles of a point's triangles in the final triangulation
     /// (inside the strip of the domain).
     reach: DVec2,
@@ -101,23 +117,36 @@ pub(super) struct Missing<'g, 'a> {
 }
 
 impl<'g, 'a> Missing<'g, 'a> {
-    pub(super) fn new(lattice: &'a Lattice, cover: Cover, grid: &'g LazyGrid<'a>) -> Self {
+    pub(super) fn new(
+        lattice: &'a Lattice,
+        cover: Cover,
+        grid: &'g LazyGrid<'a>,
+        hull: Option<&'g Hull>,
+    ) -> Self {
         let size = lattice.size;
+        let corners = hull.into_iter().flat_map(|hull| &hull.corners);
+        let budget = match hull {
+            Some(_) => Budget::of_tile(),
+            None => Budget::new(grid.sites().len()),
+        };
         Self {
             lattice,
             cover,
             grid,
+            hull,
             // On a torus, the diameter of an empty circle is at most the diagonal of the domain. On a cylinder it may
             // be larger, but both borders of the strip contain a point in each period; the two kinds of cylinder
             // exchange width and height.
             reach: 1.01 * (2.0 * size.element_sum() - size),
-            inserted: BTreeSet::new(),
+            inserted: corners
+                .map(|&corner| key(grid.sites()[corner as usize]))
+                .collect(),
             pending: BTreeSet::new(),
             found: Vec::new(),
             scaffolded: false,
             row: 0,
             changes: false,
-            budget: Budget::new(grid.sites().len()),
+            budget,
             too_thin: false,
         }
     }
@@ -134,7 +163,12 @@ impl<'g, 'a> Missing<'g, 'a> {
             self.scaffold();
         }
         for (a, b) in star.wedges() {
-            if a.gap_after {
+            if let (Some(hull), true) = (self.hull, a.gap_after) {
+                // All corners are present, so the position is on the border of the hull.
+                for point in hull.beside(center).into_iter().flatten() {
+                    self.add(point, self.grid.sites()[point as usize]);
+                }
+            } else if a.gap_after {
                 self.search_border(center, a.at);
                 self.search_border(center, b.at);
             } else {
@@ -217,24 +251,29 @@ impl<'g, 'a> Missing<'g, 'a> {
         if low.cmpgt(depth.low).all() && high.cmplt(depth.high).all() {
             return;
         }
-        // Comparisons with a NaN center are false, so the whole reach is searched.
-        let low = (p - self.reach).max(low);
-        let high = (p + self.reach).min(high);
         let mut nearest: Option<(f64, u32, DVec2)> = None;
         let coord = |at: DVec2| Coord { x: at.x, y: at.y };
-        let visited = self
-            .grid
-            .get()
-            .visit_box(low, high, &mut self.budget, |point, at| {
-                if self.cover.depth(at) >= 0.0 || self.inserted.contains(&key(at)) {
-                    return;
-                }
-                let distance_sq = (at - p - circle.center).length_squared();
-                let nearer = nearest.is_none_or(|(best, ..)| distance_sq < best);
-                if nearer && incircle(coord(p), coord(p + a), coord(p + b), coord(at)) >= 0.0 {
-                    nearest = Some((distance_sq, point, at));
-                }
-            });
+        let visit = |point: u32, at: DVec2| {
+            if self.cover.depth(at) >= 0.0 || self.inserted.contains(&key(at)) {
+                return;
+            }
+            let distance_sq = (at - p - circle.center).length_squared();
+            // A center that is not finite has no nearest site, and any site will do.
+            let nearer = nearest.is_none_or(|(best, ..)| distance_sq < best);
+            if nearer && incircle(coord(p), coord(p + a), coord(p + b), coord(at)) >= 0.0 {
+                nearest = Some((distance_sq, point, at));
+            }
+        };
+        let grid = self.grid.get();
+        let visited = if self.hull.is_some() {
+            let (center, radius) = circle.finite();
+            grid.visit_disk(p + center, radius, &mut self.budget, visit)
+        } else {
+            // Comparisons with a NaN center are false, so the whole reach is searched.
+            let low = (p - self.reach).max(low);
+            let high = (p + self.reach).min(high);
+            grid.visit_box(low, high, &mut self.budget, visit)
+        };
         self.too_thin |= visited.is_err();
         if let Some((_, point, at)) = nearest {
             self.add(point, at);
@@ -267,7 +306,7 @@ impl<'g, 'a> Missing<'g, 'a> {
 }
 
 /// Converts a site to integers, which have a total order.
-fn key(at: DVec2) -> (i64, i64) {
+pub(super) fn key(at: DVec2) -> (i64, i64) {
     (at.x as i64, at.y as i64)
 }
 
@@ -282,9 +321,22 @@ impl Circle {
         let cross = 2.0 * a.perp_dot(b);
         let (a_sq, b_sq) = (a.length_squared(), b.length_squared());
         let center = DVec2::new(b.y * a_sq - a.y * b_sq, a.x * b_sq - b.x * a_sq) / cross;
+        let radius = center.length();
+        // Bound on the rounding error of the center, which is large if the three positions are nearly collinear.
+        let (a_length, b_length) = (a_sq.sqrt(), b_sq.sqrt());
+        let sides = a_length * b_length * (a_length + b_length + radius);
+        let error = 8.0 * f64::EPSILON * sides / cross.abs();
         Self {
             center,
-            radius: center.length() * (1.0 + 1e-9),
+            radius: radius * (1.0 + 1e-9) + error,
         }
+    }
+
+    /// Returns the center and the radius, which is infinite if the center is not finite.
+    fn finite(&self) -> (DVec2, f64) {
+        if self.center.is_finite() && self.radius.is_finite() {
+            return (self.center, self.radius);
+        }
+        (DVec2::ZERO, f64::INFINITY)
     }
 }

@@ -1,6 +1,7 @@
 //! A patch: a triangulated part of the periodic plane, and the graph rows for the points inside it.
 
 use super::Refusal;
+use super::hull::Hull;
 use super::images::{Cover, Missing};
 use super::order::farthest_first;
 use super::star::Star;
@@ -92,7 +93,11 @@ impl<'a> Patch<'a> {
     }
 
     /// Computes the axes of all points with a row, after inserting the missing images.
-    pub(super) fn rows(&mut self, grid: &LazyGrid<'a>) -> Result<Rows, TooThin> {
+    pub(super) fn rows(
+        &mut self,
+        grid: &LazyGrid<'a>,
+        hull: Option<&Hull>,
+    ) -> Result<Rows, TooThin> {
         let mut star = Star::default();
         let mut rows = Rows {
             offsets: Vec::with_capacity(self.vertices.len() + 1),
@@ -104,22 +109,27 @@ impl<'a> Patch<'a> {
         for (row, &vertex) in (0..).zip(&self.vertices) {
             let vertex = self.triangulation.vertex(vertex);
             star.read(vertex, self.cover.depth(at(vertex)));
-            if self.lattice.wraps() && star.is_doubtful() {
+            if self.cover.is_bounded() && star.is_doubtful() {
                 doubtful.push(row);
             }
             star.push_axes(self.lattice, &mut rows.axes);
             rows.offsets.push(rows.axes.len() as u32);
         }
-        if self.complete(&doubtful, grid)? {
+        if self.complete(&doubtful, grid, hull)? {
             rows = self.replaced(&rows, &doubtful);
         }
         Ok(rows)
     }
 
     /// Inserts images until the stars of the given rows are correct. Returns whether any image was inserted.
-    fn complete(&mut self, doubtful: &[u32], grid: &LazyGrid<'a>) -> Result<bool, TooThin> {
+    fn complete(
+        &mut self,
+        doubtful: &[u32],
+        grid: &LazyGrid<'a>,
+        hull: Option<&Hull>,
+    ) -> Result<bool, TooThin> {
         let mut star = Star::default();
-        let mut missing = Missing::new(self.lattice, self.cover, grid);
+        let mut missing = Missing::new(self.lattice, self.cover, grid, hull);
         let mut changed = false;
         let mut doubtful = doubtful.to_vec();
         loop {

@@ -1,11 +1,15 @@
-//! Divides large sets on a torus into independent tiles, whose triangulations fit the cache.
+//! Divides large sets into independent tiles, whose triangulations fit the cache.
+//!
+//! A tile of a set that does not wrap has the corners of the hull as well, so that no star of it has a wrong gap.
 
+use super::hull::Hull;
 use super::images::Cover;
 use super::patch::{Image, Patch, Rows};
 use super::{Refusal, check};
 use crate::IsCancelled;
 use crate::grid::LazyGrid;
 use crate::lattice::Lattice;
+use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use dapple_raster::parallel;
 use glam::DVec2;
 
@@ -16,7 +20,8 @@ const POINTS_PER_TILE: f64 = 8192.0;
 pub(super) struct Tiles<'a> {
     lattice: &'a Lattice,
     margin: f64,
-    /// Start coordinates of the columns and rows, and the end of the last one.
+    /// Start coordinates of the columns and rows, and the end of the last one. Infinite at the ends of axes that do not
+    /// wrap.
     starts: [Vec<f64>; 2],
 }
 
@@ -28,57 +33,86 @@ struct Tile {
 }
 
 impl<'a> Tiles<'a> {
-    /// Creates tiles for `n` points; `None` if there are too few points, or if the domain does not wrap along both
-    /// axes.
+    /// Creates tiles for `n` points; `None` if there are too few points, or if the domain wraps along one axis alone.
     pub(super) fn new(lattice: &'a Lattice, n: usize, margin: f64) -> Option<Self> {
         let size = lattice.size;
         let edge = (size.x * (size.y * POINTS_PER_TILE / n.max(1) as f64)).sqrt();
-        let counts = [size.x, size.y].map(|side| (side / edge).floor());
+        let counts = [size.x, size.y].map(|side| (side / edge).floor().max(1.0));
+        let has_tiles = match lattice.wrap {
+            [true, true] => counts[0].min(counts[1]) >= 2.0,
+            [false, false] => counts[0].max(counts[1]) >= 2.0,
+            _ => false,
+        };
         // Each tile must only need images from its eight neighbors.
-        let fits = counts[0].min(counts[1]) >= 2.0 && 2.0 * margin < edge;
+        let fits = has_tiles && 2.0 * margin < edge;
         let starts = |axis: usize| {
             let count = counts[axis];
-            (0..=count as u32)
+            let mut starts: Vec<f64> = (0..=count as u32)
                 .map(|index| (f64::from(index) / count * size[axis]).floor())
-                .collect()
+                .collect();
+            if let ([first, .., last], false) = (&mut starts[..], lattice.wrap[axis]) {
+                (*first, *last) = (f64::NEG_INFINITY, f64::INFINITY);
+            }
+            starts
         };
-        (fits && lattice.wrap == [true, true]).then(|| Self {
+        fits.then(|| Self {
             lattice,
             margin,
             starts: [starts(0), starts(1)],
         })
     }
 
-    /// Computes the rows of all points.
+    /// Computes the rows of all points. Fails with [`Refusal::Thin`] if the points are collinear, most of them are corners
+    /// of the hull, or they are distributed too unevenly.
     pub(super) fn rows(
         &self,
         sites: &[DVec2],
         is_cancelled: &IsCancelled,
     ) -> Result<Rows, Refusal> {
-        let tiles = self.fill(sites);
+        check(is_cancelled)?;
+        let hull = match self.lattice.wraps() {
+            true => None,
+            false => Some(self.hull(sites).ok_or(Refusal::Thin)?),
+        };
+        let tiles = self.fill(sites, hull.as_ref());
+        check(is_cancelled)?;
         let grid = LazyGrid::new(self.lattice, sites);
+        // After one tile without a result, the others are not worth their time.
+        let is_refused = AtomicBool::new(false);
         let parts = parallel::map(tiles.len(), |index| {
             check(is_cancelled)?;
+            if is_refused.load(Relaxed) {
+                return Err(Refusal::Thin);
+            }
             let tile = &tiles[index];
             let (column, row) = (index % self.count(0), index / self.count(0));
             let corner =
                 |column: usize, row: usize| DVec2::new(self.starts[0][column], self.starts[1][row]);
             let (low, high) = (corner(column, row), corner(column + 1, row + 1));
-            let cover = Cover::new(self.lattice, low, high, self.margin);
+            let cover = Cover::of_tile(low, high, self.margin);
             let mut patch = Patch::new(self.lattice, cover, &tile.images, tile.points.len())?;
-            Ok::<Rows, Refusal>(patch.rows(&grid)?)
+            let rows = patch.rows(&grid, hull.as_ref());
+            is_refused.fetch_or(rows.is_err(), Relaxed);
+            Ok::<Rows, Refusal>(rows?)
         });
         // Return the error of the first failing tile, regardless of the order of threads.
         let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
         Ok(merged(&tiles, &parts, sites.len()))
     }
 
+    /// Returns the hull of all sites, if it has few corners.
+    fn hull(&self, sites: &[DVec2]) -> Option<Hull> {
+        let hull = Hull::new(sites, self.lattice.size)?;
+        let n_tiles = self.count(0) * self.count(1);
+        (hull.corners.len() * n_tiles <= sites.len() / 8).then_some(hull)
+    }
+
     fn count(&self, axis: usize) -> usize {
         self.starts[axis].len() - 1
     }
 
-    /// Assigns to each tile its points, and the images within the margin.
-    fn fill(&self, sites: &[DVec2]) -> Vec<Tile> {
+    /// Assigns to each tile its points, the images within the margin, and the corners of the hull.
+    fn fill(&self, sites: &[DVec2], hull: Option<&Hull>) -> Vec<Tile> {
         let mut tiles: Vec<Tile> = Vec::new();
         tiles.resize_with(self.count(0) * self.count(1), Tile::default);
         for (point, &site) in (0..).zip(sites) {
@@ -93,6 +127,20 @@ impl<'a> Tiles<'a> {
                         tile.points.push(point);
                     }
                     tile.images.push(image);
+                }
+            }
+        }
+        for &corner in hull.into_iter().flat_map(|hull| &hull.corners) {
+            let site = sites[corner as usize];
+            let [columns, rows] = [0, 1].map(|axis| self.near(axis, site[axis]));
+            for (index, tile) in tiles.iter_mut().enumerate() {
+                let is = |near: &[Option<(usize, f64)>; 3], at: usize| {
+                    near.iter().flatten().any(|&(own, _)| own == at)
+                };
+                let has_it =
+                    is(&columns, index % self.count(0)) && is(&rows, index / self.count(0));
+                if !has_it {
+                    tile.images.push(Image::new(site, corner, Image::FOREIGN));
                 }
             }
         }

@@ -1,0 +1,115 @@
+//! The convex hull of sites that do not wrap.
+//!
+//! Tiles of a set that does not wrap contain the hull's corners, so that the border of their triangulations is the border
+//! of the whole. Reference: A. M. Andrew, "Another efficient algorithm for convex hulls in two dimensions", Information
+//! Processing Letters 9 (1979), after dropping the sites inside of an octagon: S. G. Akl and G. T. Toussaint, "A fast
+//! convex hull algorithm", Information Processing Letters 7 (1978).
+
+use super::images::key;
+use glam::DVec2;
+use robust::{Coord, orient2d};
+use std::collections::BTreeMap;
+
+/// The convex hull of at least three sites that are not collinear.
+#[derive(Debug)]
+pub(super) struct Hull {
+    /// Sites on the hull's border, counterclockwise, with those between two corners.
+    border: Vec<u32>,
+    /// Sites at the corners.
+    pub(super) corners: Vec<u32>,
+    /// Indices into `border`, by position.
+    places: BTreeMap<(i64, i64), usize>,
+}
+
+impl Hull {
+    /// Computes the hull in a domain of the given size; `None` if all sites are collinear.
+    pub(super) fn new(sites: &[DVec2], size: DVec2) -> Option<Self> {
+        let mut candidates = outside_of_octagon(sites, size);
+        candidates.sort_unstable_by_key(|&index| key(sites[index as usize]));
+        let turn = |corners: [u32; 3]| {
+            let [a, b, c] = corners.map(|index| {
+                let at = sites[index as usize];
+                Coord { x: at.x, y: at.y }
+            });
+            orient2d(a, b, c)
+        };
+        let lower = chain(candidates.iter().copied(), turn);
+        let upper = chain(candidates.iter().rev().copied(), turn);
+        let border: Vec<u32> = [lower, upper]
+            .iter()
+            .flat_map(|chain| &chain[..chain.len().saturating_sub(1)])
+            .copied()
+            .collect();
+        let n = border.len();
+        let is_corner =
+            |&at: &usize| turn([(at + n - 1) % n, at, (at + 1) % n].map(|i| border[i])) > 0.0;
+        let corners: Vec<u32> = (0..n).filter(is_corner).map(|at| border[at]).collect();
+        let places = (0..n).map(|at| (key(sites[border[at] as usize]), at));
+        let places = places.collect();
+        (corners.len() >= 3).then_some(Self {
+            places,
+            corners,
+            border,
+        })
+    }
+
+    /// Returns the sites before and after a site on the border; `None` for a site inside.
+    pub(super) fn beside(&self, site: DVec2) -> Option<[u32; 2]> {
+        let (n, at) = (self.border.len(), *self.places.get(&key(site))?);
+        Some([self.border[(at + n - 1) % n], self.border[(at + 1) % n]])
+    }
+}
+
+/// Returns the longest chain of sites in order that never turns clockwise.
+fn chain(order: impl Iterator<Item = u32>, turn: impl Fn([u32; 3]) -> f64) -> Vec<u32> {
+    let mut chain: Vec<u32> = Vec::new();
+    for site in order {
+        while let [.., a, b] = chain[..] {
+            if turn([a, b, site]) >= 0.0 {
+                break;
+            }
+            chain.pop();
+        }
+        chain.push(site);
+    }
+    chain
+}
+
+/// Returns the sites that are not clearly inside the octagon of the sites that are extreme along the axes and diagonals.
+fn outside_of_octagon(sites: &[DVec2], size: DVec2) -> Vec<u32> {
+    const DIRECTIONS: [[f64; 2]; 8] = [
+        [1.0, 0.0],
+        [1.0, 1.0],
+        [0.0, 1.0],
+        [-1.0, 1.0],
+        [-1.0, 0.0],
+        [-1.0, -1.0],
+        [0.0, -1.0],
+        [1.0, -1.0],
+    ];
+    let mut extremes = [(f64::NEG_INFINITY, DVec2::ZERO); 8];
+    for &site in sites {
+        for (direction, extreme) in DIRECTIONS.into_iter().zip(&mut extremes) {
+            let along = site.dot(direction.into());
+            if along > extreme.0 {
+                *extreme = (along, site);
+            }
+        }
+    }
+    // Keep sites within the rounding error of an edge.
+    let least = 1e-14 * size.x * size.y;
+    let edges: Vec<[DVec2; 2]> = (0..8)
+        .map(|i| [extremes[i].1, extremes[(i + 1) % 8].1])
+        .filter(|[from, to]| from != to)
+        .collect();
+    let is_inside = |site: DVec2| {
+        edges
+            .iter()
+            .all(|&[from, to]| (to - from).perp_dot(site - from) > least)
+    };
+    let indexed = (0..).zip(sites);
+    indexed
+        .filter(|&(_, &site)| edges.len() < 3 || !is_inside(site))
+        .map(|(index, _)| index)
+        .collect()
+}
