@@ -49,6 +49,39 @@ impl<const N: usize> Place<N> {
 /// Splits a coordinate into its cell and the steps from the cell's lower edge; `None` as in [`Place::new`].
 #[inline]
 pub(crate) fn split(coordinate: f64) -> Option<(i64, i32)> {
+    if coordinate.abs() < NEAR {
+        return Some(split_near(coordinate));
+    }
+    split_far(coordinate)
+}
+
+/// Magnitude below which coordinates are split by [`split_near`]: their steps are below 2^51.
+const NEAR: f64 = (1_u64 << 30) as f64;
+
+/// Splits a coordinate without converting between integers and floating point, which takes longer than all else.
+#[inline]
+fn split_near(mut coordinate: f64) -> (i64, i32) {
+    /// All `f64` within a quarter of it are integers, and their low bits hold the difference from this number.
+    const WHOLE: f64 = (3_u64 << 51) as f64;
+    // Below zero, `split_far` rounds to the precision of numbers up to one.
+    if coordinate < 0.0 && coordinate > -0.5 {
+        coordinate = (coordinate + 1.0) - 1.0;
+    }
+    let steps = coordinate * f64::from(STEPS);
+    // Round to the nearest integer, then down.
+    let nearest = steps + WHOLE;
+    let is_above = nearest - WHOLE > steps;
+    let whole = nearest
+        .to_bits()
+        .wrapping_sub(WHOLE.to_bits())
+        .cast_signed()
+        - i64::from(is_above);
+    (whole >> STEP_BITS, whole as i32 & (STEPS - 1))
+}
+
+/// Splits a coordinate of any magnitude.
+#[inline(never)]
+fn split_far(coordinate: f64) -> Option<(i64, i32)> {
     // This comparison is false for NaN.
     let has_cell = coordinate.abs() <= FARTHEST;
     if !has_cell {

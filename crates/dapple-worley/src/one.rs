@@ -4,7 +4,7 @@
 //! the same distance, or because other cells can contain a nearer point. Then the search by rings is used.
 
 use crate::Metric;
-use crate::fixed::{Place, STEP, STEPS};
+use crate::fixed::{Place, STEP, STEP_BITS, STEPS};
 use crate::lattice::{Lattice, SixteenCells, both};
 use crate::levels::wide;
 use crate::many::{Found, NOTHING, Search, vector};
@@ -63,8 +63,6 @@ struct Around<const N: usize> {
     cells: [[i64; 3]; N],
     /// Coordinates of the position, in steps from the lower edges of the cells.
     origins: [[i32; 3]; N],
-    /// Distances from the position to the own cell, to the nearer and to the farther neighbor, in steps.
-    sides: [[i32; 3]; N],
 }
 
 impl<const N: usize> Around<N> {
@@ -73,7 +71,6 @@ impl<const N: usize> Around<N> {
         let mut around = Self {
             cells: [[0; 3]; N],
             origins: [[0; 3]; N],
-            sides: [[0; 3]; N],
         };
         for axis in 0..N {
             let below = place.steps[axis];
@@ -81,29 +78,55 @@ impl<const N: usize> Around<N> {
             let nearer = if below < above { -1 } else { 1 };
             around.cells[axis] = lattice.cells_around(axis, place.cell[axis], nearer.into());
             around.origins[axis] = [below, below - nearer * STEPS, below + nearer * STEPS];
-            around.sides[axis] = [0, below.min(above), below.max(above)];
         }
         around
     }
 
-    /// Returns the hash parts of all cells for both words, three numbers for each axis.
+    /// Returns whether all cells have coordinates that are signed 32-bit integers, whose hash parts are one mixing each.
     #[inline(always)]
-    fn parts<S: Simd>(&self, simd: S, lattice: &Lattice) -> [[u32; LANES]; 2] {
-        let mut words = [0; LANES];
+    fn is_near(&self, lattice: &Lattice) -> bool {
         let mut is_near = true;
         for axis in 0..N {
-            for which in 0..3 {
-                let cell = self.cells[axis][which];
-                words[3 * axis + which] = cell as u32;
-            }
-            // The fast path needs coordinates that are signed 32-bit integers.
             is_near &= match lattice.period[axis] {
                 0 => self.cells[axis][0].unsigned_abs() < (1 << 31) - 1,
                 period => period <= 1 << 31,
             };
         }
+        is_near
+    }
+
+    /// Returns the cells' hash words and the position in steps from the cells' lower corners, in `C` registers.
+    #[inline(always)]
+    fn lanes<S: Simd, const C: usize>(&self, simd: S, lattice: &Lattice) -> Lanes<S, N, C> {
+        let mut words = [[u32x16::splat(simd, 0); 2]; C];
+        let mut origins = [[i32x16::splat(simd, 0); N]; C];
+        let parts = self.parts(simd, lattice);
+        for axis in 0..N {
+            let origin = self.origins[axis].map(i32::cast_unsigned);
+            for register in 0..C {
+                let [first, second] = &parts;
+                let parts = [
+                    pick::<S, N>(simd, axis, register, &first[3 * axis..]),
+                    pick::<S, N>(simd, axis, register, &second[3 * axis..]),
+                ];
+                words[register] = both(words[register], parts);
+                origins[register][axis] = pick::<S, N>(simd, axis, register, &origin).bitcast();
+            }
+        }
+        Lanes::new(simd, lattice, words, origins)
+    }
+
+    /// Returns the hash parts of all cells for both words, three numbers for each axis.
+    #[inline(always)]
+    fn parts<S: Simd>(&self, simd: S, lattice: &Lattice) -> [[u32; LANES]; 2] {
         let mut parts = [[0; LANES]; 2];
-        if is_near {
+        if self.is_near(lattice) {
+            let mut words = [0; LANES];
+            for axis in 0..N {
+                for which in 0..3 {
+                    words[3 * axis + which] = self.cells[axis][which] as u32;
+                }
+            }
             let words = u32x16::from_slice(simd, &words);
             let [keys, more_keys] = &lattice.lane_keys;
             let keys = [
@@ -123,96 +146,6 @@ impl<const N: usize> Around<N> {
             }
         }
         parts
-    }
-
-    /// Returns the cells' hash words and the position in steps from the cells' lower corners, in `C` registers.
-    #[inline(always)]
-    fn lanes<S: Simd, const C: usize>(&self, simd: S, lattice: &Lattice) -> Lanes<S, N, C> {
-        let mut words = [[u32x16::splat(simd, 0); 2]; C];
-        let mut origins = [[i32x16::splat(simd, 0); N]; C];
-        let [first, second] = self.parts(simd, lattice);
-        for axis in (0..N).rev() {
-            for register in 0..C {
-                let digits = const { digits::<N>() };
-                let digits = u32x16::from_slice(simd, &digits[axis][register]);
-                let parts = [
-                    pick(digits, &first, 3 * axis),
-                    pick(digits, &second, 3 * axis),
-                ];
-                words[register] = both(words[register], parts);
-                let origin = self.origins[axis].map(i32::cast_unsigned);
-                origins[register][axis] = pick(digits, &origin, 0).bitcast();
-            }
-        }
-        let cells = SixteenCells::new_each(simd, lattice, words);
-        let mut halves = [[[0; 8]; 2]; 4];
-        for register in 0..C {
-            for which in 0..2 {
-                let (low, high) = words[register][which].split();
-                low.store_slice(&mut halves[2 * register][which]);
-                high.store_slice(&mut halves[2 * register + 1][which]);
-            }
-        }
-        Lanes {
-            cells,
-            origins,
-            halves,
-        }
-    }
-
-    /// Searches cells that contain one point each.
-    #[inline(always)]
-    fn search_single<S: Simd, const C: usize>(
-        &self,
-        simd: S,
-        search: Search<'_>,
-        hits: &mut [Hit<N>],
-    ) -> bool {
-        let lanes = self.lanes::<S, C>(simd, search.lattice);
-        let mut keys = [u32x16::splat(simd, NOTHING); C];
-        let mut vectors = [[[0.0; 8]; N]; 4];
-        // Compute the vector and the key of the point in each cell.
-        for register in 0..C {
-            let index = u32x16::splat(simd, 0);
-            let point: [_; N] = lanes.cells[register].steps(index, search.lattice.jitter);
-            let mut vector = vector(&lanes.origins[register], &point);
-            let key = search.exact.keys(vector);
-            keys[register] =
-                is_visited::<S, N>(simd, register).select(key.bitcast(), keys[register]);
-            for axis in 0..N {
-                vector[axis] *= STEP;
-                let (low, high) = vector[axis].split();
-                low.store_slice(&mut vectors[2 * register][axis]);
-                high.store_slice(&mut vectors[2 * register + 1][axis]);
-            }
-        }
-        for hit in &mut *hits {
-            // Remove the smallest key for each hit.
-            let mut least = keys[0].reduce_min();
-            for register in 1..C {
-                least = least.min(keys[register].reduce_min());
-            }
-            let mut lanes_of_least = 0;
-            for register in 0..C {
-                let is_least = keys[register].simd_eq(least);
-                lanes_of_least |= is_least.to_bitmask() << (register * LANES);
-                keys[register] = is_least.select(u32x16::splat(simd, NOTHING), keys[register]);
-            }
-            // Points with equal keys are ordered by id, in the search by rings.
-            if !lanes_of_least.is_power_of_two() {
-                return false;
-            }
-            // Look up the point's vector and identity.
-            let number = lanes_of_least.trailing_zeros() as usize % n_visited(N);
-            let (half, lane) = (number / 8, number % 8);
-            for axis in 0..N {
-                hit.vector[axis] = vectors[half][axis][lane];
-            }
-            hit.key = search.exact.0.key(hit.vector);
-            let words = lanes.words(number);
-            hit.name = Some(PointId { words, index: 0 });
-        }
-        true
     }
 
     /// Searches cells that contain any number of points.
@@ -258,36 +191,6 @@ impl<const N: usize> Around<N> {
         true
     }
 
-    /// Returns a lower bound on the keys of all points in cells that are not visited.
-    #[inline(always)]
-    fn border(&self, metric: Metric) -> f32 {
-        let mut border = self.outer_border(metric);
-        for &neighbor in &cells_by_distance::<N>()[n_visited(N)..] {
-            border = border.min(self.gap(metric, neighbor));
-        }
-        border
-    }
-
-    /// Returns a lower bound on the keys of all points in a neighbor.
-    #[inline(always)]
-    fn gap(&self, metric: Metric, neighbor: u8) -> f32 {
-        let mut sides = [0.0; N];
-        for axis in 0..N {
-            sides[axis] = self.sides[axis][digit(neighbor.into(), axis)] as f32 * STEP;
-        }
-        metric.key(sides)
-    }
-
-    /// Returns a lower bound on the keys of all points beyond the neighbors.
-    #[inline(always)]
-    fn outer_border(&self, metric: Metric) -> f32 {
-        let mut nearest = STEPS;
-        for side in &self.sides {
-            nearest = nearest.min(side[1]);
-        }
-        metric.term((nearest + STEPS) as f32 * STEP)
-    }
-
     /// Returns the hit for a point in a neighbor, given the neighbor's words.
     #[inline(always)]
     fn hit(&self, search: Search<'_>, neighbor: u8, words: [u32; 2], index: u32) -> Hit<N> {
@@ -303,17 +206,63 @@ impl<const N: usize> Around<N> {
     }
 }
 
+/// Distances from a position to its own cell, to the nearer and to the farther neighbor along each axis, in steps.
+struct Sides<const N: usize>([[i32; 3]; N]);
+
+impl<const N: usize> Sides<N> {
+    #[inline(always)]
+    fn new(place: &Place<N>) -> Self {
+        let mut sides = [[0; 3]; N];
+        for axis in 0..N {
+            let below = place.steps[axis];
+            let above = STEPS - below;
+            sides[axis] = [0, below.min(above), below.max(above)];
+        }
+        Self(sides)
+    }
+
+    /// Returns a lower bound on the keys of all points in cells that are not visited.
+    #[inline(always)]
+    fn border(&self, metric: Metric) -> f32 {
+        let mut border = self.outer_border(metric);
+        for &neighbor in &cells_by_distance::<N>()[n_visited(N)..] {
+            border = border.min(self.gap(metric, neighbor));
+        }
+        border
+    }
+
+    /// Returns a lower bound on the keys of all points in a neighbor.
+    #[inline(always)]
+    fn gap(&self, metric: Metric, neighbor: u8) -> f32 {
+        let mut sides = [0.0; N];
+        for axis in 0..N {
+            sides[axis] = self.0[axis][digit(neighbor.into(), axis)] as f32 * STEP;
+        }
+        metric.key(sides)
+    }
+
+    /// Returns a lower bound on the keys of all points beyond the neighbors.
+    #[inline(always)]
+    fn outer_border(&self, metric: Metric) -> f32 {
+        let mut nearest = STEPS;
+        for side in &self.0 {
+            nearest = nearest.min(side[1]);
+        }
+        metric.term((nearest + STEPS) as f32 * STEP)
+    }
+}
+
 /// Visits the remaining neighbors that can contain a nearer point. Returns whether no cell beyond them can.
 #[cold]
 fn visit_rest<const N: usize>(search: Search<'_>, place: &Place<N>, hits: &mut [Hit<N>]) -> bool {
     let Search { lattice, exact, .. } = search;
-    let around = Around::new(lattice, place);
+    let (around, sides) = (Around::new(lattice, place), Sides::new(place));
     let mut ranking = Ranking::new(hits.len());
     for &hit in &*hits {
         ranking.add(hit, PointId::id);
     }
     for &neighbor in &cells_by_distance::<N>()[n_visited(N)..] {
-        if around.gap(exact.0, neighbor) <= ranking.reach() {
+        if sides.gap(exact.0, neighbor) <= ranking.reach() {
             let mut cell = [0; N];
             for axis in 0..N {
                 cell[axis] = around.cells[axis][digit(neighbor.into(), axis)];
@@ -325,7 +274,7 @@ fn visit_rest<const N: usize>(search: Search<'_>, place: &Place<N>, hits: &mut [
         }
     }
     hits.copy_from_slice(ranking.hits());
-    ranking.reach() < around.outer_border(exact.0)
+    ranking.reach() < sides.outer_border(exact.0)
 }
 
 /// The cells that a search visits, one in each lane.
@@ -337,7 +286,108 @@ struct Lanes<S: Simd, const N: usize, const C: usize> {
     halves: [[[u32; 8]; 2]; 4],
 }
 
+impl<S: Simd, const N: usize> Lanes<S, N, 1> {
+    /// Returns the cells around a position without periods whose coordinates are signed 32-bit integers. The coordinates
+    /// of each cell are mixed in its lane, which is cheaper for one register than to distribute the mixed ones.
+    #[inline(always)]
+    fn near(simd: S, lattice: &Lattice, place: &Place<N>) -> Self {
+        let mut coordinates = [[u32x16::splat(simd, 0); 2]; N];
+        let mut origins = [[i32x16::splat(simd, 0); N]; 1];
+        let [first, second] = &lattice.hashes;
+        for axis in 0..N {
+            let below = place.steps[axis];
+            // -1 or 1
+            let nearer = (below - STEPS / 2) >> 31 | 1;
+            let directions = i32x16::from_slice(simd, &const { directions::<N>() }[axis]);
+            let shift = directions * i32x16::splat(simd, nearer);
+            let cell = shift + i32x16::splat(simd, place.cell[axis] as i32);
+            let cell = cell.bitcast::<u32x16<S>>();
+            coordinates[axis] = [cell ^ first.key(axis), cell ^ second.key(axis)];
+            origins[0][axis] = i32x16::splat(simd, below) - (shift << STEP_BITS);
+        }
+        let mut words = [[u32x16::splat(simd, 0); 2]; 1];
+        let parts = mix32_pairs(coordinates);
+        for axis in 0..N {
+            words[0] = both(words[0], parts[axis]);
+        }
+        Self::new(simd, lattice, words, origins)
+    }
+}
+
 impl<S: Simd, const N: usize, const C: usize> Lanes<S, N, C> {
+    #[inline(always)]
+    fn new(
+        simd: S,
+        lattice: &Lattice,
+        words: [[u32x16<S>; 2]; C],
+        origins: [[i32x16<S>; N]; C],
+    ) -> Self {
+        let mut halves = [[[0; 8]; 2]; 4];
+        for register in 0..C {
+            for which in 0..2 {
+                let (low, high) = words[register][which].split();
+                low.store_slice(&mut halves[2 * register][which]);
+                high.store_slice(&mut halves[2 * register + 1][which]);
+            }
+        }
+        Self {
+            cells: SixteenCells::new_each(simd, lattice, words),
+            origins,
+            halves,
+        }
+    }
+
+    /// Searches cells that contain one point each.
+    #[inline(always)]
+    fn search_single(&self, simd: S, search: Search<'_>, hits: &mut [Hit<N>]) -> bool {
+        let mut keys = [u32x16::splat(simd, NOTHING); C];
+        let mut vectors = [[[0.0; 8]; N]; 4];
+        // Compute the vector and the key of the point in each cell.
+        for register in 0..C {
+            let index = u32x16::splat(simd, 0);
+            let point: [_; N] = self.cells[register].steps(index, search.lattice.jitter);
+            let mut vector = vector(&self.origins[register], &point);
+            for axis in 0..N {
+                vector[axis] *= STEP;
+            }
+            let key = search.exact.keys(vector);
+            keys[register] =
+                is_visited::<S, N>(simd, register).select(key.bitcast(), keys[register]);
+            for axis in 0..N {
+                let (low, high) = vector[axis].split();
+                low.store_slice(&mut vectors[2 * register][axis]);
+                high.store_slice(&mut vectors[2 * register + 1][axis]);
+            }
+        }
+        for hit in &mut *hits {
+            // Remove the smallest key for each hit.
+            let mut least = keys[0].reduce_min();
+            for register in 1..C {
+                least = least.min(keys[register].reduce_min());
+            }
+            let mut lanes_of_least = 0;
+            for register in 0..C {
+                let is_least = keys[register].simd_eq(least);
+                lanes_of_least |= is_least.to_bitmask() << (register * LANES);
+                keys[register] = is_least.select(u32x16::splat(simd, NOTHING), keys[register]);
+            }
+            // Points with equal keys are ordered by id, in the search by rings.
+            if !lanes_of_least.is_power_of_two() {
+                return false;
+            }
+            // Look up the point's vector and identity.
+            let number = lanes_of_least.trailing_zeros() as usize % n_visited(N);
+            let (half, lane) = (number / 8, number % 8);
+            for axis in 0..N {
+                hit.vector[axis] = vectors[half][axis][lane];
+            }
+            hit.key = f32::from_bits(least);
+            let words = self.words(number);
+            hit.name = Some(PointId { words, index: 0 });
+        }
+        true
+    }
+
     /// Returns the hash words of a cell.
     #[inline(always)]
     fn words(&self, number: usize) -> [u32; 2] {
@@ -362,15 +412,52 @@ fn search_by_axes<S: Simd, const N: usize, const K: usize>(
     place: &Place<N>,
     hits: &mut [Hit<N>],
 ) -> bool {
-    let around = Around::new(search.lattice, place);
+    let around = || Around::new(search.lattice, place);
     let is_certain = match const { (N, K) } {
-        (2, 0) => around.search_single::<S, 1>(simd, search, hits),
-        (_, 0) => around.search_single::<S, 2>(simd, search, hits),
-        (2, _) => around.search_several::<S, K, 1>(simd, search, hits),
-        _ => around.search_several::<S, K, 2>(simd, search, hits),
+        (2, 0) if is_simple(search.lattice, place) => {
+            Lanes::near(simd, search.lattice, place).search_single(simd, search, hits)
+        }
+        (2, 0) => {
+            let lanes = around().lanes::<S, 1>(simd, search.lattice);
+            lanes.search_single(simd, search, hits)
+        }
+        (_, 0) => {
+            let lanes = around().lanes::<S, 2>(simd, search.lattice);
+            lanes.search_single(simd, search, hits)
+        }
+        (2, _) => around().search_several::<S, K, 1>(simd, search, hits),
+        _ => around().search_several::<S, K, 2>(simd, search, hits),
     };
     let reach = hits.last().map_or(0.0, |hit| hit.key);
-    is_certain && (reach < around.border(search.exact.0) || visit_rest(search, place, hits))
+    is_certain
+        && (reach < Sides::new(place).border(search.exact.0) || visit_rest(search, place, hits))
+}
+
+/// Returns whether no axis repeats, and all cells have coordinates that are signed 32-bit integers.
+#[inline(always)]
+fn is_simple<const N: usize>(lattice: &Lattice, place: &Place<N>) -> bool {
+    let mut is_simple = true;
+    for axis in 0..N {
+        is_simple &= lattice.period[axis] == 0;
+        is_simple &= place.cell[axis].unsigned_abs() < (1 << 31) - 1;
+    }
+    is_simple
+}
+
+/// Returns the direction of each cell along each axis, relative to the nearer neighbor's: 0, 1 or -1.
+const fn directions<const N: usize>() -> [[i32; LANES]; N] {
+    let mut directions = [[0; LANES]; N];
+    let digits = digits::<N>();
+    let mut axis = 0;
+    while axis < N {
+        let mut lane = 0;
+        while lane < LANES {
+            directions[axis][lane] = [0, 1, -1][digits[axis][0][lane] as usize];
+            lane += 1;
+        }
+        axis += 1;
+    }
+    directions
 }
 
 /// Returns the code of each cell along each axis, in two registers; see [`places`](crate::places).
@@ -400,12 +487,14 @@ const fn numbers() -> [[u32; LANES]; 2] {
     numbers
 }
 
-/// Selects, in each lane, one of the three numbers that start at `of[from]`.
+/// Selects, in each lane, the number of its cell along an axis. `of` begins with those of the own cell, of the nearer and
+/// of the farther neighbor.
 #[inline(always)]
-fn pick<S: Simd>(digits: u32x16<S>, of: &[u32], from: usize) -> u32x16<S> {
-    let own = u32x16::splat(digits.simd, of[from]);
-    let near = u32x16::splat(digits.simd, of[from + 1]);
-    let far = u32x16::splat(digits.simd, of[from + 2]);
+fn pick<S: Simd, const N: usize>(simd: S, axis: usize, register: usize, of: &[u32]) -> u32x16<S> {
+    let digits = u32x16::from_slice(simd, &const { digits::<N>() }[axis][register]);
+    let own = u32x16::splat(simd, of[0]);
+    let near = u32x16::splat(simd, of[1]);
+    let far = u32x16::splat(simd, of[2]);
     let other = digits.simd_eq(1).select(near, far);
     digits.simd_eq(0).select(own, other)
 }

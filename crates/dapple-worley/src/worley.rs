@@ -255,8 +255,9 @@ where
     /// Points at equal distances are ordered by id. A position is out of range if a coordinate is not finite or its
     /// magnitude is above 2^62. Then distances and vectors are NaN, and ids are 0. If a short period of unclamped
     /// points contains no point at all, distances and vectors are infinite, and ids are 0.
+    // Inlined, so that vectors and ids are computed only for callers that use them.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn sample<const K: usize>(&self, position: impl Into<[f64; N]>) -> [Feature<Vector<N>>; K] {
         const {
             assert!(
