@@ -1,10 +1,10 @@
 """Noise of dapple-textures beside that of other packages, in one run: a table in Markdown, which docs/peers.md holds.
 
-    python benches/peers.py
+    python benches/peers.py [--write]
 
 All work on one thread, and their rounds alternate. The figure is the median of the CPU time of a round, so that other programs on
 the machine disturb little. What takes arrays gets arrays that were made before; what does not is called in a loop, on fewer
-pixels. A package that is not installed is left out.
+pixels. A package that is not installed is left out. `--write` puts the figures into README.md, docs/index.md and docs/peers.md.
 """
 
 from __future__ import annotations
@@ -13,11 +13,14 @@ import argparse
 import importlib
 import importlib.metadata
 import importlib.util
+import re
 import statistics
 import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from datetime import date
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -43,20 +46,58 @@ class Entry:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rounds", type=int, default=15)
-    rounds = parser.parse_args().rounds
+    parser.add_argument("--write", action="store_true", help="update the documents")
+    arguments = parser.parse_args()
     dp.set_threads(1)
     packages = ["dapple-textures", *filter(installed, ["pyfastnoiselite", "vnoise", "noise", "opensimplex"])]
-    print("| one thread, 1024², 64 pixels per cell, ns/pixel |", " | ".join(packages), "| beside pyfastnoiselite |")
-    print("|---|" + "---:|" * (len(packages) + 1))
+    ratios = {}
+    table = [
+        f"| one thread, 1024², 64 pixels per cell, ns/pixel | {' | '.join(packages)} | beside pyfastnoiselite |",
+        "|---|" + "---:|" * (len(packages) + 1),
+    ]
+    print("\n".join(table))
     for kind, entries in kinds().items():
         entries = [entry for entry in entries if entry.package in packages]
-        times = measure(entries, rounds)
+        times = measure(entries, arguments.rounds)
         cells = [shown(times.get(package)) for package in packages]
         peer = times.get("pyfastnoiselite")
-        ratio = f"{shown(peer / times['dapple-textures'], 1)} ×" if peer else ""
-        print(f"| {kind} |", " | ".join(cells), f"| {ratio} |", flush=True)
+        if peer:
+            ratios[kind] = peer / times["dapple-textures"]
+        ratio = f"{shown(ratios[kind])} ×" if peer else ""
+        table.append(f"| {kind} | {' | '.join(cells)} | {ratio} |")
+        print(table[-1], flush=True)
     versions = [f"{package} {version(package)}" for package in packages]
-    print(f"\n{', '.join(versions)}; NumPy {np.__version__}, Python {sys.version.split()[0]}.")
+    line = (
+        f"Nanoseconds of CPU time for each pixel, median of {arguments.rounds} rounds that alternate, on one thread, "
+        f"{date.today()}: {', '.join(versions)}; NumPy {np.__version__}, Python {sys.version.split()[0]}."
+    )
+    print(f"\n{line}")
+    if arguments.write:
+        write("\n".join(table), line, ratios)
+
+
+def write(table: str, line: str, ratios: dict[str, float]) -> None:
+    """Puts the figures of one run into all documents that have them."""
+    base = Path(__file__).parents[1]
+    images = ["cells, F1", "cells, F2 − F1", "gradient noise", "gradient noise, 6 octaves"]
+    cells, both, noise, octaves = (shown(ratios[kind]) for kind in images)
+    others = [1 / ratio for kind, ratio in ratios.items() if "scattered" in kind or "warped" in kind]
+    fast = (
+        f"- **Fast**: on one thread, images of cells are {both} to {cells} times as fast as with `pyfastnoiselite`, of "
+        f"gradient noise {noise} times, of six octaves of it {octaves} times. At scattered positions and warped, it takes "
+        f"{shown(min(others), 1)} to {shown(max(others), 1)} times the time of that package ([comparison](PAGE))."
+    )
+    for name, page in [("README.md", "docs/peers.md"), ("docs/index.md", "peers.md")]:
+        replace(base / name, r"^- \*\*Fast\*\*.*$", fast.replace("PAGE", page))
+    replace(base / "docs/peers.md", r"^\| one thread, (?:.*\n\|)*.*$", table)
+    replace(base / "docs/peers.md", r"^Nanoseconds of CPU time for each pixel[^:]*:.*?\d\.(?: The last three rows.*? pixels\.)?(?= |$)", line)
+
+
+def replace(path: Path, pattern: str, text: str) -> None:
+    """Replaces the only match of a pattern in a file."""
+    new, count = re.subn(pattern, lambda _: text, path.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    assert count == 1, (path, count)
+    path.write_text(new, encoding="utf-8")
 
 
 def kinds() -> dict[str, list[Entry]]:
