@@ -90,7 +90,8 @@ def write(table: str, line: str, ratios: dict[str, float]) -> None:
     for name, page in [("README.md", "docs/peers.md"), ("docs/index.md", "peers.md")]:
         replace(base / name, r"^- \*\*Fast\*\*.*$", fast.replace("PAGE", page))
     replace(base / "docs/peers.md", r"^\| one thread, (?:.*\n\|)*.*$", table)
-    replace(base / "docs/peers.md", r"^Nanoseconds of CPU time for each pixel[^:]*:.*?\d\.(?: The last three rows.*? pixels\.)?(?= |$)", line)
+    start = r"^Nanoseconds of CPU time for each pixel[^:]*:.*?\d\."
+    replace(base / "docs/peers.md", start + r"(?: The last three rows.*? pixels\.)?(?= |$)", line)
 
 
 def replace(path: Path, pattern: str, text: str) -> None:
