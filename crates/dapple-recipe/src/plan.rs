@@ -40,8 +40,8 @@ pub(crate) use work::Work;
 use crate::{ImageAlpha, Input, Material, Node, Recipe, RecipeError, RecipeErrorKind, Values};
 use core::ops::ControlFlow;
 use dapple_color::LinearRgb;
+use dapple_raster::{Parts, Raster, Window};
 use dapple_raster::{Range, range};
-use dapple_raster::{Raster, Window};
 use dapple_synth::Progress;
 use glam::DVec2;
 use indexmap::IndexMap;
@@ -128,6 +128,8 @@ pub struct Plan {
     material: Material,
     limits: PlanLimits,
     cache: Option<PlanCache>,
+    /// Parts of the steps, from which shaders are written.
+    parts: Parts,
     renderer: Option<Arc<dyn Renderer>>,
     watch: Watch,
     /// Whether a node changes with time.
@@ -343,6 +345,7 @@ impl Plan {
             material: recipe.material.clone(),
             limits: *limits,
             cache: cache.cloned(),
+            parts: builder.parts,
             renderer: None,
             watch: watch.clone(),
             moves: builder.moves,

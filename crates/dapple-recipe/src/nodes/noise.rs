@@ -159,7 +159,7 @@ impl FractalNode {
             octaves: self.octaves,
             gain: self.gain,
             net: NetOptions {
-                parts: plan.parts(),
+                parts: plan.parts().clone(),
                 cancel: plan.watch().cancel(),
                 ..NetOptions::default()
             },

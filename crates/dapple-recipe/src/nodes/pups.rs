@@ -94,7 +94,7 @@ impl<T: PupsRecipe<ReferenceImage>> Texture for Referenced<T> {
 fn now<T: PupsRecipe<Image>, Image>(options: &T, plan: &Builder<'_>) -> T {
     let mut options = placed(options, plan.domain());
     let net = options.net_mut();
-    net.parts = plan.parts();
+    net.parts = plan.parts().clone();
     net.cancel = plan.watch().cancel();
     if net.motion.is_some() {
         net.time = plan.time();

@@ -95,7 +95,7 @@ impl NodeKind for SynthNode {
             period: [0, 1].map(|axis| repeats[axis].then_some(self.size[axis])),
         };
         let example = plan.image(self.example())?;
-        let grown = plan.shared_parts().get_or_make(
+        let grown = plan.parts().get_or_make(
             |grown: &Grown| {
                 let is_alike = grown.options == options && grown.edges == self.edges;
                 is_alike && grown.texture.sources().size() == self.size && grown.example == *example

@@ -4,7 +4,7 @@ use super::cache::{PlanCache, StepId};
 use super::neighborhood::{Neighborhood, Surroundings};
 use super::step::{Global, Local, Moved, Positions, Step, Tile, reads_images};
 use super::work::{Work, WorkSum};
-use super::{ImageSource, Images, Picture, PlanLimits, RELIEF, Watch, not_a_number, order};
+use super::{ImageSource, Images, Picture, Plan, PlanLimits, RELIEF, Watch, not_a_number, order};
 use crate::text::is_data;
 use crate::{Input, Node, NodeSeed, Recipe, RecipeError, RecipeErrorKind, Values};
 use dapple_color::LinearRgb;
@@ -28,7 +28,7 @@ pub(crate) struct Builder<'a> {
     cache: Option<&'a PlanCache>,
     watch: &'a Watch,
     /// Reusable parts of steps, from this plan and, if there is a cache, from earlier plans.
-    shared_parts: Parts,
+    pub(super) parts: Parts,
     /// Whether the current node has read the time.
     asks_time: Cell<bool>,
     /// Whether any node has read the time.
@@ -62,7 +62,7 @@ impl<'a> Builder<'a> {
             work: WorkSum::new(limits),
             cache,
             watch,
-            shared_parts: cache.map_or_else(Parts::keeping, |cache| cache.parts().clone()),
+            parts: cache.map_or_else(Parts::keeping, |cache| cache.parts().clone()),
             asks_time: Cell::new(false),
             moves: false,
             steps: Vec::new(),
@@ -146,15 +146,15 @@ impl<'a> Builder<'a> {
         self.watch
     }
 
-    /// Returns the store of reusable parts of steps from earlier plans. Without a cache, it stores nothing.
-    pub(crate) fn parts(&self) -> Parts {
-        let parts = self.cache.map(|cache| cache.parts().clone());
-        parts.unwrap_or_default()
+    /// Uses the parts of a plan again, such as its nets of control points.
+    pub(crate) fn with_parts_of(mut self, plan: &Plan) -> Self {
+        self.parts = plan.parts.clone();
+        self
     }
 
-    /// Reusable parts of steps, from this plan and, if there is a cache, from earlier plans.
-    pub(crate) fn shared_parts(&self) -> &Parts {
-        &self.shared_parts
+    /// Returns reusable parts of steps, from this plan and, if there is a cache, from earlier plans.
+    pub(crate) fn parts(&self) -> &Parts {
+        &self.parts
     }
 
     /// Returns the phase of the looping animation, from 0 to 1, and records that the current node reads it.

@@ -265,14 +265,20 @@ impl<'a> NodeShader<'_, 'a> {
         Ok(first / TEXEL)
     }
 
-    /// Builds a part of the node's step, which has been built for the plan, too.
+    /// Builds a part of the node's step, from the parts that the plan has built.
     pub(crate) fn build<T>(
         &self,
         build: impl FnOnce(&mut Builder<'_>) -> Result<T, RecipeError>,
     ) -> Result<T, Refusal> {
-        let Writer { recipe, images, .. } = *self.writer;
+        let Writer {
+            recipe,
+            images,
+            plan,
+            ..
+        } = *self.writer;
         let (limits, watch) = (PlanLimits::default(), Watch::default());
-        let mut builder = Builder::new(recipe, images, 0.0, &limits, None, &watch);
+        let builder = Builder::new(recipe, images, 0.0, &limits, None, &watch);
+        let mut builder = builder.with_parts_of(plan);
         builder.enter(self.node, &recipe.nodes[self.node])?;
         Ok(build(&mut builder)?)
     }
