@@ -1,7 +1,7 @@
 //! Computes nodes of a recipe on a GPU.
 
 use crate::shader::{Nodes, Shader, stride};
-use crate::{Gpu, GpuError, GpuErrorKind};
+use crate::{Gpu, GpuError};
 use dapple_recipe::color::LinearRgb;
 use dapple_recipe::raster::{Field as _, Raster, Window};
 use dapple_recipe::{
@@ -56,7 +56,7 @@ impl GpuPlan {
     ///
     /// # Errors
     ///
-    /// [`NotExact`](GpuErrorKind::NotExact) if the bits of the GPU differ from the CPU, unless
+    /// [`NotExact`](crate::GpuErrorKind::NotExact) if the bits of the GPU differ from the CPU, unless
     /// [allowed](Gpu::allow_inexact).
     pub fn new(gpu: &Gpu, recipe: &Recipe, plan: &Plan) -> Result<Self, GpuError> {
         gpu.check_exact()?;
@@ -92,7 +92,7 @@ impl GpuPlan {
     ///
     /// # Errors
     ///
-    /// [`NotInShader`](GpuErrorKind::NotInShader) if no shader computes the node, the same errors as [`Plan::field`], or
+    /// [`NotInShader`](crate::GpuErrorKind::NotInShader) if no shader computes the node, the same errors as [`Plan::field`], or
     /// a failure of the GPU.
     pub fn raster(&self, node: &str, window: &Window) -> Result<Raster<f32>, GpuError> {
         // Check the node and the kind of its values.
@@ -123,7 +123,7 @@ impl GpuPlan {
     ///
     /// # Errors
     ///
-    /// [`TooLarge`](GpuErrorKind::TooLarge) if the window has more pixels along a side than a texture may have, or the
+    /// [`TooLarge`](crate::GpuErrorKind::TooLarge) if the window has more pixels along a side than a texture may have, or the
     /// same errors as [`raster`](Self::raster).
     pub fn texture(&self, node: &str, window: &Window) -> Result<wgpu::Texture, GpuError> {
         self.shaders.plan.colors(node)?;
@@ -154,10 +154,6 @@ impl Shaders {
         node: &str,
         window: &Window,
     ) -> Result<(Arc<Shader>, Vec<Values>), GpuError> {
-        if self.inputs(node).is_none() {
-            let node = node.to_owned();
-            return Err(GpuError::new(GpuErrorKind::NotInShader { node }));
-        }
         let mut nodes = Nodes::divided(&self.plan, &[node]);
         let shader = self.shader(&nodes.remove(0))?;
         let input = |input: &String| {
@@ -277,11 +273,9 @@ impl Renderer for Shaders {
         if let Some(inputs) = all.get(node) {
             return inputs.clone();
         }
-        // A node without a shader is its own input.
         let mut nodes = Nodes::divided(&self.plan, &[node]);
         let text = nodes.remove(0).text(&self.recipe, &self.plan).ok();
         let inputs = text.map(|text| text.inputs);
-        let inputs = inputs.filter(|inputs| inputs.iter().all(|input| input != node));
         all.insert(node.to_owned(), inputs.clone());
         inputs
     }

@@ -1,7 +1,7 @@
 //! A compute shader for a few nodes of a recipe, and its jobs.
 
-use crate::GpuError;
 use crate::device::{Device, Program, WORKGROUP};
+use crate::{GpuError, GpuErrorKind};
 use dapple_recipe::color::LinearRgb;
 use dapple_recipe::raster::Window;
 use dapple_recipe::{Input, Material, Plan, Recipe, ShaderOptions, Values};
@@ -79,7 +79,7 @@ impl Nodes {
         self.numbers.iter().chain(&self.color).map(String::as_str)
     }
 
-    /// Generates the shader that computes the nodes as a material.
+    /// Generates the shader that computes the nodes as a material. Fails if no shader computes one of them.
     pub(crate) fn text(&self, recipe: &Recipe, plan: &Plan) -> Result<Text, GpuError> {
         let number = |at: usize| match self.numbers.get(at) {
             Some(node) => Input::from(node.as_str()),
@@ -97,6 +97,14 @@ impl Nodes {
             ..recipe.clone()
         };
         let shader = recipe.to_wgsl_with(plan, &ShaderOptions { textures: true })?;
+        // A node without a shader is its own input.
+        if let Some(node) = self
+            .names()
+            .find(|node| shader.textures.iter().any(|input| input == node))
+        {
+            let node = node.to_owned();
+            return Err(GpuError::new(GpuErrorKind::NotInShader { node }));
+        }
         let has_data = !shader.data.is_empty();
         let wgsl = shader.wgsl + &self.entry_point(plan, &shader.textures, has_data);
         Ok(Text {
