@@ -21,6 +21,9 @@ use std::io::{BufWriter, Cursor, Write};
 use std::path::Path;
 use std::sync::Arc;
 
+/// Maximum number of pixels in a bake without `--banded`, which is 32768 × 32768.
+pub(crate) const MOST_PIXELS: u64 = 1 << 30;
+
 /// The file of a baked image.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MapFile {
@@ -149,6 +152,11 @@ pub(crate) fn write(
     if let Some(again) = again {
         draw(again, &mut rows, progress, Rows::write_sheet)?;
     }
+    finish(job, rows, files, size)
+}
+
+/// Finishes the files of images, and records their properties.
+fn finish(job: &mut Job<'_>, rows: Vec<Rows>, files: &[MapFile], size: [u32; 2]) -> Result<()> {
     for (rows, file) in rows.into_iter().zip(files) {
         rows.map.finish()?;
         let format = file.image.format;
@@ -160,6 +168,61 @@ pub(crate) fn write(
         }
     }
     Ok(())
+}
+
+/// Writes images that are grids of bakes of the same size.
+pub(crate) struct GridWriter {
+    rows: Vec<Rows>,
+    /// Width and height of the images, in pixels.
+    size: [u32; 2],
+}
+
+impl GridWriter {
+    /// Begins the images, which are `size` pixels wide and high.
+    ///
+    /// # Errors
+    ///
+    /// If a file cannot be written.
+    pub(crate) fn new(job: &Job<'_>, files: &[MapFile], size: [u32; 2]) -> Result<Self> {
+        let rows = files.iter().map(|file| Rows::new(job, file, size));
+        Ok(Self {
+            rows: rows.collect::<Result<_>>()?,
+            size,
+        })
+    }
+
+    /// Writes bakes as the next row of the grid, from left to right.
+    ///
+    /// # Errors
+    ///
+    /// If a recipe or the operating system reports an error.
+    pub(crate) fn write(&mut self, mut bakes: Vec<Bake<'_>>, progress: &Progress) -> Result<()> {
+        loop {
+            let bands = bakes.iter_mut().filter_map(Iterator::next);
+            let bands = bands.collect::<Result<Vec<_>, _>>().map_err(advise)?;
+            let Some(first) = bands.first() else {
+                return Ok(());
+            };
+            let n_rows = first.maps.first().map_or(0, |(_, rows)| rows.size()[1]);
+            for rows in &mut self.rows {
+                let parts = bands.iter().map(|band| rows.layers.rows(band));
+                let parts = parts.collect::<Result<Vec<_>>>()?;
+                let parts: Vec<_> = parts.iter().collect();
+                rows.write(&LayerRows::side_by_side(&parts)?)?;
+            }
+            progress.add(u64::from(n_rows) * bands.len() as u64);
+            progress.check()?;
+        }
+    }
+
+    /// Finishes the files, and records their properties.
+    ///
+    /// # Errors
+    ///
+    /// If rows are missing, or a file cannot be written.
+    pub(crate) fn finish(self, job: &mut Job<'_>, files: &[MapFile]) -> Result<()> {
+        finish(job, self.rows, files, self.size)
+    }
 }
 
 /// Encodes the images of a bake in memory, and reports progress in rows.

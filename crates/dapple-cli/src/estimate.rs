@@ -1,6 +1,6 @@
 //! Estimates the work for a bake before it begins, in pixels, bytes and time.
 
-use crate::baking::advise;
+use crate::baking::{MOST_PIXELS, advise};
 use crate::error::Hint;
 use crate::job::Job;
 use crate::layers::Image;
@@ -9,8 +9,6 @@ use dapple::recipe::{Bake, BakeMemory, BakeOptions, Plan};
 use indicatif::{DecimalBytes, HumanDuration};
 use std::time::{Duration, Instant};
 
-/// Maximum number of pixels in a bake without `--banded`, which is 32768 × 32768.
-const MOST_PIXELS: u64 = 1 << 30;
 /// Minimum number of pixels for which the estimate is printed, which is 8192 × 8192.
 const TOLD_PIXELS: u64 = 1 << 26;
 /// Columns and rows of the small bake whose time is measured.

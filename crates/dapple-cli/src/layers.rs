@@ -7,7 +7,6 @@ use dapple::color::LinearRgba;
 use dapple::image::{Content, ImageError, RowWriter};
 use dapple::raster::Raster;
 use dapple::recipe::{Band, MapKind, MapRows, Material};
-use dapple::tile::repeat;
 use std::borrow::Cow;
 use std::fmt;
 use std::io::{Seek, Write};
@@ -86,6 +85,11 @@ impl Layers {
             Self::Gray(_) => Content::Gray,
             Self::Rgba(_) => Content::PackedFour,
         }
+    }
+
+    /// Returns whether the image has colors, which are in sRGB in PNG.
+    pub(crate) fn is_color(&self) -> bool {
+        matches!(self.content(), Content::Color | Content::ColorAlpha)
     }
 
     /// Returns the number of channels.
@@ -217,22 +221,66 @@ impl LayerRows<'_> {
 
     /// Returns the rows twice, side by side.
     pub(crate) fn beside_themselves(&self) -> Result<LayerRows<'static>> {
-        fn twice<T: Copy + Send + Sync>(raster: &Raster<T>) -> Result<Raster<T>> {
-            let [width, height] = raster.size();
-            Ok(repeat(raster, [width.saturating_mul(2), height])?)
+        Self::side_by_side(&[self, self])
+    }
+
+    /// Joins rows of the same content and height from left to right. There must be at least one part.
+    pub(crate) fn side_by_side(parts: &[&LayerRows<'_>]) -> Result<LayerRows<'static>> {
+        /// Joins the rasters that the parts have as the given variant.
+        macro_rules! joined {
+            ($variant:path) => {
+                beside(parts.iter().filter_map(|part| match part.map()? {
+                    $variant(rows) => Some(rows),
+                    _ => None,
+                }))
+            };
         }
-        let rows = match self {
-            Self::Rgba(rows) => return Ok(LayerRows::Rgba(twice(rows)?)),
-            Self::ColorAlpha(rows) => return Ok(LayerRows::ColorAlpha(twice(rows)?)),
-            Self::Map(rows) => match rows.as_ref() {
-                MapRows::Gray(rows) => MapRows::Gray(twice(rows)?),
-                MapRows::Color(rows) => MapRows::Color(twice(rows)?),
-                MapRows::Normal(rows) => MapRows::Normal(twice(rows)?),
-                MapRows::Packed(rows) => MapRows::Packed(twice(rows)?),
+        let rows = match parts[0] {
+            LayerRows::Rgba(_) => {
+                let rows = parts.iter().filter_map(|part| match part {
+                    LayerRows::Rgba(rows) => Some(rows),
+                    _ => None,
+                });
+                return Ok(LayerRows::Rgba(beside(rows)?));
+            }
+            LayerRows::ColorAlpha(_) => {
+                let rows = parts.iter().filter_map(|part| match part {
+                    LayerRows::ColorAlpha(rows) => Some(rows),
+                    _ => None,
+                });
+                return Ok(LayerRows::ColorAlpha(beside(rows)?));
+            }
+            LayerRows::Map(rows) => match rows.as_ref() {
+                MapRows::Gray(_) => MapRows::Gray(joined!(MapRows::Gray)?),
+                MapRows::Color(_) => MapRows::Color(joined!(MapRows::Color)?),
+                MapRows::Normal(_) => MapRows::Normal(joined!(MapRows::Normal)?),
+                MapRows::Packed(_) => MapRows::Packed(joined!(MapRows::Packed)?),
             },
         };
         Ok(LayerRows::Map(Cow::Owned(rows)))
     }
+
+    /// Returns the rows of a single map.
+    fn map(&self) -> Option<&MapRows> {
+        match self {
+            Self::Map(rows) => Some(rows.as_ref()),
+            _ => None,
+        }
+    }
+}
+
+/// Joins rasters of the same height from left to right.
+fn beside<'a, T: Copy + 'a>(rasters: impl Iterator<Item = &'a Raster<T>>) -> Result<Raster<T>> {
+    let rasters: Vec<_> = rasters.collect();
+    let width = rasters.iter().map(|raster| raster.size()[0]).sum();
+    let height = rasters.first().map_or(0, |raster| raster.size()[1]);
+    let mut pixels = Vec::with_capacity(width as usize * height as usize);
+    for y in 0..height {
+        for raster in &rasters {
+            pixels.extend_from_slice(raster.row(y));
+        }
+    }
+    Ok(Raster::from_vec([width, height], pixels)?)
 }
 
 /// Returns the channels of a color with alpha.

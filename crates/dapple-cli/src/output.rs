@@ -129,7 +129,7 @@ impl Target {
     fn turn(&self) -> u8 {
         match self.ending().as_str() {
             "mtl" => 1,
-            "mtlx" | "obj" | "gltf" => 2,
+            "mtlx" | "obj" | "gltf" | "tres" => 2,
             "json" => 3,
             _ => 0,
         }

@@ -5,12 +5,14 @@ mod claim;
 mod contact_sheet;
 mod documents;
 mod files;
+mod flipbook;
 mod images;
 mod maps;
 mod material;
 mod presets;
 mod recipes;
 mod seeds;
+mod unity;
 
 use crate::args::{Frame, OutputArgs, Region, Shard, Size};
 use crate::baking::{STILL, advise, advise_shard, read_images, read_recipe, report};
@@ -59,11 +61,14 @@ Examples:
   dapple bake flagstone --node joint -o joint.png
   dapple bake 'my-*.toml' --keep-going --maps albedo --sheet -o mine/
   dapple bake rock --preset unity -o Assets/Rock/
+  dapple bake rock --preset unreal,godot -o rock/
+  dapple bake rock -o rock.tres
   dapple bake rock -o rock.glb
   dapple bake marble -o marble.mtlx
   dapple bake mountains --maps height --size 2017 --samples corners -o island.r16
   dapple bake rock --size 8192 --shard 3,1,512 -o parts/
   dapple bake sea-water --frames 24 --size 128 --maps normal,albedo -o sea/
+  dapple bake sea-water --flipbook 6x4 --size 128 --maps normal -o waves.png
 
 `dapple recipe --list` names the built-in recipes, and `dapple recipe rock` prints one, to
 begin your own with.
@@ -89,8 +94,10 @@ pub(crate) struct Args {
     material: MaterialArgs,
 
     /// Write the files that a program expects: names, channel packing, bit depth and normal direction.
-    #[arg(long, value_name = "PROGRAM", value_parser = Preset::parser(), conflicts_with_all = ["maps", "format"])]
-    preset: Option<&'static Preset>,
+    ///
+    /// The files of several programs, with commas between them, go to a directory of each.
+    #[arg(long, value_name = "PROGRAM,…", value_delimiter = ',', value_parser = Preset::parser(), conflicts_with_all = ["maps", "format"])]
+    preset: Vec<&'static Preset>,
 
     /// Bake this node alone, as a height or, if it has colors, as an albedo map.
     ///
@@ -119,6 +126,12 @@ pub(crate) struct Args {
     /// Parts that do not move are computed once.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), conflicts_with_all = ["frame", "shard"])]
     frames: Option<u32>,
+
+    /// Write all frames of a loop into one image for each map: a grid with this number of columns and rows.
+    ///
+    /// The loop has a frame for each cell, from the top left, row by row.
+    #[arg(long, value_name = "COLUMNSxROWS", conflicts_with_all = ["frame", "frames", "shard", "sheet"])]
+    flipbook: Option<Size>,
 
     /// Keep only a band of rows in memory; required past 32768 × 32768 pixels.
     ///
@@ -169,6 +182,7 @@ struct Work {
     folder: PathBuf,
     /// The list of the recipe's shards; `None` unless a shard is baked.
     list: Option<List>,
+    files: OutputArgs,
 }
 
 /// Bakes the recipes.
@@ -183,52 +197,20 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         gpu::check()?;
     }
     let names = recipes::expanded(&args.recipes)?;
-    let variants = args.material.variants();
-    let n_works = names.len() * variants.len();
-    let files = args.files_for(n_works)?;
-    let mut batch = Batch::new(n_works, args.keep_going, context);
-    let mut works = Vec::new();
-    for (name, (seed, material)) in names
-        .iter()
-        .flat_map(|name| variants.iter().map(move |variant| (name, variant)))
-    {
-        let args = Args {
-            material: material.clone(),
-            ..args.clone()
-        };
-        let title = match seed {
-            Some(seed) => format!("{name} with seed {seed}"),
-            None => name.clone(),
-        };
-        // Read all recipes, and check that all files can be claimed, before the work begins.
-        let work = Work::read(name, args, seed.as_deref()).and_then(|work| {
-            for args in work.args.pictures() {
-                claim(&args, &files, &work, &mut Job::new(context, "bake", &files))?;
-            }
-            Ok(work)
-        });
-        works.extend(batch.checked(&title, work)?.map(|work| (title, work)));
-    }
-    // Refuse recipes whose files would have the same names.
-    for (index, (name, work)) in works.iter().enumerate() {
-        let is_same = |(_, other): &(String, Work)| other.recipe.name == work.recipe.name;
-        if works[..index].iter().any(is_same) {
-            let message = format!(
-                "{name} and another recipe are both called {}",
-                work.recipe.name
-            );
-            return Err(usage(message).hint("give each a `name`"));
-        }
-    }
+    let by_preset = args.by_preset()?;
+    let n_recipes = names.len() * args.material.variants().len();
+    let files = args.files_for(n_recipes)?;
+    let mut batch = Batch::new(n_recipes * by_preset.len(), args.keep_going, context);
+    let works = works(&names, &by_preset, &mut batch, context)?;
     let sheet = args
         .contact_sheet
         .then(|| ContactSheet::claim(&files, context));
     let mut sheet = sheet.transpose()?;
     // Bake each recipe.
-    let rows = u64::from(args.n_rows()?) * u64::from(args.frames.unwrap_or(1));
+    let rows = u64::from(args.n_rows()?) * u64::from(args.n_frames().unwrap_or(1));
     let progress = Progress::bar("baking", rows * works.len() as u64, context);
     for (index, (name, work)) in (0..).zip(&works) {
-        let baked = work.bake(&files, context, &progress);
+        let baked = work.bake(context, &progress);
         let preview = batch.checked(name, baked)?.flatten();
         if let (Some(sheet), Some(preview)) = (&mut sheet, preview) {
             sheet.add(&preview)?;
@@ -238,6 +220,64 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     drop(progress);
     sheet.map(ContactSheet::write).transpose()?;
     Ok(batch.exit())
+}
+
+/// Reads all recipes, with each seed and each preset, and checks that all files can be claimed, before the work begins.
+/// Returns them with the titles for messages.
+fn works(
+    names: &[String],
+    by_preset: &[Args],
+    batch: &mut Batch<'_>,
+    context: &Context,
+) -> Result<Vec<(String, Work)>> {
+    let variants = by_preset[0].material.variants();
+    let mut works: Vec<(String, Work)> = Vec::new();
+    for name in names {
+        for (seed, material) in &variants {
+            for args in by_preset {
+                let args = Args {
+                    material: material.clone(),
+                    ..args.clone()
+                };
+                let mut title = match seed {
+                    Some(seed) => format!("{name} with seed {seed}"),
+                    None => name.clone(),
+                };
+                if let ([_, _, ..], [preset, ..]) = (by_preset, args.preset.as_slice()) {
+                    title += &format!(" for {}", preset.name);
+                }
+                let files = args.files_for(names.len() * variants.len());
+                let work = files.and_then(|files| Work::read(name, args, files, seed.as_deref()));
+                let work = work.and_then(|work| {
+                    for args in work.args.pictures() {
+                        let mut job = Job::new(context, "bake", &work.files);
+                        claim(&args, &work.files, &work, &mut job)?;
+                    }
+                    Ok(work)
+                });
+                works.extend(batch.checked(&title, work)?.map(|work| (title, work)));
+            }
+        }
+    }
+    check_names(&works)?;
+    Ok(works)
+}
+
+/// Refuses recipes whose files would have the same names.
+fn check_names(works: &[(String, Work)]) -> Result<()> {
+    for (index, (name, work)) in works.iter().enumerate() {
+        let is_same = |(_, other): &(String, Work)| {
+            other.recipe.name == work.recipe.name && other.files.output == work.files.output
+        };
+        if works[..index].iter().any(is_same) {
+            let message = format!(
+                "{name} and another recipe are both called {}",
+                work.recipe.name
+            );
+            return Err(usage(message).hint("give each a `name`"));
+        }
+    }
+    Ok(())
 }
 
 /// Bakes a recipe from memory. `words` are options as typed after `dapple bake RECIPE`. Stops when `stop` becomes true.
@@ -262,18 +302,22 @@ pub(super) fn bake_with(
     args.check_document()?;
     args.check_samples()?;
     args.material.check_single()?;
-    let mut recipe = recipe.clone();
-    args.change(&mut recipe)?;
-    let (folder, list) = (folder.to_owned(), None);
-    let files = args.files_for(1)?;
-    let progress = Progress::bar("baking", args.n_rows()?.into(), context).until(stop);
-    let work = Work {
-        args,
-        recipe,
-        folder,
-        list,
-    };
-    work.bake(&files, context, &progress).map(drop)
+    let by_preset = args.by_preset()?;
+    let rows = u64::from(args.n_rows()?) * by_preset.len() as u64;
+    let progress = Progress::bar("baking", rows, context).until(stop);
+    for args in by_preset {
+        let mut recipe = recipe.clone();
+        args.change(&mut recipe)?;
+        let work = Work {
+            files: args.files_for(1)?,
+            args,
+            recipe,
+            folder: folder.to_owned(),
+            list: None,
+        };
+        work.bake(context, &progress)?;
+    }
+    Ok(())
 }
 
 /// Returns the names of the presets, with a sentence about each.
@@ -297,7 +341,7 @@ const MEMORY: usize = 1 << 28;
 
 impl Work {
     /// Reads a recipe and applies the options. `seed` is the label of the seed if there are several.
-    fn read(name: &str, mut args: Args, seed: Option<&str>) -> Result<Self> {
+    fn read(name: &str, mut args: Args, files: OutputArgs, seed: Option<&str>) -> Result<Self> {
         let (mut recipe, folder) = read_recipe(name)?;
         args.change(&mut recipe)?;
         if let Some(node) = args.node.clone() {
@@ -323,36 +367,34 @@ impl Work {
             folder: folder.to_owned(),
             recipe,
             args,
+            files,
         })
     }
 
     /// Bakes all frames of a looping animation, or a single image. Nodes that do not change with time are evaluated
     /// once. Returns the lit preview of the first frame if the options need one.
-    fn bake(
-        &self,
-        files: &OutputArgs,
-        context: &Context,
-        progress: &Progress,
-    ) -> Result<Option<Raster<LinearRgb>>> {
+    fn bake(&self, context: &Context, progress: &Progress) -> Result<Option<Raster<LinearRgb>>> {
         let made = Made {
             images: None,
-            cache: self.args.frames.map(|_| PlanCache::new(MEMORY)),
+            cache: self.args.n_frames().map(|_| PlanCache::new(MEMORY)),
         };
-        self.bake_with(made, files, context, progress)
+        self.bake_with(made, context, progress)
     }
 
     /// Bakes like [`bake`](Self::bake), with the given images and values.
     fn bake_with(
         &self,
         mut made: Made,
-        files: &OutputArgs,
         context: &Context,
         progress: &Progress,
     ) -> Result<Option<Raster<LinearRgb>>> {
         let mut preview = None;
         for args in self.args.pictures() {
-            let job = Job::new(context, "bake", files);
-            let of_frame = self.bake_picture(&args, job, &mut made, progress)?;
+            let job = Job::new(context, "bake", &self.files);
+            let of_frame = match args.flipbook {
+                Some(grid) => self.bake_flipbook(grid, job, &mut made, progress)?,
+                None => self.bake_picture(&args, job, &mut made, progress)?,
+            };
             preview = preview.or(of_frame);
         }
         Ok(preview)
@@ -402,6 +444,9 @@ impl Work {
         progress.check()?;
         let bake = bake.map_err(|error| refused(error).wrong_value())?;
         claimed.write(&mut job, bake, recipe, progress)?;
+        if let Some(note) = args.import_note(&recipe.material) {
+            job.note_work(&note);
+        }
         // The contact sheet shows the first frame.
         let is_first = args.frames.is_none() || args.frame.is_none_or(Frame::is_first);
         let preview = if args.preview.is_some() || (args.contact_sheet && is_first) {
@@ -504,6 +549,52 @@ impl Args {
                 ..self.clone()
             }
         })
+    }
+
+    /// Returns the note about images of data, once for a loop.
+    fn import_note(&self, material: &Material) -> Option<String> {
+        let is_first = self.frames.is_none() || self.frame.is_none_or(Frame::is_first);
+        self.preset().filter(|_| is_first)?.import_note(material)
+    }
+
+    /// Returns the number of frames of a loop; `None` for a still image.
+    fn n_frames(&self) -> Option<u32> {
+        let of_grid = |Size([columns, rows]): Size| columns.saturating_mul(rows);
+        self.frames.or(self.flipbook.map(of_grid))
+    }
+
+    /// Returns copies of the options with a single preset each, with a directory in the output for each; a single copy
+    /// unless there are several presets. Only the first copy adds to the contact sheet.
+    ///
+    /// # Errors
+    ///
+    /// If there are several presets, and the output is not a directory or the sidecar has a name.
+    fn by_preset(&self) -> Result<Vec<Self>> {
+        if self.preset.len() < 2 {
+            return Ok(vec![self.clone()]);
+        }
+        if matches!(self.files.json, Some(Some(_))) {
+            let error = usage("--json=FILE is for one preset, and there are several");
+            return Err(error.hint("with --json each material has its own, called after it"));
+        }
+        let Some(folder) = self.files.folder(2) else {
+            return Err(usage("several presets need a folder").hint(FOLDER_HINT));
+        };
+        let mut presets: Vec<&'static Preset> = Vec::new();
+        for &preset in &self.preset {
+            if !presets.contains(&preset) {
+                presets.push(preset);
+            }
+        }
+        let of_preset = |(index, preset): (usize, &'static Preset)| {
+            let mut args = self.clone();
+            args.preset = vec![preset];
+            args.contact_sheet &= index == 0;
+            // A trailing slash makes the path a directory.
+            args.files.output = Some(folder.join(preset.name).join(""));
+            args
+        };
+        Ok(presets.into_iter().enumerate().map(of_preset).collect())
     }
 
     /// Returns the output options for `n_recipes` recipes. Several recipes, and several frames, need a directory.

@@ -313,6 +313,40 @@ fn all_pictures_of_a_loop_are_those_baked_one_by_one() {
 }
 
 #[test]
+fn a_flipbook_holds_the_frames_of_a_loop_row_by_row() {
+    let folder = Folder::with_inputs("flipbook");
+    fs::write(folder.path("tide.toml"), LOOP).unwrap();
+    let maps = ["height", "normal", "albedo"];
+    for line in [
+        "bake tide.toml --size 40x24 --maps height,normal,albedo --flipbook 3x2 -o book/",
+        "bake tide.toml --size 40x24 --maps height,normal,albedo --frames 6 -o all/",
+    ] {
+        let words: Vec<_> = line.split(' ').collect();
+        assert_done(&folder.run(&words), line);
+    }
+    let read = |name: &str| read_image(folder.path(name), &Limits::default()).unwrap();
+    for map in maps {
+        let book = read(&format!("book/tide_{map}.png")).color().unwrap();
+        assert_eq!(book.size(), [3 * 40, 2 * 24], "{map}");
+        for frame in 0..6 {
+            let [left, top] = [40 * (frame % 3), 24 * (frame / 3)];
+            let image = read(&format!("all/tide_{map}_{:03}.png", frame + 1));
+            let image = image.color().unwrap();
+            for y in 0..24 {
+                let part = &book.row(top + y)[left as usize..][..40];
+                assert_eq!(part, image.row(y), "row {y} of frame {frame} of {map}");
+            }
+        }
+    }
+    let first = read("all/tide_height_001.png");
+    assert_ne!(first, read("all/tide_height_002.png"), "the loop moves");
+    let line = "bake tide.toml --size 1024 --flipbook 1000x1000 --maps height -o large/";
+    let words: Vec<_> = line.split(' ').collect();
+    assert_refused(&folder.run(&words), 2, "2^30", "a large flipbook");
+    assert!(!folder.path("large").exists());
+}
+
+#[test]
 fn control_points_move_in_the_loop_that_their_recipe_bakes() {
     let folder = Folder::with_inputs("points-loop");
     for line in [

@@ -184,6 +184,12 @@ fn presets_write_the_files_and_channels_of_their_programs() {
             .iter()
             .map(|(file, ..)| format!("{file}.png"))
             .collect();
+        if preset == "unity" {
+            names.extend(names.clone().iter().map(|name| format!("{name}.meta")));
+        }
+        if preset == "godot" {
+            names.push("varied.tres".to_owned());
+        }
         names.sort();
         let mut written: Vec<_> = fs::read_dir(folder.path(preset))
             .unwrap()
@@ -260,7 +266,131 @@ fn presets_and_documents_say_what_does_not_go_with_them() {
     );
     assert_refused(&run("--preset glb -o a.png"), 2, ".glb", "another ending");
     assert_refused(&run("--preset unity -o a.exr"), 2, "PNG", "another format");
+    assert_refused(
+        &run("--preset unity,unreal -o a.png"),
+        2,
+        "folder",
+        "a file for two presets",
+    );
+    assert_refused(&run("-o a.tres --frames 2"), 2, "--frames", "a loop");
     assert_eq!(folder.names(), ["varied.toml"], "nothing is left");
+}
+
+#[test]
+fn several_presets_have_a_folder_each_with_the_files_of_each_alone() {
+    let folder = folder("several-presets");
+    let bake = |preset: &str, output: &str| {
+        let line = format!("bake varied.toml --size 16 --preset {preset} -o {output}");
+        let words: Vec<_> = line.split(' ').collect();
+        assert_done(&folder.run(&words), &line);
+    };
+    bake("unreal,godot,unreal", "all/");
+    let names = |path: &str| {
+        let entries = fs::read_dir(folder.path(path)).unwrap();
+        let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<_> = names.collect();
+        names.sort();
+        names
+    };
+    assert_eq!(names("all"), ["godot", "unreal"]);
+    for preset in ["unreal", "godot"] {
+        let (all, one) = (format!("all/{preset}"), format!("one/{preset}"));
+        bake(preset, &format!("{one}/"));
+        assert_eq!(names(&all), names(&one));
+        for name in names(&all) {
+            let bytes = |of: &str| fs::read(folder.path(of).join(&name)).unwrap();
+            assert!(bytes(&all) == bytes(&one), "{name} of {preset}");
+        }
+    }
+    let line = "bake varied.toml --size 16 --seed 1-2 --preset unity,gltf --contact-sheet -o v/";
+    let words: Vec<_> = line.split(' ').collect();
+    assert_done(&folder.run(&words), line);
+    assert_eq!(names("v"), ["contact_sheet.png", "gltf", "unity"]);
+    assert_eq!(names("v/gltf").len(), 2 * 3);
+}
+
+#[test]
+fn unity_reads_import_settings_beside_each_image() {
+    let folder = folder("metas");
+    let bake = |more: &str| {
+        let line = format!("bake varied.toml --size 16 --preset unity -o u/{more}");
+        let words: Vec<_> = line.split(' ').collect();
+        folder.run(&words)
+    };
+    assert_done(&bake(""), "unity");
+    let meta = |name: &str| fs::read_to_string(folder.path(&format!("u/varied_{name}.png.meta")));
+    for (name, srgb, kind) in [
+        ("BaseMap", 1, 0),
+        ("Normal", 0, 1),
+        ("MaskMap", 0, 0),
+        ("Height", 0, 0),
+    ] {
+        let text = meta(name).unwrap();
+        for line in [
+            format!("    sRGBTexture: {srgb}"),
+            format!("  textureType: {kind}"),
+            "    wrapU: 0".to_owned(),
+        ] {
+            assert!(text.lines().any(|found| found == line), "{line} in {text}");
+        }
+        let id = text.lines().nth(1).unwrap().strip_prefix("guid: ").unwrap();
+        assert!(id.len() == 32 && id.bytes().all(|digit| digit.is_ascii_hexdigit()));
+    }
+    let id = |name: &str| meta(name).unwrap().lines().nth(1).unwrap().to_owned();
+    assert_ne!(id("BaseMap"), id("Normal"));
+    // Settings that were changed in Unity remain.
+    fs::write(folder.path("u/varied_Normal.png.meta"), "changed").unwrap();
+    assert_done(&bake(" --force"), "again");
+    assert_eq!(meta("Normal").unwrap(), "changed");
+}
+
+#[test]
+fn a_material_of_godot_names_its_images() {
+    let folder = folder("tres");
+    fs::write(folder.path("glowing.toml"), GLOWING).unwrap();
+    for line in [
+        "bake varied.toml --size 16 -o rock.tres",
+        "bake glowing.toml --size 16 --preset godot -o glowing/",
+        "bake varied.toml --size 16 --preset godot --frames 2 -o loop/",
+    ] {
+        let words: Vec<_> = line.split(' ').collect();
+        assert_done(&folder.run(&words), line);
+    }
+    let text = fs::read_to_string(folder.path("rock.tres")).unwrap();
+    assert!(text.starts_with("[gd_resource type=\"ORMMaterial3D\" load_steps=5 format=3]\n\n"));
+    for map in ["albedo", "normal", "orm", "height"] {
+        let file = format!("rock_{map}.png");
+        assert!(folder.path(&file).is_file(), "{file}");
+        assert!(text.contains(&format!(
+            "[ext_resource type=\"Texture2D\" path=\"{file}\" id="
+        )));
+    }
+    // Each texture of the material is one of the listed files, and each file is used once.
+    for id in 1..=4 {
+        assert_eq!(text.matches(&format!("ExtResource(\"{id}\")")).count(), 1);
+    }
+    for line in [
+        "normal_enabled = true",
+        "ao_enabled = true",
+        "texture_repeat = true",
+    ] {
+        assert!(text.lines().any(|found| found == line), "{line} in {text}");
+    }
+    assert!(!text.contains("transparency"), "{text}");
+    let text = fs::read_to_string(folder.path("glowing/glowing.tres")).unwrap();
+    for line in [
+        "transparency = 2",
+        "alpha_scissor_threshold = 0.25",
+        "emission_energy_multiplier = 4.0",
+        "clearcoat_roughness = 0.03",
+    ] {
+        assert!(text.lines().any(|found| found == line), "{line} in {text}");
+    }
+    assert!(
+        !folder.path("loop/varied.tres").exists(),
+        "a loop has no material"
+    );
+    assert!(folder.path("loop/varied_orm_002.png").is_file());
 }
 
 #[test]

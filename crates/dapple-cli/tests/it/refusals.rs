@@ -35,7 +35,9 @@ const READERS: [&str; 24] = [
 ];
 
 /// Invalid command lines that clap does not detect.
-const WRONG: [&str; 51] = [
+const WRONG: [&str; 53] = [
+    "bake flagstone --frames 2 --flipbook 2x1 -o out/",
+    "bake flagstone --flipbook 2x1 -o rock.glb",
     "bake flagstone --samples corners --sheet -o out/",
     "bake flagstone --samples corners -o rock.glb",
     "noise --samples corners --size 1x5 -o out.png",

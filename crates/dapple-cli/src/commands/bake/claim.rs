@@ -1,7 +1,8 @@
 //! Claims a recipe's output files before the work begins, and writes them when it is done.
 
-use super::documents::{glb, mtlx};
+use super::documents::{glb, mtlx, tres};
 use super::presets::Document;
+use super::unity;
 use super::{Args, Work};
 use crate::args::{OutputArgs, Shard, Targets};
 use crate::baking::{self, MapFile};
@@ -14,7 +15,7 @@ use crate::progress::Progress;
 use crate::shards::List;
 use anyhow::{Error, Result};
 use dapple::recipe::{Bake, MapKind, Recipe};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The claimed files of a recipe.
 pub(super) struct Claimed {
@@ -25,6 +26,8 @@ pub(super) struct Claimed {
     /// A file for each image; empty if a document embeds the images.
     files: Vec<MapFile>,
     document: Option<(OutputIdx, Document)>,
+    /// The import settings of images for Unity, with the layers and the file name of the image.
+    metas: Vec<(OutputIdx, Layers, String)>,
     pub(super) preview: Option<(OutputIdx, Format)>,
 }
 
@@ -43,11 +46,17 @@ pub(super) fn claim(
         finished: Vec::new(),
         files: Vec::new(),
         document: None,
+        metas: Vec::new(),
         preview: None,
     };
     if let Some(document) = args.document()
         && let Some(target) = places.next()
     {
+        // The material of Godot keeps its extension if the output is named like an image.
+        let target = match document {
+            Document::Tres => target.with_ending("tres"),
+            Document::Glb | Document::Mtlx => target,
+        };
         check_ending(&target, document)?;
         claimed.document = Some((job.claim(&target)?, document));
     }
@@ -68,6 +77,9 @@ pub(super) fn claim(
         }
         let image = image(layers, asked, &target)?;
         let output = job.claim(&target)?;
+        if args.preset().is_some_and(|preset| preset.has_metas) {
+            claim_meta(&target, layers, &mut claimed, job)?;
+        }
         let sheet = args.sheet.then(|| places.next()).flatten();
         let sheet = sheet.map(|sheet| job.claim(&sheet)).transpose()?;
         claimed.images.push(image);
@@ -158,6 +170,26 @@ fn image(layers: Layers, asked: Option<Format>, target: &Target) -> Result<Image
     Ok(Image { layers, format })
 }
 
+/// Claims the file of an image's import settings, unless it exists: settings that were changed in Unity remain.
+fn claim_meta(
+    image: &Target,
+    layers: Layers,
+    claimed: &mut Claimed,
+    job: &mut Job<'_>,
+) -> Result<()> {
+    let Some(path) = image.path() else {
+        return Ok(());
+    };
+    let mut meta = path.as_os_str().to_owned();
+    meta.push(".meta");
+    let meta = PathBuf::from(meta);
+    if !meta.exists() {
+        let output = job.claim_text(&Target::Path(meta))?;
+        claimed.metas.push((output, layers, image.name()));
+    }
+    Ok(())
+}
+
 /// Claims the file of the lit preview. It is a PNG if the maps are neither PNG nor OpenEXR.
 fn claim_preview(args: &Args, target: Target, job: &mut Job<'_>) -> Result<(OutputIdx, Format)> {
     let target = match target.ending().as_str() {
@@ -211,6 +243,10 @@ impl Claimed {
         recipe: &Recipe,
         progress: &Progress,
     ) -> Result<()> {
+        for (output, layers, image) in &self.metas {
+            let meta = unity::meta(recipe, *layers, image);
+            job.write(*output, meta.as_bytes())?;
+        }
         match self.document {
             None => baking::write(job, bake, &self.files, progress),
             Some((output, Document::Glb)) => {
@@ -218,12 +254,21 @@ impl Claimed {
                 let layers = self.images.iter().map(|image| image.layers);
                 job.write(output, &glb(recipe, layers.zip(images))?)
             }
-            Some((output, Document::Mtlx)) => {
+            Some((output, document)) => {
                 baking::write(job, bake, &self.files, progress)?;
                 let name = |file: &MapFile| (file.image.layers, job.target(file.output).name());
                 let names: Vec<_> = self.files.iter().map(name).collect();
-                job.write(output, mtlx(recipe, &names).as_bytes())
+                let text = match document {
+                    Document::Tres => tres(recipe, &names),
+                    Document::Mtlx | Document::Glb => mtlx(recipe, &names),
+                };
+                job.write(output, text.as_bytes())
             }
         }
+    }
+
+    /// Returns the files of the images.
+    pub(super) fn files(&self) -> &[MapFile] {
+        &self.files
     }
 }

@@ -1,6 +1,6 @@
-//! Builds documents for a whole material: a textured plane in glTF, or a MaterialX document.
+//! Builds documents for a whole material: a textured plane in glTF, a MaterialX document, or a material of Godot.
 //!
-//! References: The Khronos Group, *glTF 2.0 Specification*, 2021 (ISO/IEC 12113:2022); Smythe, Stone et al., *MaterialX
+//! References: Godot Engine documentation, "TSCN file format" and "BaseMaterial3D", version 4; The Khronos Group, *glTF 2.0 Specification*, 2021 (ISO/IEC 12113:2022); Smythe, Stone et al., *MaterialX
 //! Specification* and *MaterialX Standard Nodes*, version 1.38, 2021. One unit of the plane is one meter in both.
 
 use crate::layers::Layers;
@@ -258,4 +258,73 @@ fn identifier(name: &str) -> String {
 fn escaped(text: &str) -> String {
     let text = text.replace('&', "&amp;").replace('<', "&lt;");
     text.replace('"', "&quot;")
+}
+
+/// Builds a material of Godot 4, an `ORMMaterial3D`, with an image for each map, referenced by file name.
+///
+/// The height is set, and parallax is left off, since it costs time in each frame: `heightmap_enabled` turns it on.
+pub(super) fn tres(recipe: &Recipe, files: &[(Layers, String)]) -> String {
+    let material = &recipe.material;
+    let mut resources = String::new();
+    let mut lines = vec![
+        format!("resource_name = \"{}\"", quoted(&recipe.name)),
+        format!("texture_repeat = {}", recipe.wrap == [true; 2]),
+        "metallic = 1.0".to_owned(),
+        "roughness = 1.0".to_owned(),
+    ];
+    if material.has(MapKind::Opacity) {
+        match material.opacity_cutoff {
+            None => lines.push("transparency = 1".to_owned()),
+            Some(cutoff) => {
+                lines.push("transparency = 2".to_owned());
+                lines.push(format!("alpha_scissor_threshold = {cutoff:?}"));
+            }
+        }
+    }
+    for (id, (layers, file)) in (1..).zip(files) {
+        let (texture, more) = match layers.kinds().as_slice() {
+            [MapKind::Albedo, ..] => ("albedo", vec![]),
+            [MapKind::Normal] => (
+                "normal",
+                vec![
+                    "normal_enabled = true".to_owned(),
+                    "normal_scale = 1.0".to_owned(),
+                ],
+            ),
+            [MapKind::Orm] => ("orm", vec!["ao_enabled = true".to_owned()]),
+            // Godot moves the coordinates by a hundredth of the scale where the height is 1.
+            [MapKind::Height] => {
+                let scale = 100.0 * material.relief / recipe.extent[0];
+                ("heightmap", vec![format!("heightmap_scale = {scale:?}")])
+            }
+            [MapKind::Emission] => {
+                let strength = material.emission_strength.unwrap_or(1.0);
+                let enabled = "emission_enabled = true".to_owned();
+                let strength = format!("emission_energy_multiplier = {strength:?}");
+                ("emission", vec![enabled, strength])
+            }
+            [MapKind::Clearcoat] => {
+                let roughness = material.clearcoat_roughness.unwrap_or(CLEARCOAT_ROUGHNESS);
+                let enabled = "clearcoat_enabled = true".to_owned();
+                let roughness = format!("clearcoat_roughness = {roughness:?}");
+                let full = "clearcoat = 1.0".to_owned();
+                ("clearcoat", vec![enabled, full, roughness])
+            }
+            _ => continue,
+        };
+        let file = quoted(file);
+        resources += &format!("[ext_resource type=\"Texture2D\" path=\"{file}\" id=\"{id}\"]\n");
+        lines.extend(more);
+        lines.push(format!("{texture}_texture = ExtResource(\"{id}\")"));
+    }
+    let steps = resources.lines().count() + 1;
+    let lines = lines.join("\n");
+    format!(
+        "[gd_resource type=\"ORMMaterial3D\" load_steps={steps} format=3]\n\n{resources}\n[resource]\n{lines}\n"
+    )
+}
+
+/// Escapes a text for use in quotes in a resource of Godot.
+fn quoted(text: &str) -> String {
+    text.replace('\\', "\\\\").replace('"', "\\\"")
 }

@@ -42,12 +42,13 @@ impl FromArgMatches for MaterialFiles {
                 matches.get_one("maps").cloned(),
                 matches.get_one("normal_y").copied(),
             ),
-            preset: matches.get_one("preset").copied(),
+            preset: (matches.get_many("preset").into_iter().flatten().copied()).collect(),
             node: None,
             region: None,
             shard: None,
             frame: None,
             frames: None,
+            flipbook: None,
             banded: false,
             keep_going: false,
             gpu: false,
@@ -83,25 +84,31 @@ impl MaterialFiles {
     pub(in crate::commands) fn bake(
         &self,
         size: [u32; 2],
-        mut recipe: Recipe,
+        recipe: Recipe,
         images: Images,
         context: &Context,
     ) -> Result<()> {
         let mut args = (*self.0).clone();
         args.material.size = Size(size);
-        args.change(&mut recipe)?;
-        let files = args.files_for(1)?;
-        let progress = Progress::bar("baking", args.n_rows()?.into(), context);
-        let work = Work {
-            args,
-            recipe,
-            folder: PathBuf::new(),
-            list: None,
-        };
-        let made = Made {
-            images: Some(images),
-            cache: None,
-        };
-        work.bake_with(made, &files, context, &progress).map(drop)
+        let by_preset = args.by_preset()?;
+        let rows = u64::from(args.n_rows()?) * by_preset.len() as u64;
+        let progress = Progress::bar("baking", rows, context);
+        for args in by_preset {
+            let mut recipe = recipe.clone();
+            args.change(&mut recipe)?;
+            let work = Work {
+                files: args.files_for(1)?,
+                args,
+                recipe,
+                folder: PathBuf::new(),
+                list: None,
+            };
+            let made = Made {
+                images: Some(images.clone()),
+                cache: None,
+            };
+            work.bake_with(made, context, &progress)?;
+        }
+        Ok(())
     }
 }

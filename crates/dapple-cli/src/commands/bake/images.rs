@@ -15,12 +15,18 @@ impl Args {
     pub(super) fn preset(&self) -> Option<&'static Preset> {
         let ending = self.files.output.as_deref().and_then(Path::extension);
         let ending = ending.unwrap_or_default().to_string_lossy().to_lowercase();
-        self.preset.or_else(|| Preset::of_ending(&ending))
+        let preset = self.preset.first().copied();
+        preset.or_else(|| Preset::of_ending(&ending))
     }
 
-    /// Returns the document of the material, if the preset has one.
+    /// Returns the document of the material, if the preset has one. A material of Godot is left out with images that
+    /// it cannot name: frames, parts of the tile, and samples on corners.
     pub(super) fn document(&self) -> Option<Document> {
-        self.preset().and_then(|preset| preset.document)
+        let document = self.preset()?.document?;
+        let is_left_out = document == Document::Tres
+            && !self.preset.is_empty()
+            && self.in_the_way(document).is_some();
+        (!is_left_out).then_some(document)
     }
 
     /// Returns whether the document embeds the images, so that they have no separate files.
@@ -38,13 +44,29 @@ impl Args {
             return Ok(());
         };
         let ending = document.ending();
+        match self.in_the_way(document) {
+            None => Ok(()),
+            Some(option) => Err(usage(format!(
+                "a .{ending} is a whole material, without {option}"
+            ))
+            .hint("leave it out, or write images with --preset gltf or blender")),
+        }
+    }
+
+    /// Returns the first option that has no effect on a document.
+    fn in_the_way(&self, document: Document) -> Option<&'static str> {
+        let is_by_ending = self.preset.is_empty();
         let in_the_way = [
             ("--maps", self.material.maps.is_some()),
             ("--format", self.format.is_some()),
             ("--region", self.region.is_some()),
             ("--shard", self.shard.is_some()),
             ("--frames", self.frames.is_some()),
-            ("--sheet", self.sheet),
+            ("--flipbook", self.flipbook.is_some()),
+            (
+                "--sheet",
+                self.sheet && (document != Document::Tres || is_by_ending),
+            ),
             (
                 "--samples corners",
                 self.material.samples.samples == Samples::Corners,
@@ -54,13 +76,8 @@ impl Args {
                 self.material.normal_y == Some(NormalY::DirectX),
             ),
         ];
-        match in_the_way.iter().find(|(_, is_there)| *is_there) {
-            None => Ok(()),
-            Some((option, _)) => Err(usage(format!(
-                "a .{ending} is a whole material, without {option}"
-            ))
-            .hint("leave it out, or write images with --preset gltf or blender")),
-        }
+        let mut in_the_way = in_the_way.into_iter();
+        in_the_way.find_map(|(option, is_there)| is_there.then_some(option))
     }
 
     /// Returns the images to bake for a material. Each has its part of the file name, its channels, and the format if one

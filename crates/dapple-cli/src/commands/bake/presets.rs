@@ -21,6 +21,8 @@ pub(super) struct Preset {
     pub(super) normal_y: NormalY,
     pub(super) images: &'static [PresetImage],
     pub(super) document: Option<Document>,
+    /// Whether each image has a file with Unity's import settings.
+    pub(super) has_metas: bool,
 }
 
 /// An image of a preset.
@@ -38,6 +40,8 @@ pub(super) enum Document {
     Glb,
     /// A MaterialX document that references image files.
     Mtlx,
+    /// A material of Godot that references image files.
+    Tres,
 }
 
 impl Document {
@@ -46,6 +50,7 @@ impl Document {
         match self {
             Self::Glb => "glb",
             Self::Mtlx => "mtlx",
+            Self::Tres => "tres",
         }
     }
 }
@@ -121,6 +126,7 @@ const PLAIN: Preset = Preset {
     normal_y: NormalY::OpenGl,
     images: &[],
     document: None,
+    has_metas: false,
 };
 
 /// All presets, in the order of the help.
@@ -129,7 +135,7 @@ pub(super) static PRESETS: [Preset; 7] = [
     // detail maps". The built-in pipeline and URP read smoothness from the alpha of the metallic map.
     Preset {
         name: "unity",
-        about: "Unity: the mask map of HDRP and URP, and metallic with smoothness of the built-in pipeline",
+        about: "Unity: the mask map of HDRP and URP, metallic with smoothness of the built-in pipeline, and import settings",
         images: &[
             eight("BaseMap", Layers::AlbedoOpacity),
             eight("Normal", Layers::Map(MapKind::Normal)),
@@ -140,6 +146,7 @@ pub(super) static PRESETS: [Preset; 7] = [
             eight("Emission", Layers::Map(MapKind::Emission)),
             eight("ClearCoat", COAT),
         ],
+        has_metas: true,
         ..PLAIN
     },
     // Unreal Engine documentation, "Normal Maps" (green points down), "Recommended Asset Naming Conventions" (`T_`).
@@ -163,7 +170,7 @@ pub(super) static PRESETS: [Preset; 7] = [
     // Godot documentation, "Standard Material 3D and ORM Material 3D"; "Importing images" (OpenGL normals).
     Preset {
         name: "godot",
-        about: "Godot: an ORMMaterial3D",
+        about: "Godot: an ORMMaterial3D, NAME.tres, and its images; also -o NAME.tres",
         images: &[
             eight("albedo", Layers::AlbedoOpacity),
             eight("normal", Layers::Map(MapKind::Normal)),
@@ -172,6 +179,7 @@ pub(super) static PRESETS: [Preset; 7] = [
             eight("emission", Layers::Map(MapKind::Emission)),
             eight("clearcoat", COAT),
         ],
+        document: Some(Document::Tres),
         ..PLAIN
     },
     // Khronos Group, "glTF 2.0 Specification", 3.9 "Materials".
@@ -243,6 +251,22 @@ impl Preset {
         })
     }
 
+    /// Returns the note that names the images of data for a program that does not read how to import them; `None` if
+    /// another file says so, or if the preset has no such image for the material.
+    pub(super) fn import_note(&self, material: &Material) -> Option<String> {
+        if self.has_metas || self.document.is_some() {
+            return None;
+        }
+        let layers = |image: &PresetImage| image.image.layers.of(material);
+        let data = self
+            .images
+            .iter()
+            .filter(|image| layers(image).is_some_and(|layers| !layers.is_color()));
+        let parts: Vec<_> = data.map(|image| image.part).collect();
+        let names = parts.join(", ");
+        (!parts.is_empty()).then(|| format!("note: {names} are data: import them without sRGB"))
+    }
+
     /// Returns the preset of a document with this file extension.
     pub(super) fn of_ending(ending: &str) -> Option<&'static Self> {
         let writes = |document: Document| document.ending() == ending;
@@ -260,8 +284,9 @@ impl Serialize for &'static Preset {
 
 /// Returns a table of the images of all presets, for the help.
 pub(super) fn table() -> String {
-    let mut text =
-        "Presets (see --preset), with * at images that only some materials have:\n".to_owned();
+    let mut text = "Presets (see --preset), with * at images that only some materials have. Images that are not \"in sRGB\" are data: \
+        they are imported as linear, without sRGB.\n"
+        .to_owned();
     let plain = Material::default();
     for preset in &PRESETS {
         let green = match preset.normal_y {
@@ -310,6 +335,7 @@ mod tests {
         let of_ending = |ending| Preset::of_ending(ending).and_then(|preset| preset.document);
         assert_eq!(of_ending("glb"), Some(Document::Glb));
         assert_eq!(of_ending("mtlx"), Some(Document::Mtlx));
+        assert_eq!(of_ending("tres"), Some(Document::Tres));
         assert_eq!(of_ending("png"), None);
     }
 

@@ -1,0 +1,91 @@
+//! Bakes all frames of a loop into one image for each map, as a grid.
+
+use super::claim::claim;
+use super::{BakeSidecar, Made, STILL, Work};
+use crate::args::{Frame, Size};
+use crate::baking::{self, GridWriter, advise, read_images, report};
+use crate::error::{Hint, usage};
+use crate::gpu;
+use crate::job::Job;
+use crate::preview::{self, Thing};
+use crate::progress::Progress;
+use anyhow::Result;
+use dapple::color::LinearRgb;
+use dapple::raster::Raster;
+use dapple::recipe::{Bake, Plan, PlanLimits};
+use dapple::tile::Map;
+
+impl Work {
+    /// Bakes a grid of frames, row by row, and returns the lit preview of the first frame if the options need one. The
+    /// plans of a row are in memory together.
+    ///
+    /// # Errors
+    ///
+    /// If the grid has too many pixels, the recipe is invalid, or a file cannot be written.
+    pub(super) fn bake_flipbook(
+        &self,
+        grid: Size,
+        mut job: Job<'_>,
+        made: &mut Made,
+        progress: &Progress,
+    ) -> Result<Option<Raster<LinearRgb>>> {
+        let (args, recipe) = (&self.args, &self.recipe);
+        let Size([columns, rows]) = grid;
+        let claimed = claim(args, &self.files, self, &mut job)?;
+        let options = args.options(claimed.map_kinds())?;
+        let frame = options.region.map_or(options.size, |region| region.size);
+        let size = size_of(frame, grid)?;
+        let images = match &mut made.images {
+            Some(images) => images,
+            images => images.insert(read_images(recipe, &self.folder, args.material.finite)?),
+        };
+        let mut writer = GridWriter::new(&job, claimed.files(), size)?;
+        let (limits, cache) = (PlanLimits::default(), made.cache.as_ref());
+        let times: Vec<_> = Frame::all(args.n_frames())
+            .map(|frame| frame.map_or(0.0, Frame::time))
+            .collect();
+        for times in times.chunks(columns as usize).take(rows as usize) {
+            let plans = times.iter().map(|&time| {
+                let listen = progress.listener();
+                let plan = Plan::new_with_progress(recipe, images, time, &limits, cache, listen);
+                progress.check()?;
+                let plan = plan.map_err(|error| args.material.blame(error))?;
+                match args.gpu {
+                    true => gpu::on_gpu(recipe, &plan),
+                    false => Ok(plan),
+                }
+            });
+            let plans = plans.collect::<Result<Vec<_>>>()?;
+            if times.contains(&0.0) && !plans[0].moves() {
+                job.note_work(STILL);
+            }
+            let bakes = plans.iter().map(|plan| Bake::new(plan, &options));
+            let bakes = bakes.collect::<Result<Vec<_>, _>>();
+            let bakes = bakes.map_err(|error| advise(error).wrong_value())?;
+            writer.write(bakes, progress)?;
+        }
+        writer.finish(&mut job, claimed.files())?;
+        let preview = if args.preview.is_some() || args.contact_sheet {
+            let thing = args.preview.unwrap_or(Thing::Sphere);
+            Some(preview::picture(recipe, images, 0.0, thing)?)
+        } else {
+            None
+        };
+        if let (Some((output, format)), Some(preview)) = (claimed.preview, &preview) {
+            job.write_map(output, &Map::Color(preview.clone()), format)?;
+        }
+        job.finish(&BakeSidecar { args, recipe }, report(recipe))?;
+        Ok(preview)
+    }
+}
+
+/// Returns the size of a grid of frames, in pixels.
+fn size_of(frame: [u32; 2], Size(grid): Size) -> Result<[u32; 2]> {
+    let [width, height] = [0, 1].map(|axis| u64::from(frame[axis]) * u64::from(grid[axis]));
+    if width.saturating_mul(height) > baking::MOST_PIXELS {
+        let message = format!("a flipbook of {width} × {height} pixels has more than 2^30");
+        return Err(usage(message).hint("take a smaller --size, or fewer frames"));
+    }
+    // Sides of an image of at most 2^30 pixels fit.
+    Ok([width as u32, height as u32])
+}
