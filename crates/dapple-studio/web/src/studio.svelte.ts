@@ -177,6 +177,12 @@ export class Studio {
     return at(this.recipe, path);
   }
 
+  /** The value of a named parameter. */
+  parameter(name: string): Json | undefined {
+    const given = this.value(['parameters', name]);
+    return typeof given === 'object' && given !== null && !Array.isArray(given) ? given['value'] : given;
+  }
+
   /** Changes the recipe from a widget. */
   patch(ops: Op[], gesture: number | null = null, drag = false): void {
     if (this.#tried) return void this.#tried.push(...ops);

@@ -79,6 +79,26 @@ describe('an artist', { skip, timeout: 240_000 }, () => {
     assert.equal(await text(page), before, 'one step of undo');
   }));
 
+  test('moves a shared parameter first in the list, and detaches an option from it', () => {
+    const recipe = RECIPE.replace('extent = [4, 4]\n', 'extent = [4, 4]\n\n[parameters]\nrough = { value = 0.25, range = [0, 1], doc = "Wear." }\nsize = 1.5\n')
+      .replace('frequency = 1.5', 'frequency = "$size"')
+      .replace('height = "sum"', 'height = "sum"\nroughness = "$rough"\nmetallic = "$rough"');
+    return within(recipe, async (page) => {
+      const first = await page.locator('.parameters [data-path]').first().getAttribute('data-path');
+      assert.equal(first, 'parameters.rough.value');
+      await click(page, 'parameters.rough.value', 0.75);
+      assert.match(await text(page), /rough = \{ value = 0\.7\d*, range = \[0, 1\]/);
+      await click(page, 'parameters.size', 0.5);
+      assert.doesNotMatch(await text(page), /size = 1\.5/);
+      assert.match(await text(page), /frequency = "\$size"/);
+      // An option shows the parameter, and gets a value of its own on request.
+      await page.getByLabel('Detach metallic from rough').click();
+      await settled(page);
+      assert.match(await text(page), /metallic = 0\.7/);
+      assert.match(await text(page), /roughness = "\$rough"/);
+    });
+  });
+
   test('deletes a node that is used, in one step of undo', () => within(RECIPE, async (page) => {
     const before = await text(page);
     await select(page, 'base');
