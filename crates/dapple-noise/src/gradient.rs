@@ -395,12 +395,9 @@ impl<const N: usize> GradientNoise<N> {
     /// Without offsets, all octaves with an integer lacunarity would be 0 at integer positions. Offsets are odd
     /// multiples of 2^-9, so that positions on a coarser grid are shifted exactly and periods are preserved.
     pub(crate) fn octaves(&self, count: u32, lacunarity: f64) -> Result<Vec<Self>, RasterError> {
-        RasterError::check_range(
-            (1..=32).contains(&count),
-            "number of octaves",
-            f64::from(count),
-            "from 1 to 32",
-        )?;
+        let range = Fractal::COUNT;
+        let holds = range.holds(count.into());
+        RasterError::check_range(holds, "number of octaves", count.into(), range.text)?;
         let has_period = self.period.iter().any(|&period| period > 0);
         RasterError::check_range(
             !has_period || lacunarity.fract() == 0.0,

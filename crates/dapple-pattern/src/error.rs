@@ -1,6 +1,6 @@
 //! Errors of patterns.
 
-use dapple_raster::{Range, RasterError};
+use dapple_raster::RasterError;
 
 dapple_raster::error! {
     /// An error of a pattern or of rendering it.
@@ -10,12 +10,5 @@ dapple_raster::error! {
     from {
         /// The raster or the window is invalid.
         Raster(RasterError),
-    }
-}
-
-impl PatternError {
-    /// Returns an error if `value` is not in `range`.
-    pub(crate) fn check_in(range: Range, what: &'static str, value: f64) -> Result<(), Self> {
-        Self::check(range.holds(value), what, value, range.text)
     }
 }

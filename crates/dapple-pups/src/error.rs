@@ -1,6 +1,5 @@
 //! Errors of partition-of-unity textures.
 
-use crate::Range;
 use dapple_graph::{GraphError, GraphErrorKind, IsCancelled};
 use dapple_points::{PointsError, PointsErrorKind};
 use dapple_raster::RasterError;
@@ -76,11 +75,6 @@ impl PupsError {
             true => Self::new(PupsErrorKind::Cancelled),
             false => error,
         }
-    }
-
-    /// Returns an error if `value` is not in `range`.
-    pub(crate) fn check_in(range: Range, what: &'static str, value: f64) -> Result<(), Self> {
-        Self::check(range.holds(value), what, value, range.text)
     }
 
     /// Returns an error if `count` differs from `needed`.

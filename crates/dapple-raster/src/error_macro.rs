@@ -5,7 +5,8 @@
 ///
 /// A kind consists of its documentation, a name, fields with documentation, and a message that refers to the fields by
 /// name (or the arguments of a format string). `with Range` adds the kind `Range` for a number out of range, and the
-/// function `check` that returns it. `from` lists kinds that wrap an error of another crate, which is also the source.
+/// functions `check` and `check_in` that return it. `from` lists kinds that wrap an error of another crate, which is also
+/// the source.
 ///
 /// ```
 /// dapple_raster::error! {
@@ -61,6 +62,15 @@ macro_rules! error {
                     return Ok(());
                 }
                 Err(Self::new($kind::Range { what, value, range }))
+            }
+
+            #[doc = concat!("Refuses a number outside of a `", stringify!($range), "`.")]
+            pub(crate) fn check_in(
+                range: $crate::Range,
+                what: &'static str,
+                value: f64,
+            ) -> Result<(), Self> {
+                Self::check(range.holds(value), what, value, range.text)
             })?
 
             /// Returns the cause of the error, with the limit and the value.

@@ -1,6 +1,6 @@
 //! Errors of cellular bases.
 
-use dapple_raster::{Range, RasterError};
+use dapple_raster::RasterError;
 
 dapple_raster::error! {
     /// An error of a cellular basis or of rendering it.
@@ -32,11 +32,6 @@ dapple_raster::error! {
 }
 
 impl WorleyError {
-    /// Returns an error if `value` is not in `range`.
-    pub(crate) fn check_in(range: Range, what: &'static str, value: f64) -> Result<(), Self> {
-        Self::check(range.holds(value), what, value, range.text)
-    }
-
     /// Returns an error if the buffer length `length` differs from the `needed` length.
     pub(crate) fn check_length(length: usize, needed: usize) -> Result<(), Self> {
         if length == needed {

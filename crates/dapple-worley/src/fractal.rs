@@ -15,7 +15,7 @@ use crate::render::{Output, Picture, render_stack};
 use crate::sink::{Tone, Values};
 use crate::{Cellular, Dimensions, Plane, Space, Vector, Worley, WorleyError};
 use dapple_hash::Seed;
-use dapple_raster::{Field, Gradient, Range, RasterError, RasterViewMut, Window, range};
+use dapple_raster::{Field, Fractal, Gradient, RasterError, RasterViewMut, Window};
 
 /// Options for a fractal sum: the number of octaves, their frequency and amplitude ratios, and their seeds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,14 +31,14 @@ pub struct Octaves {
     /// The default is 6.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-count.md"))]
-    #[cfg_attr(feature = "schema", schemars(transform = { COUNT }))]
+    #[cfg_attr(feature = "schema", schemars(transform = { Fractal::COUNT }))]
     pub count: u32,
     /// Frequency ratio of successive octaves, from 1 to 16.
     ///
     /// The default is 2.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-lacunarity.md"))]
-    #[cfg_attr(feature = "schema", schemars(transform = { LACUNARITY }))]
+    #[cfg_attr(feature = "schema", schemars(transform = { Fractal::LACUNARITY }))]
     pub lacunarity: f64,
     /// Amplitude ratio of successive octaves, from -1 to 1.
     ///
@@ -46,7 +46,7 @@ pub struct Octaves {
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-gain.md"))]
     #[cfg_attr(feature = "serde", serde(alias = "persistence"))]
-    #[cfg_attr(feature = "schema", schemars(transform = { GAIN }))]
+    #[cfg_attr(feature = "schema", schemars(transform = { Fractal::GAIN }))]
     pub gain: f64,
     /// Seeds of the octaves.
     ///
@@ -55,10 +55,6 @@ pub struct Octaves {
     #[cfg_attr(doc, doc = include_str!("../docs/octave-seeds.md"))]
     pub seeds: OctaveSeeds,
 }
-
-const COUNT: Range = range!(from 1 to 32);
-const LACUNARITY: Range = range!(from 1 to 16);
-const GAIN: Range = range!(from -1 to 1);
 
 /// Whether the octaves of a fractal sum share a seed.
 ///
@@ -153,9 +149,9 @@ where
             seeds,
         } = octaves;
         let has_period = self.worley.lattice.period.iter().any(|&period| period > 0);
-        WorleyError::check_in(COUNT, "number of octaves", count.into())?;
-        WorleyError::check_in(LACUNARITY, "lacunarity", lacunarity)?;
-        WorleyError::check_in(GAIN, "gain", gain)?;
+        WorleyError::check_in(Fractal::COUNT, "number of octaves", count.into())?;
+        WorleyError::check_in(Fractal::LACUNARITY, "lacunarity", lacunarity)?;
+        WorleyError::check_in(Fractal::GAIN, "gain", gain)?;
         WorleyError::check(
             !has_period || lacunarity.fract() == 0.0,
             "lacunarity",

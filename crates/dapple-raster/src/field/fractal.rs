@@ -5,10 +5,7 @@
 
 use super::common_period;
 use super::values::{by_bands, zip_rows};
-use crate::{Field, RasterError, RasterViewMut, Scaled, Window};
-
-/// Maximum number of octaves in a sum.
-const MOST_OCTAVES: usize = 32;
+use crate::{Field, Range, RasterError, RasterViewMut, Scaled, Window, range};
 
 /// A fractal sum of octaves, `Σ gain^i · shape(field_i(lacunarity^i · position))`, not divided by the sum of the
 /// weights: fractional Brownian motion, ridges or billows, depending on the shape. Usual values are a lacunarity of 2
@@ -74,6 +71,15 @@ impl FractalShape {
     }
 }
 
+impl Fractal<()> {
+    /// Valid numbers of octaves.
+    pub const COUNT: Range = range!(from 1 to 32);
+    /// Valid ratios of weights.
+    pub const GAIN: Range = range!(from -1 to 1);
+    /// Valid ratios of frequencies.
+    pub const LACUNARITY: Range = range!(from 1 to 16);
+}
+
 impl<F> Fractal<F> {
     /// Creates a sum of `octaves`, coarsest first. Each octave has `lacunarity` times the frequency and `gain` times
     /// the weight of the previous one.
@@ -88,15 +94,15 @@ impl<F> Fractal<F> {
         lacunarity: f64,
         shape: FractalShape,
     ) -> Result<Self, RasterError> {
-        RasterError::check_range((-1.0..=1.0).contains(&gain), "gain", gain, "from -1 to 1")?;
-        let holds = (1.0..=16.0).contains(&lacunarity);
-        RasterError::check_range(holds, "lacunarity", lacunarity, "from 1 to 16")?;
+        RasterError::check_in(Fractal::GAIN, "gain", gain)?;
+        RasterError::check_in(Fractal::LACUNARITY, "lacunarity", lacunarity)?;
         let (mut frequency, mut weight) = (1.0, 1.0);
         let mut sum = Self {
             octaves: Vec::new(),
             shape,
         };
-        for field in octaves.into_iter().take(MOST_OCTAVES + 1) {
+        // One octave more than allowed is enough to refuse the number.
+        for field in octaves.into_iter().take(33) {
             sum.octaves.push(Octave {
                 field,
                 frequency,
@@ -106,8 +112,7 @@ impl<F> Fractal<F> {
             weight *= gain;
         }
         let count = sum.octaves.len();
-        let holds = (1..=MOST_OCTAVES).contains(&count);
-        RasterError::check_range(holds, "number of octaves", count as f64, "from 1 to 32")?;
+        RasterError::check_in(Fractal::COUNT, "number of octaves", count as f64)?;
         Ok(sum)
     }
 

@@ -4,7 +4,7 @@ use super::{NodeKind, inputs};
 use crate::plan::{Builder, Moved, Positions, Step};
 use crate::shader::{Code, NodeShader, Refusal, literal};
 use crate::{Input, RecipeError, RecipeErrorKind};
-use dapple_raster::{Fractal, FractalShape, Range, range};
+use dapple_raster::{Fractal, FractalShape};
 use dapple_wgsl::Module;
 use serde::{Deserialize, Serialize};
 
@@ -20,15 +20,15 @@ pub struct FractalOf {
     pub input: Input,
     /// Number of octaves.
     #[serde(default = "octaves")]
-    #[cfg_attr(feature = "schema", schemars(transform = { OCTAVES }))]
+    #[cfg_attr(feature = "schema", schemars(transform = { Fractal::COUNT }))]
     pub octaves: u32,
     /// Amplitude of an octave relative to the previous one.
     #[serde(default = "gain", alias = "persistence")]
-    #[cfg_attr(feature = "schema", schemars(transform = { GAIN }))]
+    #[cfg_attr(feature = "schema", schemars(transform = { Fractal::GAIN }))]
     pub gain: f64,
     /// Frequency of an octave relative to the previous one; a whole number where the recipe repeats.
     #[serde(default = "lacunarity")]
-    #[cfg_attr(feature = "schema", schemars(transform = { LACUNARITY }))]
+    #[cfg_attr(feature = "schema", schemars(transform = { Fractal::LACUNARITY }))]
     pub lacunarity: f64,
     /// Function applied to the values of each octave, for values centered at 0.
     #[serde(default)]
@@ -47,17 +47,13 @@ fn lacunarity() -> f64 {
     2.0
 }
 
-const OCTAVES: Range = range!(from 1 to 32);
-const GAIN: Range = range!(from -1 to 1);
-const LACUNARITY: Range = range!(from 1 to 16);
-
 impl NodeKind for FractalOf {
     inputs!(input);
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
-        RecipeError::check_in(OCTAVES, "number of octaves", self.octaves.into())?;
-        RecipeError::check_in(GAIN, "gain", self.gain)?;
-        RecipeError::check_in(LACUNARITY, "lacunarity", self.lacunarity)?;
+        RecipeError::check_in(Fractal::COUNT, "number of octaves", self.octaves.into())?;
+        RecipeError::check_in(Fractal::GAIN, "gain", self.gain)?;
+        RecipeError::check_in(Fractal::LACUNARITY, "lacunarity", self.lacunarity)?;
         if plan.domain().wrap.contains(&true) && self.lacunarity.fract() != 0.0 {
             return Err(RecipeError::new(RecipeErrorKind::Conflict {
                 rule: "where the recipe repeats, the `lacunarity` of `fractal` must be a whole number",
