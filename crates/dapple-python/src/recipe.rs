@@ -366,7 +366,7 @@ impl Recipe {
         let mut pictures = Images::new();
         for (name, image) in images.into_iter().flat_map(|images| images.iter()) {
             let key = image_key(&name)?;
-            self.check_image(py, &key)?;
+            self.check_image(&key)?;
             let image = picture(&format!("image {}", shown(&key)), &image)?;
             pictures.insert(key, image);
         }
@@ -409,7 +409,7 @@ type Source<'a> = (&'a str, Option<&'a str>, Option<String>);
 
 impl Recipe {
     /// Checks that the recipe has an image with the given key.
-    fn check_image(&self, py: Python<'_>, key: &str) -> Result<()> {
+    fn check_image(&self, key: &str) -> Result<()> {
         let sources = self.recipe.image_sources()?;
         if sources
             .iter()
@@ -428,13 +428,10 @@ impl Recipe {
                 )
             }
         };
-        let name = key.split('\0').next();
-        let names = self.recipe.image_files();
-        let near = py
-            .import("difflib")?
-            .call_method1("get_close_matches", (name, names, 1))?;
-        let near: Vec<String> = near.extract()?;
-        Err(Error::new("unknown_image", message).with_near(near.into_iter().next()))
+        let name = key.split('\0').next().unwrap_or_default();
+        let near = dapple::recipe::similar_words(name, self.recipe.image_files());
+        let near = near.first().map(|near| (*near).to_owned());
+        Err(Error::new("unknown_image", message).with_near(near))
     }
 }
 
