@@ -180,13 +180,14 @@ fn a_region_is_the_crop_of_the_whole_bit_for_bit() {
 
 #[test]
 fn a_wide_bake_in_many_bands_has_the_bits_of_its_regions() {
-    // More than a band's pixels, so that there are several.
-    let (size, plan) = ([40_000, 60], plan(ALL_NODES));
+    // More than the pixels of a band, so that there are several.
+    let (size, plan) = ([4_000, 60], plan(ALL_NODES));
     let maps = vec![MapKind::Normal, MapKind::Occlusion, MapKind::Roughness];
     let wide = BakeOptions {
         size,
         maps,
         memory: BakeMemory::Banded,
+        band_pixels: 1 << 16,
         ..BakeOptions::default()
     };
     assert!(
@@ -194,7 +195,7 @@ fn a_wide_bake_in_many_bands_has_the_bits_of_its_regions() {
         "several bands"
     );
     let region = Region {
-        first: [39_900, 0],
+        first: [3_900, 0],
         size: [100, 60],
     };
     let whole = bake(&plan, &wide);
@@ -221,7 +222,8 @@ fn whole_maps_are_the_bands_one_below_the_other() {
             MapKind::Albedo,
             MapKind::Normal,
         ],
-        ..options([1 << 16, 40])
+        band_pixels: 1 << 16,
+        ..options([1 << 12, 40])
     };
     let bake = Bake::new(&plan, &options).unwrap();
     let bands: Vec<_> = bake.clone().map(Result::unwrap).collect();
@@ -251,9 +253,10 @@ fn what_maps_share_with_the_height_has_the_bits_that_it_has_alone() {
     assert!(ALL_NODES.contains(of_height), "the colors are made of it");
     let maps = vec![MapKind::Albedo, MapKind::Roughness, MapKind::Metallic];
     // In one band, and in several.
-    for size in [[97, 71], [40_000, 60]] {
+    for size in [[97, 71], [4_000, 60]] {
         let alone = BakeOptions {
             maps: maps.clone(),
+            band_pixels: 1 << 16,
             ..options(size)
         };
         let mut beside = alone.clone();
