@@ -16,7 +16,7 @@ mod two_threads;
 #[cfg(test)]
 mod tests;
 
-use crate::report::three_digits;
+use crate::report::{Page, three_digits};
 use crate::row::{Case, Row};
 use anyhow::{Context, Result, ensure};
 use cpu_time::ThreadTime;
@@ -27,6 +27,8 @@ use std::hint::black_box;
 #[derive(Debug)]
 pub(crate) struct Bench {
     filters: Vec<String>,
+    /// Results whose rows are left out.
+    known: Page,
     one: ThreadPool,
     two: ThreadPool,
     rows: Vec<Row>,
@@ -93,11 +95,12 @@ impl Done {
 }
 
 impl Bench {
-    /// Returns a benchmark that measures the cases selected by `filters`.
-    pub(crate) fn new(filters: Vec<String>) -> Result<Self> {
+    /// Returns a benchmark that measures the cases selected by `filters`, except for those in `known`.
+    pub(crate) fn new(filters: Vec<String>, known: Page) -> Result<Self> {
         let pool = |n_threads| ThreadPoolBuilder::new().num_threads(n_threads).build();
         Ok(Self {
             filters,
+            known,
             one: pool(1).context("starting one thread")?,
             two: pool(2).context("starting two threads")?,
             rows: Vec::new(),
@@ -106,7 +109,7 @@ impl Bench {
 
     /// Returns whether the filters select `case`.
     pub(crate) fn wants(&self, case: &Case) -> bool {
-        case.is_wanted(&self.filters)
+        case.is_wanted(&self.filters) && !self.known.has(case)
     }
 
     /// Returns whether the filters select any of `cases`, so that preparing their common inputs is worthwhile.

@@ -1,4 +1,4 @@
-//! Benchmarks against other crates: `cargo xtask bench [filter…] [--json FILE] [--check]`.
+//! Benchmarks against other crates: `cargo xtask bench [filter…] [--missing] [--write-results] [--json FILE] [--check]`.
 //!
 //! Every row compares a job of ours with the same job of another crate (a peer), or with our own job under other
 //! conditions, in one run. It states the ratio that must be reached. A filter is the name of a group, which selects
@@ -42,6 +42,7 @@ use anyhow::{Context, Result, ensure};
 use clap::Parser;
 use harness::Bench;
 use machine::Machine;
+use report::Page;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -58,9 +59,12 @@ struct Arguments {
     /// Fails if a row misses its goal.
     #[arg(long)]
     check: bool,
-    /// Writes the table to `crates/dapple-bench/RESULTS.md`.
+    /// Writes the rows to `crates/dapple-bench/RESULTS.md`. With a filter or `--missing`, its other rows stay.
     #[arg(long)]
     write_results: bool,
+    /// Runs only the rows that `RESULTS.md` lacks.
+    #[arg(long)]
+    missing: bool,
     /// Synthesizes a texture with this number of sites and prints time and memory; a row runs it as a separate process.
     #[arg(long, hide = true, value_name = "N")]
     synthesize: Option<usize>,
@@ -75,7 +79,14 @@ fn main() -> Result<ExitCode> {
     if cfg!(not(feature = "peers")) {
         eprintln!("built without the feature `peers`: only the rows of ours alone run");
     }
-    let mut bench = Bench::new(arguments.filters.clone())?;
+    let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("RESULTS.md");
+    let old = report::read(&results);
+    let known = if arguments.missing {
+        old.clone()
+    } else {
+        Page::default()
+    };
+    let mut bench = Bench::new(arguments.filters.clone(), known)?;
     pups::run(&mut bench)?;
     points::run(&mut bench)?;
     graph::run(&mut bench)?;
@@ -90,15 +101,17 @@ fn main() -> Result<ExitCode> {
     let rows = bench.into_rows();
     ensure!(!rows.is_empty(), "no case matches {:?}", arguments.filters);
 
-    let table = report::markdown(&Machine::this(), &arguments.filters, &rows);
-    report::print(&table);
+    let page = Page::new(&Machine::this(), &rows);
+    report::print(&page.markdown());
     if let Some(path) = &arguments.json {
         let json = serde_json::to_string_pretty(&rows)?;
         report::write(path, &json).with_context(|| format!("writing {}", path.display()))?;
     }
     if arguments.write_results {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("RESULTS.md");
-        report::write(&path, &table).with_context(|| format!("writing {}", path.display()))?;
+        let is_part = arguments.missing || !arguments.filters.is_empty();
+        let page = if is_part { old.merged(page) } else { page };
+        report::write(&results, &page.markdown())
+            .with_context(|| format!("writing {}", results.display()))?;
     }
     Ok(report::exit_code(&rows, arguments.check))
 }

@@ -1,13 +1,13 @@
 //! Formats the results of a run as aligned Markdown tables, and computes the exit code of the program.
 
 use crate::machine::Machine;
-use crate::row::{GROUPS, Row};
+use crate::row::{Case, GROUPS, Row};
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 
 /// Column titles, and whether each column is right-aligned.
-const COLUMNS: [(&str, bool); 8] = [
+const COLUMNS: [(&str, bool); 9] = [
     ("case", false),
     ("peer", false),
     ("unit", false),
@@ -16,51 +16,151 @@ const COLUMNS: [(&str, bool); 8] = [
     ("ratio", true),
     ("must", true),
     ("holds", false),
+    ("on", false),
 ];
 
-/// Returns the page: the machine, then one table for each group with its notes below.
-pub(crate) fn markdown(machine: &Machine, filters: &[String], rows: &[Row]) -> String {
-    let mut page = String::from("# Results\n\n");
-    let command = ["cargo xtask bench".to_owned()]
-        .iter()
-        .chain(filters)
-        .cloned()
-        .collect::<Vec<_>>()
-        .join(" ");
-    let failed = rows.iter().filter(|row| !row.holds).count();
-    let _ = writeln!(page, "The last run of `{command}`, on {machine}.\n");
-    let _ = writeln!(page, "{EXPLANATION}\n");
-    let _ = writeln!(
-        page,
-        "{} rows, {failed} of them below their bar.",
-        rows.len()
-    );
-    for group in GROUPS {
-        let rows: Vec<&Row> = rows.iter().filter(|row| row.group == group).collect();
-        if !rows.is_empty() {
-            let _ = write!(page, "\n## {group}\n\n{}", table(&rows));
+/// The results page: the machines, and the rows measured on them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Page {
+    /// Machines by number, from 1.
+    machines: Vec<String>,
+    lines: Vec<Line>,
+}
+
+/// A row as text.
+#[derive(Clone, Debug, PartialEq)]
+struct Line {
+    group: String,
+    cells: [String; 9],
+    /// Note below the table; empty if there is none.
+    note: String,
+}
+
+impl Line {
+    /// Returns whether two rows are of the same case and peer.
+    fn is_same(&self, other: &Self) -> bool {
+        self.group == other.group && self.cells[..2] == other.cells[..2]
+    }
+
+    fn holds(&self) -> bool {
+        self.cells[7] == "yes"
+    }
+}
+
+impl Page {
+    /// Returns the page of rows that were measured on one machine.
+    pub(crate) fn new(machine: &Machine, rows: &[Row]) -> Self {
+        let lines = rows.iter().map(|row| Line {
+            group: row.group.to_owned(),
+            cells: cells(row, "1"),
+            note: row.note.clone(),
+        });
+        Self {
+            machines: vec![machine.to_string()],
+            lines: lines.collect(),
         }
     }
-    page
+
+    /// Reads a page as [`markdown`](Self::markdown) writes it.
+    pub(crate) fn read(text: &str) -> Self {
+        let mut page = Self::default();
+        let mut group = String::new();
+        for line in text.lines() {
+            if let Some(name) = line.strip_prefix("## ") {
+                name.clone_into(&mut group);
+            } else if let Some((number, machine)) = line.split_once(". ")
+                && number.parse() == Ok(page.machines.len() + 1)
+            {
+                page.machines.push(machine.to_owned());
+            } else if let Some(note) = line.strip_prefix("* ") {
+                for line in page.lines.iter_mut().filter(|line| line.group == group) {
+                    let start = format!("{}, {}: ", line.cells[0], line.cells[1]);
+                    if let Some(text) = note.strip_prefix(&start) {
+                        text.trim_end_matches('.').clone_into(&mut line.note);
+                    }
+                }
+            } else if line.starts_with("| ") && !line.starts_with("| case") {
+                let mut texts = line.split('|').skip(1).map(|cell| cell.trim().to_owned());
+                page.lines.push(Line {
+                    group: group.clone(),
+                    cells: std::array::from_fn(|_| texts.next().unwrap_or_default()),
+                    note: String::new(),
+                });
+            }
+        }
+        page.lines.retain(|line| !line.cells[0].starts_with('-'));
+        page
+    }
+
+    /// Returns whether the page has a row for a case.
+    pub(crate) fn has(&self, case: &Case) -> bool {
+        let mut lines = self.lines.iter();
+        lines.any(|line| {
+            line.group == case.group && line.cells[0] == case.case && line.cells[1] == case.peer
+        })
+    }
+
+    /// Adds the rows of another page, which replace those of the same case and peer.
+    pub(crate) fn merged(mut self, newer: Self) -> Self {
+        for mut line in newer.lines {
+            let machine = line.cells[8].parse::<usize>().unwrap_or(1) - 1;
+            let machine = newer.machines.get(machine).cloned().unwrap_or_default();
+            let at = self.machines.iter().position(|known| *known == machine);
+            let at = at.unwrap_or_else(|| {
+                self.machines.push(machine);
+                self.machines.len() - 1
+            });
+            line.cells[8] = (at + 1).to_string();
+            match self.lines.iter_mut().find(|old| old.is_same(&line)) {
+                Some(old) => *old = line,
+                None => self.lines.push(line),
+            }
+        }
+        self
+    }
+
+    /// Returns the page as Markdown: the machines, then one table for each group with its notes below.
+    pub(crate) fn markdown(&self) -> String {
+        let mut page = String::from("# Results\n\n");
+        let _ = writeln!(page, "Rows of `cargo xtask bench`, measured on:\n");
+        for (number, machine) in (1..).zip(&self.machines) {
+            let _ = writeln!(page, "{number}. {machine}");
+        }
+        let _ = writeln!(page, "\n{EXPLANATION}\n");
+        let failed = self.lines.iter().filter(|line| !line.holds()).count();
+        let _ = writeln!(
+            page,
+            "{} rows, {failed} of them below their bar.",
+            self.lines.len()
+        );
+        for group in GROUPS {
+            let lines = self.lines.iter().filter(|line| line.group == group);
+            let lines: Vec<&Line> = lines.collect();
+            if !lines.is_empty() {
+                let _ = write!(page, "\n## {group}\n\n{}", table(&lines));
+            }
+        }
+        page
+    }
 }
 
 /// The text that explains the tables.
 const EXPLANATION: &str = "\
 Times are of the processor, not of the wall, medians of interleaved runs on one thread; `src/harness/two_threads.rs`
 explains the rows on two; beside what papers took, ours is the wall time on two threads. The ratio of times is theirs over ours where the bar is a `≥`, and ours over theirs where it is a `≤`;
-that of distances and angles is always ours over theirs.
+that of distances and angles is always ours over theirs. `on` is the number of the machine.
 Every row also confirms that both sides did the work: see the modules of the groups.";
 
 /// Returns one group as a table, followed by the notes of its rows.
-fn table(rows: &[&Row]) -> String {
+fn table(lines: &[&Line]) -> String {
     let heads = COLUMNS.map(|(head, _)| head.to_owned());
-    let lines: Vec<[String; 8]> = rows.iter().map(|row| cells(row)).collect();
     let widths: Vec<usize> = (0..COLUMNS.len())
         .map(|column| {
             lines
                 .iter()
+                .map(|line| &line.cells)
                 .chain([&heads])
-                .map(|line| line[column].chars().count())
+                .map(|cells| cells[column].chars().count())
                 .max()
                 .unwrap_or(0)
                 .max(3)
@@ -76,21 +176,21 @@ fn table(rows: &[&Row]) -> String {
         };
     }
     text.push_str("|\n");
-    lines
-        .iter()
-        .for_each(|cells| text.push_str(&line(cells, &widths)));
-    let notes: Vec<&&Row> = rows.iter().filter(|row| !row.note.is_empty()).collect();
+    for row in lines {
+        text.push_str(&line(&row.cells, &widths));
+    }
+    let notes: Vec<&&Line> = lines.iter().filter(|line| !line.note.is_empty()).collect();
     if !notes.is_empty() {
         text.push('\n');
     }
     for row in notes {
-        let _ = writeln!(text, "* {}, {}: {}.", row.case, row.peer, row.note);
+        let _ = writeln!(text, "* {}, {}: {}.", row.cells[0], row.cells[1], row.note);
     }
     text
 }
 
-/// Returns the row's table cells as text.
-fn cells(row: &Row) -> [String; 8] {
+/// Returns the row's table cells as text. `on` is the number of the machine.
+fn cells(row: &Row, on: &str) -> [String; 9] {
     let sign = if row.at == "most" { '≤' } else { '≥' };
     let must = format!("{sign} {}", row.must);
     let holds = if row.holds { "yes" } else { "NO" };
@@ -103,11 +203,12 @@ fn cells(row: &Row) -> [String; 8] {
         three_digits(row.ratio),
         must,
         holds.to_owned(),
+        on.to_owned(),
     ]
 }
 
 /// Returns one line of a table, its cells padded to the widths of the columns.
-fn line(cells: &[String; 8], widths: &[usize]) -> String {
+fn line(cells: &[String; 9], widths: &[usize]) -> String {
     let mut text = String::new();
     for ((cell, &width), (_, right)) in cells.iter().zip(widths).zip(COLUMNS) {
         let _ = if right {
@@ -145,6 +246,15 @@ pub(crate) fn print(page: &str) {
     print!("{page}");
 }
 
+/// Reads the results page; one without rows if there is none.
+#[expect(
+    clippy::disallowed_methods,
+    reason = "the results of other runs are in a file"
+)]
+pub(crate) fn read(path: &Path) -> Page {
+    Page::read(&std::fs::read_to_string(path).unwrap_or_default())
+}
+
 /// Writes a results file.
 #[expect(
     clippy::disallowed_methods,
@@ -157,7 +267,7 @@ pub(crate) fn write(path: &Path, text: &str) -> std::io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::row::{Case, Goal, Unit};
+    use crate::row::{Goal, Unit};
 
     const CASE: Case = Case {
         group: "graph",
@@ -179,7 +289,8 @@ mod tests {
             }
             .row(1.0, 2.0),
         ];
-        let table = table(&rows.iter().collect::<Vec<_>>());
+        let page = Page::new(&machine("Fast 9000"), &rows);
+        let table = table(&page.lines.iter().collect::<Vec<_>>());
         let lengths: Vec<usize> = table.lines().map(|line| line.chars().count()).collect();
         assert!(
             lengths.iter().all(|&length| length == lengths[0]),
@@ -198,37 +309,39 @@ mod tests {
             CASE.row(1.5, 1.0),
             faster.row(1.0, 70.0),
         ];
-        let verdicts: Vec<[String; 8]> = rows.iter().map(cells).collect();
+        let verdicts: Vec<[String; 9]> = rows.iter().map(|row| cells(row, "1")).collect();
         assert_eq!(
-            verdicts[0][5..],
+            verdicts[0][5..8],
             ["1.30", "≤ 1.4", "yes"],
             "1.3 is within 1.4"
         );
-        assert_eq!(verdicts[1][5..], ["1.50", "≤ 1.4", "NO"], "1.5 is not");
+        assert_eq!(verdicts[1][5..8], ["1.50", "≤ 1.4", "NO"], "1.5 is not");
         assert_eq!(
-            verdicts[2][5..],
+            verdicts[2][5..8],
             ["70.0", "≥ 65", "yes"],
             "70 is at least 65"
         );
     }
 
-    #[test]
-    fn page_names_machine_command_and_failures() {
-        let machine = Machine {
-            processor: "Fast 9000".to_owned(),
+    fn machine(processor: &str) -> Machine {
+        Machine {
+            processor: processor.to_owned(),
             n_threads: 2,
             vectors: "AVX2",
             compiler: "rustc 1.89.0".to_owned(),
-        };
+        }
+    }
+
+    #[test]
+    fn page_names_machine_and_failures() {
         let rows = [Case {
             note: "of 706 points",
             ..CASE
         }
         .row(1.5, 1.0)];
-        let page = markdown(&machine, &["graph".to_owned()], &rows);
+        let page = Page::new(&machine("Fast 9000"), &rows).markdown();
         for part in [
-            "`cargo xtask bench graph`",
-            "Fast 9000, 2 threads, AVX2",
+            "1. Fast 9000, 2 threads, AVX2",
             "1 of them below",
             "## graph",
             "spade: of 706 points.",
@@ -239,6 +352,51 @@ mod tests {
             !page.contains("## pups"),
             "a group without rows has no heading"
         );
+    }
+
+    #[test]
+    fn merged_page_keeps_other_rows_and_names_both_machines() {
+        let other = Case {
+            case: "periodic, 1 M points",
+            note: "of a million points, 3. and last",
+            ..CASE
+        };
+        let third = Case {
+            group: "worley",
+            case: "F1, F2",
+            ..CASE
+        };
+        let old = Page::new(
+            &machine("Fast 9000"),
+            &[CASE.row(1.0, 1.0), other.row(1.0, 1.0)],
+        );
+        assert_eq!(
+            Page::read(&old.markdown()),
+            old,
+            "a page is read as written"
+        );
+        let new = Page::new(
+            &machine("Slow 1"),
+            &[CASE.row(9.0, 1.0), third.row(1.0, 2.0)],
+        );
+        assert!(old.has(&other) && !old.has(&third));
+        let merged = Page::read(&old.markdown()).merged(new);
+        assert_eq!(merged.machines.len(), 2);
+        let on: Vec<&str> = merged.lines.iter().map(|line| &*line.cells[8]).collect();
+        assert_eq!(on, ["2", "1", "2"], "replaced, kept, added");
+        assert_eq!(merged.lines[0].cells[7], "NO");
+        assert_eq!(merged.lines[1], old.lines[1], "with its note");
+        assert_eq!(Page::read(&merged.markdown()), merged);
+        let again = Page::new(&machine("Fast 9000"), &[CASE.row(1.0, 1.0)]);
+        assert_eq!(merged.merged(again).machines.len(), 2, "a known machine");
+    }
+
+    #[test]
+    fn results_in_the_repository_are_read_in_full() {
+        let text = include_str!("../RESULTS.md");
+        let page = Page::read(text);
+        assert!(page.lines.len() > 100 && !page.machines.is_empty());
+        assert_eq!(page.markdown(), text);
     }
 
     #[test]

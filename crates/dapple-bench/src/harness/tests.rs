@@ -37,7 +37,7 @@ fn median_of_odd_even_and_no_values() {
 
 #[test]
 fn beside_runs_in_turns_and_prepares_outside_the_clock() {
-    let mut bench = Bench::new(Vec::new()).expect("threads can be started");
+    let mut bench = Bench::new(Vec::new(), Page::default()).expect("threads can be started");
     let ours = Side::new([0_u32; 2], |counts| counts[1] += 1)
         .prepared(|counts| counts[0] += 1)
         .times(3);
@@ -63,7 +63,7 @@ fn beside_runs_in_turns_and_prepares_outside_the_clock() {
 
 #[test]
 fn beside_fails_when_the_check_fails_or_counts_nothing() {
-    let mut bench = Bench::new(Vec::new()).expect("threads can be started");
+    let mut bench = Bench::new(Vec::new(), Page::default()).expect("threads can be started");
     let side = || Side::new(0_u32, |n| *n += 1);
     let error = bench
         .beside(&CASE, 1, side(), side(), |_, _| bail!("wrong image"))
@@ -82,7 +82,8 @@ fn beside_fails_when_the_check_fails_or_counts_nothing() {
 
 #[test]
 fn beside_skips_a_case_that_is_not_wanted() {
-    let mut bench = Bench::new(vec!["graph".to_owned()]).expect("threads can be started");
+    let mut bench =
+        Bench::new(vec!["graph".to_owned()], Page::default()).expect("threads can be started");
     let side = || Side::new((), |()| panic!("a case that no filter selects ran"));
     bench
         .beside(&CASE, 1, side(), side(), |(), ()| Ok(Done::both(1)))
@@ -92,7 +93,7 @@ fn beside_skips_a_case_that_is_not_wanted() {
 
 #[test]
 fn two_threads_needs_a_long_job_and_the_same_bits() {
-    let mut bench = Bench::new(Vec::new()).expect("threads can be started");
+    let mut bench = Bench::new(Vec::new(), Page::default()).expect("threads can be started");
     let short = bench.two_threads(
         &CASE,
         Duration::ZERO,
@@ -120,7 +121,7 @@ fn two_threads_needs_a_long_job_and_the_same_bits() {
 
 #[test]
 fn two_threads_gains_nothing_from_a_job_that_is_not_divided() {
-    let mut bench = Bench::new(Vec::new()).expect("threads can be started");
+    let mut bench = Bench::new(Vec::new(), Page::default()).expect("threads can be started");
     bench
         .two_threads(
             &CASE,
