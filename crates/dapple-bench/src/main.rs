@@ -5,7 +5,7 @@
 //! its rows, or a part of the name of a case or peer.
 //!
 //! The module `harness` measures rows, `peers` calls each peer in its fastest configuration, and each group has a
-//! module: `pups`, `points`, `graph`, `worley`, `noise`, `wavelet`, `tile`, `mesh`, `synth` and `recipe`. The peers
+//! module: `pups`, `points`, `graph`, `worley`, `noise`, `pattern`, `wavelet`, `tile`, `mesh`, `synth` and `recipe`. The peers
 //! are built only with the feature `peers`, which `cargo xtask bench` enables. Without it only the rows that compare
 //! our own jobs run.
 
@@ -30,6 +30,8 @@ mod graph;
 mod mesh;
 #[cfg(feature = "peers")]
 mod noise;
+#[cfg(feature = "peers")]
+mod pattern;
 mod points;
 mod pups;
 mod recipe;
@@ -50,7 +52,7 @@ use std::process::ExitCode;
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask bench")]
 struct Arguments {
-    /// Groups (pups, points, graph, worley, noise, wavelet, tile, mesh, synth, recipe), or parts of the names of cases or
+    /// Groups (pups, points, graph, worley, noise, pattern, wavelet, tile, mesh, synth, recipe), or parts of the names of cases or
     /// peers; without filters all rows run.
     filters: Vec<String>,
     /// Writes the rows as JSON to this file.
@@ -92,7 +94,10 @@ fn main() -> Result<ExitCode> {
     graph::run(&mut bench)?;
     worley::run(&mut bench)?;
     #[cfg(feature = "peers")]
-    noise::run(&mut bench)?;
+    {
+        noise::run(&mut bench)?;
+        pattern::run(&mut bench)?;
+    }
     wavelet::run(&mut bench)?;
     tile::run(&mut bench)?;
     mesh::run(&mut bench)?;

@@ -9,7 +9,7 @@ use crate::sets::{SEED, positions_in};
 use anyhow::{Result, ensure};
 use dapple_noise::{GradientNoise2, GradientNoise3};
 use dapple_raster::glam::DVec2;
-use dapple_raster::{Field, FieldExt, FractalShape, Raster, Window};
+use dapple_raster::{Field, FieldExt, FractalShape, Gradient, Raster, Window};
 
 const COARSE: Case = Case {
     group: "noise",
@@ -50,6 +50,24 @@ const MANY_POSITIONS: Case = Case {
 const MANY_POSITIONS_IN_SPACE: Case = Case {
     case: "gradient noise, 3-D, many scattered positions",
     ..MANY_POSITIONS
+};
+
+const DERIVATIVES: Case = Case {
+    case: "gradient noise, 2-D, one position, value and derivatives",
+    peer: "ours, the value alone",
+    must: Goal::CostAtMost(2.0),
+    note: "differences take two more samples, and are not exact",
+    ..ONE_POSITION
+};
+
+const DERIVATIVES_IN_SPACE: Case = Case {
+    case: "gradient noise, 3-D, one position, value and derivatives",
+    ..DERIVATIVES
+};
+
+const DERIVATIVES_OF_SUM: Case = Case {
+    case: "gradient noise, 2-D, one position, six octaves, value and derivatives",
+    ..DERIVATIVES
 };
 
 const TERRAIN: Case = Case {
@@ -115,7 +133,46 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
         perlin,
         confirm_spread,
     )?;
+    with_derivatives(bench, &DERIVATIVES, &plane)?;
+    with_derivatives(bench, &DERIVATIVES_IN_SPACE, &space)?;
+    let sum = plane.fractal(6, 0.5, 2.0, FractalShape::Sum)?;
+    with_derivatives(bench, &DERIVATIVES_OF_SUM, &sum)?;
     terrain(bench)
+}
+
+/// Measures the value and the derivatives of a field at single positions, compared with the value alone.
+pub(crate) fn with_derivatives<const N: usize>(
+    bench: &mut Bench,
+    case: &Case,
+    field: &(impl Gradient<N> + Sync),
+) -> Result<()> {
+    if !bench.wants(case) {
+        return Ok(());
+    }
+    let at: Vec<[f64; N]> = positions_in(N_POSITIONS, 128.0);
+    let all = |values: &mut Vec<(f32, [f32; N])>| {
+        for (value, &at) in values.iter_mut().zip(&at) {
+            *value = field.sample_with_gradient(at);
+        }
+    };
+    let alone = |values: &mut Vec<f32>| {
+        for (value, &at) in values.iter_mut().zip(&at) {
+            *value = field.sample(at);
+        }
+    };
+    let ours = Side::new(vec![(0.0, [0.0; N]); N_POSITIONS], all);
+    let theirs = Side::new(vec![0.0; N_POSITIONS], alone);
+    bench.beside(case, 101, ours, theirs, |ours, theirs| {
+        for ((value, gradient), expected) in ours.iter().zip(theirs) {
+            ensure!(value == expected, "another value with its derivatives");
+            ensure!(
+                gradient.iter().all(|part| part.is_finite()),
+                "a derivative is {gradient:?}"
+            );
+        }
+        confirm_spread(theirs)?;
+        Ok(Done::both(N_POSITIONS))
+    })
 }
 
 /// Measures rendering a chunk of warped terrain.

@@ -10,6 +10,7 @@
 //! * `simdnoise` and `noise-functions` are in `noise`, `rustfft` in `fourier`, `texture-synthesis` in `flat`, `kiddo`
 //!   in `kd_tree`.
 
+pub(crate) mod filter;
 pub(crate) mod flat;
 pub(crate) mod fourier;
 pub(crate) mod kd_tree;

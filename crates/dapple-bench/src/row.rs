@@ -88,8 +88,9 @@ impl Case {
 }
 
 /// The groups in table order.
-pub(crate) const GROUPS: [&str; 10] = [
-    "pups", "points", "graph", "worley", "noise", "wavelet", "tile", "mesh", "synth", "recipe",
+pub(crate) const GROUPS: [&str; 11] = [
+    "pups", "points", "graph", "worley", "noise", "pattern", "wavelet", "tile", "mesh", "synth",
+    "recipe",
 ];
 
 /// Unit of a time or of another measure.

@@ -112,6 +112,29 @@ pub(crate) fn noise_functions_terrain(side: usize, step: f32, values: &mut [f32]
     }
 }
 
+/// Fills a raster with Perlin noise at positions that two more fields move by up to half a cell, pixel by pixel.
+pub(crate) fn noise_functions_warp(side: usize, px_per_cell: f32, values: &mut [f32]) {
+    let base = Perlin.seed(1);
+    let ways = [Perlin.seed(2), Perlin.seed(3)];
+    for (row, values) in values.chunks_exact_mut(side).enumerate() {
+        for (column, value) in values.iter_mut().enumerate() {
+            let at = [column as f32 / px_per_cell, row as f32 / px_per_cell];
+            *value = base.sample2([0, 1].map(|axis| at[axis] + 0.5 * ways[axis].sample2(at)));
+        }
+    }
+}
+
+/// Fills a raster with the distance to the nearest feature point, pixel by pixel.
+pub(crate) fn noise_functions_cells(side: usize, px_per_cell: f32, values: &mut [f32]) {
+    let noise = CellDistance::default();
+    for (row, values) in values.chunks_exact_mut(side).enumerate() {
+        let y = row as f32 / px_per_cell;
+        for (column, value) in values.iter_mut().enumerate() {
+            *value = noise.sample2([column as f32 / px_per_cell, y]);
+        }
+    }
+}
+
 /// Fills a raster with fractal Perlin noise, pixel by pixel. Each of the `octaves` octaves has half the feature size
 /// and half the amplitude of the previous one; the first has cells of `px_per_cell` pixels.
 pub(crate) fn noise_functions_fbm(side: usize, octaves: u32, px_per_cell: f32, values: &mut [f32]) {

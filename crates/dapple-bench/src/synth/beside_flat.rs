@@ -10,7 +10,8 @@ use crate::harness::{Bench, median};
 use crate::peers::flat;
 use crate::row::{Case, Goal, Unit};
 use anyhow::{Result, ensure};
-use dapple_synth::{Edges, Exemplar, Options, PlaneTexture, synthesize_plane};
+use dapple_mesh::Surface;
+use dapple_synth::{Edges, Exemplar, Options, PlaneTexture, sites_for_exemplar, synthesize_plane};
 
 const EXACT: Case = Case {
     group: "synth",
@@ -69,6 +70,13 @@ const LARGE_EXACT: Case = Case {
     ..EXACT
 };
 
+/// The number of sites of `dapple synth --mesh`: the exemplar repeats five times, or as often as 400,000 sites allow.
+const DEFAULT_SITES: Case = Case {
+    case: "synthesis, default number of sites, 256² exemplar, default options",
+    must: Goal::CostAtMost(1.6),
+    ..EXACT
+};
+
 /// A row's job: produces an output and returns the number of its elements.
 type Job<'a> = Box<dyn Fn() -> Result<usize> + Sync + 'a>;
 
@@ -81,6 +89,9 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     }
     if bench.wants_any(&[LARGE, LARGE_EXACT]) {
         large(bench)?;
+    }
+    if bench.wants(&DEFAULT_SITES) {
+        default_sites(bench)?;
     }
     Ok(())
 }
@@ -167,6 +178,21 @@ fn large(bench: &mut Bench) -> Result<()> {
     let rows = [(LARGE, job(default)), (LARGE_EXACT, job(exact(4)))];
     let note = format!("{}; {}", model.note, picture.note());
     beside(bench, 3, &picture, rows.into(), &note)
+}
+
+fn default_sites(bench: &mut Bench) -> Result<()> {
+    let (model, picture) = (model()?, leaves(256)?);
+    let exemplar = picture.exemplar()?;
+    let surface = Surface::new(whole::read_obj(&model.obj)?)?;
+    let n_sites = sites_for_exemplar(&surface, exemplar.size());
+    let sites = synthesizer(&model, n_sites, Options::default().n_levels)?;
+    let job: Job<'_> = Box::new(|| {
+        let made = scene::count(&sites.synthesize(&exemplar, &Options::default())?)?;
+        ensure!(made == n_sites, "{made} sites, not {n_sites}");
+        Ok(N_SITES)
+    });
+    let note = format!("{n_sites} sites; {}; {}", model.note, picture.note());
+    beside(bench, 3, &picture, vec![(DEFAULT_SITES, job)], &note)
 }
 
 /// Measures all selected rows against the flat image.

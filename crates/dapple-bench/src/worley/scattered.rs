@@ -5,11 +5,12 @@
 //! not share a cell. Both sides get the same positions, the peer in single precision.
 
 use crate::harness::{Bench, Done, Side};
+use crate::noise::with_derivatives;
 use crate::peers::noise;
 use crate::row::{Case, Goal, Unit};
 use crate::sets::{SEED, positions_in};
 use anyhow::{Result, ensure};
-use dapple_worley::{Dimensions, Feature, Scatter, Space, Vector, Worley};
+use dapple_worley::{Combination, Dimensions, Feature, Scatter, Space, Vector, Worley};
 
 const F1_AND_F2: Case = Case {
     group: "worley",
@@ -66,6 +67,19 @@ const ONE_POSITION_F2_IN_SPACE: Case = Case {
     ..ONE_POSITION_IN_SPACE
 };
 
+const DERIVATIVES: Case = Case {
+    case: "2-D, one position, F1 with its derivatives",
+    peer: "ours, the value alone",
+    must: Goal::CostAtMost(2.2),
+    note: "one jittered point per cell; differences take two more samples",
+    ..ONE_POSITION
+};
+
+const DERIVATIVES_IN_SPACE: Case = Case {
+    case: "3-D, one position, F1 with its derivatives",
+    ..DERIVATIVES
+};
+
 /// Number of positions per run.
 const N_POSITIONS: usize = 1 << 16;
 
@@ -85,7 +99,16 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     one_by_one::<2, 1>(bench, &ONE_POSITION, 0.430, plane)?;
     one_by_one::<3, 1>(bench, &ONE_POSITION_IN_SPACE, 0.519, space)?;
     one_by_one::<2, 2>(bench, &ONE_POSITION_F2, 0.430, plane)?;
-    one_by_one::<3, 2>(bench, &ONE_POSITION_F2_IN_SPACE, 0.519, space)
+    one_by_one::<3, 2>(bench, &ONE_POSITION_F2_IN_SPACE, 0.519, space)?;
+    let scatter = Scatter::Jittered { jitter: 1.0 };
+    let cells = Worley::<2>::new(SEED).with_scatter(scatter)?;
+    with_derivatives(bench, &DERIVATIVES, &cells.combine(Combination::F1))?;
+    let cells = Worley::<3>::new(SEED).with_scatter(scatter)?;
+    with_derivatives(
+        bench,
+        &DERIVATIVES_IN_SPACE,
+        &cells.combine(Combination::F1),
+    )
 }
 
 /// A peer's function that fills in values at the given positions.
