@@ -27,8 +27,9 @@
 //! All maps of a material have the same shares. Normals are blended as slopes, and the results are unit vectors. For
 //! normals that match the blended height, compute them from it by [`normal_map`](dapple_color::normal_map).
 
+use crate::error::check;
 use crate::map::check_planes;
-use crate::{Map, Pyramid, TileError, TileErrorKind, Weighting};
+use crate::{IsCancelled, Map, Pyramid, TileError, TileErrorKind, Weighting};
 use dapple_raster::Raster;
 
 /// A material with the weight of its layer at each pixel.
@@ -133,7 +134,7 @@ impl Blend {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn blend(layers: &[Layer<'_>], how: &Blend) -> Result<Vec<Map>, TileError> {
-    blend_layers(layers, None, how)
+    blend_cancellable(layers, None, how, &|| false)
 }
 
 /// Blends the maps of all layers along the features of a blend tile, which is the same size as the maps. The tile is
@@ -171,15 +172,23 @@ pub fn blend_by_tile(
     tile: &Raster<f32>,
     how: &Blend,
 ) -> Result<Vec<Map>, TileError> {
-    blend_layers(layers, Some(tile), how)
+    blend_cancellable(layers, Some(tile), how, &|| false)
 }
 
-fn blend_layers(
+/// Same as [`blend`], or [`blend_by_tile`] with a tile, but fails if `is_cancelled` returns true. It is called before the
+/// shares and before each plane of a map.
+///
+/// # Errors
+///
+/// Same as [`blend_by_tile`], plus [`Cancelled`](TileErrorKind::Cancelled).
+pub fn blend_cancellable(
     layers: &[Layer<'_>],
     tile: Option<&Raster<f32>>,
     how: &Blend,
+    is_cancelled: &IsCancelled,
 ) -> Result<Vec<Map>, TileError> {
     check_layers(layers)?;
+    check(is_cancelled)?;
     let shares = how.weighting.shares(layers, tile)?;
     // Shares for each band, finest first.
     let bands = match &how.mixing {
@@ -187,7 +196,7 @@ fn blend_layers(
         Mixing::Linear | Mixing::KeepVariance => vec![shares],
     };
     (0..layers[0].maps.len())
-        .map(|map| mix_map(layers, map, &bands, &how.mixing))
+        .map(|map| mix_map(layers, map, &bands, &how.mixing, is_cancelled))
         .collect()
 }
 
@@ -226,6 +235,7 @@ fn mix_map(
     map: usize,
     bands: &[Vec<Raster<f32>>],
     mixing: &Mixing,
+    is_cancelled: &IsCancelled,
 ) -> Result<Map, TileError> {
     // Iterate over the planes of this map in all layers at once.
     let mut of_layers: Vec<_> = layers
@@ -240,6 +250,7 @@ fn mix_map(
             return layers[0].maps[map].with_planes(blended);
         }
         check_planes(&planes)?;
+        check(is_cancelled)?;
         blended.push(match mixing {
             Mixing::Linear => linear(&planes, &bands[0])?,
             Mixing::KeepVariance => keep_variance(&planes, &bands[0])?,

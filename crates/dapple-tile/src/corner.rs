@@ -15,9 +15,10 @@
 //! tile.
 
 use crate::cut::{Band, Cut, Ends, mix, scales};
+use crate::error::{check, rows_cancellable};
 use crate::map::check_planes;
 use crate::piece::pieces;
-use crate::{Map, TileError, TileErrorKind};
+use crate::{IsCancelled, Map, TileError, TileErrorKind};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::{Raster, Wrap};
 
@@ -78,6 +79,20 @@ impl CornerTiles {
     /// * [`TileErrorKind::Raster`] if sizes differ
     /// * [`TileErrorKind::NotFinite`] if a pixel is NaN or infinite
     pub fn new(sources: &[Vec<Map>]) -> Result<Self, TileError> {
+        Self::new_cancellable(sources, WIDTH, &|| false)
+    }
+
+    /// Same as [`new`](Self::new) and then [`with_width`](Self::with_width), but fails if `is_cancelled` returns true.
+    /// It is called before each of the C² + C⁴ cuts.
+    ///
+    /// # Errors
+    ///
+    /// Same as [`new`](Self::new) and [`with_width`](Self::with_width), plus [`TileErrorKind::Cancelled`].
+    pub fn new_cancellable(
+        sources: &[Vec<Map>],
+        width: f64,
+        is_cancelled: &IsCancelled,
+    ) -> Result<Self, TileError> {
         let count = sources.len();
         if !(2..=MOST_SOURCES).contains(&count) {
             return Err(TileError::new(TileErrorKind::Count {
@@ -96,7 +111,7 @@ impl CornerTiles {
         };
         Ok(Self {
             kinds: sources[0].iter().map(kind).collect::<Result<_, _>>()?,
-            cuts: Cuts::new(&planes, WIDTH)?,
+            cuts: Cuts::new(&planes, width, is_cancelled)?,
             sources: planes,
             period: [None; 2],
         })
@@ -109,9 +124,7 @@ impl CornerTiles {
     ///
     /// [`TileErrorKind::Range`] if the width is out of its range.
     pub fn with_width(self, width: f64) -> Result<Self, TileError> {
-        let holds = width > 0.0 && width <= 1.0;
-        TileError::check(holds, "width of the cuts", width, "above 0, at most 1")?;
-        let cuts = Cuts::new(&self.sources, width)?;
+        let cuts = Cuts::new(&self.sources, width, &|| false)?;
         Ok(Self { cuts, ..self })
     }
 
@@ -183,12 +196,28 @@ impl CornerTiles {
         first: [i64; 2],
         size: [u32; 2],
     ) -> Result<Vec<Map>, TileError> {
+        self.render_cancellable(seed, first, size, &|| false)
+    }
+
+    /// Renders the same maps as [`render`](Self::render), unless `is_cancelled` returns true. The callback is called
+    /// once per 64 rows of a plane, from any thread.
+    ///
+    /// # Errors
+    ///
+    /// Same as [`render`](Self::render), plus [`TileErrorKind::Cancelled`].
+    pub fn render_cancellable(
+        &self,
+        seed: Seed,
+        first: [i64; 2],
+        size: [u32; 2],
+        is_cancelled: &IsCancelled,
+    ) -> Result<Vec<Map>, TileError> {
         let seed = seed.child("corner", 0);
         // Divide the columns at the borders of the tiles.
         let columns = pieces(first[0], size[0], self.size()[0]);
         let mut planes = Vec::new();
         for plane in 0..self.sources[0].len() {
-            planes.push(Raster::from_rows(size, |row| {
+            planes.push(rows_cancellable(size, is_cancelled, |row| {
                 // Find the row of tiles, and the row within a tile.
                 let y = first[1].wrapping_add(row.into());
                 let above = y.div_euclid(self.size()[1].into());
@@ -271,7 +300,13 @@ fn colors_of(index: usize, n_colors: usize) -> [u8; 4] {
 
 impl Cuts {
     /// Finds the cheapest cuts in a band that occupies the fraction `width` of the shorter side.
-    fn new(sources: &[Vec<Raster<f32>>], width: f64) -> Result<Self, TileError> {
+    fn new(
+        sources: &[Vec<Raster<f32>>],
+        width: f64,
+        is_cancelled: &IsCancelled,
+    ) -> Result<Self, TileError> {
+        let holds = width > 0.0 && width <= 1.0;
+        TileError::check(holds, "width of the cuts", width, "above 0, at most 1")?;
         let size = check_planes(&sources.concat())?;
         // Determine the bands of the cuts, and the scales that give all planes the same variance.
         let [along_x, along_y] = size.map(|side| band(side, size, width));
@@ -283,6 +318,7 @@ impl Cuts {
         // Cut each pair from top to bottom, and record where its cut from left to right starts and ends.
         let (mut beside, mut halves, mut ends) = (Vec::new(), Vec::new(), Vec::new());
         for (a, b) in (0..n_colors).flat_map(|b| (0..n_colors).map(move |a| (a, b))) {
+            check(is_cancelled)?;
             // Between equal sources, every cut is invisible.
             let cheapest = |of: &[Vec<Raster<f32>>], band| match a == b {
                 true => Ok(Cut::straight(band, of[a][0].height())),
@@ -301,6 +337,7 @@ impl Cuts {
         // Cut the upper from the lower pair of each tile, between these ends.
         let mut across = Vec::new();
         for index in 0..n_colors.pow(4) {
+            check(is_cancelled)?;
             let [a, b, c, d] = colors_of(index, n_colors).map(usize::from);
             let pair = [&halves[a + b * n_colors][..], &halves[c + d * n_colors]];
             let at = Ends::At([ends[a + c * n_colors][0], ends[b + d * n_colors][1]]);

@@ -1,7 +1,8 @@
 //! Errors of tiles, reports and blends.
 
+use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use dapple_color::ColorError;
-use dapple_raster::RasterError;
+use dapple_raster::{Raster, RasterError};
 use dapple_wavelet::WaveletError;
 
 /// Callback that returns whether the caller no longer needs the result. It may be called from any thread.
@@ -13,6 +14,26 @@ pub(crate) fn check(is_cancelled: &IsCancelled) -> Result<(), TileError> {
         true => Err(TileError::new(TileErrorKind::Cancelled)),
         false => Ok(()),
     }
+}
+
+/// Creates a raster from rows, unless the caller's callback, which is called once per 64 rows, cancels.
+pub(crate) fn rows_cancellable(
+    size: [u32; 2],
+    is_cancelled: &IsCancelled,
+    row: impl Fn(u32) -> Vec<f32> + Sync + Send,
+) -> Result<Raster<f32>, TileError> {
+    let is_over = AtomicBool::new(false);
+    let raster = Raster::from_rows(size, |index| {
+        if index % 64 == 0 && is_cancelled() {
+            is_over.store(true, Relaxed);
+        }
+        match is_over.load(Relaxed) {
+            true => vec![0.0; size[0] as usize],
+            false => row(index),
+        }
+    })?;
+    check(&|| is_over.load(Relaxed))?;
+    Ok(raster)
 }
 
 dapple_raster::error! {

@@ -129,7 +129,7 @@ mod test_fields;
 
 #[doc(alias("splat map", "terrain blending"))]
 pub use blend::blend;
-pub use blend::{Blend, Layer, Mixing, blend_by_tile};
+pub use blend::{Blend, Layer, Mixing, blend_by_tile, blend_cancellable};
 pub use blend_map::BlendMap;
 pub use corner::CornerTiles;
 pub use crossfade::Crossfade;

@@ -3,7 +3,7 @@
 use super::NodeKind;
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, RecipeErrorKind, Values};
-use dapple_tile::{Blend, Layer, Mixing, Weighting, blend, blend_by_tile};
+use dapple_tile::{Blend, IsCancelled, Layer, Mixing, Weighting, blend_cancellable};
 use serde::{Deserialize, Serialize};
 
 /// Layers blended by weights.
@@ -79,11 +79,11 @@ impl NodeKind for Blended {
         // Linear mixing computes each pixel separately. The other rules need means over the whole tile.
         Ok(if self.mixing == Mixing::Linear {
             plan.local(inputs, move |inputs| {
-                layers.blend(inputs, [inputs[0].len() as u32, 1])
+                layers.blend(inputs, [inputs[0].len() as u32, 1], &|| false)
             })
         } else {
             plan.global(inputs, [1; 2], move |tile| {
-                layers.blend(tile.inputs, tile.window.size)
+                layers.blend(tile.inputs, tile.window.size, &tile.is_cancelled())
             })
         })
     }
@@ -102,7 +102,12 @@ struct Layers {
 
 impl Layers {
     /// Blends `inputs`, which are images of `size` columns and rows.
-    fn blend(&self, inputs: &[&Values], size: [u32; 2]) -> Result<Values, RecipeError> {
+    fn blend(
+        &self,
+        inputs: &[&Values],
+        size: [u32; 2],
+        is_cancelled: &IsCancelled,
+    ) -> Result<Values, RecipeError> {
         let count = self.heights.len();
         let maps = Values::maps(&inputs[..count], size)?;
         let maps: Vec<_> = maps.into_iter().map(|map| [map]).collect();
@@ -119,9 +124,7 @@ impl Layers {
             },
         };
         let layers: Vec<_> = (0..count).map(layer).collect();
-        Values::of_map(match (self.mask, rasters.last()) {
-            (true, Some(mask)) => blend_by_tile(&layers, mask, &self.how)?,
-            _ => blend(&layers, &self.how)?,
-        })
+        let mask = rasters.last().filter(|_| self.mask);
+        Values::of_map(blend_cancellable(&layers, mask, &self.how, is_cancelled)?)
     }
 }

@@ -60,10 +60,11 @@ impl NodeKind for CornerTilesOf {
         let inputs = inputs.collect::<Result<_, _>>()?;
         Ok(plan.global(inputs, copies, move |tile| {
             let maps: Vec<_> = tile.maps()?.into_iter().map(|map| vec![map]).collect();
-            let tiles = CornerTiles::new(&maps)?
-                .with_width(width)?
+            let is_cancelled = tile.is_cancelled();
+            let tiles = CornerTiles::new_cancellable(&maps, width, &is_cancelled)?
                 .with_period(copies.map(Some))?;
-            Values::of_map(tiles.render(seed, [0, 0], tile.window.size)?)
+            let size = tile.window.size;
+            Values::of_map(tiles.render_cancellable(seed, [0, 0], size, &is_cancelled)?)
         }))
     }
 }

@@ -187,7 +187,7 @@ fn render_with_a_period_repeats_exactly() {
 fn a_wider_band_never_costs_more() {
     let sources = [1, 2].map(|seed| vec![fbm(seed, [48, 48], true)]);
     let seam = |width: f64| {
-        let cuts = Cuts::new(&sources, width).unwrap();
+        let cuts = Cuts::new(&sources, width, &|| false).unwrap();
         let row = |row: u32| {
             let cut = cuts.beside[2].clone();
             let weights = (0..48).map(move |column| cut.weight(column, row));

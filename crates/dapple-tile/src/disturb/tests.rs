@@ -2,7 +2,10 @@
 
 use super::{Disturbance, shift};
 use crate::test_fields::{gravel, same_on_threads, seam_ratio_of, variance};
-use crate::{BlendMap, IsCancelled, Map, MatchBorders, TileError, TileErrorKind};
+use crate::{
+    Blend, BlendMap, CornerTiles, IsCancelled, Layer, Map, MatchBorders, TileError, TileErrorKind,
+    blend, blend_cancellable,
+};
 use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use dapple_color::LinearRgb;
 use dapple_hash::Seed;
@@ -302,4 +305,27 @@ fn work_on_whole_tiles_can_be_cancelled_at_every_call() {
         BlendMap::new(8.0).apply_cancellable(&texture, stop)
     });
     assert_eq!(n_calls, 5, "before each blur and the median");
+
+    let made = CornerTiles::new(&tiles).unwrap().with_width(0.25).unwrap();
+    let n_calls = check_cancel(&made, |stop| {
+        CornerTiles::new_cancellable(&tiles, 0.25, stop)
+    });
+    assert_eq!(n_calls, 4 + 16, "before each cut");
+    let maps = made.render(Seed(7), [0, 0], [100, 130]).unwrap();
+    let n_calls = check_cancel(&maps, |stop| {
+        made.render_cancellable(Seed(7), [0, 0], [100, 130], stop)
+    });
+    assert_eq!(n_calls, 3, "once per 64 rows");
+
+    let weight = Raster::filled([64; 2], 1.0).unwrap();
+    let [a, b] = &tiles;
+    let layers = [a, b].map(|maps| Layer {
+        maps,
+        weight: &weight,
+        height: None,
+    });
+    let how = Blend::default();
+    let made = blend(&layers, &how).unwrap();
+    let n_calls = check_cancel(&made, |stop| blend_cancellable(&layers, None, &how, stop));
+    assert_eq!(n_calls, 2, "before the shares and the plane");
 }
