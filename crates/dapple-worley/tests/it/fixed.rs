@@ -40,16 +40,31 @@ fn one_coordinate_is_rounded_like_many_everywhere() {
     let step = f64::from(POSITION_STEP);
     let limit = (1_u64 << 30) as f64;
     let mut coordinates = Vec::new();
-    for near in [0.0, step, 0.5, 0.5 + step, 1.0, 3.25, 1e6, limit, 2.0 * limit, 1e15] {
+    for near in [
+        0.0,
+        step,
+        0.5,
+        0.5 + step,
+        1.0,
+        3.25,
+        1e6,
+        limit,
+        2.0 * limit,
+        1e15,
+    ] {
         for tiny in [0.0, 1e-30, 1e-17, 6e-17, 1e-10, 0.4 * step, 0.5 * step] {
             coordinates.extend([near + tiny, near - tiny, -near + tiny, -near - tiny]);
         }
         let near_f64: [f64; 2] = [near, -near];
-        coordinates.extend(near_f64.into_iter().flat_map(|at| [at.next_up(), at.next_down()]));
+        coordinates.extend(
+            near_f64
+                .into_iter()
+                .flat_map(|at| [at.next_up(), at.next_down()]),
+        );
     }
     for &at in &coordinates {
         let mut many = [worley.sample::<2>([0.0; 2])];
-        worley.sample_many(&[[at, 0.3].into()], &mut many).unwrap();
+        worley.sample_many(&[[at, 0.3]], &mut many).unwrap();
         assert_eq!(worley.sample::<2>([at, 0.3]), many[0], "{at:e}");
     }
 }
