@@ -125,14 +125,17 @@ pub struct DetailKept {
     ///
     /// Squares of 8 × 8 pixels across and next to the wrap are compared with all squares of the source. The strangeness
     /// is their mean distance to the nearest square of the source, divided by the mean distance of the source's own
-    /// squares to the nearest other square in it. The largest value of all zones is used. It is about 1 where a seam
-    /// was moved and not repaired, more for stains and double exposures of images with clear shapes, and less for
-    /// copied parts. `None` if a side of an image is below 24 pixels, or the source is flat.
-    pub strangeness: Option<f64>,
-    /// Strangeness of both images at half of their size, where a square covers 16 × 16 pixels.
+    /// squares to the nearest other square in it, copies excepted. The largest value of all zones is used. It is about 1
+    /// where a seam was moved and not repaired, more for stains and double exposures of images with clear shapes, and
+    /// less for copied parts.
     ///
-    /// Elements that end at a seam, such as courses of a wall, are detected at this size. `None` if a side of an image
-    /// is below 48 pixels, or the source is flat.
+    /// Images are reduced by the smallest whole number that leaves at most 65,536 pixels of the source. `None` if a side
+    /// of a reduced image is below 24 pixels, or the source is flat.
+    pub strangeness: Option<f64>,
+    /// Strangeness of both images at half of that size, where a square covers 16 × 16 pixels.
+    ///
+    /// Elements that end at a seam, such as courses of a wall, are detected at this size. `None` if a side of a reduced
+    /// image is below 48 pixels, or the source is flat.
     pub coarse_strangeness: Option<f64>,
     /// Share of the samples that the method clipped, from 0 to 1.
     ///
@@ -190,11 +193,12 @@ impl SeamReport {
         let is_within = range.min >= 0.0 && range.max <= 1.0;
         let shown = is_within.then(|| tile.map(|value| value.clamp(0.0, 1.0)));
         let report = Self::of(shown.as_ref().unwrap_or(tile), options)?;
-        // Measure strangeness in squares of 8 × 8 and of 16 × 16 pixels.
+        // Measure strangeness in squares of 8 × 8 and of 16 × 16 pixels, which are larger for large sources.
+        let finest = strange::finest_scale(source.size());
         let strangeness = |scale| {
             strange::strangeness(source, shown.as_ref().unwrap_or(tile), options.axes, scale)
         };
-        let (fine, coarse) = (strangeness(1)?, strangeness(2)?);
+        let (fine, coarse) = (strangeness(finest)?, strangeness(2 * finest)?);
         let [kept, all] = [tile, source].map(|image| image.statistics().deviation);
         Ok(Self {
             kept: Some(DetailKept {

@@ -8,6 +8,7 @@
 //!
 //! The measure is taken at two scales. A cut through grass is detected in squares of 8 × 8 pixels. A course of bricks
 //! that ends at the cut looks like any other joint at that scale; only larger squares have no match in the source.
+//! Sources above 256 × 256 pixels are reduced, so that all positions can be compared.
 //!
 //! Most candidates are rejected by the means of the quarters of their squares: the squared distance of two quarters is
 //! at least 16 times the squared difference of their means (Cauchy-Schwarz inequality).
@@ -27,8 +28,8 @@ const SIDE: u32 = 8;
 /// Number of squares that are compared in each zone.
 const SQUARES: u32 = 128;
 
-/// Maximum number of candidate positions in the source: all positions of an image of 256 × 256 pixels.
-const PLACES: usize = 1 << 16;
+/// Maximum number of pixels of a source that is compared without averaging blocks: 256 × 256.
+const PIXELS: u64 = 1 << 16;
 
 /// Divisor of the side that gives the width of the zone on the far side of the wrap, where methods blend two images.
 /// The zone is a fifth of the side.
@@ -51,11 +52,31 @@ const MEAN_ERROR: f32 = 4e-7;
 /// Minimum distance of a match in the source, as a multiple of the standard deviation of the source.
 const LEAST_DISTANCE: f64 = 0.01;
 
+/// Maximum distance of a copy, as a multiple of the standard deviation of the source. Noise of compressed images stays
+/// below it.
+const COPY_DISTANCE: f64 = 0.02;
+
+/// Minimum number of squares of the source that are no copies.
+const DISTINCT: usize = SQUARES as usize / 8;
+
 /// Values of a square, row by row.
 type Square = [f32; (SIDE * SIDE) as usize];
 
 /// First column and row of each quarter of a square.
 const QUARTERS: [[usize; 2]; 4] = [[0, 0], [HALF, 0], [0, HALF], [HALF, HALF]];
+
+/// Returns the smallest scale at which a source has at most [`PIXELS`] blocks.
+///
+/// All positions of the reduced source are candidates. With every second position of a larger source, half of the copied
+/// parts would have no exact match, and a clean cut would look as strange as a crossfade.
+pub(super) fn finest_scale(size: [u32; 2]) -> u32 {
+    let n_blocks = |scale: u32| {
+        size.iter()
+            .map(|side| u64::from(side / scale))
+            .product::<u64>()
+    };
+    (1..).find(|&scale| n_blocks(scale) <= PIXELS).unwrap_or(1)
+}
 
 /// Computes the strangeness at a scale, as the maximum over all zones. Each value of a square is the mean of `scale` ×
 /// `scale` pixels. Returns `None` if an image is too small or the source is flat.
@@ -76,7 +97,7 @@ pub(super) fn strangeness(
     }
     // Measure the distance of matches within the source.
     let places = Places::new(&reduced);
-    let usual = places.usual();
+    let usual = places.usual(COPY_DISTANCE * deviation * f64::from(SIDE));
     // Limit that distance from below, since squares of a regular source have exact matches.
     let usual = usual.max(LEAST_DISTANCE * deviation * f64::from(SIDE));
     // Measure the distances of the tile's squares, along each axis that repeats.
@@ -162,6 +183,10 @@ fn square(tile: &Raster<f32>, corner: [i64; 2], is_turned: bool, scale: u32) -> 
     })
 }
 
+fn mean_of_distances(distances: &[f64]) -> f64 {
+    distances.iter().sum::<f64>() / distances.len() as f64
+}
+
 /// Returns the largest absolute value.
 fn largest(values: &[f32]) -> f32 {
     values.iter().fold(0.0, |most, value| most.max(value.abs()))
@@ -179,20 +204,15 @@ fn mean_of(sum: f64) -> f32 {
     (sum / (HALF * HALF) as f64) as f32
 }
 
-/// Computes the means of one quarter of every square on a lattice, row by row.
-fn quarter_means(
-    source: &Raster<f32>,
-    size: [usize; 2],
-    step: usize,
-    [column, row]: [usize; 2],
-) -> Vec<f32> {
+/// Computes the means of one quarter of every square, row by row.
+fn quarter_means(source: &Raster<f32>, size: [usize; 2], [column, row]: [usize; 2]) -> Vec<f32> {
     let mut sums = vec![0.0; padded(size[0]) * size[1]];
     for (y, sums) in sums.chunks_exact_mut(padded(size[0])).enumerate() {
-        // Add the rows of the quarter, in all squares of this row of the lattice.
+        // Add the rows of the quarter, in all squares of this row.
         for line in 0..HALF {
-            let line = &source.row((y * step + row + line) as u32)[column..];
+            let line = &source.row((y + row + line) as u32)[column..];
             for (x, sum) in sums[..size[0]].iter_mut().enumerate() {
-                let values = &line[x * step..x * step + HALF];
+                let values = &line[x..x + HALF];
                 *sum += values.iter().map(|&value| f64::from(value)).sum::<f64>();
             }
         }
@@ -211,19 +231,15 @@ fn padded(columns: usize) -> usize {
     columns.next_multiple_of(LANES)
 }
 
-/// The candidates: squares of the source on a lattice. The lattice is as fine as the maximum number of candidates
-/// allows.
+/// The candidates: all squares of the source.
 struct Places<'a> {
     source: &'a Raster<f32>,
-    /// Distance of neighbors in the lattice, in pixels.
-    step: usize,
-    /// Number of columns and rows of the lattice.
+    /// Number of candidates in a row, and in a column.
     size: [usize; 2],
-    /// Pixels of each row of the source, sorted into runs by the remainder of the column modulo `step`. So the pixels
-    /// at one column of adjacent candidates are contiguous.
-    runs: Vec<f32>,
-    /// Length of a run, padded for the last register.
-    run_length: usize,
+    /// Rows of the source, each padded for the last register.
+    rows: Vec<f32>,
+    /// Length of a padded row.
+    row_length: usize,
     /// Quarter means of the square of each candidate, row by row, padded for the last register.
     quarters: [Vec<f32>; 4],
     /// Maximum error of quarter means.
@@ -232,39 +248,30 @@ struct Places<'a> {
 
 impl<'a> Places<'a> {
     fn new(source: &'a Raster<f32>) -> Self {
-        let ends = source.size().map(|side| (side - SIDE + 1) as usize);
-        // Choose the finest lattice with at most `PLACES` positions.
-        let step = (1..)
-            .find(|step| ends[0] * ends[1] / (step * step) <= PLACES)
-            .unwrap_or(1);
-        // Divide each row of pixels into `step` runs, in which the pixels of adjacent candidates are adjacent.
-        let run_length = (source.width() as usize).div_ceil(step) + LANES;
-        let mut runs = vec![0.0; run_length * step * source.height() as usize];
-        for (line, runs) in source
-            .view()
-            .rows()
-            .zip(runs.chunks_exact_mut(run_length * step))
-        {
-            for (column, &value) in line.iter().enumerate() {
-                runs[column % step * run_length + column / step] = value;
-            }
+        let size = source.size().map(|side| (side - SIDE + 1) as usize);
+        let width = source.width() as usize;
+        let row_length = width + LANES;
+        let mut rows = vec![0.0; row_length * source.height() as usize];
+        for (line, row) in source.view().rows().zip(rows.chunks_exact_mut(row_length)) {
+            row[..width].copy_from_slice(line);
         }
-        let size = ends.map(|end| end.div_ceil(step));
         Self {
             source,
-            step,
             size,
-            runs,
-            run_length,
-            quarters: QUARTERS.map(|quarter| quarter_means(source, size, step, quarter)),
+            rows,
+            row_length,
+            quarters: QUARTERS.map(|quarter| quarter_means(source, size, quarter)),
             mean_error: MEAN_ERROR * largest(source.pixels()),
         }
     }
 
-    /// Returns the mean distance of the source's squares to their nearest match elsewhere in the source.
-    fn usual(&self) -> f64 {
+    /// Returns the mean distance of sample squares of the source to their nearest match.
+    ///
+    /// Squares with a copy, at most `copy` away, are left out if enough others remain: an image that was assembled from
+    /// copies of a smaller one says nothing there about the distance of different parts.
+    fn usual(&self, copy: f64) -> f64 {
         let [columns, rows] = self.source.size().map(|side| side - SIDE + 1);
-        self.mean(SQUARES as usize, |index| {
+        let distances = parallel::map(SQUARES as usize, |index| {
             // Spread the sample squares over the source. Each is compared with all squares that it does not overlap.
             let index = index as u32;
             let corner = [
@@ -273,15 +280,19 @@ impl<'a> Places<'a> {
             ];
             let own = square(self.source, corner, false, 1);
             self.distance(&own, Some(corner.map(|at| at as usize)))
-        })
+        });
+        let is_distinct = |distance: &f64| *distance > copy;
+        let distinct: Vec<f64> = distances.iter().copied().filter(is_distinct).collect();
+        if distinct.len() < DISTINCT {
+            mean_of_distances(&distances)
+        } else {
+            mean_of_distances(&distinct)
+        }
     }
 
     fn mean_distance(&self, squares: &[Square]) -> f64 {
-        self.mean(squares.len(), |index| self.distance(&squares[index], None))
-    }
-
-    fn mean(&self, count: usize, distance: impl Fn(usize) -> f64 + Sync) -> f64 {
-        parallel::map(count, distance).iter().sum::<f64>() / count as f64
+        let distance = |index: usize| self.distance(&squares[index], None);
+        mean_of_distances(&parallel::map(squares.len(), distance))
     }
 
     /// Returns the distance of a square to the nearest candidate, except for candidates that overlap the square at
@@ -332,9 +343,7 @@ impl<'a> Places<'a> {
     fn is_compared(&self, place: [usize; 2], left_out: Option<[usize; 2]>) -> bool {
         // Squares that overlap the sample square are left out.
         let meets = |axis: usize| {
-            left_out.is_some_and(|corner| {
-                (place[axis] * self.step).abs_diff(corner[axis]) < SIDE as usize
-            })
+            left_out.is_some_and(|corner| place[axis].abs_diff(corner[axis]) < SIDE as usize)
         };
         place[0] < self.size[0] && !(meets(0) && meets(1))
     }
@@ -414,16 +423,14 @@ impl<'a> Places<'a> {
     /// Returns the pixels at one position within the squares of adjacent candidates.
     #[inline(always)]
     fn others(&self, [first, row]: [usize; 2], [x, y]: [usize; 2]) -> &[f32] {
-        // The run holds every `step`-th pixel of the row, starting at the remainder of the column.
-        let run = (row * self.step + y) * self.step + x % self.step;
-        let at = run * self.run_length + first + x / self.step;
-        &self.runs[at..at + LANES]
+        let at = (row + y) * self.row_length + first + x;
+        &self.rows[at..at + LANES]
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Places, SIDE, Square, square, strangeness};
+    use super::{Places, SIDE, Square, finest_scale, square, strangeness};
     use crate::test_fields::{fbm, gravel};
     use crate::{Crossfade, Feather, Method, Seamless, SoftCut};
     use dapple_raster::Raster;
@@ -434,7 +441,7 @@ mod tests {
         strangeness(&source, &tile, [true; 2], 1).unwrap().unwrap()
     }
 
-    /// Returns the distance of a square to the nearest of all candidates on a lattice.
+    /// Returns the distance of a square to the nearest of all candidates.
     fn of_all(places: &Places<'_>, own: &Square, left_out: Option<[usize; 2]>) -> f64 {
         let meets = |at: [usize; 2]| {
             left_out
@@ -442,9 +449,7 @@ mod tests {
         };
         let [columns, rows] = places.size;
         let all = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));
-        let all = all
-            .map(|at| at.map(|at| at * places.step))
-            .filter(|&at| !meets(at));
+        let all = all.filter(|&at| !meets(at));
         let apart = |corner: [usize; 2]| {
             let other = square(places.source, corner.map(|at| at as i64), false, 1);
             let squares = own
@@ -512,6 +517,50 @@ mod tests {
         let of = |x, y| f64::from(source.row(y)[x]);
         let mean = (of(4, 6) + of(5, 6) + of(4, 7) + of(5, 7)) / 4.0;
         assert_eq!(halved.row(3)[2], mean as f32);
+    }
+
+    #[test]
+    fn sources_are_reduced_to_as_many_pixels_as_can_be_compared() {
+        let sizes = [[256, 256], [512, 100], [257, 256], [320, 320], [1024, 1024]];
+        assert_eq!(sizes.map(finest_scale), [1, 1, 2, 2, 4]);
+        assert_eq!([[1, 1], [1, 1 << 28]].map(finest_scale), [1, 2]);
+        // Parts that a cut has copied have exact matches in a large source, too.
+        let source = gravel(4, [320; 2], false);
+        let of = |method| {
+            let tile = Seamless::new(method).apply(&source).unwrap();
+            strangeness(&source, &tile, [true; 2], 2).unwrap().unwrap()
+        };
+        let cut = of(Method::SoftCut(SoftCut::default()));
+        let faded = of(Method::Feather(Feather::Margin {
+            margin: 40,
+            crossfade: Crossfade::Linear,
+        }));
+        assert!(cut < 0.7 * faded, "{cut} and {faded}");
+    }
+
+    #[test]
+    fn copies_within_the_source_do_not_make_its_tiles_strange() {
+        // Three quarters of the image are copies of the first 128 × 128 pixels, and the rest is its own.
+        let [part, other] = [4, 5].map(|seed| fbm(seed, [128; 2], false));
+        let assembled = Raster::from_fn([240; 2], |x, y| {
+            if x.min(y) < 128 {
+                part.row(y % 128)[(x % 128) as usize]
+            } else {
+                other.row(y - 128)[(x - 128) as usize]
+            }
+        });
+        let assembled = assembled.unwrap();
+        let of = |source: &Raster<f32>| {
+            let cut = Seamless::new(Method::SoftCut(SoftCut::default()));
+            let tile = cut.apply(source).unwrap();
+            strangeness(source, &tile, [true; 2], 1).unwrap().unwrap()
+        };
+        let of_assembled = of(&assembled);
+        let of_single = of(&fbm(6, [240; 2], false));
+        assert!(
+            of_assembled < 1.3 * of_single,
+            "{of_assembled} and {of_single}"
+        );
     }
 
     #[test]

@@ -310,7 +310,7 @@ seam stands out by       1 px: 185 2 px: 91.33 4 px: 44.87 8 px: 21.47
 lowest local detail              0.707  (of the source 0.707)
 detail kept                  1/2: 0.25       1/4: 0.25       1/8: 0.25
 contrast kept                     0.50
-strangeness                      58.59  (of 16 px 12.84)
+strangeness                      58.59  (of 16 px 2.91)
 clipped                          0.0 %";
     assert_eq!(report.to_string(), expected);
 }
