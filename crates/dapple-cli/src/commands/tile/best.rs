@@ -75,23 +75,32 @@ pub(in crate::commands) fn best(
 #[derive(PartialEq, PartialOrd)]
 struct Rank {
     fails: bool,
-    /// Badness plus the lost fraction of the finest octave; the maximum over all channels.
+    /// Strangeness of tiles that pass, and badness of others, plus the lost fraction of the finest octave; the maximum
+    /// over all channels.
     cost: f64,
 }
 
 impl Rank {
     fn of(reports: &[SeamReports]) -> Self {
+        let fails = !reports.iter().all(SeamReports::passes);
         let mut cost: f64 = 0.0;
         for of in reports.iter().flat_map(SeamReports::channels) {
             let kept = of.report.kept.as_ref();
             let finest = kept.and_then(|kept| kept.octaves.first());
             let lost = finest.map_or(0.0, |kept| (1.0 - kept).max(0.0));
-            cost = cost.max(of.report.badness() + lost);
+            // Measures below their limits do not rank tiles: a cut may be softer than a double exposure. Copied parts
+            // are less strange than blended ones.
+            let strangeness = kept.and_then(|kept| {
+                let [fine, coarse] = [kept.strangeness, kept.coarse_strangeness];
+                Some(fine?.max(coarse.unwrap_or(0.0)))
+            });
+            let quality = match strangeness {
+                Some(strangeness) if !fails => strangeness,
+                _ => of.report.badness(),
+            };
+            cost = cost.max(quality + lost);
         }
-        Self {
-            fails: !reports.iter().all(SeamReports::passes),
-            cost,
-        }
+        Self { fails, cost }
     }
 }
 
