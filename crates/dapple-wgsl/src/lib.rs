@@ -197,13 +197,15 @@ entries! {
     WorleyEdges2d = "worley_edges_2d"
         [Hash, Place2d, WorleyParts, Worley2d, Double, DoubleQuotient],
     DoubleFunctions = "double_functions" [Double, DoubleQuotient],
-    DoubleAngle = "double_angle" [Double, DoubleFunctions],
-    Spline = "spline" [Double, DoubleFunctions],
+    DoubleAngle = "double_angle" [Double, DoubleQuotient],
+    Spline = "spline" [Double, DoubleQuotient],
     Lattice = "lattice" [CellId, WorleyParts, Double],
-    Bricks = "bricks" [Hash, Double, DoubleFunctions, Lattice],
-    Rectangles = "rectangles" [Double, Position2d, DoubleFunctions, Lattice, Bricks],
-    RoofTiles = "roof_tiles" [Double, Position2d, DoubleFunctions, Lattice, Bricks],
-    Weave = "weave" [Hash, Double, Position2d, DoubleFunctions, Lattice],
+    Bricks = "bricks" [Hash, Double, DoubleQuotient, DoubleFunctions, Lattice],
+    Rectangles = "rectangles"
+        [Double, Position2d, DoubleQuotient, DoubleFunctions, Lattice, Bricks],
+    RoofTiles = "roof_tiles"
+        [Double, Position2d, DoubleQuotient, DoubleFunctions, Lattice, Bricks],
+    Weave = "weave" [Hash, Double, Position2d, DoubleQuotient, DoubleFunctions, Lattice],
 }
 
 impl Module {

@@ -48,6 +48,27 @@ fn naga_oil_imports_all_that_a_module_uses_and_nothing_else() {
 }
 
 #[test]
+fn modules_list_all_modules_whose_names_they_contain() {
+    let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let names = |module: Module| {
+        let lines = module.text().lines();
+        lines.filter_map(move |line| {
+            let rest = line.strip_prefix("fn ").or(line.strip_prefix("struct "))?;
+            rest.split(|c| !is_name(c)).next()
+        })
+    };
+    for &module in Module::ALL {
+        let code = module.text().lines().filter_map(|line| line.split("//").next());
+        let words: Vec<_> = code.flat_map(|line| line.split(|c| !is_name(c))).collect();
+        for &other in Module::ALL.iter().filter(|&&other| other != module) {
+            let mut used = names(other).filter(|name| words.contains(name));
+            let is_listed = module.uses().contains(&other);
+            assert_eq!(used.next().is_some(), is_listed, "{}: {}", module.name(), other.name());
+        }
+    }
+}
+
+#[test]
 fn names_suit_naga_oil_which_forbids_digits_at_their_ends() {
     for &module in Module::ALL {
         let parsed = naga::front::wgsl::parse_str(&module.source()).expect("a valid module");
