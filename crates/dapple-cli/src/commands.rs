@@ -75,7 +75,7 @@ pub(crate) fn run(command: &Command, context: &Context) -> Result<Exit> {
         Command::Pups(args) => pups::run(args, context),
         Command::Noise(args) => noise::run(args, context),
         Command::Wavelet(args) => wavelet::run(args, context),
-        Command::Wgsl(args) => wgsl::run(args),
+        Command::Wgsl(args) => wgsl::run(args, context),
         Command::Tile(args) => tile::run(args, context),
         Command::Photo(args) => photo::run(args, context),
         Command::Copies(args) => copies::run(args, context),

@@ -243,25 +243,71 @@ impl Module {
     pub fn naga_oil(self) -> String {
         let mut out = String::new();
         let _ = writeln!(out, "#define_import_path dapple::{}", self.name());
-        for used in self.uses() {
-            let names = declared(used.text()).filter(|name| mentions(self.text(), name));
-            let names: Vec<_> = names.collect();
-            if !names.is_empty() {
-                let _ = writeln!(
-                    out,
-                    "#import dapple::{}::{{{}}}",
-                    used.name(),
-                    names.join(", ")
-                );
-            }
+        for (used, names) in self.imports() {
+            let _ = writeln!(out, "#import dapple::{used}::{{{names}}}");
         }
         out + "\n" + self.text()
+    }
+
+    /// Returns the module as a module of a WESL package. [`wesl_package`] returns all files of one.
+    #[must_use]
+    pub fn wesl(self) -> String {
+        let mut out = String::new();
+        for (used, names) in self.imports() {
+            let _ = writeln!(out, "import package::{used}::{{{names}}};");
+        }
+        if !out.is_empty() {
+            out += "\n";
+        }
+        out + self.text()
+    }
+
+    /// Returns, for each module that this module uses, its name and the names that are imported from it.
+    fn imports(self) -> impl Iterator<Item = (&'static str, String)> {
+        self.uses().iter().filter_map(move |used| {
+            let names = declared(used.text()).filter(|name| mentions(self.text(), name));
+            let names: Vec<_> = names.collect();
+            (!names.is_empty()).then(|| (used.name(), names.join(", ")))
+        })
     }
 }
 
 /// Returns modules with all modules that they use, each once, as one file of plain WGSL.
 #[must_use]
 pub fn source(modules: &[Module]) -> String {
+    let texts: Vec<_> = with_used(modules).map(|entry| entry.text).collect();
+    texts.join("\n")
+}
+
+/// Returns modules with all modules that they use as the files of a WESL package: paths and contents.
+///
+/// A shader imports functions by the name of the package: `import dapple::worley_2d::worley_2d;`.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_wgsl::{Module, wesl_package};
+///
+/// let files = wesl_package(&[Module::Worley2d]);
+/// assert_eq!(files[0].0, "wesl.toml");
+/// assert!(files.iter().any(|(path, text)| {
+///     path == "shaders/worley_2d.wesl" && text.contains("import package::root::{exact_root};")
+/// }));
+/// ```
+#[must_use]
+pub fn wesl_package(modules: &[Module]) -> Vec<(String, String)> {
+    let settings = "[package]\nedition = \"2026_pre\"\nroot = \"./shaders\"\n";
+    let mut files = alloc::vec![(String::from("wesl.toml"), String::from(settings))];
+    let modules = with_used(modules).map(|entry| entry.module);
+    files.extend(modules.map(|module| {
+        let path = alloc::format!("shaders/{}.wesl", module.name());
+        (path, module.wesl())
+    }));
+    files
+}
+
+/// Returns modules with all modules that they use, each once.
+fn with_used(modules: &[Module]) -> impl Iterator<Item = &'static Entry> {
     let mut needed = [false; ENTRIES.len()];
     for &module in modules {
         needed[module as usize] = true;
@@ -274,9 +320,9 @@ pub fn source(modules: &[Module]) -> String {
             }
         }
     }
-    let entries = ENTRIES.iter().filter(|entry| needed[entry.module as usize]);
-    let texts: Vec<_> = entries.map(|entry| entry.text).collect();
-    texts.join("\n")
+    ENTRIES
+        .iter()
+        .filter(move |entry| needed[entry.module as usize])
 }
 
 /// Returns the names of the functions, structures and constants that a module declares.

@@ -1,15 +1,18 @@
 //! `dapple wgsl`: prints shaders that compute the noise of the command.
 
-use crate::args::seed;
+use crate::args::{OutputArgs, seed};
 use crate::error::{Exit, usage};
-use crate::job::say;
+use crate::job::{Context, Job, say};
+use crate::output::Target;
 use crate::shader_language::ShaderLanguage;
 use crate::words::{NamedValueParser, with_dashes};
 use anyhow::Result;
 use dapple::hash::Seed;
 use dapple::noise::{GradientNoise, GradientNoise2, GradientNoise3, GradientNoise4};
 use dapple::worley::{Dimensions, Scatter, Space, Worley, Worley2, Worley3};
-use dapple_wgsl::{Module, gradient_noise_value, source, worley_value};
+use dapple_wgsl::{Module, gradient_noise_value, source, wesl_package, worley_value};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -18,10 +21,12 @@ Examples:
   dapple wgsl worley-2d --seed 7 --period 8 > cells.wgsl
   dapple wgsl worley-2d --seed 7 --language glsl > cells.glsl
   dapple wgsl gradient-noise-2d --naga-oil > gradient_noise_2d.wgsl
+  dapple wgsl worley-2d fractal --wesl shaders/dapple
 
 A file is complete: it imports nothing, and has no bindings and entry points. --seed adds the
 parameters as a constant; otherwise `shader_words` of the Rust crates gives them for a uniform.
-With --naga-oil, as for Bevy, a file is one module; print those that it imports, too.";
+With --naga-oil, as for Bevy, a file is one module; print those that it imports, too. --wesl writes
+all of them and `wesl.toml`.";
 
 /// Print noise as a shader in WGSL, with the same bits as here.
 #[derive(clap::Args, Debug)]
@@ -38,6 +43,14 @@ pub(crate) struct Args {
     /// Print a single module with its import path, as Bevy needs it.
     #[arg(long, conflicts_with_all = ["seed", "language"])]
     naga_oil: bool,
+
+    /// Write the modules, with all modules that they use, as a WESL package to this directory.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["seed", "language", "naga_oil"])]
+    wesl: Option<PathBuf>,
+
+    /// Overwrite existing files.
+    #[arg(long, requires = "wesl")]
+    force: bool,
 
     /// Add the parameters of this random seed as constants.
     #[arg(long, value_name = "N", value_parser = seed)]
@@ -56,8 +69,11 @@ pub(crate) struct Args {
 ///
 /// # Errors
 ///
-/// If the jitter is out of range, several modules are asked for with `--naga-oil`, or standard output cannot be written.
-pub(crate) fn run(args: &Args) -> Result<Exit> {
+/// If the jitter is out of range, several modules are asked for with `--naga-oil`, or the output cannot be written.
+pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
+    if let Some(folder) = &args.wesl {
+        return put_package(args, context, folder);
+    }
     if args.naga_oil {
         let [module] = args.modules[..] else {
             return Err(usage("--naga-oil prints one module at a time"));
@@ -72,6 +88,21 @@ pub(crate) fn run(args: &Args) -> Result<Exit> {
         }
     }
     say(args.language.translate(text)?.trim_end())?;
+    Ok(Exit::Done)
+}
+
+/// Writes the modules as a WESL package.
+fn put_package(args: &Args, context: &Context, folder: &Path) -> Result<Exit> {
+    let output = OutputArgs {
+        force: args.force,
+        ..OutputArgs::default()
+    };
+    let mut job = Job::new(context, "wgsl", &output);
+    for (path, text) in wesl_package(&args.modules) {
+        let file = job.claim_text(&Target::Path(folder.join(path)))?;
+        job.write(file, text.as_bytes())?;
+    }
+    job.finish(&Value::Null, Value::Null)?;
     Ok(Exit::Done)
 }
 

@@ -90,6 +90,23 @@ fn shaders_for_naga_oil_are_single_modules() {
 }
 
 #[test]
+fn wesl_packages_have_all_modules_that_are_used() {
+    let folder = Folder::new("wesl");
+    let arguments = ["wgsl", "worley-3d", "--wesl", "dapple"];
+    assert_done(&folder.run(&arguments), "a package");
+    let read = |path: &str| std::fs::read_to_string(folder.path("dapple").join(path)).unwrap();
+    assert!(read("wesl.toml").contains("root = \"./shaders\""));
+    let worley = read("shaders/worley_3d.wesl");
+    assert!(
+        worley.starts_with("import package::exact::{exact"),
+        "{worley}"
+    );
+    assert!(read("shaders/root.wesl").contains("fn exact_root"));
+    let output = folder.run(&arguments);
+    assert_refused(&output, 1, "--force", "an existing file");
+}
+
+#[test]
 fn materials_of_builtin_recipes_are_valid_shaders() {
     let folder = Folder::new("recipe-wgsl");
     for name in Recipe::builtin_names() {

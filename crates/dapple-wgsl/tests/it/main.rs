@@ -1,6 +1,6 @@
 //! Tests of the texts, without a GPU: every module is valid WGSL, alone and in all its flavors.
 
-use dapple_wgsl::{Module, double_value, number_value, source};
+use dapple_wgsl::{Module, double_value, number_value, source, wesl_package};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// Parses and validates a shader.
@@ -58,13 +58,41 @@ fn modules_list_all_modules_whose_names_they_contain() {
         })
     };
     for &module in Module::ALL {
-        let code = module.text().lines().filter_map(|line| line.split("//").next());
+        let code = module
+            .text()
+            .lines()
+            .filter_map(|line| line.split("//").next());
         let words: Vec<_> = code.flat_map(|line| line.split(|c| !is_name(c))).collect();
         for &other in Module::ALL.iter().filter(|&&other| other != module) {
             let mut used = names(other).filter(|name| words.contains(name));
             let is_listed = module.uses().contains(&other);
-            assert_eq!(used.next().is_some(), is_listed, "{}: {}", module.name(), other.name());
+            assert_eq!(
+                used.next().is_some(),
+                is_listed,
+                "{}: {}",
+                module.name(),
+                other.name()
+            );
         }
+    }
+}
+
+#[test]
+fn wesl_packages_import_what_the_modules_for_naga_oil_import() {
+    let files = wesl_package(&[Module::Worley2d]);
+    let paths: Vec<_> = files.iter().map(|(path, _)| path.as_str()).collect();
+    assert_eq!(paths[0], "wesl.toml");
+    assert!(paths.contains(&"shaders/worley_2d.wesl") && paths.contains(&"shaders/root.wesl"));
+    assert!(!paths.contains(&"shaders/weave.wesl"), "it is not used");
+    for &module in Module::ALL {
+        let imports = |text: &str, start: &str, end: &str| -> Vec<String> {
+            let lines = text.lines();
+            let lines = lines.filter_map(|line| line.strip_prefix(start)?.strip_suffix(end));
+            lines.map(str::to_owned).collect()
+        };
+        let naga_oil = imports(&module.naga_oil(), "#import dapple::", "");
+        assert_eq!(imports(&module.wesl(), "import package::", ";"), naga_oil);
+        assert!(module.wesl().ends_with(module.text()), "{}", module.name());
     }
 }
 
