@@ -34,7 +34,8 @@ pub struct MaterialShader {
     /// `Textures`; empty if the shader computes all nodes.
     pub textures: Vec<String>,
     /// Words of the texture `data`, in whole rows: texels of four words in the format `rgba32uint`, 1024 in a row. They
-    /// hold the tiles of wavelet noise and the control points of PUPs. Empty if the function has no such argument.
+    /// hold the tiles of wavelet noise, the control points of PUPs, stamps and tables. Empty if the function has no such
+    /// argument.
     pub data: Vec<u32>,
 }
 
@@ -53,7 +54,10 @@ impl Recipe {
     /// Generates the material as a function of WGSL, with the same bits as on the CPU:
     ///
     /// ```wgsl
-    /// struct Material { height: f32, albedo: vec3<f32>, roughness: f32, metallic: f32 }
+    /// struct Material {
+    ///     height: f32, albedo: vec3<f32>, roughness: f32, metallic: f32,
+    ///     emission: vec3<f32>, opacity: f32, specular: f32, clearcoat: f32,
+    /// }
     /// fn material(place: Place2d, zero: u32) -> Material
     /// fn material64(at: Position2d, zero: u32) -> Material
     /// ```
@@ -62,8 +66,10 @@ impl Recipe {
     /// position in numbers of 64 bits, each as the upper and the lower word of its bits. The number `zero` is 0, and must
     /// come from a buffer: it keeps compilers from changing the results.
     ///
-    /// Nodes that look up tiles or control points, such as wavelet noise, add the argument `data: texture_2d<u32>` before
-    /// `zero`: a texture of the words in [`MaterialShader::data`]. Looping motion stands still at the time 0.
+    /// Nodes that look up tiles, control points or stamps, such as wavelet noise, add the argument
+    /// `data: texture_2d<u32>` before `zero`: a texture of the words in [`MaterialShader::data`]. Looping motion stands still at the time 0.
+    ///
+    /// The emission is without the strength of the material. Maps that the material does not set have their defaults.
     ///
     /// Values have the bits of [`Plan::height`], [`Plan::field`] and [`Plan::colors`] at the position `cell + fraction`, up
     /// to 2^31 cells of each node.

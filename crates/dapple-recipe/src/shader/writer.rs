@@ -2,7 +2,7 @@
 
 use super::MaterialShader;
 use crate::plan::{Builder, Watch, seed_of};
-use crate::{Images, Input, Node, NodeSeed, Plan, PlanLimits, Recipe, RecipeError};
+use crate::{Images, Input, Material, Node, NodeSeed, Plan, PlanLimits, Recipe, RecipeError};
 use core::fmt::{self, Write as _};
 use dapple_color::LinearRgb;
 use dapple_hash::Seed;
@@ -470,34 +470,30 @@ impl<'a> Writer<'a> {
             has_textures: true,
             ..Scope::default()
         };
-        let albedo = material.albedo.as_ref().unwrap_or(&material.height);
-        let inputs = [
-            &material.height,
-            albedo,
-            &material.roughness,
-            &material.metallic,
-        ];
-        let [height, albedo, roughness, metallic] = inputs.map(|input| {
+        let mut members = Vec::new();
+        for (_, is_color, input) in material_members(material) {
             // The plan has found all nodes, and those without a shader are textures.
-            let code = self.input(&mut scope, input);
-            code.unwrap_or_else(|_| Code::number(literal(0.0)))
-        });
-        format!(
-            "{}    return Material({}, {}.xyz, {}, {});\n",
-            scope.lines,
-            height.text,
-            albedo.to_color(),
-            roughness.text,
-            metallic.text
-        )
+            let code = self.input(&mut scope, &input);
+            let code = code.unwrap_or_else(|_| Code::number(literal(0.0)));
+            members.push(match is_color {
+                true => format!("{}.xyz", code.to_color()),
+                false => code.text,
+            });
+        }
+        let members = members.join(", ");
+        format!("{}    return Material({members});\n", scope.lines)
     }
 
     /// Joins all parts to a module.
     pub(super) fn assemble(&self, material: &str) -> String {
         let mut out = self.head();
         out += "\n";
-        out +=
-            "struct Material { height: f32, albedo: vec3<f32>, roughness: f32, metallic: f32 }\n\n";
+        out += "struct Material {\n";
+        for (name, is_color, _) in material_members(&self.recipe.material) {
+            let kind = if is_color { "vec3<f32>" } else { "f32" };
+            let _ = writeln!(out, "    {name}: {kind},");
+        }
+        out += "}\n\n";
         if !self.textures.is_empty() {
             out += "// Values of nodes that no shader computes, from textures of the whole tile\nstruct Textures {\n";
             for (name, texture) in &self.textures {
@@ -575,9 +571,43 @@ impl<'a> Writer<'a> {
             out,
             "// A height of 1 is {relief} units of the plane. Colors are linear."
         );
+        if let Some(strength) = material.emission_strength {
+            let _ = writeln!(out, "// Emitted light is {strength} times the emission.");
+        }
         out += "// Values have the bits of the CPU at the position `cell + fraction`.\n";
         out
     }
+}
+
+/// Returns the members of the structure `Material`: the name, whether it is a color, and its input.
+fn material_members(material: &Material) -> [(&'static str, bool, Input); 8] {
+    let or = |input: &Option<Input>, default: Input| input.clone().unwrap_or(default);
+    [
+        ("height", false, material.height.clone()),
+        (
+            "albedo",
+            true,
+            or(&material.albedo, material.height.clone()),
+        ),
+        ("roughness", false, material.roughness.clone()),
+        ("metallic", false, material.metallic.clone()),
+        (
+            "emission",
+            true,
+            or(&material.emission, Input::Color(LinearRgb::BLACK)),
+        ),
+        ("opacity", false, or(&material.opacity, Input::Number(1.0))),
+        (
+            "specular",
+            false,
+            or(&material.specular, Input::Number(1.0)),
+        ),
+        (
+            "clearcoat",
+            false,
+            or(&material.clearcoat, Input::Number(0.0)),
+        ),
+    ]
 }
 
 /// Returns, for each node, its name as a part of identifiers.

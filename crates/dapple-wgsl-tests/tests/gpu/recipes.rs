@@ -2,7 +2,7 @@
 
 use super::{Place, differing, places, words};
 use dapple_raster::{Field, Window};
-use dapple_recipe::{Images, Input, Plan, Recipe, ShaderOptions};
+use dapple_recipe::{Images, Input, Material, Plan, Recipe, ShaderOptions};
 use dapple_wgsl_tests::Gpu;
 
 /// Number of random positions of a recipe, near and far.
@@ -75,8 +75,46 @@ impl At {
     }
 }
 
-/// Results of a comparison: how many heights and numbers of roughness and metalness differ, and how many components of
-/// colors.
+/// Numbers of a material, then the components of its colors.
+const MEMBERS: [&str; WORDS] = [
+    "height",
+    "roughness",
+    "metallic",
+    "opacity",
+    "specular",
+    "clearcoat",
+    "albedo.x",
+    "albedo.y",
+    "albedo.z",
+    "emission.x",
+    "emission.y",
+    "emission.z",
+];
+
+/// Number of words of a material.
+const WORDS: usize = 12;
+
+/// Returns the inputs of the numbers of a material.
+fn numbers_of(material: &Material) -> [Input; 6] {
+    let or = |input: &Option<Input>, default| input.clone().unwrap_or(Input::Number(default));
+    [
+        material.height.clone(),
+        material.roughness.clone(),
+        material.metallic.clone(),
+        or(&material.opacity, 1.0),
+        or(&material.specular, 1.0),
+        or(&material.clearcoat, 0.0),
+    ]
+}
+
+/// Returns the inputs of the colors of a material.
+fn colors_of(material: &Material) -> [Input; 2] {
+    let albedo = material.albedo.as_ref().unwrap_or(&material.height);
+    let black = Input::Number(0.0);
+    [albedo.clone(), material.emission.clone().unwrap_or(black)]
+}
+
+/// Results of a comparison: how many numbers differ, and how many components of colors.
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Difference {
     numbers: usize,
@@ -99,13 +137,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
     let place = Place2d(bitcast<vec4<i32>>(words[0]).xy, bitcast<vec4<f32>>(words[1]).xy);
     let base = {width}u * id.x + u32(values[0] * 0.0);
     let result = material(place, {textures}zero);
-    out[6u * id.x] = result.height;
-    out[6u * id.x + 1u] = result.roughness;
-    out[6u * id.x + 2u] = result.metallic;
-    out[6u * id.x + 3u] = result.albedo.x;
-    out[6u * id.x + 4u] = result.albedo.y;
-    out[6u * id.x + 5u] = result.albedo.z;
-}}"
+    let numbers = array({});
+    for (var i = 0u; i < {WORDS}u; i++) {{ out[{WORDS}u * id.x + i] = numbers[i]; }}
+}}",
+        MEMBERS.map(|member| format!("result.{member}")).join(", ")
     )
 }
 
@@ -147,21 +182,20 @@ fn compare(gpu: &Gpu, recipe: &Recipe, plan: &Plan, at: &[At]) -> Difference {
     }
     let text = shader.wgsl + &entry_point(columns.len(), &textures);
     let inputs = [&[0][..], &words(&places), &values];
-    let on_gpu = gpu.compute_with_data(&text, &inputs, &shader.data, n, 6);
-    let material = &recipe.material;
-    let inputs = [&material.height, &material.roughness, &material.metallic];
+    let on_gpu = gpu.compute_with_data(&text, &inputs, &shader.data, n, WORDS);
     let mut difference = Difference::default();
-    for (index, input) in inputs.into_iter().enumerate() {
+    for (index, input) in numbers_of(&recipe.material).iter().enumerate() {
         let on_cpu = numbers(input).into_iter().map(f32::to_bits);
         let on_cpu: Vec<u32> = on_cpu.collect();
-        let column: Vec<u32> = on_gpu.chunks_exact(6).map(|row| row[index]).collect();
+        let column: Vec<u32> = on_gpu.chunks_exact(WORDS).map(|row| row[index]).collect();
         difference.numbers += differing(&on_cpu, &column);
     }
-    let albedo = material.albedo.as_ref().unwrap_or(&material.height);
-    let colors = colors(albedo);
-    for (row, color) in on_gpu.chunks_exact(6).zip(colors) {
-        for (&bits, on_cpu) in row[3..].iter().zip(color) {
-            difference.colors += usize::from(bits != on_cpu.to_bits());
+    for (index, input) in colors_of(&recipe.material).iter().enumerate() {
+        let first = 6 + 3 * index;
+        for (row, color) in on_gpu.chunks_exact(WORDS).zip(colors(input)) {
+            for (&bits, on_cpu) in row[first..first + 3].iter().zip(color) {
+                difference.colors += usize::from(bits != on_cpu.to_bits());
+            }
         }
     }
     difference
@@ -187,11 +221,10 @@ fn everywhere() -> Vec<At> {
 
 /// Returns whether the material, and the nodes that its shader takes as textures, have values at single positions.
 fn has_single_positions(plan: &Plan, recipe: &Recipe) -> bool {
-    let material = &recipe.material;
-    let inputs = [&material.height, &material.roughness, &material.metallic];
-    let of_material = inputs.into_iter().chain(&material.albedo);
-    let of_material = of_material.filter_map(|input| match input {
-        Input::Node(node) => Some(node.clone()),
+    let numbers = numbers_of(&recipe.material).into_iter();
+    let inputs = numbers.chain(colors_of(&recipe.material));
+    let of_material = inputs.filter_map(|input| match input {
+        Input::Node(node) => Some(node),
         _ => None,
     });
     let options = ShaderOptions { textures: true };
