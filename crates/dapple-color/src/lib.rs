@@ -105,4 +105,6 @@ pub use of_field::{ambient_occlusion_of_field, curvature_of_field, normal_map_of
 pub use palette::Palette;
 pub use plane::{HeightPlane, continue_heights};
 pub use ramp::{ColorRamp, ColorStop, Interpolation, Outside, RampSpace};
+#[doc(hidden)]
+pub use srgb::srgb_shader_words;
 pub use texture::{ColorPixel, TexturePixel, TextureRaster};

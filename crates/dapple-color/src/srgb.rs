@@ -110,6 +110,15 @@ impl Curve {
     }
 }
 
+/// Returns the tables of the shaders of `dapple-wgsl` for 16 bits: for each code, the smallest linear value whose code
+/// is larger, and the linear value of each code.
+#[doc(hidden)]
+#[must_use]
+pub fn srgb_shader_words() -> [Vec<u32>; 2] {
+    let curve = curve_u16();
+    [&curve.borders, &curve.linear].map(|table| table.iter().map(|x| x.to_bits()).collect())
+}
+
 /// Decodes a code value to a linear value with the standard's curve, both from 0 to 1. It extends beyond 1.
 pub(crate) fn linear_from_srgb(value: f64) -> f64 {
     if value <= 0.040_45 {

@@ -13,7 +13,7 @@
 //! Positions are in cells.
 
 use crate::PatternError;
-use crate::lattice::{check_period, wrapped_cell};
+use crate::lattice::{self, check_period, wrapped_cell};
 use crate::near::{self, NearCells};
 use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::{Field, Range, RasterError, RasterViewMut, Window, range};
@@ -117,13 +117,47 @@ impl GaborNoise {
     /// Returns the field of a value of the noise, over positions in cells.
     #[must_use]
     pub fn field(&self, value: GaborValue) -> GaborField {
-        // The variance of a wave is 1/2, and the integral of the squared kernel is π/7.
-        let variance = f64::from(self.options.impulses) * core::f64::consts::PI / 14.0;
         GaborField {
             noise: self.clone(),
             value,
-            scale: 1.0 / variance.sqrt(),
+            scale: self.scale(),
         }
+    }
+
+    /// Returns the factor that makes the variance 1.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn scale(&self) -> f64 {
+        // The variance of a wave is 1/2, and the integral of the squared kernel is π/7.
+        let variance = f64::from(self.options.impulses) * core::f64::consts::PI / 14.0;
+        1.0 / variance.sqrt()
+    }
+
+    /// Returns the impulses of all cells of the period as words of a shader, 12 for each, row by row of cells.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PatternErrorKind::Range) if the noise does not repeat along both axes, or has too many impulses
+    /// for a texture.
+    #[doc(hidden)]
+    pub fn shader_words(&self) -> Result<Vec<u32>, PatternError> {
+        let [columns, rows] = self.options.period.map(|cells| cells.unwrap_or(0));
+        let cells = f64::from(columns) * f64::from(rows);
+        let (what, range) = (
+            "period of Gabor noise",
+            "above 0 along both axes for a shader",
+        );
+        PatternError::check(cells > 0.0, what, 0.0, range)?;
+        let count = cells * f64::from(self.options.impulses);
+        let (what, range) = ("number of impulses in a shader", "at most 2^21");
+        PatternError::check(count <= f64::from(1 << 21), what, count, range)?;
+        let cells = (0..i64::from(rows)).flat_map(|y| (0..i64::from(columns)).map(move |x| [x, y]));
+        let impulses = cells.flat_map(|cell| self.impulses(cell));
+        let numbers = impulses.flat_map(|impulse| {
+            let ([x, y], [wave_x, wave_y]) = (impulse.position, impulse.wave);
+            [x, y, wave_x, wave_y, impulse.phase, 0.0]
+        });
+        Ok(numbers.flat_map(lattice::shader_words).collect())
     }
 
     /// Returns the impulses of a cell, relative to the corner of the cell.

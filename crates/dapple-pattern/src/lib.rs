@@ -87,6 +87,8 @@ pub use gabor::GaborNoise;
 pub use gabor::{GaborField, GaborOptions, GaborValue};
 #[doc(hidden)]
 pub use lattice::direction;
+#[doc(hidden)]
+pub use scatter::StampTable;
 #[doc(alias("scatter", "pebbles", "leaves", "grass", "rivets"))]
 pub use scatter::Stamps;
 pub use scatter::{StampField, StampOptions, StampOverlap, StampShape, StampValue};

@@ -11,12 +11,14 @@
 //!
 //! Positions are in cells. Lengths are in widths of a cell.
 
+mod shader;
 mod shape;
 mod spacing;
 
 #[cfg(test)]
 mod tests;
 
+pub use shader::StampTable;
 pub use shape::StampShape;
 
 use crate::PatternError;
@@ -348,6 +350,23 @@ impl Stamps {
         }
     }
 
+    /// Sorts stamps that are listed in the order in which they are stamped: if the last one is visible, it becomes the
+    /// first.
+    fn arrange<T>(&self, near: &mut [T], stamp: impl Fn(&T) -> &Stamp) {
+        match self.options.overlap {
+            StampOverlap::Highest | StampOverlap::Add => {}
+            StampOverlap::Order => {
+                near.reverse();
+                near.sort_by(|a, b| stamp(b).order.total_cmp(&stamp(a).order));
+            }
+            StampOverlap::Rows => {
+                near.reverse();
+                let row = |of: &T| stamp(of).center[1].floor();
+                near.sort_by(|a, b| row(a).total_cmp(&row(b)));
+            }
+        }
+    }
+
     /// Returns the height of a stamp where its profile has the value `profile`.
     fn height_of(&self, stamp: &Stamp, u: f32, profile: f32) -> f32 {
         let (lift, tilt) = (self.options.lift as f32, self.options.tilt as f32);
@@ -448,11 +467,16 @@ pub struct StampField {
     reach: [f64; 2],
 }
 
-impl NearCells for StampField {
-    type Item = Stamp;
-
-    /// Appends the stamps in stamping order, or the topmost first if the order affects the value.
-    fn near(&self, cell: [i64; 2], center: [f64; 2], half: [f64; 2], near: &mut Vec<Stamp>) {
+impl StampField {
+    /// Calls `found` for each stamp that may cover a position in a box of a cell, in the order in which they are
+    /// stamped. It gets the stamp, the offset of the stamp's cell in cells, and the index of the stamp in its cell.
+    fn visit(
+        &self,
+        cell: [i64; 2],
+        center: [f64; 2],
+        half: [f64; 2],
+        mut found: impl FnMut(Stamp, [i64; 2], usize),
+    ) {
         let stamps = &self.stamps;
         let has_offset = i64::from(stamps.options.row_offset != 0.0);
         let first = [0, 1].map(|axis| {
@@ -477,22 +501,21 @@ impl NearCells for StampField {
                     }
                     let stamp = stamps.stamp(&point);
                     if stamp.meets(center, half) && spacing.keeps(other, index) {
-                        near.push(stamp);
+                        found(stamp, [x, y], index);
                     }
                 }
             }
         }
-        match stamps.options.overlap {
-            StampOverlap::Highest | StampOverlap::Add => {}
-            StampOverlap::Order => {
-                near.reverse();
-                near.sort_by(|a, b| b.order.total_cmp(&a.order));
-            }
-            StampOverlap::Rows => {
-                near.reverse();
-                near.sort_by(|a, b| a.center[1].floor().total_cmp(&b.center[1].floor()));
-            }
-        }
+    }
+}
+
+impl NearCells for StampField {
+    type Item = Stamp;
+
+    /// Appends the stamps in stamping order, or the topmost first if the order affects the value.
+    fn near(&self, cell: [i64; 2], center: [f64; 2], half: [f64; 2], near: &mut Vec<Stamp>) {
+        self.visit(cell, center, half, |stamp, _, _| near.push(stamp));
+        self.stamps.arrange(near, |stamp| stamp);
     }
 
     fn meets(stamp: &Stamp, center: [f64; 2], half: [f64; 2]) -> bool {

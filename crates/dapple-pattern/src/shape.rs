@@ -236,6 +236,63 @@ impl Shape {
         }
     }
 
+    /// Returns the words of `Shape` in the shaders of `dapple-wgsl`, in pairs, where the first texel of the corners is
+    /// 0.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn shader_words(&self) -> [[u32; 2]; 18] {
+        let ShapeOptions { size, onion, .. } = self.options;
+        let lengths = match self.outline {
+            Outline::Circle { radius } => [radius, 0.0],
+            Outline::Box { half } => half,
+            Outline::Corners(_) => [0.0; 2],
+            Outline::Capsule { half, radius } => [half, radius],
+            Outline::Ring { radius, half_width } => [radius, half_width],
+            Outline::Moon {
+                radius,
+                displacement,
+            } => [radius, displacement],
+            Outline::Heart { scale } => [scale, 0.0],
+        };
+        let ShapeOptions {
+            frequency, center, ..
+        } = self.options;
+        let flags = u32::from(frequency[0].is_some())
+            | u32::from(frequency[1].is_some()) << 1
+            | u32::from(onion != 0.0) << 2;
+        let frequency = frequency.map(|frequency| frequency.unwrap_or(1.0));
+        let offset = [0, 1].map(|axis| Split::of(center[axis] * frequency[axis]).offset);
+        let half_shell = 0.5 * onion * size;
+        let numbers = [
+            self.direction,
+            [self.rounding, self.bound],
+            [half_shell, self.options.edge * size],
+            lengths,
+            center,
+            offset,
+            frequency,
+            frequency.map(|frequency| 1.0 / frequency),
+        ];
+        let count = self.shader_corners().len() as u32 / 4;
+        let mut words = [[self.options.kind as u32, count], [0, flags]]
+            .into_iter()
+            .chain(numbers.into_iter().flatten().map(lattice::shader_words));
+        std::array::from_fn(|_| words.next().unwrap_or_default())
+    }
+
+    /// Returns the corners of a polygon or a star as words of a shader, four for each; empty for other shapes.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn shader_corners(&self) -> Vec<u32> {
+        let Outline::Corners(corners) = &self.outline else {
+            return Vec::new();
+        };
+        let numbers = corners.as_flattened().iter();
+        numbers
+            .flat_map(|&number| lattice::shader_words(number))
+            .collect()
+    }
+
     fn sample(&self, value: ShapeValue, position: [f64; 2]) -> f32 {
         if position.iter().any(|coordinate| !coordinate.is_finite()) {
             return f32::NAN;

@@ -72,6 +72,13 @@ fn gain() -> f64 {
 const MOST_GAIN: f64 = 1e9;
 
 impl Weighting {
+    /// Returns half of the width of the ramps of a mask, away from 0 and 1.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn half_width(gain: f64) -> f64 {
+        if gain < MOST_GAIN { 0.5 / gain } else { 0.0 }
+    }
+
     /// Computes the share of each layer.
     pub(crate) fn shares(
         &self,
@@ -206,7 +213,7 @@ fn by_mask(
     mask: &Raster<f32>,
     gain: f64,
 ) -> Result<Vec<Raster<f32>>, TileError> {
-    let half_width = if gain < MOST_GAIN { 0.5 / gain } else { 0.0 };
+    let half_width = Weighting::half_width(gain);
     let sums = sums(weights)?;
     // Cumulative weights of the layers, and the ramp at the previous threshold.
     let mut part = mask.map(|_| 0.0);

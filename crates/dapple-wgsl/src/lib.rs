@@ -133,6 +133,20 @@ pub enum Module {
     RoofTiles,
     /// Woven cloth.
     Weave,
+    /// Shapes stamped at scattered points.
+    Stamps,
+    /// Gabor noise and its phase.
+    Gabor,
+    /// Hexagonal tiles.
+    Hexagons,
+    /// Signed distances to simple shapes.
+    Shapes,
+    /// Codes of sRGB colors.
+    Srgb,
+    /// Hue, saturation and lightness of colors.
+    Hsl,
+    /// Layers blended by weights.
+    Blend,
 }
 
 /// Description of a module.
@@ -206,6 +220,14 @@ entries! {
     RoofTiles = "roof_tiles"
         [Double, Position2d, DoubleQuotient, DoubleFunctions, Lattice, Bricks],
     Weave = "weave" [Hash, Double, Position2d, DoubleQuotient, DoubleFunctions, Lattice],
+    Stamps = "stamps" [Exact, Hash, Root, Number, Double, Position2d, Data],
+    Gabor = "gabor" [Hash, Double, Position2d, Data, DoubleQuotient, DoubleAngle],
+    Hexagons = "hexagons"
+        [Double, Position2d, DoubleQuotient, DoubleFunctions, Lattice, Bricks],
+    Shapes = "shapes" [Double, Position2d, Data, DoubleQuotient, DoubleFunctions, Lattice],
+    Srgb = "srgb" [Number, Data],
+    Hsl = "hsl" [Number, Srgb],
+    Blend = "blend" [Number, Double, DoubleQuotient, DoubleFunctions],
 }
 
 impl Module {

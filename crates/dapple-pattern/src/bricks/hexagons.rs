@@ -5,8 +5,7 @@
 //! polygon and dilates it again.
 
 use super::{Brick, Bricks};
-use crate::lattice::Split;
-use crate::lattice::length;
+use crate::lattice::{Split, length, shader_words};
 
 /// Maximum number of corners: four of a square, and one more for each side of a hexagon.
 const CORNERS: usize = 12;
@@ -126,8 +125,26 @@ impl Bricks {
         if inside >= 0.0 {
             return radius + inside;
         }
-        let (corners, count) = polygon(&sides, 2.0 * (self.cell[0] + self.cell[1]));
+        let (corners, count) = polygon(&sides, self.half_side());
         radius - distance(&corners[..count], cell.at)
+    }
+
+    /// Returns the words of `HexagonSides` in the shaders of `dapple-wgsl`, in pairs.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn hexagon_words(&self) -> Vec<[u32; 2]> {
+        let [x, y] = self.hexagon_half();
+        let mut numbers = vec![x, y, self.half_side()];
+        for ((_, vector), side) in self.neighbors().into_iter().zip(self.sides()) {
+            let ([x, y], [normal_x, normal_y]) = (vector, side.normal);
+            numbers.extend([x, y, normal_x, normal_y, side.distance]);
+        }
+        numbers.into_iter().map(shader_words).collect()
+    }
+
+    /// Returns half of the side of a square that contains the cell of a hexagon.
+    fn half_side(&self) -> f64 {
+        2.0 * (self.cell[0] + self.cell[1])
     }
 
     /// Returns the half-planes whose intersection is the cell of a hexagon.

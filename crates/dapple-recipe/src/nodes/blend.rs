@@ -2,8 +2,10 @@
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError, RecipeErrorKind, Values};
 use dapple_tile::{Blend, IsCancelled, Layer, Mixing, Weighting, blend_cancellable};
+use dapple_wgsl::{Module, double_value};
 use serde::{Deserialize, Serialize};
 
 /// Layers blended by weights.
@@ -87,6 +89,121 @@ impl NodeKind for Blended {
             })
         })
     }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        if self.mixing != Mixing::Linear {
+            return Err(shader.no_shader());
+        }
+        shader.needs(Module::Blend);
+        let shares = self.shares_code(shader)?;
+        let inputs: Vec<_> = self
+            .layers
+            .iter()
+            .map(|layer| layer.input.clone())
+            .collect();
+        let (values, is_color) = shader.alike(&inputs)?;
+        let mut sums = "blend_start()".to_owned();
+        for (share, value) in shares.iter().zip(values) {
+            let color = match is_color {
+                true => format!("{value}.xyz"),
+                false => format!("vec3({value})"),
+            };
+            sums = shader.name("layers", format!("blend_add({sums}, {share}, {color})"));
+        }
+        let color = format!("blend_color({sums}, zero)");
+        Ok(match is_color {
+            true => Code::color(color),
+            false => Code::number(format!("{color}.x")),
+        })
+    }
+}
+
+impl Blended {
+    /// Writes the shares of the layers, by their weights, and their heights and the mask if the weighting needs them.
+    fn shares_code(&self, shader: &mut NodeShader<'_, '_>) -> Result<Vec<String>, Refusal> {
+        let weights = self.layers.iter().map(|layer| shader.number(&layer.weight));
+        let weights = weights.collect::<Result<Vec<_>, _>>()?;
+        let mask = self.mask.as_ref().map(|mask| shader.number(mask));
+        let mask = mask.transpose()?;
+        match self.weighting {
+            Weighting::Given => Ok(normalized_code(shader, &weights)),
+            Weighting::Height { depth } => {
+                let shares = normalized_code(shader, &weights);
+                let mut levels = Vec::new();
+                for (layer, share) in self.layers.iter().zip(&shares) {
+                    let height = match (&layer.height, &mask) {
+                        (Some(height), _) => shader.number(height)?,
+                        (None, Some(mask)) => mask.clone(),
+                        (None, None) => return Err(Refusal::new("a layer has no height")),
+                    };
+                    levels.push(shader.name("level", format!("blend_level({share}, {height})")));
+                }
+                let higher = |top: String, level: &String| format!("double_max({level}, {top})");
+                let top = levels[1..].iter().fold(levels[0].clone(), higher);
+                let top = shader.name("top", top);
+                let depth = double_value(depth);
+                let layers = shares.iter().zip(&levels);
+                let near: Vec<_> = layers
+                    .map(|(share, level)| {
+                        let near = format!("blend_near({share}, {level}, {top}, {depth})");
+                        shader.name("near", near)
+                    })
+                    .collect();
+                Ok(normalized_code(shader, &near))
+            }
+            Weighting::Mask { gain } => {
+                let Some(mask) = mask else {
+                    return Err(Refusal::new("it has no mask"));
+                };
+                Ok(masked_code(
+                    shader,
+                    &weights,
+                    &mask,
+                    Weighting::half_width(gain),
+                ))
+            }
+        }
+    }
+}
+
+/// Writes the sum of weights up to each of them.
+fn sums_code(shader: &mut NodeShader<'_, '_>, weights: &[String]) -> Vec<String> {
+    let mut sum = double_value(0.0);
+    let mut sums = Vec::new();
+    for weight in weights {
+        sum = shader.name("sum", format!("double_add({sum}, double_from({weight}))"));
+        sums.push(sum.clone());
+    }
+    sums
+}
+
+/// Writes weights divided by their sum.
+fn normalized_code(shader: &mut NodeShader<'_, '_>, weights: &[String]) -> Vec<String> {
+    let sum = sums_code(shader, weights).pop().unwrap_or_default();
+    let shares = weights.iter();
+    let shares = shares.map(|weight| format!("blend_share({weight}, {sum})"));
+    shares.map(|share| shader.name("share", share)).collect()
+}
+
+/// Writes the shares of layers between thresholds of a mask.
+fn masked_code(
+    shader: &mut NodeShader<'_, '_>,
+    weights: &[String],
+    mask: &str,
+    half_width: f64,
+) -> Vec<String> {
+    let sums = sums_code(shader, weights);
+    let sum = sums.last().cloned().unwrap_or_default();
+    let half_width = double_value(half_width);
+    let mut below = double_value(0.0);
+    let mut shares = Vec::new();
+    for part in sums {
+        let step = format!("blend_step(double_div({part}, {sum}), {mask}, {half_width})");
+        let up_to = shader.name("step", step);
+        shares.push(shader.name("share", format!("blend_between({up_to}, {below})")));
+        below = up_to;
+    }
+    shares
 }
 
 /// The layout of a blend's inputs: first the textures of all layers, then the weights of all layers, the heights of the

@@ -80,7 +80,7 @@ impl NodeKind for BricksNode {
 
     fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
         let (module, kind) = match self.bond {
-            Bond::Hexagons => return Err(Refusal::new("hexagons have no shader")),
+            Bond::Hexagons => (Module::Hexagons, "hexagon"),
             Bond::RoofTiles | Bond::Slates => (Module::RoofTiles, "roof"),
             _ => (Module::Rectangles, "rectangle"),
         };
@@ -88,14 +88,20 @@ impl NodeKind for BricksNode {
         let bricks = Bricks::new(shader.seed(self.seed.as_ref()), options)?;
         shader.needs(module);
         let at = shader.position(self.frequency.0);
-        let bricks = pattern_value("Bricks", &bricks.shader_words());
-        let bricks = shader.constant("BRICKS", bricks);
+        let mut constant =
+            shader.constant("BRICKS", pattern_value("Bricks", &bricks.shader_words()));
+        if self.bond == Bond::Hexagons {
+            let sides = pattern_value("array", &bricks.hexagon_words());
+            let sides = shader.constant("SIDES", format!("HexagonSides({sides})"));
+            constant += &format!(", {sides}");
+        }
         if self.value == BrickValue::EdgeDistance {
             return Ok(Code::number(format!(
-                "{kind}_edge_distance({bricks}, {at})"
+                "{kind}_edge_distance({constant}, {at})"
             )));
         }
-        let brick = shader.name("brick", format!("{kind}_brick({bricks}, {at})"));
+        let brick = shader.name("brick", format!("{kind}_brick({constant}, {at})"));
+        let bricks = constant.split(',').next().unwrap_or_default();
         let random = |index: u32| format!("brick_random({bricks}, {brick}.id, {index}u)");
         Ok(Code::number(match self.value {
             BrickValue::Height | BrickValue::EdgeDistance => {

@@ -59,7 +59,12 @@ impl NodeKind for ChannelOf {
     fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
         let parts = match self.channel {
             ColorChannel::Hue | ColorChannel::Saturation | ColorChannel::Value => {
-                return Err(Refusal::new("components of sRGB colors have no shader"));
+                let rgb = hsl::components_code(shader, &self.input)?;
+                return Ok(Code::number(match self.channel {
+                    ColorChannel::Hue => format!("color_hue({rgb}, zero)"),
+                    ColorChannel::Saturation => format!("color_saturation({rgb}, zero)"),
+                    _ => format!("color_ends({rgb}, zero).y"),
+                }));
             }
             ColorChannel::Red => "x",
             ColorChannel::Green => "y",

@@ -1,11 +1,13 @@
 //! Gabor noise and its phase.
 
-use super::noise::about_half;
+use super::noise::{about_half, about_half_code};
 use super::{Frequency, NodeKind, NodeSeed, outputs};
 use crate::RecipeError;
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal, quotient};
 use dapple_pattern::{GaborNoise, GaborOptions, GaborValue};
 use dapple_raster::FieldExt as _;
+use dapple_wgsl::{Module, double_value};
 use serde::{Deserialize, Serialize};
 
 /// Gabor noise: waves of about one length and direction, such as wood fiber, brushed metal or ripples of sand.
@@ -57,18 +59,44 @@ impl NodeKind for GaborNode {
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let frequency = self.frequency.0;
-        let options = GaborOptions {
-            period: plan.periods(frequency)?,
-            waves: self.waves,
-            impulses: self.impulses,
-            angle: self.angle,
-            spread: self.spread,
-        };
+        let options = self.options(plan.periods(frequency)?);
         let noise = GaborNoise::new(plan.seed(self.seed.as_ref()), options)?;
         let field = noise.field(self.value).frequency_per_axis(frequency);
         Ok(match self.value {
             GaborValue::Noise => Step::field(field.map(|value| about_half(value / 6.0))),
             _ => Step::field(field),
         })
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let options = self.options(shader.periods(self.frequency.0));
+        let noise = GaborNoise::new(shader.seed(self.seed.as_ref()), options)?;
+        let first = shader.data(&noise.shader_words()?)?;
+        shader.needs(Module::Gabor);
+        let at = shader.position(self.frequency.0);
+        let [x, y] = options.period.map(Option::unwrap_or_default);
+        let (impulses, scale) = (self.impulses, double_value(noise.scale()));
+        let gabor = format!("Gabor({first}u, {impulses}u, vec2({x}u, {y}u), {scale})");
+        let gabor = shader.constant("GABOR", gabor);
+        Ok(Code::number(match self.value {
+            GaborValue::Noise => {
+                let noise = format!("gabor_noise(data, {gabor}, {at})");
+                about_half_code(&quotient(&noise, 6.0))
+            }
+            GaborValue::Phase => format!("gabor_phase(data, {gabor}, {at})"),
+        }))
+    }
+}
+
+impl GaborNode {
+    /// Returns the options with a period.
+    fn options(&self, period: [Option<u32>; 2]) -> GaborOptions {
+        GaborOptions {
+            period,
+            waves: self.waves,
+            impulses: self.impulses,
+            angle: self.angle,
+            spread: self.spread,
+        }
     }
 }

@@ -5,8 +5,10 @@
 
 use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal};
 use crate::{Input, RecipeError, Values};
-use dapple_color::LinearRgb;
+use dapple_color::{LinearRgb, srgb_shader_words};
+use dapple_wgsl::Module;
 use serde::{Deserialize, Serialize};
 
 /// Color with another hue, saturation and lightness (HSL of the sRGB color).
@@ -63,6 +65,35 @@ impl NodeKind for HslChange {
         });
         Ok(step.with_colors())
     }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let tables = srgb_shader_words().map(|words| shader.data(&words));
+        let [borders, linear] = tables;
+        let (borders, linear) = (borders?, linear?);
+        shader.needs(Module::Hsl);
+        let color = shader.any(&self.input)?.to_color();
+        let [turns, saturation, lightness] = [
+            shader.number(&self.hue)?,
+            shader.number(&self.saturation)?,
+            shader.number(&self.lightness)?,
+        ];
+        Ok(Code::color(format!(
+            "changed_color(data, vec2({borders}u, {linear}u), {color}, {turns}, {saturation}, {lightness}, zero)"
+        )))
+    }
+}
+
+/// Writes the sRGB components of a color.
+pub(super) fn components_code(
+    shader: &mut NodeShader<'_, '_>,
+    color: &Input,
+) -> Result<String, Refusal> {
+    let [borders, _] = srgb_shader_words();
+    let borders = shader.data(&borders)?;
+    shader.needs(Module::Hsl);
+    let color = shader.any(color)?.to_color();
+    let components = format!("srgb_components(data, {borders}u, {color}, zero)");
+    Ok(shader.name("rgb", components))
 }
 
 /// Adds turns to the hue, and multiplies the saturation and the lightness.

@@ -187,6 +187,6 @@ pub(super) fn about_half(value: f32) -> f32 {
 }
 
 /// Writes [`about_half`].
-fn about_half_code(value: &str) -> String {
+pub(super) fn about_half_code(value: &str) -> String {
     format!("number_clamp(number_add(0.5, {value}, zero), 0.0, 1.0, zero)")
 }

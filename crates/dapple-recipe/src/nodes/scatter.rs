@@ -3,8 +3,10 @@
 use super::{Frequency, NodeKind, NodeSeed, outputs};
 use crate::RecipeError;
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal};
 use dapple_pattern::{StampOptions, StampOverlap, StampShape, StampValue, Stamps};
 use dapple_raster::FieldExt as _;
+use dapple_wgsl::{Module, number_value};
 use serde::{Deserialize, Serialize};
 
 /// Shapes stamped at scattered points: gravel, leaves, grass, rivets, scales, scratches.
@@ -86,8 +88,53 @@ impl NodeKind for ScatterNode {
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         let frequency = self.frequency.0;
-        let options = StampOptions {
-            period: plan.periods(frequency)?,
+        let options = self.options(plan.periods(frequency)?);
+        let stamps = Stamps::new(plan.seed(self.seed.as_ref()), options)?;
+        let field = stamps.field(self.value);
+        Ok(Step::field(field.frequency_per_axis(frequency)))
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let frequency = self.frequency.0;
+        let options = self.options(shader.periods(frequency));
+        let stamps = Stamps::new(shader.seed(self.seed.as_ref()), options)?;
+        let table = stamps.shader_table()?;
+        let first = shader.data(&table.words)?;
+        let first_stamp = first + table.first_stamp / 4;
+        shader.needs(Module::Stamps);
+        let at = shader.position(frequency);
+        let [x, y] = table.period;
+        let [shape, overlap] = [self.shape as u32, self.overlap as u32];
+        let [bevel, lift, tilt] =
+            [self.bevel, self.lift, self.tilt].map(|number| number_value(number as f32));
+        let stamps = shader.constant(
+            "STAMPS",
+            format!(
+                "Stamps({first}u, {first_stamp}u, vec2({x}u, {y}u), {shape}u, {overlap}u, {bevel}, {lift}, {tilt})"
+            ),
+        );
+        let hit = shader.name("stamp", format!("stamp_hit(data, {stamps}, {at}, zero)"));
+        let member = match self.value {
+            StampValue::Height => "height",
+            StampValue::Mask => "mask",
+            StampValue::Random => "random.x",
+            StampValue::Random2 => "random.y",
+            StampValue::Random3 => "random.z",
+            StampValue::U => "uv.x",
+            StampValue::V => "uv.y",
+            StampValue::EdgeDistance => "edge",
+            StampValue::Angle => "angle",
+        };
+        Ok(Code::number(format!("{hit}.{member}")))
+    }
+}
+
+impl ScatterNode {
+    /// Returns the options with a period.
+    fn options(&self, period: [Option<u32>; 2]) -> StampOptions {
+        let frequency = self.frequency.0;
+        StampOptions {
+            period,
             cell_height: frequency[0] / frequency[1],
             density: self.density,
             jitter: self.jitter,
@@ -102,9 +149,6 @@ impl NodeKind for ScatterNode {
             lift: self.lift,
             tilt: self.tilt,
             overlap: self.overlap,
-        };
-        let stamps = Stamps::new(plan.seed(self.seed.as_ref()), options)?;
-        let field = stamps.field(self.value);
-        Ok(Step::field(field.frequency_per_axis(frequency)))
+        }
     }
 }

@@ -3,7 +3,10 @@
 use super::{Frequency, NodeKind, outputs};
 use crate::RecipeError;
 use crate::plan::{Builder, Step};
+use crate::shader::{Code, NodeShader, Refusal};
 use dapple_pattern::{Shape, ShapeKind, ShapeOptions, ShapeValue};
+use dapple_raster::Named as _;
+use dapple_wgsl::{Module, pattern_value};
 use serde::{Deserialize, Serialize};
 
 /// Simple shape, or a grid of its copies.
@@ -79,7 +82,34 @@ impl NodeKind for ShapeNode {
                 [0, 1].map(|axis| tile.wrap[axis].then(|| 1.0 / tile.size[axis]))
             }
         };
-        let options = ShapeOptions {
+        Ok(Step::field(
+            Shape::new(self.options(frequency))?.field(self.value),
+        ))
+    }
+
+    fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let (size, wrap) = shader.tile();
+        let frequency = match self.frequency {
+            Some(Frequency(frequency)) => frequency.map(Some),
+            None => [0, 1].map(|axis| wrap[axis].then(|| 1.0 / size[axis])),
+        };
+        let shape = Shape::new(self.options(frequency))?;
+        let mut words = shape.shader_words();
+        // A texture has at least one texel.
+        let corners = shape.shader_corners();
+        words[1][0] = shader.data(if corners.is_empty() { &[0] } else { &corners })? as u32;
+        shader.needs(Module::Shapes);
+        let at = shader.position([1.0; 2]);
+        let shape = shader.constant("SHAPE", pattern_value("Shape", &words));
+        let value = self.value.name();
+        Ok(Code::number(format!("shape_{value}(data, {shape}, {at})")))
+    }
+}
+
+impl ShapeNode {
+    /// Returns the options with the frequency of copies.
+    fn options(&self, frequency: [Option<f64>; 2]) -> ShapeOptions {
+        ShapeOptions {
             kind: self.kind,
             center: self.center,
             size: self.size,
@@ -90,7 +120,6 @@ impl NodeKind for ShapeNode {
             onion: self.onion,
             edge: self.edge,
             frequency,
-        };
-        Ok(Step::field(Shape::new(options)?.field(self.value)))
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Place, differing, places, words};
 use dapple_raster::{Field, Window};
-use dapple_recipe::{Images, Input, Material, Plan, Recipe, ShaderOptions};
+use dapple_recipe::{Images, Input, Material, Plan, Recipe, RecipeErrorKind, ShaderOptions};
 use dapple_wgsl_tests::Gpu;
 
 /// Number of random positions of a recipe, near and far.
@@ -270,6 +270,55 @@ fn builtin_recipes_have_the_bits_of_the_cpu() {
     }
 }
 
+#[test]
+#[expect(clippy::print_stdout, reason = "the output of a test counts the recipes")]
+fn builtin_recipes_read_textures_of_nodes_that_are_not_local_alone() {
+    // Nodes that depend on a neighborhood, and two textures without a shader
+    let kinds = [
+        "blur",
+        "curvature",
+        "occlusion",
+        "slope",
+        "slope_blur",
+        "blend_map",
+    ];
+    let mut reasons = kinds.map(|kind| format!("`{kind}` has no shader")).to_vec();
+    reasons.push("it depends on the whole tile".to_owned());
+    let mut complete = 0;
+    for name in Recipe::builtin_names() {
+        let recipe = Recipe::builtin(name).expect("a recipe");
+        let refused = match recipe.to_wgsl(&Images::new(), &ShaderOptions::default()) {
+            Ok(_) => {
+                complete += 1;
+                continue;
+            }
+            Err(refused) => refused,
+        };
+        let RecipeErrorKind::NotInShader { nodes } = refused.kind() else {
+            panic!("{name}: {refused}");
+        };
+        println!("{name}: {nodes:?}");
+        for (node, reason) in nodes {
+            let mut known = reasons.iter();
+            assert!(known.any(|known| reason.contains(known)), "{name}: {node}: {reason}");
+        }
+    }
+    println!("{complete} recipes need no textures");
+    assert!(complete >= 60, "{complete}");
+}
+
+#[test]
+fn stamps_and_gabor_noise_have_a_shader_where_the_recipe_repeats() {
+    for (node, what) in [("scatter", "stamps"), ("gabor", "Gabor noise")] {
+        let text = format!("dapple = 1\nwrap = [true, false]\nnodes.a.{node} = {{}}\nmaterial.height = 'a'");
+        let recipe = Recipe::from_toml(&text).expect("a recipe");
+        let refused = recipe.to_wgsl(&Images::new(), &ShaderOptions::default());
+        let refused = refused.expect_err("it does not repeat along y").to_string();
+        let limit = format!("period of {what} is 0, but it must be above 0 along both axes");
+        assert!(refused.contains(&limit), "{refused}");
+    }
+}
+
 /// All nodes with a shader, with options that the built-in recipes do not use.
 const NODES: &str = r##"
     dapple = 1
@@ -438,6 +487,14 @@ const VALUES: &[(&str, &str)] = &[
         "bricks",
         "bond = 'slates', frequency = [1.2, 2.0], joint = 0.2, rounding = 0.3",
     ),
+    (
+        "bricks",
+        "bond = 'hexagons', frequency = [0.8, 2.0], joint = 0.2, rounding = 0.3, jitter = 0.6",
+    ),
+    (
+        "bricks",
+        "bond = 'hexagons', frequency = [1.6, 0.7], joint = 0.1, bevel = 0.4",
+    ),
     ("weave", "frequency = [1.6, 2.0], jitter = 0.5"),
     (
         "weave",
@@ -482,4 +539,144 @@ fn bricks_and_weaves_have_the_bits_of_the_cpu() {
         let difference = compare(&gpu, &recipe, &plan, &at);
         assert_eq!((difference.numbers, difference.colors), (0, 0), "{options}");
     }
+}
+
+/// Shapes, each with all of its values.
+const SHAPES: &[&str] = &[
+    "kind = 'circle', center = [0.3, 1.1], size = 0.4, onion = 0.3, frequency = [1.2, 0.7]",
+    "kind = 'box', size = 0.7, rotation = 25.0, rounding = 0.2, frequency = 1.0",
+    "kind = 'polygon', size = 0.4, sides = 6, rounding = 0.3, edge = 0.7, frequency = [1.6, 2.3]",
+    "kind = 'star', size = 1.2, ratio = 0.4, rotation = 7.0",
+    "kind = 'capsule', size = 0.6, ratio = 0.3, rotation = -110.0, frequency = [0.4, 2.0]",
+    "kind = 'ring', size = 0.6, ratio = 0.8, onion = 0.1, center = [4.9, 0.1]",
+    "kind = 'moon', size = 1.4, ratio = 0.3, edge = 1.5, rounding = 0.1",
+    "kind = 'heart', size = 0.8, rounding = 0.2, rotation = 200.0, frequency = [1.0, 1.2]",
+];
+
+/// Stamps. All shapes and overlaps occur.
+const STAMPS: &[&str] = &[
+    "shape = 'dome', overlap = 'highest'",
+    "shape = 'cone', overlap = 'add', density = 2.5, size = [0.5, 2.5]",
+    "shape = 'disk', overlap = 'order', bevel = 0.0, spacing = 0.7",
+    "shape = 'plate', overlap = 'rows', aspect = [0.2, 0.9], lift = 0.4",
+    "shape = 'slate', overlap = 'rows', jitter = 0.0, rotation = [90.0, 90.0], row_offset = 0.5, tilt = -0.7",
+    "shape = 'pebble', overlap = 'highest', height = [0.2, 0.9], tilt = 0.3, size = [1.0, 1.6]",
+    "shape = 'leaf', overlap = 'order', aspect = [0.3, 0.5], lift = 0.5, size = [0.8, 2.0]",
+    "shape = 'blade', overlap = 'highest', aspect = [0.5, 0.6], size = [1.0, 3.0]",
+    "shape = 'capsule', overlap = 'add', aspect = [0.05, 0.2], rotation = [-30.0, 10.0]",
+    "shape = 'star', overlap = 'highest', bevel = 0.6, spacing = 1.2, density = 4.0",
+    "shape = 'flake', overlap = 'order', size = [0.3, 1.8]",
+];
+
+/// Gabor noise.
+const GABOR: &[&str] = &[
+    "frequency = [0.8, 2.0], angle = 30.0",
+    "waves = 5.0, impulses = 3, spread = 180.0, angle = -200.0",
+];
+
+/// Compares values of a node with options, three at a time, in a tile that repeats along both axes.
+fn compare_values(gpu: &Gpu, kind: &str, options: &str, values: &[&str], at: &[At]) {
+    let outputs = values.iter();
+    let outputs =
+        outputs.map(|value| format!("{value}.output = {{ of = 'a', value = '{value}' }}\n"));
+    let text = format!(
+        "dapple = 1
+        extent = [5.0, 10.0]
+        [nodes]
+        a.{kind} = {{ {options} }}
+        {}
+        [material]
+        albedo = 'a'",
+        outputs.collect::<String>()
+    );
+    let mut recipe = Recipe::from_toml(&text).expect("a recipe");
+    for values in values.chunks(3) {
+        recipe.material.height = Input::from(values[0]);
+        recipe.material.roughness = Input::from(values[values.len() / 2]);
+        recipe.material.metallic = Input::from(values[values.len() - 1]);
+        let shader = recipe.to_wgsl(&Images::new(), &ShaderOptions::default());
+        assert!(shader.is_ok(), "{options}: {shader:?}");
+        let plan = Plan::new(&recipe, &Images::new(), 0.0).expect("a plan");
+        let difference = compare(gpu, &recipe, &plan, at);
+        assert_eq!(difference, Difference::default(), "{options}: {values:?}");
+    }
+}
+
+#[test]
+fn shapes_have_the_bits_of_the_cpu() {
+    let Some(gpu) = Gpu::new() else { return };
+    for options in SHAPES {
+        compare_values(&gpu, "shape", options, &["distance", "mask"], &everywhere());
+    }
+}
+
+#[test]
+fn stamps_have_the_bits_of_the_cpu() {
+    let Some(gpu) = Gpu::new() else { return };
+    let all = [
+        "height",
+        "mask",
+        "random",
+        "random2",
+        "random3",
+        "u",
+        "v",
+        "edge_distance",
+        "angle",
+    ];
+    for (index, options) in STAMPS.iter().enumerate() {
+        let options = format!("frequency = [1.2, 1.0], {options}");
+        // All values of some stamps, and those that depend on the shape of all
+        let values = match index {
+            1 | 2 => &all[..],
+            _ => &["height", "edge_distance", "u"],
+        };
+        compare_values(&gpu, "scatter", &options, values, &everywhere());
+    }
+}
+
+#[test]
+fn gabor_noise_has_the_bits_of_the_cpu() {
+    let Some(gpu) = Gpu::new() else { return };
+    for options in GABOR {
+        let options = match options.contains("frequency") {
+            true => (*options).to_owned(),
+            false => format!("frequency = 2.0, {options}"),
+        };
+        compare_values(&gpu, "gabor", &options, &["noise", "phase"], &everywhere());
+    }
+}
+
+/// Nodes of colors in sRGB, and blends of layers.
+const COLORS: &str = r##"
+    dapple = 1
+    extent = [5.0, 3.0]
+    [nodes]
+    hills.noise = { basis = "gradient", frequency = [2.0, 3.0], octaves = 2 }
+    cells.worley = { frequency = [1.0, 2.0], value = "cell_value" }
+    stones.worley = { frequency = [1.0, 2.0], value = "f1" }
+    paint.ramp = { input = "hills", colors = ["#a04020", "#20c0f0", "#f0f0f0"] }
+    tinted.hsl = { input = "paint", hue = "cells", saturation = 1.7, lightness = "hills" }
+    same.hsl = { input = "paint" }
+    hue.channel = { input = "tinted", channel = "hue" }
+    saturation.channel = { input = "tinted", channel = "saturation" }
+    value.channel = { input = "paint", channel = "value" }
+    given.blend = { layers = [{ input = "hills" }, { input = "stones", weight = "cells" }] }
+    high.blend = { layers = [{ input = 0.2, height = "hills" }, { input = "hills", weight = "cells", height = 0.4 }, { input = "stones", weight = 0.3, height = "stones" }], weighting = { height = { depth = 0.3 } } }
+    masked.blend = { layers = [{ input = "hills" }, { input = "stones", weight = "cells" }, { input = 0.25, weight = 2.0 }], weighting = { mask = { gain = 3.0 } }, mask = "hills" }
+    hard.blend = { layers = [{ input = "same" }, { input = "hills" }, { input = "#336699", weight = 0.4 }], weighting = { mask = { gain = 1e9 } }, mask = "cells" }
+    all.blend = { layers = [{ input = "tinted" }, { input = "hard", weight = "masked" }] }
+    [material]
+    albedo = "all"
+    emission = "hard"
+    emission_strength = 3.0
+    opacity = "hills"
+    specular = "masked"
+    clearcoat = "hue"
+"##;
+
+#[test]
+fn srgb_colors_and_blends_have_the_bits_of_the_cpu() {
+    let Some(gpu) = Gpu::new() else { return };
+    compare_nodes(&gpu, COLORS, &everywhere());
 }

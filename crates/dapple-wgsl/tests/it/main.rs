@@ -79,11 +79,11 @@ fn modules_list_all_modules_whose_names_they_contain() {
 
 #[test]
 fn wesl_packages_import_what_the_modules_for_naga_oil_import() {
-    let files = wesl_package(&[Module::Worley2d]);
+    let files = wesl_package(&[Module::Stamps]);
     let paths: Vec<_> = files.iter().map(|(path, _)| path.as_str()).collect();
     assert_eq!(paths[0], "wesl.toml");
-    assert!(paths.contains(&"shaders/worley_2d.wesl") && paths.contains(&"shaders/root.wesl"));
-    assert!(!paths.contains(&"shaders/weave.wesl"), "it is not used");
+    assert!(paths.contains(&"shaders/stamps.wesl") && paths.contains(&"shaders/root.wesl"));
+    assert!(!paths.contains(&"shaders/gabor.wesl"), "it is not used");
     for &module in Module::ALL {
         let imports = |text: &str, start: &str, end: &str| -> Vec<String> {
             let lines = text.lines();
