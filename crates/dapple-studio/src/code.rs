@@ -2,7 +2,7 @@
 
 use crate::message::CodeKind;
 use crate::{Document, StudioError};
-use dapple::recipe::Recipe;
+use dapple::recipe::{Images, Recipe, ShaderOptions};
 
 /// Options for converting a recipe to a program or to text.
 pub(crate) struct Code<'a> {
@@ -15,13 +15,19 @@ pub(crate) struct Code<'a> {
 
 impl Code<'_> {
     /// Returns the program or the text.
-    pub(crate) fn text(&self, document: &Document, recipe: &Recipe) -> Result<String, StudioError> {
+    pub(crate) fn text(
+        &self,
+        document: &Document,
+        recipe: &Recipe,
+        images: &Images,
+    ) -> Result<String, StudioError> {
         Ok(match self.kind {
             CodeKind::Toml => document.text().to_owned(),
             CodeKind::Json => recipe.to_json()? + "\n",
             CodeKind::Rust => recipe.to_rust()?,
             CodeKind::Python => self.python(document),
             CodeKind::Command => self.command(document, recipe),
+            CodeKind::Wgsl => wgsl(recipe, images)?,
         })
     }
 
@@ -90,6 +96,25 @@ impl Code<'_> {
     }
 }
 
+/// Returns the material as a function of WGSL. Comments say what it reads from textures.
+fn wgsl(recipe: &Recipe, images: &Images) -> Result<String, StudioError> {
+    let shader = recipe.to_wgsl(images, &ShaderOptions { textures: true })?;
+    let mut text = String::new();
+    if !shader.textures.is_empty() {
+        let nodes: Vec<_> = shader
+            .textures
+            .iter()
+            .map(|node| format!("{node:?}"))
+            .collect();
+        text += &format!("// Bake these nodes to textures: {}\n", nodes.join(", "));
+    }
+    if !shader.data.is_empty() {
+        text +=
+            "// `dapple recipe RECIPE --wgsl --textures -o FILE` also writes the texture `data`.\n";
+    }
+    Ok(text + &shader.wgsl)
+}
+
 /// Quotes a word for a shell.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-./".contains(c);
@@ -109,6 +134,7 @@ mod tests {
     use super::Code;
     use crate::Document;
     use crate::message::CodeKind;
+    use dapple::recipe::{Images, Recipe, ShaderOptions};
 
     fn code(kind: CodeKind, text: &str, name: &str) -> String {
         let document = Document::new(text);
@@ -120,7 +146,8 @@ mod tests {
             maps,
             name,
         };
-        code.text(&document, document.recipe().unwrap()).unwrap()
+        let recipe = document.recipe().unwrap();
+        code.text(&document, recipe, &Images::new()).unwrap()
     }
 
     #[test]
@@ -151,6 +178,24 @@ mod tests {
         ] {
             assert_eq!(code(CodeKind::Command, text, name), command);
         }
+    }
+
+    #[test]
+    fn a_shader_names_what_it_reads_from_textures() {
+        let text = "dapple = 1\n[nodes]\nbumps.gabor = {}\ncells.worley = {}\nswell.wavelet = {}\n\
+                    sum.add = [\"bumps\", \"cells\", \"swell\"]\n[material]\nheight = \"sum\"\n";
+        let wgsl = code(CodeKind::Wgsl, text, "");
+        let options = ShaderOptions { textures: true };
+        let recipe = Recipe::from_toml(text).unwrap();
+        let shader = recipe.to_wgsl(&Images::new(), &options).unwrap();
+        let comments = wgsl.strip_suffix(&shader.wgsl).unwrap();
+        assert_eq!(
+            comments,
+            "// Bake these nodes to textures: \"bumps\"\n\
+             // `dapple recipe RECIPE --wgsl --textures -o FILE` also writes the texture `data`.\n"
+        );
+        let local = "dapple = 1\n[nodes.cells.worley]\n[material]\nheight = \"cells\"\n";
+        assert!(!code(CodeKind::Wgsl, local, "").contains("// Bake these"));
     }
 
     #[test]

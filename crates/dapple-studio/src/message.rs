@@ -183,6 +183,8 @@ pub enum CodeKind {
     Python,
     /// A command line of `dapple bake`.
     Command,
+    /// The material as a function of WGSL.
+    Wgsl,
 }
 
 /// Options for an export, which bakes the recipe to files.

@@ -1,9 +1,9 @@
 //! Performs slow requests other than rendering: reports, programs and exports.
 
 use crate::code::Code;
-use crate::message::{Export, Reply, Request};
+use crate::message::{CodeKind, Export, Reply, Request};
 use crate::{Document, ImagesOf, Session, StudioError, points, seams};
-use dapple::recipe::Recipe;
+use dapple::recipe::{Images, Recipe};
 use std::sync::Arc;
 
 /// Bakes a recipe to files and returns the message that lists them.
@@ -70,13 +70,18 @@ impl Task {
             Request::Code { kind, size, maps } => {
                 let (kind, size, name) = (*kind, *size, self.file.as_str());
                 let maps = maps.as_deref();
+                // Only the shader is computed from images.
+                let images = match kind {
+                    CodeKind::Wgsl => images(recipe)?,
+                    _ => Images::new(),
+                };
                 let code = Code {
                     kind,
                     size,
                     maps,
                     name,
                 };
-                let text = code.text(&self.document, recipe)?;
+                let text = code.text(&self.document, recipe, &images)?;
                 Reply::Code { kind, text }
             }
             Request::Export(options) => export(recipe, options)?,

@@ -220,6 +220,20 @@ describe('the page', { skip, timeout: 240_000 }, () => {
     await page.locator('dialog').waitFor({ state: 'detached' });
   });
 
+  test('the shader to copy is what the command prints', async () => {
+    const page = await open(studio.url);
+    await settled(page);
+    const file = join(mkdtempSync(join(tmpdir(), 'dapple-shader-')), 'flagstone.toml');
+    writeFileSync(file, await text(page));
+    await page.getByRole('button', { name: 'Copy as…' }).click();
+    await page.locator('dialog').getByRole('button', { name: 'WGSL' }).click();
+    await page.waitForFunction(() => document.querySelector('dialog textarea').value.includes('fn material('));
+    const shader = await page.locator('dialog textarea').inputValue();
+    assert.ok(shader.endsWith(dapple('recipe', file, '--wgsl', '--textures')));
+    assert.match(shader.slice(0, shader.indexOf('fn ')), /texture `data`/);
+    assert.deepEqual(page.wrong, []);
+  });
+
   test('axe finds no violation in any view, in light and in dark, wide and narrow', async () => {
     for (const [colorScheme, viewport] of [['light', { width: 1440, height: 900 }], ['dark', { width: 1440, height: 900 }], ['light', { width: 480, height: 900 }]]) {
       const page = await open(studio.url, { colorScheme, viewport });

@@ -77,7 +77,7 @@ export type Request =
   | { type: 'save'; text: string; file: string; overwrite: boolean; seen: string | null };
 
 /** The formats in which a recipe can be copied. */
-export type CodeKind = 'toml' | 'json' | 'rust' | 'python' | 'command';
+export type CodeKind = 'toml' | 'json' | 'rust' | 'python' | 'command' | 'wgsl';
 
 /** Options of an export, as in `dapple bake`. */
 export interface ExportOptions {
