@@ -132,8 +132,9 @@ pub struct Plan {
     parts: Parts,
     renderer: Option<Arc<dyn Renderer>>,
     watch: Watch,
-    /// Whether a node changes with time.
-    moves: bool,
+    time: f64,
+    /// Names of the nodes that change with time, other than by their inputs.
+    moving: Vec<String>,
     /// Each step's id in the cache; empty without a cache.
     ids: Arc<[StepId]>,
 }
@@ -348,7 +349,8 @@ impl Plan {
             parts: builder.parts,
             renderer: None,
             watch: watch.clone(),
-            moves: builder.moves,
+            time,
+            moving: builder.moving,
             ids: builder.ids.into(),
         };
         check_steps(&plan.steps, limits).map_err(|(step, error)| plan.within(step, error))?;
@@ -389,7 +391,12 @@ impl Plan {
     /// Returns whether a node changes with time. Otherwise, all frames of a loop are equal.
     #[must_use]
     pub fn moves(&self) -> bool {
-        self.moves
+        !self.moving.is_empty()
+    }
+
+    /// Returns whether a node's own values are those of another time than 0.
+    pub(crate) fn has_moved(&self, node: &str) -> bool {
+        self.time != 0.0 && self.moving.iter().any(|moving| moving == node)
     }
 
     /// Returns the window that covers the tile with `size` columns and rows. It may have more pixels than a raster can

@@ -108,7 +108,8 @@ impl Recipe {
     }
 
     /// Generates the material as [`to_wgsl`](Self::to_wgsl) does, with a plan of the recipe that is built already. The
-    /// plan may have another material, so that a shader can compute any nodes. Tables are built without images.
+    /// plan may have another material, so that a shader can compute any nodes. Tables are built without images. Nodes that
+    /// move have no shader if the plan has another time than 0.
     ///
     /// # Errors
     ///

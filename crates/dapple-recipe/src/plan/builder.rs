@@ -31,8 +31,8 @@ pub(crate) struct Builder<'a> {
     pub(super) parts: Parts,
     /// Whether the current node has read the time.
     asks_time: Cell<bool>,
-    /// Whether any node has read the time.
-    pub(super) moves: bool,
+    /// Names of the nodes that have read the time.
+    pub(super) moving: Vec<String>,
     pub(super) steps: Vec<Step>,
     /// The id of each step; empty without a cache.
     pub(super) ids: Vec<StepId>,
@@ -64,7 +64,7 @@ impl<'a> Builder<'a> {
             watch,
             parts: cache.map_or_else(Parts::keeping, |cache| cache.parts().clone()),
             asks_time: Cell::new(false),
-            moves: false,
+            moving: Vec::new(),
             steps: Vec::new(),
             ids: Vec::new(),
             names: IndexMap::new(),
@@ -89,7 +89,9 @@ impl<'a> Builder<'a> {
             Some((id, false)) if self.asks_time.get() => cache.at_time(id, self.time),
             Some((id, _)) => id,
         });
-        self.moves |= self.asks_time.get() || before.is_some_and(|(_, is_timed)| is_timed);
+        if self.asks_time.get() || before.is_some_and(|(_, is_timed)| is_timed) {
+            self.moving.push(name.to_owned());
+        }
         if let (Some(cache), Some(id), false) = (self.cache, id, is_known) {
             cache.keep_source(id, &step);
         }

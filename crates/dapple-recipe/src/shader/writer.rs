@@ -372,11 +372,14 @@ impl<'a> Writer<'a> {
         let known = recipe.nodes.get_key_value(name);
         let (name, node) =
             known.ok_or_else(|| Refusal::new(format!("there is no node `{name}`")))?;
-        let written = node.kind().shader(&mut NodeShader {
-            writer: self,
-            scope,
-            node: name,
-        });
+        let written = match self.plan.has_moved(name) {
+            true => Err(Refusal::new("it moves, and shaders have the time 0")),
+            false => node.kind().shader(&mut NodeShader {
+                writer: self,
+                scope,
+                node: name,
+            }),
+        };
         let code = match written {
             Ok(code) => code,
             Err(refusal) if scope.has_textures => self.texture(name, refusal),

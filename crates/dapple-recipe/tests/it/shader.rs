@@ -1,6 +1,6 @@
 //! Materials as shaders: what they contain. `dapple-wgsl-tests` runs them.
 
-use dapple_recipe::{Images, MaterialShader, Recipe, RecipeErrorKind, ShaderOptions};
+use dapple_recipe::{Images, MaterialShader, Plan, Recipe, RecipeErrorKind, ShaderOptions};
 
 const TEXTURES: ShaderOptions = ShaderOptions { textures: true };
 
@@ -154,4 +154,20 @@ fn a_material_without_such_nodes_has_no_data() {
     let shader = shader(text, &ShaderOptions::default());
     assert!(shader.data.is_empty());
     assert!(!shader.wgsl.contains("data"), "{}", shader.wgsl);
+}
+
+#[test]
+fn nodes_that_move_have_no_shader_at_another_time_than_0() {
+    let text = "
+        nodes.waves.worley = { motion = { cells = 2 } }
+        nodes.crests.output = { of = 'waves', value = 'cell_value' }
+        nodes.joint.worley = {}
+        nodes.sum.add = ['waves', 'crests', 'joint']
+        material.height = 'sum'";
+    let recipe = recipe(text);
+    for (time, textures) in [(0.0, &[][..]), (0.5, &["waves", "crests"])] {
+        let plan = Plan::new(&recipe, &Images::new(), time).expect("a plan");
+        let shader = recipe.to_wgsl_with(&plan, &TEXTURES).expect("a shader");
+        assert_eq!(shader.textures, textures, "at {time}");
+    }
 }
