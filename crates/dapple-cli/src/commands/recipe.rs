@@ -152,7 +152,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             textures: args.textures,
         };
         let shader = recipe.to_wgsl(&images, &options).map_err(advise)?;
-        return put_shader(args, context, &recipe.name, shader);
+        return put_shader(args, context, &recipe, shader);
     }
     let is_as_written =
         !args.rust && args.format().is_none() && args.seed.is_none() && args.set.is_empty();
@@ -172,10 +172,15 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 }
 
 /// Writes a shader, and next to it the words of its texture.
-fn put_shader(args: &Args, context: &Context, name: &str, shader: MaterialShader) -> Result<Exit> {
+fn put_shader(
+    args: &Args,
+    context: &Context,
+    recipe: &Recipe,
+    shader: MaterialShader,
+) -> Result<Exit> {
     let mut job = Job::new(context, "recipe", &args.files);
     let target = match args.files.output {
-        Some(_) => args.files.target(name, args.language.extension())?,
+        Some(_) => args.files.target(&recipe.name, args.language.extension())?,
         None => Target::Stdout,
     };
     let output = job.claim_text(&target)?;
@@ -190,7 +195,7 @@ fn put_shader(args: &Args, context: &Context, name: &str, shader: MaterialShader
         job.write(words, &bytes)?;
     }
     job.claim_sidecar(&target)?;
-    job.write(output, args.language.translate(shader.wgsl)?.as_bytes())?;
+    job.write(output, args.language.material(shader, recipe)?.as_bytes())?;
     job.finish(args, Value::Null)?;
     Ok(Exit::Done)
 }

@@ -117,18 +117,19 @@ fn materials_of_builtin_recipes_are_valid_shaders() {
     }
 }
 
+/// Returns the first block of code in a language in a page.
+fn block(page: &str, language: &str) -> String {
+    let start = page.split_once(&format!("```{language}\n"));
+    let (block, _) = start
+        .and_then(|(_, rest)| rest.split_once("```"))
+        .expect("a block");
+    block.to_owned()
+}
+
 #[test]
 fn the_recipe_of_the_readme_is_the_material_of_its_shader() {
     let readme = include_str!("../../../dapple-recipe/README.md");
-    let block = |language: &str| {
-        let start = readme
-            .split_once(&format!("```{language}\n"))
-            .map(|(_, rest)| rest);
-        let (block, _) = start
-            .and_then(|rest| rest.split_once("```"))
-            .expect("a block");
-        block.to_owned()
-    };
+    let block = |language: &str| block(readme, language);
     let folder = Folder::new("recipe-wgsl-readme");
     std::fs::write(folder.path("cobbles.toml"), block("toml")).expect("a file");
     let text = valid_output(&folder, &["recipe", "cobbles.toml", "--wgsl"]);
@@ -282,4 +283,60 @@ fn shaders_in_hlsl_have_all_functions() {
     assert_done(&folder.run(&material), "a shader");
     let written = std::fs::read_to_string(folder.path("m/flagstone.hlsl")).expect("a file");
     assert!(written.contains("Material material(Place2d "), "{written}");
+}
+
+/// Returns Godot's shader as a whole shader of GLSL.
+#[cfg(feature = "shader-languages")]
+fn as_glsl(godot: &str) -> String {
+    let text = godot.replace("shader_type spatial;", "");
+    let text = text.replace(
+        "uniform uint always_zero = 0u;",
+        "const uint always_zero = 0u;",
+    );
+    let outputs = "vec2 UV = vec2(0.5); vec3 ALBEDO; float ROUGHNESS; float METALLIC;";
+    format!(
+        "#version 450\n{}\nvoid main() {{ fragment(); }}\n",
+        text.replace(
+            "void fragment() {",
+            &format!("void fragment() {{ {outputs}")
+        )
+    )
+}
+
+#[cfg(feature = "shader-languages")]
+#[test]
+fn the_shader_of_the_page_about_godot_is_complete() {
+    let page = include_str!("../../../../docs/godot.md");
+    let folder = Folder::new("godot");
+    std::fs::write(folder.path("hills.toml"), block(page, "toml")).expect("a file");
+    let command = block(page, "sh");
+    let words: Vec<_> = command.split_whitespace().skip(1).collect();
+    assert_done(&folder.run(&words), "a shader");
+    let text = std::fs::read_to_string(folder.path("hills.gdshader")).expect("a file");
+    assert!(text.starts_with("shader_type spatial;\n"), "{text}");
+    assert!(text.ends_with(&block(page, "gdshader")), "{text}");
+    // Cells have constants with arrays, signed shifts, and selected vectors of integers.
+    let cells = folder.run(&["wgsl", "worley-2d", "--seed", "7", "--language", "godot"]);
+    let cells = stdout(&cells) + "void fragment() {}";
+    assert!(
+        cells.contains("\n#define WORLEY_2D Worley(uvec4[2]("),
+        "{cells}"
+    );
+    assert!(cells.contains("(rounded >> ivec2(21))"), "{cells}");
+    for text in [text, cells] {
+        for missing in [" mix(", "(mix(", "\nconst "] {
+            assert!(!text.contains(missing), "{missing} in {text}");
+        }
+        let text = as_glsl(&text);
+        let options = naga::front::glsl::Options::from(naga::ShaderStage::Fragment);
+        let parsed = naga::front::glsl::Frontend::default().parse(&options, &text);
+        parsed.unwrap_or_else(|errors| panic!("{}", errors.emit_to_string(&text)));
+    }
+    let refused = folder.run(&["recipe", "marble", "--wgsl", "--language", "godot"]);
+    assert_refused(
+        &refused,
+        2,
+        "bake the recipe",
+        "a recipe that reads textures",
+    );
 }
