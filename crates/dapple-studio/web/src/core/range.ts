@@ -16,6 +16,8 @@ const USUAL: [RegExp, number, number][] = [
   [/^octaves$|^count$|^layers$|^iterations$/, 1, 12],
   [/^lacunarity$/, 1, 4],
   [/^density$/, 0.25, 9],
+  [/^exponent$/, 0.1, 8],
+  [/^emission_strength$/, 0, 20],
   [/^(spacing|distance|distances)$/, 0.02, 2],
   [/^relief$/, 0.002, 2],
   [/^extent$/, 0.5, 16],

@@ -78,7 +78,13 @@ const named: Record<string, Shape> = {
 };
 
 /** Names of numbers that get logarithmic sliders, such as frequencies. */
-const RATIOS = /^(frequency|spacing|density|distance|distances|count|relief|feature_size|extent)$/;
+const RATIOS = /^(frequency|spacing|density|distance|distances|count|relief|feature_size|extent|exponent)$/;
+
+/** Largest angle of a slider, in degrees. */
+const HALF_TURN = 180;
+
+/** Maximum of an allowed range in units of the plane; small lengths in such a range need a logarithmic slider. */
+const LONG = 1000;
 
 /** Properties that are listed first, in this order. */
 const FIRST = [
@@ -120,7 +126,9 @@ export class Schemas {
     if (type === 'string') return { kind: 'text' };
     if (type === 'array' && all.items) {
       if (this.name(all.items) === 'ControlPoint') return { kind: 'points' };
-      return { kind: 'list', item: all.items, min: all.minItems ?? 0, max: all.maxItems ?? Infinity };
+      // Numbers of a list have the unit that the list's description names.
+      const item = all.items.type === 'number' && all.description !== undefined ? { description: all.description, ...all.items } : all.items;
+      return { kind: 'list', item, min: all.minItems ?? 0, max: all.maxItems ?? Infinity };
     }
     if (!all.properties) return { kind: 'nothing' };
     const parts = this.parts(all);
@@ -292,14 +300,17 @@ function numberShape(all: JsonSchema, key: string): Shape {
   const min = all.exclusiveMinimum ?? all.minimum ?? -Infinity;
   const max = all.exclusiveMaximum ?? all.maximum ?? Infinity;
   const open: [boolean, boolean] = [all.exclusiveMinimum !== undefined, all.exclusiveMaximum !== undefined];
-  const log = hint?.scale === 'log' || (hint?.scale === undefined && RATIOS.test(key) && min >= 0);
+  const isLength = key === 'radius' && max > LONG;
+  const log = hint?.scale === 'log' || (hint?.scale === undefined && (RATIOS.test(key) || isLength) && min >= 0);
   const unit = hint?.unit ?? unitOf(all.description ?? '');
-  return { kind: 'number', range: { min, max, open, integer, soft: hint?.soft ?? null, log }, unit };
+  const turn: [number, number] | null = unit === '°' ? [Math.max(min, -HALF_TURN), Math.min(max, HALF_TURN)] : null;
+  return { kind: 'number', range: { min, max, open, integer, soft: hint?.soft ?? turn, log }, unit };
 }
 
 /** The unit named in a description, or an empty string. */
 function unitOf(about: string): string {
   if (/radians/.test(about)) return 'rad';
+  if (/in degrees/.test(about)) return '°';
   if (/in pixels|how many (more )?pixels/i.test(about)) return 'px';
   if (/in units of the (plane|domain)|units of the plane/.test(about)) return 'u';
   return '';
