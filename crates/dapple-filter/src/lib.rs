@@ -24,6 +24,7 @@
 //! | blur along a direction | [`DirectionalBlur`] | [`DirectionalBlur::halo`] | grows with the radius |
 //! | blur along the slope of heights | [`SlopeBlur`] | [`SlopeBlur::halo`] | at most 32 steps |
 //! | compute gradients | [`gradients`] | [`difference_spans`] | |
+//! | move values along the slope of heights | [`FlowWarp`] | [`FlowWarp::halo`] | grows with the steps |
 //! | take the maximum or minimum of a disk | [`dilate`], [`erode`] | [`disk_halo`] | grows with the radius |
 //! | measure distances to a mask | [`distances`] | [`disk_halo`] | grows with the radius |
 //! | number connected regions | [`regions`] | the whole raster | |
@@ -59,4 +60,4 @@ pub use glam;
 pub use gradient::{difference_spans, gradients};
 pub use part::Part;
 pub use regions::regions;
-pub use slope::SlopeBlur;
+pub use slope::{FlowDirection, FlowWarp, SlopeBlur};

@@ -1,9 +1,10 @@
-//! Blur along the paths on which water runs down a height.
+//! Blur and warp along the paths on which water runs down a height.
 //!
 //! The path of a pixel follows the gradient of the height uphill, in steps of equal length. Values are averaged along it,
 //! so that they run downhill, as in line integral convolution (Brian Cabral and Leith Leedom, "Imaging vector
 //! fields using line integral convolution", SIGGRAPH 1993). Gradients and values are interpolated between pixels. Paths
-//! are in pixels relative to the pixel, so that they have the same bits in every window.
+//! are in pixels relative to the pixel, so that they have the same bits in every window. The warp takes the value at the
+//! end of a path.
 
 use crate::Part;
 use crate::gaussian::weights;
@@ -11,7 +12,7 @@ use crate::part::pixels_within;
 use dapple_raster::parallel;
 use glam::DVec2;
 
-/// Maximum number of steps of a path. Longer paths have longer steps.
+/// Maximum number of steps of a path of the blur. Longer paths have longer steps.
 const MAX_STEPS: u32 = 32;
 
 /// Blur along the paths on which water runs down heights.
@@ -39,12 +40,7 @@ impl SlopeBlur {
     /// Returns the columns and rows that a path can reach, with the pixels that interpolation and gradients read.
     #[must_use]
     pub fn halo(&self, pixel: DVec2) -> [u32; 2] {
-        if self.weights.is_empty() {
-            return [0; 2];
-        }
-        let reach = self.length * self.weights.len() as f64;
-        // The small term covers the rounding of the steps.
-        [pixel.x, pixel.y].map(|pixel| (reach / pixel + 1e-6).ceil() as u32 + 2)
+        halo(self.length * self.weights.len() as f64, pixel)
     }
 
     /// Averages the numbers of a part along the path that leads uphill from each pixel.
@@ -74,19 +70,162 @@ impl SlopeBlur {
         part: &Part,
         value: &(impl Fn(usize) -> [f32; N] + Sync),
     ) -> Vec<[f32; N]> {
-        let width = part.size[0] as usize;
-        let [left, above] = part.halo.map(|side| side as usize);
+        let paths = Paths::new(
+            heights,
+            part,
+            self.length,
+            FlowDirection::Downhill,
+            self.weights.is_empty(),
+        );
+        paths.follow(part, value, |lanes| {
+            let here = lanes.values(value);
+            let mut sums = here;
+            for &weight in &self.weights {
+                lanes.step();
+                let there = lanes.values(value);
+                for (lane, sum) in sums.iter_mut().enumerate() {
+                    for ((sum, there), here) in sum.iter_mut().zip(there[lane]).zip(here[lane]) {
+                        *sum += weight * (there - here);
+                    }
+                }
+            }
+            sums
+        })
+    }
+}
+
+dapple_raster::named! {
+    /// Direction in which a flow moves values.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum FlowDirection {
+        /// Down the slope.
+        #[default]
+        Downhill = "downhill",
+        /// Up the slope.
+        Uphill = "uphill",
+        /// Along the contour lines, with the higher ground on the left: the curl of the height.
+        Contour = "contour",
+    }
+}
+
+/// Warp that moves values along the slope or the contour lines of a height, in steps of equal length.
+#[derive(Clone, Debug)]
+pub struct FlowWarp {
+    /// Length of a step, in units of the plane.
+    length: f64,
+    steps: u32,
+    direction: FlowDirection,
+}
+
+impl FlowWarp {
+    /// Creates a warp by `amount` units of the plane in `steps` steps. More steps follow curved slopes closer.
+    #[must_use]
+    pub fn new(amount: f64, steps: u32, direction: FlowDirection) -> Self {
+        Self {
+            length: amount / f64::from(steps.max(1)),
+            steps: if amount > 0.0 { steps } else { 0 },
+            direction,
+        }
+    }
+
+    /// Returns the columns and rows that a path can reach, with the pixels that interpolation and gradients read.
+    #[must_use]
+    pub fn halo(&self, pixel: DVec2) -> [u32; 2] {
+        halo(self.length * f64::from(self.steps), pixel)
+    }
+
+    /// Moves the numbers of a part.
+    ///
+    /// # Panics
+    ///
+    /// If there are fewer heights or values than in the part and its halo, which must be [`halo`](Self::halo).
+    #[must_use]
+    pub fn apply(&self, values: &[f32], heights: &[f32], part: &Part) -> Vec<f32> {
+        let numbers = self.run(heights, part, &|index| [values[index]]);
+        numbers.into_iter().map(|[number]| number).collect()
+    }
+
+    /// Moves the colors of a part; see [`apply`](Self::apply).
+    ///
+    /// # Panics
+    ///
+    /// Same as [`apply`](Self::apply).
+    #[must_use]
+    pub fn apply_colors(&self, colors: &[[f32; 3]], heights: &[f32], part: &Part) -> Vec<[f32; 3]> {
+        self.run(heights, part, &|index| colors[index])
+    }
+
+    fn run<const N: usize>(
+        &self,
+        heights: &[f32],
+        part: &Part,
+        value: &(impl Fn(usize) -> [f32; N] + Sync),
+    ) -> Vec<[f32; N]> {
+        let is_still = self.steps == 0;
+        let paths = Paths::new(heights, part, self.length, self.direction, is_still);
+        paths.follow(part, value, |lanes| {
+            for _ in 0..self.steps {
+                lanes.step();
+            }
+            lanes.values(value)
+        })
+    }
+}
+
+/// Returns the columns and rows within `reach` units of the plane, with the pixels that interpolation and gradients read.
+fn halo(reach: f64, pixel: DVec2) -> [u32; 2] {
+    if reach == 0.0 {
+        return [0; 2];
+    }
+    // The small term covers the rounding of the steps.
+    [pixel.x, pixel.y].map(|pixel| (reach / pixel + 1e-6).ceil() as u32 + 2)
+}
+
+/// Number of paths that are followed at the same time. Each step waits for the one before, so that a processor is busy
+/// only with several paths.
+const LANES: usize = 4;
+
+/// The paths from the pixels of a part against the flow, which moves values in a direction of the slope.
+struct Paths {
+    /// Gradients of the heights at all pixels with neighbors on all sides; empty if no path has a step.
+    gradients: Vec<[f32; 2]>,
+    /// Columns of the part and its halo.
+    wide: usize,
+    /// Pixels per unit of the plane.
+    per_pixel: [f64; 2],
+    /// Length of a step, in units of the plane.
+    length: f64,
+    direction: FlowDirection,
+}
+
+/// The paths from a few pixels in a row, and where they are.
+struct Lanes<'a> {
+    paths: &'a Paths,
+    first: [usize; LANES],
+    /// Columns and rows from the first pixel.
+    offsets: [[f64; 2]; LANES],
+    places: [Place; LANES],
+}
+
+/// The first of four pixels, and the position between them from 0 to 1.
+#[derive(Clone, Copy)]
+struct Place {
+    index: usize,
+    part: [f32; 2],
+}
+
+impl Paths {
+    fn new(
+        heights: &[f32],
+        part: &Part,
+        length: f64,
+        direction: FlowDirection,
+        is_still: bool,
+    ) -> Self {
         let wide = part.input_size()[0] as usize;
         let per_pixel = [part.pixel.x, part.pixel.y].map(f64::recip);
-        // Compute gradients at all pixels with neighbors on all sides.
-        let mut gradients = vec![
-            [0.0; 2];
-            if self.weights.is_empty() {
-                0
-            } else {
-                heights.len()
-            }
-        ];
+        let count = if is_still { 0 } else { heights.len() };
+        let mut gradients = vec![[0.0; 2]; count];
         parallel::for_each_chunk(&mut gradients, wide, |row, out| {
             let is_inside = row > 0 && (row + 2) * wide <= heights.len();
             for (column, out) in out.iter_mut().enumerate().filter(|_| is_inside) {
@@ -98,52 +237,108 @@ impl SlopeBlur {
                 }
             }
         });
+        Self {
+            gradients,
+            wide,
+            per_pixel,
+            length,
+            direction,
+        }
+    }
+
+    /// Computes a value for each pixel of a part from its path, for a few pixels at a time.
+    fn follow<const N: usize>(
+        &self,
+        part: &Part,
+        value: &(impl Fn(usize) -> [f32; N] + Sync),
+        follow: impl Fn(&mut Lanes<'_>) -> [[f32; N]; LANES] + Sync,
+    ) -> Vec<[f32; N]> {
+        let width = part.size[0] as usize;
+        let [left, above] = part.halo.map(|side| side as usize);
         let mut values = vec![[0.0; N]; width * part.size[1] as usize];
         parallel::for_each_chunk(&mut values, width, |row, out| {
-            for (column, out) in out.iter_mut().enumerate() {
-                let first = (row + above) * wide + column + left;
-                let here = value(first);
-                let mut sum = here;
-                let mut offset = [0.0; 2];
-                for &weight in &self.weights {
-                    // Find the direction uphill, and take a step.
-                    let uphill = interpolated(first, wide, offset, &|index| gradients[index]);
-                    let [x, y] = uphill.map(f64::from);
-                    let length = (x * x + y * y).sqrt();
-                    // On level ground the path stays where it is.
-                    if length > 0.0 && length.is_finite() {
-                        let step = self.length / length;
-                        offset[0] += step * x * per_pixel[0];
-                        offset[1] += step * y * per_pixel[1];
+            let start = (row + above) * self.wide + left;
+            for (group, out) in out.chunks_mut(LANES).enumerate() {
+                let start = start + group * LANES;
+                if self.gradients.is_empty() {
+                    for (column, out) in out.iter_mut().enumerate() {
+                        *out = value(start + column);
                     }
-                    let there = interpolated(first, wide, offset, value);
-                    for ((sum, there), here) in sum.iter_mut().zip(there).zip(here) {
-                        *sum += weight * (there - here);
-                    }
+                    continue;
                 }
-                *out = sum;
+                // Lanes past the end of the row repeat its last pixel.
+                let last = out.len() - 1;
+                let mut lanes =
+                    Lanes::new(self, core::array::from_fn(|lane| start + lane.min(last)));
+                let followed = follow(&mut lanes);
+                out.copy_from_slice(&followed[..=last]);
             }
         });
         values
     }
 }
 
-/// Interpolates between the four pixels around an offset from a pixel, in columns and rows.
-#[inline(always)]
-fn interpolated<const N: usize>(
-    first: usize,
-    wide: usize,
-    offset: [f64; 2],
-    value: &impl Fn(usize) -> [f32; N],
-) -> [f32; N] {
-    // A truncation and a comparison are faster than `floor` without SSE4.1.
-    let [x, y] = offset.map(|offset| offset as i64 - i64::from(offset < offset as i64 as f64));
-    let part = [offset[0] - x as f64, offset[1] - y as f64].map(|part| part as f32);
-    let index = (first as i64 + y * wide as i64 + x) as usize;
-    let mix = |a: [f32; N], b: [f32; N], part: f32| {
-        core::array::from_fn(|channel| a[channel] + part * (b[channel] - a[channel]))
-    };
-    let upper = mix(value(index), value(index + 1), part[0]);
-    let lower = mix(value(index + wide), value(index + wide + 1), part[0]);
-    mix(upper, lower, part[1])
+impl<'a> Lanes<'a> {
+    fn new(paths: &'a Paths, first: [usize; LANES]) -> Self {
+        Self {
+            paths,
+            first,
+            offsets: [[0.0; 2]; LANES],
+            places: first.map(|first| Place::new(first, paths.wide, [0.0; 2])),
+        }
+    }
+
+    /// Takes a step along each path. On level ground a path stays where it is.
+    #[inline(always)]
+    fn step(&mut self) {
+        let paths = self.paths;
+        for lane in 0..LANES {
+            let uphill = self.places[lane].mix(paths.wide, &|index| paths.gradients[index]);
+            let [x, y] = uphill.map(f64::from);
+            let length = (x * x + y * y).sqrt();
+            if length > 0.0 && length.is_finite() {
+                let step = paths.length / length;
+                // A path leads against the flow.
+                let [x, y] = match paths.direction {
+                    FlowDirection::Downhill => [x, y],
+                    FlowDirection::Uphill => [-x, -y],
+                    FlowDirection::Contour => [y, -x],
+                };
+                let offset = &mut self.offsets[lane];
+                offset[0] += step * x * paths.per_pixel[0];
+                offset[1] += step * y * paths.per_pixel[1];
+                self.places[lane] = Place::new(self.first[lane], paths.wide, *offset);
+            }
+        }
+    }
+
+    /// Interpolates values where the paths are.
+    #[inline(always)]
+    fn values<const N: usize>(&self, value: &impl Fn(usize) -> [f32; N]) -> [[f32; N]; LANES] {
+        self.places.map(|place| place.mix(self.paths.wide, value))
+    }
+}
+
+impl Place {
+    #[inline(always)]
+    fn new(first: usize, wide: usize, offset: [f64; 2]) -> Self {
+        // A truncation and a comparison are faster than `floor` without SSE4.1.
+        let [x, y] = offset.map(|offset| offset as i64 - i64::from(offset < offset as i64 as f64));
+        Self {
+            index: (first as i64 + y * wide as i64 + x) as usize,
+            part: [offset[0] - x as f64, offset[1] - y as f64].map(|part| part as f32),
+        }
+    }
+
+    /// Interpolates between the four pixels.
+    #[inline(always)]
+    fn mix<const N: usize>(self, wide: usize, value: &impl Fn(usize) -> [f32; N]) -> [f32; N] {
+        let mix = |a: [f32; N], b: [f32; N], part: f32| {
+            core::array::from_fn(|channel| a[channel] + part * (b[channel] - a[channel]))
+        };
+        let index = self.index;
+        let upper = mix(value(index), value(index + 1), self.part[0]);
+        let lower = mix(value(index + wide), value(index + wide + 1), self.part[0]);
+        mix(upper, lower, self.part[1])
+    }
 }
