@@ -22,6 +22,7 @@ mod disturb;
 mod edges;
 mod equalize;
 mod flood_fill;
+mod flow_warp;
 mod fractal;
 mod gabor;
 mod hsl;
@@ -81,6 +82,7 @@ pub use disturb::Disturbed;
 pub use edges::Edges;
 pub use equalize::Equalize;
 pub use flood_fill::{FloodFill, RegionValue};
+pub use flow_warp::FlowWarpNode;
 pub use fractal::FractalOf;
 pub use gabor::GaborNode;
 pub use hsl::HslChange;
@@ -392,6 +394,9 @@ nodes! {
     /// Blur along the slope of a height: values run downhill.
     "slope_blur" SlopeBlur(SlopeBlur) in "neighborhood" as r#"{"input":0.5,"height":0.5,"radius":0.05}"#
         also "erosion, flow",
+    /// Input that flows along the slope or the contour lines of a height, in steps.
+    "flow_warp" FlowWarp(FlowWarpNode) in "neighborhood" as r#"{"input":0.5,"height":0.5,"amount":0.1}"#
+        also "flow, swirl, curl, advect, eddy, marbling, vector warp",
     /// Input sharpened by an unsharp mask.
     "sharpen" Sharpen(Sharpen) in "neighborhood" as r#"{"input":0.5,"radius":0.02}"#
         also "unsharp mask, high pass",

@@ -73,7 +73,8 @@ shrunk = { erode = { input = "grown", radius = 0.09 } }
 large = { edges = { input = "shrunk", radius = 0.05 } }
 far = { distance_to = { input = "large", radius = 0.4 } }
 flow = { slope_blur = { input = "grown", height = "soft", radius = 0.08 } }
-sharp = { sharpen = { input = "flow", radius = 0.06 } }
+eddy = { flow_warp = { input = "flow", height = "soft", amount = 0.07, direction = "contour", steps = 5 } }
+sharp = { sharpen = { input = "eddy", radius = 0.06 } }
 again = { mix = { from = "runs", to = "wide_steep", by = "sharp" } }
 twice = { blur = { input = "again", radius = 0.07, along = -20.0 } }
 colors = { ramp = { input = "twice", palette = "lagoon" } }

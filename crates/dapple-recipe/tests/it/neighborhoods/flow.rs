@@ -1,4 +1,4 @@
-//! Tests of `slope_blur`.
+//! Tests of `slope_blur` and `flow_warp`.
 
 use super::{assert_near, numbers, random, with_image};
 use dapple_raster::{Raster, Wrap};
@@ -27,6 +27,32 @@ fn on_a_plane_it_is_a_one_sided_blur_downhill() {
     );
     assert_eq!(node("still"), a, "level ground");
     assert_eq!(node("small"), a, "less than a third of a pixel");
+}
+
+#[test]
+fn on_a_plane_values_flow_by_whole_pixels() {
+    let text = "dapple = 1\nextent = [4.0, 3.0]\nwrap = [false, false]\n[nodes]\na.image = { file = \"a.png\" }\n\
+                falling.coordinate = { along = [0.0, -2.0] }\n\
+                flat.coordinate = { along = [0.0, 0.0] }\n\
+                down.flow_warp = { input = \"a\", height = \"falling\", amount = 0.25 }\n\
+                up.flow_warp = { input = \"a\", height = \"falling\", amount = 0.25, direction = \"uphill\" }\n\
+                right.flow_warp = { input = \"a\", height = \"falling\", amount = 0.25, steps = 3, direction = \"contour\" }\n\
+                still.flow_warp = { input = \"a\", height = \"flat\", amount = 0.25 }\n[material]\n";
+    let plan = with_image(text, picture());
+    let node = |node: &str| numbers(&plan, node, [32, 24]);
+    let a = node("a");
+    assert_eq!(node("still"), a, "level ground");
+    for (name, from) in [("down", [0, -2]), ("up", [0, 2]), ("right", [-2, 0])] {
+        let moved = node(name);
+        for y in 2..22 {
+            for x in 2..30_i64 {
+                let source = a.row((y + from[1]) as u32)[(x + from[0]) as usize];
+                let found = moved.row(y as u32)[x as usize];
+                // The steps round.
+                assert!((found - source).abs() < 1e-5, "{name} at {x}, {y}");
+            }
+        }
+    }
 }
 
 #[test]
