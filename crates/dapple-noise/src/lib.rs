@@ -33,6 +33,7 @@
 //! | many scattered | [`GradientNoise::sample_many`] | 5.5 ns in 2-D, 10.2 ns in 3-D, for each |
 //! | a window | [`to_raster`](dapple_raster::Field::to_raster), [`render`](dapple_raster::Field::render) | 0.13 ns/pixel in 2-D with 64 pixels per cell, 0.37 with 8 |
 //! | one period as a tile | [`tile_raster`](dapple_raster::Field::tile_raster) | as a window |
+//! | a sphere, as an equirectangular image or a cube map | [`Equirectangular`], [`CubeMap`], then many positions | |
 //! | a plane through space, or a moment of a loop | [`slice`](dapple_raster::FieldExt::slice), then a window | |
 //!
 //! Positions were timed on one thread of an AMD EPYC of family 25 without AVX-512, windows on one of family 26 with
@@ -72,6 +73,7 @@
     reason = "ranges are unrolled, and closures of iterators are not inlined into SIMD code"
 )]
 
+mod directions;
 mod gradient;
 mod gradients;
 mod lines;
@@ -80,6 +82,7 @@ mod many;
 
 pub use dapple_hash as hash;
 pub use dapple_raster as raster;
+pub use directions::{CubeFace, CubeMap, Equirectangular};
 #[doc(alias("perlin", "perlin noise", "simplex", "fbm", "ridged", "turbulence"))]
 pub use gradient::GradientNoise;
 pub use gradient::{GradientNoise2, GradientNoise3, GradientNoise4};

@@ -1,5 +1,7 @@
 //! `dapple noise`: renders gradient noise.
 
+mod space;
+
 use crate::args::ImageArgs;
 use crate::error::Exit;
 use crate::field::{Field, FieldArgs, check_whole_cells, draw, extent_of};
@@ -15,6 +17,8 @@ Examples:
   dapple noise --cells 4 --octaves 6 --size 1024 --format png16 -o height.png
   dapple noise --octaves 5 --gain 0.6 --ramp lagoon -o clouds.png
   dapple noise --cells 6 --size 640x480 -o wide.png
+  dapple noise --sphere --cells 4 --octaves 8 --size 1024x512 --ramp terrain -o planet.png
+  dapple noise --cube --cells 4 --octaves 8 --size 512 --samples corners -o sky/
 
 Values are from 0 to 1, about one half. The same noise is the node `noise` of recipes with the
 basis `gradient`; domain warps and ridges are made of it there.";
@@ -25,7 +29,8 @@ basis `gradient`; domain warps and ridges are made of it there.";
 pub(crate) struct Args {
     /// Number of cells across the shorter side, in the coarsest octave.
     ///
-    /// It must be a whole number along each axis on which the image repeats.
+    /// It must be a whole number along each axis on which the image repeats. Of a sphere or cube, it is the number across
+    /// the diameter.
     #[arg(
         long,
         value_name = "N",
@@ -33,6 +38,18 @@ pub(crate) struct Args {
         help_heading = "Texture"
     )]
     cells: f64,
+
+    /// Draw the noise in space on a sphere, as an equirectangular image: twice as wide as high, without a seam.
+    ///
+    /// The center looks along +x, and y is up. With --samples corners, the last column equals the first.
+    #[arg(long, conflicts_with_all = ["cube", "region", "wrap", "recipe"], help_heading = "Texture")]
+    sphere: bool,
+
+    /// Draw the noise in space on a sphere, as the six faces of a cube map: NAME_px, _nx, _py, _ny, _pz, _nz.
+    ///
+    /// The faces are turned as in OpenGL. With --samples corners, neighboring faces have equal pixels on their edge.
+    #[arg(long, conflicts_with_all = ["region", "wrap", "recipe"], help_heading = "Texture")]
+    cube: bool,
 
     #[command(flatten)]
     #[serde(flatten)]
@@ -74,6 +91,9 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         },
         _ => FractalNode::default(),
     };
+    if args.sphere || args.cube {
+        return space::draw(args, &node, context);
+    }
     let spaces = args.field.spaces()?;
     let extent = extent_of(spaces, args.cells);
     check_whole_cells(extent, args.field.wrap.flags(), "--cells")?;

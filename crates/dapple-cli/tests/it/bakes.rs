@@ -302,6 +302,56 @@ fn all_pictures_of_a_loop_are_those_baked_one_by_one() {
 }
 
 #[test]
+fn noise_on_a_sphere_meets_itself() {
+    let folder = Folder::new("sphere");
+    for line in [
+        "noise --sphere --cells 3 --octaves 4 --size 34x17 --samples corners -o planet.exr",
+        "noise --cube --cells 3 --octaves 4 --size 9 --samples corners --format exr -o sky/",
+        "noise --sphere --cells 3 --octaves 4 --size 64x32 -o centers.exr",
+    ] {
+        let words: Vec<_> = line.split(' ').collect();
+        assert_done(&folder.run(&words), line);
+    }
+    let planet = read(&folder, "planet.exr").gray().unwrap();
+    for y in 0..17 {
+        assert_eq!(planet.row(y)[0].to_bits(), planet.row(y)[33].to_bits());
+    }
+    for pole in [planet.row(0), planet.row(16)] {
+        assert!(
+            pole.iter()
+                .all(|value| value.to_bits() == pole[0].to_bits())
+        );
+    }
+    let face = |name: &str| {
+        read(&folder, &format!("sky/noise_{name}.exr"))
+            .gray()
+            .unwrap()
+    };
+    let [px, nz, py, pz] = ["px", "nz", "py", "pz"].map(face);
+    for at in 0..9 {
+        // The right side of +z is the left side of +x, and the right side of +x the left side of −z.
+        assert_eq!(pz.row(at)[8].to_bits(), px.row(at)[0].to_bits());
+        assert_eq!(px.row(at)[8].to_bits(), nz.row(at)[0].to_bits());
+        assert_eq!(
+            py.row(8)[at as usize].to_bits(),
+            pz.row(0)[at as usize].to_bits()
+        );
+    }
+    // Both images show the same sphere: the centers of +x and of the equirectangular image look along x.
+    let wide = read(&folder, "centers.exr").gray().unwrap();
+    let center = (wide.row(15)[31] + wide.row(16)[32]) / 2.0;
+    assert!((center - px.row(4)[4]).abs() < 0.02, "{center}");
+    for (line, part) in [
+        ("noise --sphere --size 64 -o a.png", "twice as wide"),
+        ("noise --cube --size 64x32 -o a/", "square"),
+        ("noise --sphere --cube -o a/", "--cube"),
+    ] {
+        let words: Vec<_> = line.split(' ').collect();
+        assert_refused(&folder.run(&words), 2, part, line);
+    }
+}
+
+#[test]
 fn a_flipbook_holds_the_frames_of_a_loop_row_by_row() {
     let folder = Folder::with_inputs("flipbook");
     fs::write(folder.path("tide.toml"), LOOP).unwrap();

@@ -1,0 +1,108 @@
+//! Gradient noise in space on a sphere: an equirectangular image, or the faces of a cube map.
+
+use super::Args;
+use crate::args::Size;
+use crate::error::{Exit, Hint, usage};
+use crate::field::RangeArg;
+use crate::job::{Context, Job};
+use anyhow::Result;
+use dapple::hash::Seed;
+use dapple::noise::{CubeFace, CubeMap, Equirectangular, GradientNoise3};
+use dapple::raster::{Field, FractalShape, Named as _, Raster, parallel};
+use dapple::recipe::{FractalNode, Samples};
+use dapple::tile::Map;
+use serde_json::json;
+
+/// Draws the noise on a sphere.
+///
+/// # Errors
+///
+/// If the size does not fit, an option is out of range, or writing fails.
+pub(super) fn draw(args: &Args, node: &FractalNode, context: &Context) -> Result<Exit> {
+    let Size(size) = args.field.size;
+    args.field.spaces()?;
+    let on_corners = args.field.samples.samples == Samples::Corners;
+    if args.sphere && u64::from(size[0]) != 2 * u64::from(size[1]) {
+        let message = "an equirectangular image is twice as wide as high";
+        return Err(
+            usage(format!("{message}, and --size is {}", args.field.size)).hint(format!(
+                "take --size {}x{size0}",
+                2 * u64::from(size[1]),
+                size0 = size[1]
+            )),
+        );
+    }
+    if args.cube && size[0] != size[1] {
+        let message = format!(
+            "the faces of a cube are square, and --size is {}",
+            args.field.size
+        );
+        return Err(usage(message).hint(format!("take --size {}", size[0])));
+    }
+    let faces = match args.cube {
+        true => CubeFace::ALL.iter().copied().map(Some).collect(),
+        false => vec![None],
+    };
+    let mut job = Job::new(context, "noise", &args.image.files);
+    let parts: Vec<_> = faces
+        .iter()
+        .map(|face| face.map_or("", |face| face.name()))
+        .collect();
+    let targets = args
+        .image
+        .files
+        .targets("noise", &parts, args.image.ending())?;
+    let outputs = job.claim_images(&targets, args.image.format)?;
+    let seed = Seed(args.field.seed).child("noise", 0);
+    let octaves =
+        GradientNoise3::new(seed).fractal(node.octaves, node.gain, 2.0, FractalShape::Sum);
+    let octaves = octaves.map_err(|error| anyhow::Error::new(error).wrong_value())?;
+    let (scale, radius) = (scale(node), args.cells / 2.0);
+    for (face, output) in faces.into_iter().zip(outputs) {
+        let mut pixels = vec![0.0; size[0] as usize * size[1] as usize];
+        parallel::for_each_chunk(&mut pixels, size[0] as usize, |row, out| {
+            let row = row as u32;
+            let place = |direction: [f64; 3]| direction.map(|part| radius * part);
+            let places: Vec<_> = match face {
+                Some(face) => {
+                    let map = CubeMap {
+                        side: size[0],
+                        on_corners,
+                    };
+                    map.directions(face, row).map(place).collect()
+                }
+                None => Equirectangular { size, on_corners }
+                    .directions(row)
+                    .map(place)
+                    .collect(),
+            };
+            // Both slices have a row of pixels.
+            let _ = octaves.values(&places, out);
+            for value in out {
+                *value = mapped((0.5 + scale * *value).clamp(0.0, 1.0), args.field.range);
+            }
+        });
+        let map = Map::Value(Raster::from_vec(size, pixels)?);
+        job.write_image(output, map, true, &args.image)?;
+    }
+    job.finish(args, json!(null))?;
+    Ok(Exit::Done)
+}
+
+/// Returns the factor that makes the standard deviation of the sum a sixth, as for the node `noise`.
+fn scale(node: &FractalNode) -> f32 {
+    let weights = std::iter::successors(Some(1.0), |weight| Some(weight * node.gain));
+    let squares = weights
+        .take(node.octaves as usize)
+        .map(|weight: f64| weight * weight);
+    let variance = squares.sum::<f64>() * f64::from(GradientNoise3::VARIANCE);
+    (1.0 / (6.0 * variance.sqrt())) as f32
+}
+
+/// Maps the ends of a range to 0 and 1.
+fn mapped(value: f32, range: Option<RangeArg>) -> f32 {
+    match range {
+        Some(RangeArg::Ends([low, high])) => (value - low) / (high - low),
+        Some(RangeArg::Raw) | None => value,
+    }
+}
