@@ -113,9 +113,8 @@ fn run(shell: &Shell, step: Step) -> anyhow::Result<()> {
         // graphics adapter.
         Step::Shaders => cmd!(
             shell,
-            "cargo test --workspace --features dapple-wgsl-tests/gpu --test gpu"
+            "cargo test --workspace --features dapple-wgsl-tests/gpu,dapple-cli/gpu --test gpu --test radv --test on_gpu"
         ),
-        Step::Shaders => return shaders(shell),
         Step::Features => return features(shell),
         Step::Package => return package(shell),
         Step::Exchange => return exchange::exchange(shell),
@@ -125,22 +124,6 @@ fn run(shell: &Shell, step: Step) -> anyhow::Result<()> {
         Step::Fuzz => return fuzz::fuzz(shell),
     };
     Ok(command.run()?)
-}
-
-/// Runs the tests that need a graphics adapter. They skip themselves without one.
-fn shaders(shell: &Shell) -> anyhow::Result<()> {
-    cmd!(
-        shell,
-        "cargo test --package dapple-wgsl-tests --features gpu"
-    )
-    .run()?;
-    // The whole workspace, so that its crates have the features with which they are compiled already
-    cmd!(
-        shell,
-        "cargo test --workspace --features dapple-cli/gpu --test on_gpu"
-    )
-    .run()?;
-    Ok(())
 }
 
 /// Common search terms that are not names in the crates. The front page of `dapple` lists the items that cover them.
