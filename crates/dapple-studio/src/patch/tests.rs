@@ -7,6 +7,7 @@ use crate::schema::{Found, Role, roles};
 use dapple::recipe::{Images, Plan, Recipe};
 use proptest::prelude::*;
 use serde_json::{Value as Json, json};
+use std::collections::BTreeSet;
 use toml_edit::DocumentMut;
 
 const TEXT: &str = r##"# A texture.
@@ -213,8 +214,17 @@ fn nodes_come_and_go_with_their_lines() {
 
 #[test]
 fn recipes_stay_valid_without_any_of_their_nodes() {
+    let mut kinds = BTreeSet::new();
     for name in Recipe::builtin_names() {
         let text = Recipe::builtin_text(name).unwrap();
+        // Take the recipes with a kind of node that no earlier one has.
+        let n_before = kinds.len();
+        for node in data(text)["nodes"].as_object().unwrap().values() {
+            kinds.extend(node.as_object().unwrap().keys().cloned());
+        }
+        if kinds.len() == n_before {
+            continue;
+        }
         for node in Recipe::from_toml(text).unwrap().nodes.keys() {
             let name = node.clone();
             let new = apply(text, &[Op::RemoveNode { name }]).unwrap();
