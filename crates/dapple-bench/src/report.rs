@@ -32,7 +32,7 @@ pub(crate) struct Page {
 struct Line {
     group: String,
     cells: [String; 9],
-    /// Note below the table; empty if there is none.
+    /// Note below the table; may be empty.
     note: String,
 }
 
@@ -100,7 +100,7 @@ impl Page {
         })
     }
 
-    /// Adds the rows of another page, which replace those of the same case and peer.
+    /// Adds the rows of another page, replacing rows with the same case and peer.
     pub(crate) fn merged(mut self, newer: Self) -> Self {
         for mut line in newer.lines {
             let machine = line.cells[8].parse::<usize>().unwrap_or(1) - 1;
@@ -246,7 +246,7 @@ pub(crate) fn print(page: &str) {
     print!("{page}");
 }
 
-/// Reads the results page; one without rows if there is none.
+/// Reads the results page; a page without rows if the file is missing.
 #[expect(
     clippy::disallowed_methods,
     reason = "the results of other runs are in a file"

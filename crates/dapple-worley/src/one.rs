@@ -487,8 +487,8 @@ const fn numbers() -> [[u32; LANES]; 2] {
     numbers
 }
 
-/// Selects, in each lane, the number of its cell along an axis. `of` begins with those of the own cell, of the nearer and
-/// of the farther neighbor.
+/// Selects, in each lane, one of the first three numbers of `of`: for the own cell, the nearer, or the farther neighbor
+/// along an axis.
 #[inline(always)]
 fn pick<S: Simd, const N: usize>(simd: S, axis: usize, register: usize, of: &[u32]) -> u32x16<S> {
     let digits = u32x16::from_slice(simd, &const { digits::<N>() }[axis][register]);
