@@ -17,7 +17,9 @@ use dapple_hash::{LatticeHash, Seed};
 #[cfg(feature = "simd")]
 use dapple_raster::simd;
 use dapple_raster::simd::{Level, dispatch};
-use dapple_raster::{Field, Fractal, FractalShape, Gradient, RasterError, RasterViewMut, Window};
+use dapple_raster::{
+    Field, FieldParts, Fractal, FractalShape, Gradient, RasterError, RasterViewMut, Window,
+};
 
 /// Number of corners that are hashed at once.
 const LANES: usize = 32;
@@ -453,6 +455,10 @@ impl<const N: usize> GradientNoise<N> {
 
 /// Positions are in cells. Windows are rendered on all cores if the feature `rayon` is enabled.
 impl<const N: usize> Field<N> for GradientNoise<N> {
+    fn parts(&self) -> FieldParts<'_, N> {
+        FieldParts::Generator(self)
+    }
+
     fn value(&self, position: [f64; N]) -> f32 {
         self.sample(position)
     }

@@ -6,7 +6,7 @@ use crate::render::render;
 use crate::sink::Sink;
 use crate::splat::LANES;
 use crate::{Pups, PupsError};
-use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
+use dapple_raster::{Field, FieldParts, Raster, RasterError, RasterViewMut, Window};
 use fearless_simd::prelude::*;
 use glam::DVec2;
 use std::sync::OnceLock;
@@ -63,6 +63,10 @@ impl Texture {
 
 impl Field for Texture {
     #[inline]
+    fn parts(&self) -> FieldParts<'_> {
+        FieldParts::Generator(self)
+    }
+
     fn value(&self, position: [f64; 2]) -> f32 {
         let mut value = [0.0];
         self.values.sample(position.into(), &mut value);

@@ -3,6 +3,7 @@
 mod combinators;
 mod fractal;
 mod gradient;
+mod parts;
 mod period;
 mod positions;
 mod slice;
@@ -11,6 +12,7 @@ mod values;
 pub use combinators::FieldExt;
 pub use fractal::{Fractal, FractalShape};
 pub use gradient::{DisplacementGradient, Gradient};
+pub use parts::FieldParts;
 pub use period::common_period;
 pub use positions::{Displacement, Rotated, Scaled, Translated, Warped};
 pub use slice::{Extruded, Slice};
@@ -106,6 +108,12 @@ pub trait Field<const N: usize = 2>: Send + Sync {
         [None; N]
     }
 
+    /// Returns how the field is composed, for programs that translate fields, such as to shaders. It is
+    /// [`Unknown`](FieldParts::Unknown) unless an implementation overrides it.
+    fn parts(&self) -> FieldParts<'_, N> {
+        FieldParts::Unknown
+    }
+
     /// Renders one period of the field, starting at the origin, as a raster of `size` pixels that tiles exactly. Only
     /// the first two axes are rendered; the other coordinates are 0. Along an axis where the field is constant, the
     /// raster covers a length of 1.
@@ -165,6 +173,10 @@ macro_rules! forward_field {
             fn period(&self) -> [Option<f64>; N] {
                 (**self).period()
             }
+
+            fn parts(&self) -> FieldParts<'_, N> {
+                (**self).parts()
+            }
         }
     )*};
 }
@@ -176,6 +188,10 @@ forward_field!(&F, Box<F>, Arc<F>);
 pub struct Constant(pub f32);
 
 impl<const N: usize> Field<N> for Constant {
+    fn parts(&self) -> FieldParts<'_, N> {
+        FieldParts::Constant(self.0)
+    }
+
     fn value(&self, _position: [f64; N]) -> f32 {
         self.0
     }

@@ -95,9 +95,9 @@ pub use error::{RasterError, RasterErrorKind};
 #[doc(alias("heightmap", "height map", "noise"))]
 pub use field::Field;
 pub use field::{
-    Change, Constant, Displacement, DisplacementGradient, Extruded, FieldExt, FieldFn, Fractal,
-    FractalShape, Gradient, IntoField, Linear, Mapped, Mixed, Pair, PairOperation, Rotated, Scaled,
-    Slice, Translated, Warped, common_period, field_fn,
+    Change, Constant, Displacement, DisplacementGradient, Extruded, FieldExt, FieldFn, FieldParts,
+    Fractal, FractalShape, Gradient, IntoField, Linear, Mapped, Mixed, Pair, PairOperation,
+    Rotated, Scaled, Slice, Translated, Warped, common_period, field_fn,
 };
 pub use glam;
 #[doc(hidden)]

@@ -2,7 +2,7 @@
 
 use crate::worley::cell_value;
 use crate::{Dimensions, FeatureView, Plane, Space, Worley};
-use dapple_raster::{Field, RasterError, RasterViewMut, Window};
+use dapple_raster::{Field, FieldParts, RasterError, RasterViewMut, Window};
 
 /// A field that gives each Voronoi cell a random number in `[0, 1)`. The number at a position is the
 /// [`Feature::cell_value`](crate::Feature::cell_value) of the nearest feature point.
@@ -38,6 +38,12 @@ impl<const N: usize> CellValues<N>
 where
     Dimensions: Space<N>,
 {
+    /// Returns the basis.
+    #[must_use]
+    pub fn worley(&self) -> &Worley<N> {
+        &self.worley
+    }
+
     /// Renders the values at the pixel centers of a window of a plane into `out`.
     ///
     /// # Errors
@@ -61,6 +67,10 @@ impl<const N: usize> Field<N> for CellValues<N>
 where
     Dimensions: Space<N>,
 {
+    fn parts(&self) -> FieldParts<'_, N> {
+        FieldParts::Generator(self)
+    }
+
     fn value(&self, position: [f64; N]) -> f32 {
         let nearest = self.worley.nearest(position);
         value(nearest.distance, nearest.id)

@@ -6,7 +6,7 @@ use crate::render::{Output, Picture, render_stack};
 use crate::sink::{Tone, Values};
 use crate::{Combination, Dimensions, Plane, Space, Vector, Worley, WorleyError, WorleyErrorKind};
 use dapple_hash::{CellHash, Seed, unit_f64};
-use dapple_raster::{Field, Gradient, RasterError, RasterViewMut, Window};
+use dapple_raster::{Field, FieldParts, Gradient, RasterError, RasterViewMut, Window};
 
 /// A scalar texture: a combination of F1 to F4 at every position.
 ///
@@ -45,6 +45,13 @@ impl<const N: usize> Cellular<N>
 where
     Dimensions: Space<N>,
 {
+    /// Returns the coefficients of the distances, scaled to the range, and the number that is added, for shaders.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn shader_tone(&self) -> (Combination, f32) {
+        (self.tone.weights, self.tone.shift)
+    }
+
     /// Returns the basis that the texture combines.
     #[must_use]
     pub fn worley(&self) -> &Worley<N> {
@@ -195,6 +202,10 @@ impl<const N: usize> Field<N> for Cellular<N>
 where
     Dimensions: Space<N>,
 {
+    fn parts(&self) -> FieldParts<'_, N> {
+        FieldParts::Generator(self)
+    }
+
     fn value(&self, position: [f64; N]) -> f32 {
         self.value(position)
     }

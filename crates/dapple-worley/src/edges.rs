@@ -2,7 +2,7 @@
 
 use crate::render::Output;
 use crate::{Dimensions, Metric, Plane, Space, Worley};
-use dapple_raster::{Field, RasterError, RasterViewMut, Window};
+use dapple_raster::{Field, FieldParts, RasterError, RasterViewMut, Window};
 
 /// A texture whose value is the distance to the nearest edge of the Voronoi cell; see [`Worley::edge_distance`].
 ///
@@ -43,6 +43,12 @@ impl<const N: usize> EdgeDistances<N>
 where
     Dimensions: Space<N>,
 {
+    /// Returns the basis.
+    #[must_use]
+    pub fn worley(&self) -> &Worley<N> {
+        &self.worley
+    }
+
     /// Returns the [`Worley::edge_distance`] at `position`.
     #[must_use]
     pub fn value(&self, position: impl Into<[f64; N]>) -> f32 {
@@ -71,6 +77,10 @@ impl<const N: usize> Field<N> for EdgeDistances<N>
 where
     Dimensions: Space<N>,
 {
+    fn parts(&self) -> FieldParts<'_, N> {
+        FieldParts::Generator(self)
+    }
+
     fn value(&self, position: [f64; N]) -> f32 {
         self.value(position)
     }

@@ -5,7 +5,7 @@
 
 use crate::{Pups, PupsError};
 use dapple_points::PointIdx;
-use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
+use dapple_raster::{Field, FieldParts, Raster, RasterError, RasterViewMut, Window};
 use glam::DVec2;
 
 /// A texture that gives every position the value of its strongest control point's label.
@@ -160,6 +160,10 @@ impl LabelTexture {
 }
 
 impl Field for LabelTexture {
+    fn parts(&self) -> FieldParts<'_> {
+        FieldParts::Generator(self)
+    }
+
     fn value(&self, position: [f64; 2]) -> f32 {
         self.of_point(self.pups.strongest(position.into()))
     }

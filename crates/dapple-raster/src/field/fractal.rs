@@ -6,6 +6,10 @@
 use super::common_period;
 use super::values::{by_bands, zip_rows};
 use crate::{Field, Range, RasterError, RasterViewMut, Scaled, Window, range};
+use crate::{Field, FieldParts, RasterError, RasterViewMut, Scaled, Window};
+
+/// Maximum number of octaves in a sum.
+const MOST_OCTAVES: usize = 32;
 
 /// A fractal sum of octaves, `Σ gain^i · shape(field_i(lacunarity^i · position))`, not divided by the sum of the
 /// weights: fractional Brownian motion, ridges or billows, depending on the shape. Usual values are a lacunarity of 2
@@ -148,6 +152,12 @@ impl<F> Fractal<F> {
 }
 
 impl<const N: usize, F: Field<N>> Field<N> for Fractal<F> {
+    fn parts(&self) -> FieldParts<'_, N> {
+        let octaves = self.octaves();
+        let octaves = octaves.map(|(field, frequency, weight)| (field as _, frequency, weight));
+        FieldParts::Fractal(octaves.collect(), self.shape)
+    }
+
     fn value(&self, position: [f64; N]) -> f32 {
         let mut sum = 0.0;
         for (octave, weight) in self.scaled() {

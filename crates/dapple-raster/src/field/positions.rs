@@ -2,7 +2,7 @@
 
 use super::common_period;
 use super::values::by_bands;
-use crate::{Field, RasterError, RasterViewMut, Window};
+use crate::{Field, FieldParts, RasterError, RasterViewMut, Window};
 
 /// A field with scaled positions; see [`FieldExt::frequency`](super::FieldExt::frequency).
 #[derive(Clone, Copy, Debug)]
@@ -89,6 +89,10 @@ impl<F, const N: usize> Scaled<F, N> {
 }
 
 impl<F: Field<N>, const N: usize> Field<N> for Scaled<F, N> {
+    fn parts(&self) -> FieldParts<'_, N> {
+        FieldParts::Scaled(&self.field, self.frequency)
+    }
+
     fn value(&self, position: [f64; N]) -> f32 {
         self.field.value(self.moved(position))
     }
@@ -128,6 +132,10 @@ impl<F, const N: usize> Translated<F, N> {
 }
 
 impl<F: Field<N>, const N: usize> Field<N> for Translated<F, N> {
+    fn parts(&self) -> FieldParts<'_, N> {
+        FieldParts::Translated(&self.field, self.offset)
+    }
+
     fn value(&self, position: [f64; N]) -> f32 {
         self.field.value(self.moved(position))
     }
@@ -156,6 +164,10 @@ impl<F> Rotated<F> {
 }
 
 impl<F: Field<N>, const N: usize> Field<N> for Rotated<F> {
+    fn parts(&self) -> FieldParts<'_, N> {
+        FieldParts::Rotated(&self.field, self.direction)
+    }
+
     fn value(&self, position: [f64; N]) -> f32 {
         self.field.value(self.moved(position))
     }
@@ -186,6 +198,11 @@ impl<F, D> Warped<F, D> {
 }
 
 impl<F: Field<N>, D: Displacement<N>, const N: usize> Field<N> for Warped<F, D> {
+    fn parts(&self) -> FieldParts<'_, N> {
+        let by = core::array::from_fn(|axis| self.by.along(axis));
+        FieldParts::Warped(&self.field, by, self.amount)
+    }
+
     fn value(&self, position: [f64; N]) -> f32 {
         let mut moved = position;
         for (axis, at) in moved.iter_mut().enumerate() {

@@ -1,7 +1,7 @@
 //! Fields that change or combine the values of other fields.
 
 use super::common_period;
-use crate::{Field, RasterError, RasterViewMut, Window, parallel};
+use crate::{Field, FieldParts, RasterError, RasterViewMut, Window, parallel};
 use core::fmt;
 
 /// Number of values that are computed at a time, chosen so that two bands fit a core's cache.
@@ -18,6 +18,12 @@ pub struct Mapped<F, M> {
 pub trait Change: Send + Sync {
     /// Returns the new value.
     fn change(&self, value: f32) -> f32;
+
+    /// Returns the map if it is linear.
+    #[doc(hidden)]
+    fn linear(&self) -> Option<&Linear> {
+        None
+    }
 }
 
 impl<M: Fn(f32) -> f32 + Send + Sync> Change for M {
@@ -38,6 +44,10 @@ impl Change for Linear {
     fn change(&self, value: f32) -> f32 {
         let [start, end] = self.to;
         start + (end - start) * ((value - self.from) / self.length)
+    }
+
+    fn linear(&self) -> Option<&Linear> {
+        Some(self)
     }
 }
 
@@ -101,6 +111,18 @@ where
 }
 
 impl<F: Field<N>, M: Change, const N: usize> Field<N> for Mapped<F, M> {
+    fn parts(&self) -> FieldParts<'_, N> {
+        match self.function.linear() {
+            Some(&Linear { from, length, to }) => FieldParts::Linear {
+                field: &self.field,
+                from,
+                length,
+                to,
+            },
+            None => FieldParts::Unknown,
+        }
+    }
+
     fn value(&self, position: [f64; N]) -> f32 {
         self.function.change(self.field.value(position))
     }
@@ -133,6 +155,10 @@ impl<F: Field<N>, M: Change, const N: usize> Field<N> for Mapped<F, M> {
 }
 
 impl<A: Field<N>, B: Field<N>, const N: usize> Field<N> for Pair<A, B> {
+    fn parts(&self) -> FieldParts<'_, N> {
+        FieldParts::Pair(&self.first, &self.second, self.operation)
+    }
+
     fn value(&self, position: [f64; N]) -> f32 {
         let (a, b) = (self.first.value(position), self.second.value(position));
         self.operation.apply(a, b)
@@ -165,6 +191,10 @@ impl<A: Field<N>, B: Field<N>, const N: usize> Field<N> for Pair<A, B> {
 }
 
 impl<A: Field<N>, B: Field<N>, T: Field<N>, const N: usize> Field<N> for Mixed<A, B, T> {
+    fn parts(&self) -> FieldParts<'_, N> {
+        FieldParts::Mixed([&self.from, &self.to, &self.by])
+    }
+
     fn value(&self, position: [f64; N]) -> f32 {
         let (from, to) = (self.from.value(position), self.to.value(position));
         from + (to - from) * unit(self.by.value(position))

@@ -4,7 +4,7 @@ use super::WaveletNoise;
 use super::band::Band;
 use super::place::{Period, Place};
 use super::render::render;
-use dapple_raster::{Field, Gradient, RasterError, RasterViewMut, Window};
+use dapple_raster::{Field, FieldParts, Gradient, RasterError, RasterViewMut, Window};
 use glam::{DVec2, DVec3};
 
 impl WaveletNoise<2> {
@@ -32,6 +32,10 @@ impl WaveletNoise<2> {
 /// Positions are in cells. Windows are rendered on all cores if the feature `rayon` is enabled.
 impl Field for WaveletNoise<2> {
     #[inline]
+    fn parts(&self) -> FieldParts<'_> {
+        FieldParts::Generator(self)
+    }
+
     fn value(&self, position: [f64; 2]) -> f32 {
         self.sample(position)
     }
