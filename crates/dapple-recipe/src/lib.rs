@@ -124,7 +124,7 @@ pub use plan::{
     RendererError, Samples, Whole,
 };
 pub use recipe::{Material, Recipe, SCHEMA};
-pub use shader::{MaterialShader, ShaderOptions};
+pub use shader::{FieldShader, MaterialShader, ShaderOptions, field_to_wgsl};
 pub use text::{MAX_TEXT, Parameter, Parameters, read_options};
 pub use values::Values;
 pub use words::similar_words;

@@ -7,7 +7,10 @@
 //! The values have the bits of the plan. Sums and products of `f32` pass through the barrier of `dapple-wgsl`, and
 //! positions are computed with the 64 bits of the processor, in `u32`.
 
+mod field;
 mod writer;
+
+pub use field::{FieldShader, field_to_wgsl};
 
 pub(crate) use writer::{Code, NodeShader, Refusal, color_literal, lerp, literal, quotient};
 

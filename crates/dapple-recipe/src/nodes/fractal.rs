@@ -83,15 +83,20 @@ impl NodeKind for FractalOf {
         for (_, frequency, weight) in fractal.octaves() {
             let at = shader.position([frequency; 2]);
             let value = input(&at).text;
-            let value = match self.shape {
-                FractalShape::Sum => value,
-                FractalShape::Ridged => format!("ridge({value}, zero)"),
-                FractalShape::Billow => format!("abs({value})"),
-                _ => return Err(Refusal::new("this shape of octaves has no shader")),
-            };
+            let value = shaped_code(self.shape, value)?;
             let weight = literal(weight);
             sum = shader.name("sum", format!("add_octave({sum}, {weight}, {value}, zero)"));
         }
         Ok(Code::number(sum))
     }
+}
+
+/// Writes the function of a fractal sum that is applied to the value of an octave.
+pub(crate) fn shaped_code(shape: FractalShape, value: String) -> Result<String, Refusal> {
+    Ok(match shape {
+        FractalShape::Sum => value,
+        FractalShape::Ridged => format!("ridge({value}, zero)"),
+        FractalShape::Billow => format!("abs({value})"),
+        _ => return Err(Refusal::new("this shape of octaves has no shader")),
+    })
 }

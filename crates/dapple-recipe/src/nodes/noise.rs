@@ -125,22 +125,12 @@ impl NodeKind for FractalNode {
         let noise = GradientNoise2::new(shader.seed(self.seed.as_ref()));
         let noise = noise.with_period(shader.periods(frequency))?;
         let octaves = noise.fractal(self.octaves, self.gain, 2.0, FractalShape::Sum)?;
-        shader.needs(Module::GradientNoise2d);
         shader.needs(Module::Fractal);
         let first = shader.position(frequency);
         let mut sum = literal(0.0);
         for (noise, frequency, weight) in octaves.octaves() {
-            let mut words = noise.shader_words(weight)?;
-            // Add the offset of the octave to the position with 64 bits, as the CPU does.
-            let offset = [8, 9].map(|at| f64::from(words[at]) / f64::from(1 << 24));
-            words[8..12].fill(0);
-            let mut at = shader.scaled(&first, [frequency; 2]);
-            if offset != [0.0; 2] {
-                let [x, y] = offset.map(double_value);
-                at = shader.name("position", format!("shifted_2d({at}, {x}, {y})"));
-            }
-            let noise = shader.constant("NOISE", gradient_noise_value(&words));
-            let value = format!("gradient_noise_2d({noise}, noise_place_2d({at}), zero)");
+            let at = shader.scaled(&first, [frequency; 2]);
+            let value = gradient_code(shader, noise, weight, &at)?;
             let weight = literal(weight);
             sum = shader.name("sum", format!("add_octave({sum}, {weight}, {value}, zero)"));
         }
@@ -179,6 +169,29 @@ impl FractalNode {
             .map(|weight| (weight / (6.0 * deviation)) as f32)
             .collect()
     }
+}
+
+/// Writes gradient noise at a position in cells.
+pub(crate) fn gradient_code(
+    shader: &mut NodeShader<'_, '_>,
+    noise: &GradientNoise2,
+    weight: f32,
+    at: &str,
+) -> Result<String, Refusal> {
+    shader.needs(Module::GradientNoise2d);
+    let mut words = noise.shader_words(weight)?;
+    // Add the offset of the octave to the position with 64 bits, as the CPU does.
+    let offset = [8, 9].map(|at| f64::from(words[at]) / f64::from(1 << 24));
+    words[8..12].fill(0);
+    let mut at = at.to_owned();
+    if offset != [0.0; 2] {
+        let [x, y] = offset.map(double_value);
+        at = shader.name("position", format!("shifted_2d({at}, {x}, {y})"));
+    }
+    let noise = shader.constant("NOISE", gradient_noise_value(&words));
+    Ok(format!(
+        "gradient_noise_2d({noise}, noise_place_2d({at}), zero)"
+    ))
 }
 
 /// Adds ½ to a value, and clamps the result to 0 to 1.

@@ -273,7 +273,7 @@ impl NodeKind for PupsNode {
 }
 
 /// Writes a texture, and adds its control points to the data of the shader.
-pub(super) fn code(
+pub(crate) fn code(
     shader: &mut NodeShader<'_, '_>,
     texture: &ShaderLayers,
 ) -> Result<Code, Refusal> {

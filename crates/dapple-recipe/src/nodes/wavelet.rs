@@ -63,6 +63,15 @@ pub(super) fn code(
     weights: &[f32],
 ) -> Result<Code, Refusal> {
     let noise = shader.build(|plan| noise(plan, seed, frequency, weights))?;
+    noise_code(shader, &noise, frequency)
+}
+
+/// Writes wavelet noise at the position times a frequency.
+pub(crate) fn noise_code(
+    shader: &mut NodeShader<'_, '_>,
+    noise: &WaveletNoise2,
+    frequency: [f64; 2],
+) -> Result<Code, Refusal> {
     let first = shader.data(&noise.shader_words())?;
     shader.needs(Module::WaveletNoise2d);
     let at = shader.position(frequency);

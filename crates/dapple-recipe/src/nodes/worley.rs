@@ -9,7 +9,8 @@ use dapple_raster::{Field, FieldExt};
 use dapple_raster::{Range, range};
 use dapple_wgsl::{Module, number_value, worley_value};
 use dapple_worley::{
-    Combination, Dimensions, Metric, OctaveSeeds, Octaves, Scatter, Space, Worley, Worley2, Worley4,
+    CellValues, Cellular, Combination, Dimensions, EdgeDistances, Metric, OctaveSeeds, Octaves,
+    Scatter, Space, Worley, Worley2, Worley4,
 };
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
@@ -337,13 +338,52 @@ fn split(coordinate: f64) -> Result<(i32, String), Refusal> {
     ))
 }
 
+/// Writes a generator of a cellular basis as an expression at the shader's position.
+pub(crate) enum WorleyField<'a> {
+    Cellular(&'a Cellular<2>),
+    CellValues(&'a CellValues<2>),
+    EdgeDistances(&'a EdgeDistances<2>),
+}
+
+impl WorleyField<'_> {
+    /// Writes the field at the shader's position, which is in cells.
+    pub(crate) fn code(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
+        let node = WorleyNode {
+            frequency: Frequency([1.0; 2]),
+            ..WorleyNode::default()
+        };
+        Ok(Code::number(match self {
+            Self::Cellular(field) => {
+                let (weights, shift) = field.shader_tone();
+                let depth = weights.depth();
+                let features = node.features(shader, field.worley(), depth, 1.0, 0.0)?;
+                weighted(&features, weights.coefficients(), shift)
+            }
+            Self::CellValues(field) => {
+                let features = node.features(shader, field.worley(), 1, 1.0, 0.0)?;
+                format!("cell_value({features}[0].id)")
+            }
+            Self::EdgeDistances(field) => {
+                shader.needs(Module::WorleyEdges2d);
+                let (worley, place) = node.placed(shader, field.worley(), 1.0)?;
+                format!("edge_distance_2d({worley}, {place}, zero)")
+            }
+        }))
+    }
+}
+
 /// Writes a combination of distances, mapped from `range` to 0 to 1 if there is one.
 fn tone(features: &str, combination: Combination, range: Option<[f32; 2]>) -> String {
     let [low, high] = range.unwrap_or([0.0, 1.0]);
     let weights = combination
         .coefficients()
         .map(|weight| weight / (high - low));
-    let mut sum = literal(-low / (high - low) + 0.0);
+    weighted(features, weights, -low / (high - low) + 0.0)
+}
+
+/// Writes the sum of a number and of weighted distances.
+fn weighted(features: &str, weights: [f32; 4], shift: f32) -> String {
+    let mut sum = literal(shift);
     for (index, &weight) in weights.iter().enumerate() {
         if weight != 0.0 {
             let distance = format!("{features}[{index}].distance");

@@ -60,6 +60,8 @@ struct Scope<'a> {
     nodes: BTreeMap<&'a str, Code>,
     /// Whether nodes without a shader may be read from textures.
     has_textures: bool,
+    /// Expression of the position, if it is not the argument of the function.
+    at: Option<String>,
 }
 
 /// Access of a node to the shader that it is written to.
@@ -94,6 +96,11 @@ impl Code {
 }
 
 impl Refusal {
+    /// Returns the reason.
+    pub(super) fn into_reason(self) -> String {
+        self.0
+    }
+
     pub(crate) fn new(reason: impl fmt::Display) -> Self {
         Self(reason.to_string())
     }
@@ -286,7 +293,16 @@ impl<'a> NodeShader<'_, 'a> {
     /// Returns the position, or the position times a frequency for each axis.
     pub(crate) fn position(&mut self, frequency: [f64; 2]) -> String {
         self.needs(Module::Position2d);
-        self.scaled("at", frequency)
+        let at = self.scope.at.clone();
+        self.scaled(at.as_deref().unwrap_or("at"), frequency)
+    }
+
+    /// Writes with another position.
+    pub(crate) fn at<T>(&mut self, position: String, write: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.scope.at.replace(position);
+        let written = write(self);
+        self.scope.at = before;
+        written
     }
 
     /// Returns a position times a frequency for each axis.
@@ -524,6 +540,40 @@ impl<'a> Writer<'a> {
         );
         out += material;
         out += "}\n\n";
+        out + &self.parts()
+    }
+
+    /// Writes a field as a function of the position, named `field`.
+    pub(super) fn field(
+        &mut self,
+        write: impl FnOnce(&mut NodeShader<'_, 'a>) -> Result<Code, Refusal>,
+    ) -> Result<String, Refusal> {
+        let mut scope = Scope::default();
+        let value = write(&mut NodeShader {
+            writer: self,
+            scope: &mut scope,
+            node: "field",
+        })?;
+        let [data, data_passed] = match self.data.is_empty() {
+            true => [""; 2],
+            false => [DATA, DATA_PASSED],
+        };
+        let text = format!(
+            "// A field of dapple, without bindings and entry points: call `field`.\n//\n\
+             // place: position; `place_2d(position)` makes it from a `vec2<f32>`\n\
+             // zero: 0, read from a buffer; with a constant, compilers change the last bits\n\n\
+             fn field(place: Place2d, {data}zero: u32) -> f32 {{\n    \
+             return field64(position_2d(place), {data_passed}zero);\n}}\n\n\
+             // At a position in numbers of 64 bits\n\
+             fn field64(at: Position2d, {data}zero: u32) -> f32 {{\n{}    return {};\n}}\n\n",
+            scope.lines, value.text
+        );
+        Ok(text + &self.parts())
+    }
+
+    /// Joins functions, constants and modules.
+    fn parts(&self) -> String {
+        let mut out = String::new();
         for function in &self.functions {
             out += function;
             out += "\n\n";

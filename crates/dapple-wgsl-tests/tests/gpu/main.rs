@@ -1,5 +1,6 @@
 //! The shaders of `dapple-wgsl` against the CPU: all bits are equal.
 
+mod fields;
 mod gradient_noise;
 mod lookups;
 mod naga_oil;

@@ -271,7 +271,10 @@ fn builtin_recipes_have_the_bits_of_the_cpu() {
 }
 
 #[test]
-#[expect(clippy::print_stdout, reason = "the output of a test counts the recipes")]
+#[expect(
+    clippy::print_stdout,
+    reason = "the output of a test counts the recipes"
+)]
 fn builtin_recipes_read_textures_of_nodes_that_are_not_local_alone() {
     // Nodes that depend on a neighborhood, and two textures without a shader
     let kinds = [
@@ -300,7 +303,10 @@ fn builtin_recipes_read_textures_of_nodes_that_are_not_local_alone() {
         println!("{name}: {nodes:?}");
         for (node, reason) in nodes {
             let mut known = reasons.iter();
-            assert!(known.any(|known| reason.contains(known)), "{name}: {node}: {reason}");
+            assert!(
+                known.any(|known| reason.contains(known)),
+                "{name}: {node}: {reason}"
+            );
         }
     }
     println!("{complete} recipes need no textures");
@@ -310,7 +316,9 @@ fn builtin_recipes_read_textures_of_nodes_that_are_not_local_alone() {
 #[test]
 fn stamps_and_gabor_noise_have_a_shader_where_the_recipe_repeats() {
     for (node, what) in [("scatter", "stamps"), ("gabor", "Gabor noise")] {
-        let text = format!("dapple = 1\nwrap = [true, false]\nnodes.a.{node} = {{}}\nmaterial.height = 'a'");
+        let text = format!(
+            "dapple = 1\nwrap = [true, false]\nnodes.a.{node} = {{}}\nmaterial.height = 'a'"
+        );
         let recipe = Recipe::from_toml(&text).expect("a recipe");
         let refused = recipe.to_wgsl(&Images::new(), &ShaderOptions::default());
         let refused = refused.expect_err("it does not repeat along y").to_string();
