@@ -20,7 +20,7 @@ pub enum FieldParts<'a, const N: usize = 2> {
     Constant(f32),
     /// A field at positions multiplied by a number for each axis.
     Scaled(&'a dyn Field<N>, [f64; N]),
-    /// A field at positions to which an offset is added.
+    /// A field at positions plus an offset.
     Translated(&'a dyn Field<N>, [f64; N]),
     /// A field rotated about the origin by an angle, given by its cosine and sine.
     Rotated(&'a dyn Field<N>, [f64; 2]),
