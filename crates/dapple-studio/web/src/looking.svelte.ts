@@ -47,6 +47,8 @@ export class Looking {
   exact = $state<'sphere' | 'plane' | 'torus'>('sphere');
   /** Width and height of the tile, in units of the plane. */
   extent = $state.raw<[number, number]>([1, 1]);
+  /** The optional maps of the material that the lit view shows. */
+  extras = $state.raw<string[]>([]);
   limit = $state(4096);
   whole = $state(4096);
 
@@ -82,7 +84,7 @@ export class Looking {
 
   /** The maps that this kind of view needs. */
   needed(): string[] {
-    if (this.mode === 'lit') return ['albedo', 'normal', 'orm', 'height'];
+    if (this.mode === 'lit') return ['albedo', 'normal', 'orm', 'height', ...this.extras];
     return this.mode === 'maps' || this.mode === 'tiled' ? [...this.maps] : [];
   }
 

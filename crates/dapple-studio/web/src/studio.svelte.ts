@@ -177,6 +177,12 @@ export class Studio {
     return at(this.recipe, path);
   }
 
+  /** Sets the optional maps of the lit view. A view is requested again only if they change. */
+  #showExtras(recipe: Json): void {
+    const extras = EXTRAS.filter((name) => (at(recipe, ['material', name]) ?? null) !== null);
+    if (extras.join() !== this.looking.extras.join()) this.looking.extras = extras;
+  }
+
   /** The value of a named parameter. */
   parameter(name: string): Json | undefined {
     const given = this.value(['parameters', name]);
@@ -434,6 +440,7 @@ export class Studio {
       case 'values':
         this.recipe = message.recipe;
         this.looking.extent = extentOf(message.recipe);
+        this.#showExtras(message.recipe);
         return;
       case 'began':
         return this.rendering.began(message);
@@ -582,6 +589,9 @@ function settle(now: Points, before: Points | null): Points {
   });
   return { ...now, points };
 }
+
+/** The optional maps that the lit view shows. */
+const EXTRAS = ['opacity', 'emission'];
 
 function extentOf(recipe: Json): [number, number] {
   const [w, h] = (at(recipe, ['extent']) ?? [1, 1]) as number[];

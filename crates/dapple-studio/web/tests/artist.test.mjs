@@ -246,6 +246,42 @@ describe('an artist', { skip, timeout: 240_000 }, () => {
     }
   });
 
+  test('the lit view shows opacity, blended and cut off, and emission', async () => {
+    const recipe = (more) => `dapple = 1\n[material]\nheight = 0.5\nalbedo = "#000000"\n${more}\n`;
+    // The color in the center of the sphere, or null without WebGL.
+    const center = async (page) => {
+      await page.locator('#tab-lit').click({ noWaitAfter: true });
+      await page.locator('.lit canvas').waitFor({ timeout: 60_000 });
+      await settled(page, 60_000);
+      if ((await page.locator('.lit .wrong').count()) > 0) return null;
+      await page.waitForTimeout(1500);
+      const picture = (await page.locator('.lit canvas').screenshot()).toString('base64');
+      return page.evaluate(async (data) => {
+        const image = await createImageBitmap(new Blob([Uint8Array.from(atob(data), (c) => c.charCodeAt(0))]));
+        const canvas = new OffscreenCanvas(image.width, image.height);
+        const context = canvas.getContext('2d');
+        context.drawImage(image, 0, 0);
+        return [...context.getImageData(image.width / 2, image.height / 2, 1, 1).data];
+      }, picture);
+    };
+    const found = {};
+    const glowing = 'emission = "#ff0000"\n';
+    for (const [name, more] of Object.entries({
+      solid: glowing,
+      half: `${glowing}opacity = 0.5`,
+      cut: `${glowing}opacity = 0.5\nopacity_cutoff = 0.75`,
+    })) {
+      await within(recipe(more), async (page) => {
+        found[name] = await center(page);
+      });
+      if (found[name] === null) return; // This browser has no WebGL, and the page says so.
+    }
+    const red = ([r, g]) => r - g;
+    assert.ok(red(found.solid) > 150, JSON.stringify(found));
+    assert.ok(red(found.cut) < 10, JSON.stringify(found));
+    assert.ok(red(found.half) > 30 && red(found.half) < red(found.solid) - 30, JSON.stringify(found));
+  });
+
   test('an own model stays closed with relief', () => within('dapple = 1\n[material]\nheight = 1.0\nrelief = 0.1\nalbedo = "#400000"\n', async (page) => {
     // A cube: each face has its own corners in the texture, and no normals.
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => `v ${i & 1} ${(i >> 1) & 1} ${(i >> 2) & 1}`);

@@ -1,10 +1,10 @@
 // Renders the lit material with WebGL: received maps become textures of a physically based material.
 //
 // Normals are in tangent space. Occlusion, roughness and metallic are packed as in glTF. Albedo is sRGB, all other
-// maps are linear. Heights displace the surface by the relief of the recipe. The environment is generated: a sky that
+// maps are linear. Opacity is blended or cut off. Heights displace the surface by the relief of the recipe. The environment is generated: a sky that
 // gets brighter toward the top, and three soft boxes.
 import {
-  AmbientLight, BackSide, BoxGeometry, type BufferGeometry, Color, DataTexture, DirectionalLight,
+  AmbientLight, BackSide, BoxGeometry, type BufferGeometry, Color, DataTexture, DirectionalLight, DoubleSide, FrontSide,
   LinearFilter, LinearMipmapLinearFilter, Mesh, MeshBasicMaterial, MeshStandardMaterial, NeutralToneMapping, NoColorSpace, PerspectiveCamera, PlaneGeometry,
   PMREMGenerator, RepeatWrapping, RGBAFormat, Scene, SphereGeometry, SRGBColorSpace, type Texture, UnsignedByteType,
   Vector2, WebGLRenderer,
@@ -79,7 +79,7 @@ attribute vec2 weldedUv;`);
     if (texture && texture.image.width === w && texture.image.height === h) texture.image.data = pixels;
     else {
       texture?.dispose();
-      texture = textureOf(pixels, w, h, name === 'albedo');
+      texture = textureOf(pixels, w, h, name === 'albedo' || name === 'emission');
       this.#textures.set(name, texture);
       this.#wear(name, texture);
     }
@@ -122,6 +122,27 @@ attribute vec2 weldedUv;`);
     if (!largest.getAttribute('uv')) throw new Error('the mesh has no texture coordinates');
     this.#model = fitted(largest.clone());
     this.#shape = '';
+  }
+
+  /**
+   * Shows the optional maps `extras` of the material. An opacity is blended, or cut off at `cutoff`. Emission is
+   * multiplied by `strength`.
+   */
+  show(extras: string[], cutoff: number | null, strength: number): void {
+    for (const [name, map] of [['opacity', 'alphaMap'], ['emission', 'emissiveMap']] as const) {
+      if (extras.includes(name)) continue;
+      this.#textures.get(name)?.dispose();
+      this.#textures.delete(name);
+      this.#material[map] = null;
+    }
+    const isOpen = extras.includes('opacity');
+    this.#material.transparent = isOpen && cutoff === null;
+    this.#material.alphaTest = isOpen ? (cutoff ?? 0) : 0;
+    this.#material.side = isOpen ? DoubleSide : FrontSide;
+    this.#material.emissive.set(extras.includes('emission') ? 0xffffff : 0x000000);
+    this.#material.emissiveIntensity = strength;
+    this.#material.needsUpdate = true;
+    this.later();
   }
 
   /** Rotates the light about the vertical axis. The angle is in turns. */
@@ -181,6 +202,8 @@ attribute vec2 weldedUv;`);
     if (name === 'albedo') this.#material.map = texture;
     else if (name === 'normal') this.#material.normalMap = texture;
     else if (name === 'height') this.#material.displacementMap = texture;
+    else if (name === 'opacity') this.#material.alphaMap = texture;
+    else if (name === 'emission') this.#material.emissiveMap = texture;
     else Object.assign(this.#material, { aoMap: texture, roughnessMap: texture, metalnessMap: texture });
     const [other] = [...this.#textures.values()].filter((one) => one !== texture);
     if (other) texture.repeat.copy(other.repeat);
