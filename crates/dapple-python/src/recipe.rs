@@ -294,6 +294,54 @@ impl Recipe {
         Self { recipe }
     }
 
+    /// The named parameters of the recipe and their values, in the order of its text. Options share their values as
+    /// `"$name"`.
+    #[getter]
+    fn parameters<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyDict>> {
+        let (json, table) = (py.import("json")?, PyDict::new(py));
+        for (name, parameter) in self.recipe.parameters.iter() {
+            let text = parameter.value().to_string();
+            table.set_item(name, json.call_method1("loads", (text,))?)?;
+        }
+        Ok(table)
+    }
+
+    /// Returns this recipe with other values of named parameters.
+    ///
+    /// Parameters
+    /// ----------
+    /// **values
+    ///     A value for each name: a number, a string, a boolean, or a list of these.
+    ///
+    /// Returns
+    /// -------
+    /// Recipe
+    ///     The recipe with the new values.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If the recipe has no parameter of a name, or a value is out of the range of its parameter or does not fit an
+    ///     option. `hint` is the nearest name, if any.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import dapple_textures as dp
+    /// >>> recipe = dp.Recipe({
+    /// ...     "dapple": 1, "parameters": {"size": 8},
+    /// ...     "nodes": {"cells": {"worley": {"frequency": "$size"}}}, "material": {"height": "cells"}})
+    /// >>> recipe.with_parameters(size=16).parameters
+    /// {'size': 16}
+    #[pyo3(signature = (**values))]
+    fn with_parameters(&self, values: Option<&Bound<'_, PyDict>>) -> Result<Self> {
+        let mut recipe = self.recipe.clone();
+        for (name, value) in values.into_iter().flatten() {
+            let name: String = name.extract()?;
+            recipe.set(&format!("parameters.{name}"), &data::text(&value)?)?;
+        }
+        Ok(Self { recipe })
+    }
+
     /// The name of the recipe, which is used for the baked files.
     #[getter]
     fn name(&self) -> &str {

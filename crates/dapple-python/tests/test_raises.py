@@ -286,6 +286,7 @@ CALLS = [
     ("Recipe.from_json", "dp.Recipe.from_json('{\"dapple\": 1, \"nodes\": {\"a\": {\"worly\": {}}}, \"material\": {}}')", "DappleError", "line 1, column 37: unknown variant `worly`, expected one of `worley`, `pups`, `wavelet`, `noise`, `bricks`,"),
     ("Recipe.builtin", "dp.Recipe.builtin('flagston')", "DappleError", "there is no built-in recipe `flagston`; did you mean `flagstone`?"),
     ("Recipe.reference", "dp.Recipe.reference('worly')", "DappleError", "the node is `worly`, but it must be one of worley, pups, wavelet, noise, bricks, weave, shape, output, gabor, scatter,"),
+    ("Recipe.with_parameters", "dp.Recipe.builtin('rock').with_parameters(sise=2)", "DappleError", "`sise`"),
     ("Recipe.with_seed", "dp.Recipe.builtin('rock').with_seed(-1)", "DappleError", "the seed is -1, but it must be from 0 to 2^64 - 1"),
     ("Recipe.plan", "recipe('a.image.file = \"a.png\"').plan()", "DappleError", "in the node `a`: there is no image `a.png`"),
     ("Recipe.plan", "recipe('a.noise.octaves = 99').plan()", "DappleError", "in the node `a`: the number of octaves is 99, but it must be from 1 to 16"),

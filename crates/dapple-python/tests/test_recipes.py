@@ -36,6 +36,20 @@ def test_a_recipe_is_the_same_from_data_and_from_text():
     assert dp.Recipe(numbers) == recipe
 
 
+def test_parameters_are_read_and_replaced_by_name():
+    text = "dapple = 1\n[parameters]\nsize = { value = 8, range = [1, 64] }\nlow = [0.25, 0.5]\n"
+    text += "[nodes.cells.worley]\nfrequency = \"$size\"\n[nodes.a.levels]\ninput = \"cells\"\nfrom = \"$low\"\n"
+    recipe = dp.Recipe.from_toml(text + "[material]\nheight = \"a\"\n")
+    assert recipe.parameters == {"size": 8, "low": [0.25, 0.5]}
+    other = recipe.with_parameters(size=np.int64(16), low=(0.0, 1.0))
+    assert other.parameters == {"size": 16, "low": [0.0, 1.0]} and recipe.parameters["size"] == 8
+    assert other.to_dict()["nodes"]["cells"] == {"worley": {"frequency": "$size"}}
+    assert recipe.with_parameters() == recipe
+    assert dp.Recipe.builtin("rock").parameters == {}
+    with pytest.raises(dp.DappleError, match="from 1 to 64"):
+        recipe.with_parameters(size=99)
+
+
 @pytest.mark.parametrize("name", dp.Recipe.builtin_names())
 def test_all_maps_of_the_builtin_recipes_in_windows(name):
     plan = dp.Recipe.builtin(name).plan()
