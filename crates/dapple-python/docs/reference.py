@@ -14,7 +14,7 @@ GROUPS = {
     "Points and graphs": ["Domain", "Points", "poisson_disk", "extend_poisson_disk", "nested_poisson_disk", "jittered_grid", "white_noise", "spectrum", "Spectrum", "EmptyCircle", "delaunay", "gabriel", "yao", "k_nearest", "Graph", "Axes"],
     "Partitions of unity": ["pups", "Partition", "Net", "Weights", "angle_orientations", "biased_labels", "grouped_labels", "outward_orientations", "random_labels", "random_orientations", "random_values", "reference_labels"],
     "Textures of control points": [],
-    "Materials": ["Recipe", "read_recipe", "read_recipe_images", "Plan", "MapInfo", "map_names", "shards", "ShardList", "Shard"],
+    "Materials": ["Recipe", "read_recipe", "read_recipe_images", "Plan", "MapInfo", "Shader", "map_names", "shards", "ShardList", "Shard"],
     "Pictures": ["read_image", "write_image", "write_maps", "decode_image", "encode_image", "ramp", "palettes", "linear_from_srgb", "srgb_from_linear", "normal_map", "ambient_occlusion", "curvature"],
     "Tiles": ["make_tile", "even_out", "rectify", "resize", "estimate_material", "seam_report", "SeamReport", "repeat", "disturb", "lay_tiles", "match_borders", "CornerTiles", "blend", "blend_map", "rank_equalize"],
     "Bands of frequencies": ["wavelet_tile", "wavelet_analyze", "wavelet_synthesize", "wavelet_halve", "wavelet_double", "Bands"],

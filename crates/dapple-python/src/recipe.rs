@@ -10,14 +10,16 @@ pub(crate) use node::NodeMade;
 pub(crate) use plan::{_plan_from_parts, Plan};
 pub(crate) use shard_list::{ShardList, shards};
 
+use crate::arrays::array;
 use crate::data;
 use crate::error::{Error, Result};
 use crate::function::hex;
 use crate::pictures::Pixels;
 use crate::seed::SeedArgument;
+use crate::threads;
 use dapple::color::LinearRgb;
 use dapple::raster::Raster;
-use dapple::recipe::{Images, Picture, Recipe as RustRecipe};
+use dapple::recipe::{Images, MaterialShader, Picture, Recipe as RustRecipe, ShaderOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sha2::{Digest, Sha256};
@@ -411,14 +413,55 @@ impl Recipe {
     ///     If an image is missing, or a node rejects an option; `node` names it.
     #[pyo3(signature = (*, images = None, time = 0.0))]
     fn plan(&self, py: Python<'_>, images: Option<&Bound<'_, PyDict>>, time: f64) -> Result<Plan> {
-        let mut pictures = Images::new();
-        for (name, image) in images.into_iter().flat_map(|images| images.iter()) {
-            let key = image_key(&name)?;
-            self.check_image(&key)?;
-            let image = picture(&format!("image {}", shown(&key)), &image)?;
-            pictures.insert(key, image);
-        }
-        Plan::new(py, self.recipe.clone(), pictures, time)
+        Plan::new(py, self.recipe.clone(), self.pictures(images)?, time)
+    }
+
+    /// Generates the material as a function of WGSL, with the same bits as a bake.
+    ///
+    /// The function `material` takes a position and returns the material there. The text has no bindings and contains
+    /// all that it uses.
+    ///
+    /// Parameters
+    /// ----------
+    /// images : dict or None, default None
+    ///     The images, as for `plan`.
+    /// textures : bool, default False
+    ///     Whether the shader takes the values of nodes that no shader computes as arguments, which its caller reads from
+    ///     baked textures. Such nodes are an error otherwise.
+    ///
+    /// Returns
+    /// -------
+    /// Shader
+    ///     The text, the nodes to bake to textures, and the data that the shader looks up.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If no shader computes a node and `textures` is False, or for the reasons of `plan`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import dapple_textures as dp
+    /// >>> recipe = dp.Recipe({
+    /// ...     "dapple": 1, "nodes": {"cells": {"worley": {}}}, "material": {"height": "cells"}})
+    /// >>> "fn material(place: Place2d, zero: u32) -> Material" in recipe.wgsl().wgsl
+    /// True
+    #[pyo3(signature = (*, images = None, textures = false))]
+    fn wgsl<'py>(
+        &self,
+        py: Python<'py>,
+        images: Option<&Bound<'py, PyDict>>,
+        textures: bool,
+    ) -> Result<Bound<'py, PyAny>> {
+        let (recipe, images) = (self.recipe.clone(), self.pictures(images)?);
+        let options = ShaderOptions { textures };
+        let shader = threads::run(py, move || recipe.to_wgsl(&images, &options))??;
+        let texel = 4;
+        let columns = MaterialShader::DATA_ROW / texel;
+        let rows = shader.data.len() / MaterialShader::DATA_ROW;
+        let data = array(py, shader.data, &[rows, columns, texel])?;
+        let kind = py.import("dapple_textures._types")?.getattr("Shader")?;
+        Ok(kind.call1((shader.wgsl, shader.textures, data))?)
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> Result<bool> {
@@ -456,6 +499,18 @@ impl Recipe {
 type Source<'a> = (&'a str, Option<&'a str>, Option<String>);
 
 impl Recipe {
+    /// Converts the images of a dictionary.
+    fn pictures(&self, images: Option<&Bound<'_, PyDict>>) -> Result<Images> {
+        let mut pictures = Images::new();
+        for (name, image) in images.into_iter().flat_map(|images| images.iter()) {
+            let key = image_key(&name)?;
+            self.check_image(&key)?;
+            let image = picture(&format!("image {}", shown(&key)), &image)?;
+            pictures.insert(key, image);
+        }
+        Ok(pictures)
+    }
+
     /// Checks that the recipe has an image with the given key.
     fn check_image(&self, key: &str) -> Result<()> {
         let sources = self.recipe.image_sources()?;

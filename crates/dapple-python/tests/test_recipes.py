@@ -268,3 +268,26 @@ def test_shards_cover_every_pixel_once():
         with pytest.raises(IndexError):
             shards[index]
     assert len(dp.shards(2_000_000, 64)) == 31250**2
+
+
+def test_a_shader_names_the_nodes_that_are_read_from_textures():
+    local = dp.Recipe(DATA).wgsl()
+    assert "fn material(place: Place2d, zero: u32) -> Material" in local.wgsl
+    assert (local.textures, local.data.shape, local.data.dtype) == ([], (0, 1024, 4), np.uint32)
+    nodes = {
+        **DATA["nodes"],
+        "swell": {"wavelet": {}},
+        "bumps": {"gabor": {}},
+        "photo": {"image": {"file": "a.png"}},
+        "sum": {"add": ["stones", "swell", "bumps", "photo"]},
+    }
+    recipe = dp.Recipe(changed(nodes=nodes, material={"height": "sum"}))
+    images = {"a.png": np.zeros((4, 4), np.float32)}
+    with pytest.raises(dp.DappleError, match="`gabor` has no shader") as refused:
+        recipe.wgsl(images=images)
+    assert refused.value.kind == "not_in_shader"
+    with pytest.raises(dp.DappleError, match="a.png"):
+        recipe.wgsl(textures=True)
+    shader = recipe.wgsl(images=images, textures=True)
+    assert sorted(shader.textures) == ["bumps", "photo"]
+    assert shader.data.shape[0] > 0 and shader.data.any()

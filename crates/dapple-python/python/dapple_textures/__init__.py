@@ -105,7 +105,7 @@ from ._textures import (
     reference_texture,
     turbulence,
 )
-from ._types import Axes, EmptyCircle, Features, MapInfo, Spectrum, Weights
+from ._types import Axes, EmptyCircle, Features, MapInfo, Shader, Spectrum, Weights
 
 __all__ = [
     "Atlas",
@@ -132,6 +132,7 @@ __all__ = [
     "Points",
     "Recipe",
     "SeamReport",
+    "Shader",
     "Shard",
     "ShardList",
     "Spectrum",

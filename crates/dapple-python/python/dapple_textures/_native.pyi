@@ -14,7 +14,7 @@ from typing_extensions import disjoint_base
 from ._meshes import MeshFile
 from ._options import Atlas, Directions, Exemplar, Matching, Net
 from ._pictures import Bands, SeamReport
-from ._types import Axes, EmptyCircle, Features, MapInfo, Spectrum, Weights
+from ._types import Axes, EmptyCircle, Features, MapInfo, Shader, Spectrum, Weights
 
 _F32: TypeAlias = npt.NDArray[np.float32]
 _F64: TypeAlias = npt.NDArray[np.float64]
@@ -191,6 +191,12 @@ class Recipe:
     def plan(
         self, *, images: Mapping[str, npt.NDArray[Any]] | Mapping[str | tuple[str, str], npt.NDArray[Any]] | None = None, time: float = 0.0
     ) -> Plan: ...
+    def wgsl(
+        self,
+        *,
+        images: Mapping[str, npt.NDArray[Any]] | Mapping[str | tuple[str, str], npt.NDArray[Any]] | None = None,
+        textures: bool = False,
+    ) -> Shader: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
     def __reduce__(self) -> tuple[Any, tuple[str]]: ...

@@ -78,6 +78,17 @@ class MapInfo(NamedTuple):
     content: Literal["gray", "color", "normal", "data"]
 
 
+class Shader(NamedTuple):
+    """The material of a recipe as a function of WGSL."""
+
+    #: The text: a module without bindings and entry points.
+    wgsl: str
+    #: The nodes whose values the caller reads from textures, in the order of the members of the structure `Textures`.
+    textures: list[str]
+    #: The texture `data`, (rows, 1024, 4), in the format rgba32uint. Without rows if the function has no such argument.
+    data: npt.NDArray[np.uint32]
+
+
 def refusal(kind: str, message: str, hint: str | None = None) -> DappleError:
     """Returns an error with a kind, a message, and a hint at the way out."""
     error = DappleError(message if hint is None else f"{message}: {hint}")
