@@ -92,6 +92,10 @@ impl Nodes {
                 roughness: number(1),
                 metallic: number(2),
                 albedo: Some(color.unwrap_or(Input::Number(0.0))),
+                emission: None,
+                opacity: None,
+                specular: None,
+                clearcoat: None,
                 ..recipe.material.clone()
             },
             ..recipe.clone()

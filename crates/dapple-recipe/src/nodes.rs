@@ -23,7 +23,6 @@ mod edges;
 mod equalize;
 mod flood_fill;
 mod flow_warp;
-mod fractal;
 pub(crate) mod fractal;
 mod gabor;
 mod hsl;

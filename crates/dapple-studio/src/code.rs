@@ -152,7 +152,7 @@ mod tests {
 
     #[test]
     fn a_command_bakes_the_recipe_into_a_folder() {
-        let flagstone = dapple::recipe::Recipe::builtin_text("flagstone").unwrap();
+        let flagstone = Recipe::builtin_text("flagstone").unwrap();
         let options = "--size 64x32 --maps height,ao -o";
         for (text, name, command) in [
             (

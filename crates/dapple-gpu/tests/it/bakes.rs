@@ -87,7 +87,7 @@ const ALL_STEPS: &str = r##"
     [nodes]
     cells.worley = { frequency = 2.0, value = "f2_minus_f1" }
     hills.noise = { basis = "gradient", frequency = 3.0 }
-    bumps.gabor = { frequency = 2.0 }
+    bumps.worley = { frequency = 2.0, value = "f4" }
     swell.noise = { basis = "pups", frequency = 2.0, octaves = 2 }
     sum.add = ["cells", "bumps", "swell"]
     soft.blur = { input = "sum", radius = 0.2 }

@@ -5,13 +5,13 @@ use dapple_gpu::GpuErrorKind;
 use dapple_gpu::wgpu;
 use dapple_recipe::raster::{Field as _, Window};
 
-/// A number and a color that the GPU computes, each from a node that the CPU computes (PUPs have no shader).
+/// A number and a color that the GPU computes, each from a node that the CPU computes (F4 has no shader).
 const HYBRID: &str = r##"
     dapple = 1
     extent = [4.0, 4.0]
     [nodes]
     cells.worley = { frequency = 4.0, value = "f2_minus_f1" }
-    bumps.gabor = { frequency = 5.0 }
+    bumps.worley = { frequency = 5.0, value = "f4" }
     swell.noise = { basis = "pups", frequency = 5.0, octaves = 2 }
     sum.add = ["cells", "bumps", "swell"]
     color.ramp = { input = "sum", colors = ["#204060", "#f0e0d0"], space = "linear" }

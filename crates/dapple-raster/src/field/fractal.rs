@@ -5,8 +5,7 @@
 
 use super::common_period;
 use super::values::{by_bands, zip_rows};
-use crate::{Field, FieldParts, RasterError, RasterViewMut, Scaled, Window};
-use crate::{Field, Range, RasterError, RasterViewMut, Scaled, Window, range};
+use crate::{Field, FieldParts, Range, RasterError, RasterViewMut, Scaled, Window, range};
 
 /// Maximum number of octaves in a sum.
 const MOST_OCTAVES: usize = 32;
