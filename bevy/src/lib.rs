@@ -45,7 +45,7 @@ impl Plugin for RecipePlugin {
     }
 }
 
-/// The baked maps of a recipe. Each part is also an asset of its own, with the label of its field.
+/// The baked maps of a recipe. Each part is also a separate asset, with the label of its field.
 #[derive(Asset, TypePath, Clone, Debug)]
 pub struct RecipeMaterial {
     /// Base color, sRGB encoded (`Rgba8UnormSrgb`). Label `base_color`.
@@ -85,7 +85,7 @@ impl Default for RecipeSettings {
 pub enum RecipeLoaderError {
     /// The file cannot be read.
     Io(std::io::Error),
-    /// The file is no text.
+    /// The file is not UTF-8 text.
     Text(std::string::FromUtf8Error),
     /// The recipe is invalid or cannot be baked.
     Recipe(RecipeError),

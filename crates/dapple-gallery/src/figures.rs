@@ -11,7 +11,7 @@ pub(crate) use materials::lit;
 
 use crate::{Figure, Paper};
 
-/// Returns the materials and the papers in page order: first what is made with the library, then how.
+/// Returns the materials and the papers in page order.
 // A function that is not inlined, because a unit test compiles everything that a `static` of its crate references, and
 // every user of a `const` compiles it again.
 #[inline(never)]

@@ -96,7 +96,7 @@ impl Code<'_> {
     }
 }
 
-/// Returns the material as a function of WGSL. Comments say what it reads from textures.
+/// Returns the material as a function of WGSL. Comments name the textures that it reads.
 fn wgsl(recipe: &Recipe, images: &Images) -> Result<String, StudioError> {
     let shader = recipe.to_wgsl(images, &ShaderOptions { textures: true })?;
     let mut text = String::new();

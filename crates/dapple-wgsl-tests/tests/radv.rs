@@ -109,7 +109,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
         )
 }
 
-/// Compiles a shader in a process of its own, and returns what the driver prints.
+/// Compiles a shader in a separate process, and returns the output of the driver.
 fn machine_code(number: usize) -> String {
     let output = Command::new(std::env::current_exe().expect("this program"))
         .args([TEST, "--exact", "--nocapture"])

@@ -7,7 +7,6 @@ use super::common_period;
 use super::values::{by_bands, zip_rows};
 use crate::{Field, FieldParts, Range, RasterError, RasterViewMut, Scaled, Window, range};
 
-
 /// A fractal sum of octaves, `Σ gain^i · shape(field_i(lacunarity^i · position))`, not divided by the sum of the
 /// weights: fractional Brownian motion, ridges or billows, depending on the shape. Usual values are a lacunarity of 2
 /// and a gain of ½.

@@ -1,5 +1,5 @@
 //! Axial weights instead of the cubic: weights that oscillate between two control points, for finer features from the
-//! same points. The quintic, whose curvature is also continuous, can hardly be told from the cubic.
+//! same points. The quintic, whose curvature is also continuous, looks almost like the cubic.
 
 use super::picture;
 use crate::figure::source;
