@@ -277,13 +277,13 @@ def test_a_shader_names_the_nodes_that_are_read_from_textures():
     nodes = {
         **DATA["nodes"],
         "swell": {"wavelet": {}},
-        "bumps": {"gabor": {}},
+        "bumps": {"worley": {"value": "f4"}},
         "photo": {"image": {"file": "a.png"}},
         "sum": {"add": ["stones", "swell", "bumps", "photo"]},
     }
     recipe = dp.Recipe(changed(nodes=nodes, material={"height": "sum"}))
     images = {"a.png": np.zeros((4, 4), np.float32)}
-    with pytest.raises(dp.DappleError, match="`gabor` has no shader") as refused:
+    with pytest.raises(dp.DappleError, match="the distances F3 and F4 have no shader") as refused:
         recipe.wgsl(images=images)
     assert refused.value.kind == "not_in_shader"
     with pytest.raises(dp.DappleError, match="a.png"):

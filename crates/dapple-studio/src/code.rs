@@ -182,7 +182,7 @@ mod tests {
 
     #[test]
     fn a_shader_names_what_it_reads_from_textures() {
-        let text = "dapple = 1\n[nodes]\nbumps.gabor = {}\ncells.worley = {}\nswell.wavelet = {}\n\
+        let text = "dapple = 1\n[nodes]\nbumps.worley = { value = \"f4\" }\ncells.worley = {}\nswell.wavelet = {}\n\
                     sum.add = [\"bumps\", \"cells\", \"swell\"]\n[material]\nheight = \"sum\"\n";
         let wgsl = code(CodeKind::Wgsl, text, "");
         let options = ShaderOptions { textures: true };

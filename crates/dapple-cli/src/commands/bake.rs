@@ -62,7 +62,7 @@ Examples:
   dapple bake 'my-*.toml' --keep-going --maps albedo --sheet -o mine/
   dapple bake rock --preset unity -o Assets/Rock/
   dapple bake rock --preset unreal,godot -o rock/
-  dapple bake rock -o rock.tres
+  dapple bake granite -o granite.tres
   dapple bake rock -o rock.glb
   dapple bake marble -o marble.mtlx
   dapple bake mountains --maps height --size 2017 --samples corners -o island.r16

@@ -305,16 +305,15 @@ fn all_pictures_of_a_loop_are_those_baked_one_by_one() {
 fn noise_on_a_sphere_meets_itself() {
     let folder = Folder::new("sphere");
     for line in [
-        "noise --sphere --cells 3 --octaves 4 --size 34x17 --samples corners -o planet.exr",
+        "noise --sphere --cells 3 --octaves 4 --size 33x17 --samples corners -o planet.exr",
         "noise --cube --cells 3 --octaves 4 --size 9 --samples corners --format exr -o sky/",
-        "noise --sphere --cells 3 --octaves 4 --size 64x32 -o centers.exr",
     ] {
         let words: Vec<_> = line.split(' ').collect();
         assert_done(&folder.run(&words), line);
     }
     let planet = read(&folder, "planet.exr").gray().unwrap();
     for y in 0..17 {
-        assert_eq!(planet.row(y)[0].to_bits(), planet.row(y)[33].to_bits());
+        assert_eq!(planet.row(y)[0].to_bits(), planet.row(y)[32].to_bits());
     }
     for pole in [planet.row(0), planet.row(16)] {
         assert!(
@@ -337,10 +336,8 @@ fn noise_on_a_sphere_meets_itself() {
             pz.row(0)[at as usize].to_bits()
         );
     }
-    // Both images show the same sphere: the centers of +x and of the equirectangular image look along x.
-    let wide = read(&folder, "centers.exr").gray().unwrap();
-    let center = (wide.row(15)[31] + wide.row(16)[32]) / 2.0;
-    assert!((center - px.row(4)[4]).abs() < 0.02, "{center}");
+    // Both images show the same sphere: their centers look along x.
+    assert_eq!(planet.row(8)[16].to_bits(), px.row(4)[4].to_bits());
     for (line, part) in [
         ("noise --sphere --size 64 -o a.png", "twice as wide"),
         ("noise --cube --size 64x32 -o a/", "square"),

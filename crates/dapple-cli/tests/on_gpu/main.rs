@@ -21,7 +21,7 @@ extent = [4.0, 3.0]
 [nodes]
 cells.worley = { frequency = 2.0, value = "f2_minus_f1" }
 hills.noise = { basis = "gradient", frequency = 3.0 }
-bumps.gabor = { frequency = 2.0 }
+bumps.worley = { frequency = 2.0, value = "f4" }
 sum.add = ["cells", "bumps"]
 soft.blur = { input = "sum", radius = 0.2 }
 even.equalize = { input = "hills" }
