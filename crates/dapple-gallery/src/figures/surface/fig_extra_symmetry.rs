@@ -70,5 +70,5 @@ fn textured(size: u32, exemplar: &str, side: u32, symmetry: Symmetry) -> anyhow:
         mask: None,
         guides: Vec::new(),
     };
-    Ok(job.run_symmetric(symmetry)?)
+    job.run_symmetric(symmetry)
 }
