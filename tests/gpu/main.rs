@@ -86,6 +86,10 @@ struct Gpu {
 }
 
 impl Gpu {
+    #[expect(
+        clippy::print_stdout,
+        reason = "the output of a test names the adapter"
+    )]
     fn new() -> Option<Self> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
         let adapter = pollster::block_on(instance.request_adapter(&Default::default()));

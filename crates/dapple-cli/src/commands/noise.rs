@@ -45,7 +45,7 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with_all = ["cube", "region", "wrap", "recipe"], help_heading = "Texture")]
     sphere: bool,
 
-    /// Draw the noise in space on a sphere, as the six faces of a cube map: NAME_px, _nx, _py, _ny, _pz, _nz.
+    /// Draw the noise in space on a sphere, as the six faces of a cube map: `NAME_px`, `_nx`, `_py`, `_ny`, `_pz`, `_nz`.
     ///
     /// The faces are turned as in OpenGL. With --samples corners, neighboring faces have equal pixels on their edge.
     #[arg(long, conflicts_with_all = ["region", "wrap", "recipe"], help_heading = "Texture")]

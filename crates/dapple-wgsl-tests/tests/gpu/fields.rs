@@ -40,7 +40,8 @@ fn compare(gpu: &Gpu, name: &str, field: &dyn Field) {
     field.values(&positions, &mut on_cpu).expect("one length");
     let on_cpu: Vec<u32> = on_cpu.into_iter().map(f32::to_bits).collect();
     let shader = field_to_wgsl(field).unwrap_or_else(|error| panic!("{name}: {error}"));
-    assert!(shader.data.len().is_multiple_of(MaterialShader::DATA_ROW));
+    let rest = shader.data.len() % MaterialShader::DATA_ROW;
+    assert_eq!(rest, 0, "words after whole rows of {name}");
     let data = if shader.data.is_empty() { "" } else { "data, " };
     let text = shader.wgsl + &entry_point(data);
     let inputs = [&[0][..], &words(&all)];

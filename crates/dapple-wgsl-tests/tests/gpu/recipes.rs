@@ -271,10 +271,6 @@ fn builtin_recipes_have_the_bits_of_the_cpu() {
 }
 
 #[test]
-#[expect(
-    clippy::print_stdout,
-    reason = "the output of a test counts the recipes"
-)]
 fn builtin_recipes_read_textures_of_nodes_that_are_not_local_alone() {
     // Nodes that depend on a neighborhood, and two textures without a shader
     let kinds = [

@@ -95,7 +95,7 @@ fn compare<const D: usize, const NEAREST: usize>(
         }
         let worley = new(Seed(seed)).with_period(cells).expect("a period");
         let worley = worley.with_scatter(scatter).expect("a scatter");
-        let metric = metrics[(seed as usize + 2) / 3 % 3];
+        let metric = metrics[(seed as usize).div_ceil(3) % 3];
         let worley = worley.with_metric(metric).expect("a metric");
         for bits in [2, 29] {
             let mut places = places::<D>(seed, bits);

@@ -1,6 +1,6 @@
 //! Builds documents for a whole material: a textured plane in glTF, a MaterialX document, or a material of Godot.
 //!
-//! References: Godot Engine documentation, "TSCN file format" and "BaseMaterial3D", version 4; The Khronos Group, *glTF 2.0 Specification*, 2021 (ISO/IEC 12113:2022); Smythe, Stone et al., *MaterialX
+//! References: Godot Engine documentation, "TSCN file format" and "`BaseMaterial3D`", version 4; The Khronos Group, *glTF 2.0 Specification*, 2021 (ISO/IEC 12113:2022); Smythe, Stone et al., *MaterialX
 //! Specification* and *MaterialX Standard Nodes*, version 1.38, 2021. One unit of the plane is one meter in both.
 
 use crate::layers::Layers;
