@@ -22,14 +22,13 @@ pub(super) fn draw(args: &Args, node: &FractalNode, context: &Context) -> Result
     let Size(size) = args.field.size;
     args.field.spaces()?;
     let on_corners = args.field.samples.samples == Samples::Corners;
-    if args.sphere && u64::from(size[0]) != 2 * u64::from(size[1]) {
+    // Samples on corners have one column and one row more than the spaces between them.
+    let width = 2 * u64::from(size[1]) - u64::from(on_corners);
+    if args.sphere && u64::from(size[0]) != width {
         let message = "an equirectangular image is twice as wide as high";
         return Err(
-            usage(format!("{message}, and --size is {}", args.field.size)).hint(format!(
-                "take --size {}x{size0}",
-                2 * u64::from(size[1]),
-                size0 = size[1]
-            )),
+            usage(format!("{message}, and --size is {}", args.field.size))
+                .hint(format!("take --size {width}x{}", size[1])),
         );
     }
     if args.cube && size[0] != size[1] {
