@@ -48,9 +48,18 @@ fn help(folder: &Folder, subcommand: &[&str]) -> String {
     stdout(&output)
 }
 
-/// Returns an example with smaller maps and fewer sites: what its options do together does not depend on them.
+/// Returns an example with smaller maps and fewer sites, frames and variants: what its options do together does not
+/// depend on them.
 fn quick(example: &str) -> String {
-    let example = example.replace("--sites 4000", "--sites 400");
+    let fewer = [
+        ("--sites 4000", "--sites 400"),
+        ("--frames 24", "--frames 2"),
+        ("--flipbook 6x4", "--flipbook 2x1"),
+        ("--seed 1-20", "--seed 1-2"),
+    ];
+    let example = (fewer.into_iter()).fold(example.to_owned(), |example, (many, few)| {
+        example.replace(many, few)
+    });
     if example.starts_with("dapple bake ") && !example.contains("--size") {
         return example + " --size 128";
     }
