@@ -312,7 +312,7 @@ impl Recipe {
     ///
     /// Parameters
     /// ----------
-    /// **values
+    /// **values : object
     ///     A value for each name: a number, a string, a boolean, or a list of these.
     ///
     /// Returns

@@ -288,6 +288,7 @@ CALLS = [
     ("Recipe.reference", "dp.Recipe.reference('worly')", "DappleError", "the node is `worly`, but it must be one of worley, pups, wavelet, noise, bricks, weave, shape, output, gabor, scatter,"),
     ("Recipe.with_parameters", "dp.Recipe.builtin('rock').with_parameters(sise=2)", "DappleError", "`sise`"),
     ("Recipe.with_seed", "dp.Recipe.builtin('rock').with_seed(-1)", "DappleError", "the seed is -1, but it must be from 0 to 2^64 - 1"),
+    ("Recipe.wgsl", "recipe('a.worley.value = \"f4\"').wgsl()", "DappleError", "the distances F3 and F4 have no shader"),
     ("Recipe.plan", "recipe('a.image.file = \"a.png\"').plan()", "DappleError", "in the node `a`: there is no image `a.png`"),
     ("Recipe.plan", "recipe('a.noise.octaves = 99').plan()", "DappleError", "in the node `a`: the number of octaves is 99, but it must be from 1 to 16"),
     ("Plan.bake", "plan().bake(0)", "DappleError", "the size is 0, but it must be a whole number of at least 1, or 2 numbers, rows before columns"),

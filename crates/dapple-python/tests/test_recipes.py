@@ -43,7 +43,7 @@ def test_parameters_are_read_and_replaced_by_name():
     assert recipe.parameters == {"size": 8, "low": [0.25, 0.5]}
     other = recipe.with_parameters(size=np.int64(16), low=(0.0, 1.0))
     assert other.parameters == {"size": 16, "low": [0.0, 1.0]} and recipe.parameters["size"] == 8
-    assert other.to_dict()["nodes"]["cells"] == {"worley": {"frequency": "$size"}}
+    assert other.to_dict()["nodes"]["cells"]["worley"]["frequency"] == "$size"
     assert recipe.with_parameters() == recipe
     assert dp.Recipe.builtin("rock").parameters == {}
     with pytest.raises(dp.DappleError, match="from 1 to 64"):
