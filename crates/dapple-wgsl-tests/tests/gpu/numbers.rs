@@ -353,6 +353,13 @@ fn angles_and_extremes_of_64_bits_have_the_bits_of_the_cpu() {
         out[base + 1u] = results[0].y;
         out[base + 2u] = results[1].x;
         out[base + 3u] = results[1].y;";
-    let on_gpu = run(&gpu, &[Module::DoubleAngle, Module::DoubleFunctions], &input, 4, 4, body);
+    let on_gpu = run(
+        &gpu,
+        &[Module::DoubleAngle, Module::DoubleFunctions],
+        &input,
+        4,
+        4,
+        body,
+    );
     assert_eq!(differing(&on_cpu, &on_gpu), 0);
 }
