@@ -27,7 +27,7 @@ use crate::shards::{List, Wanted};
 use crate::words::{NamedValueParser, unknown};
 use anyhow::Result;
 use batch::Batch;
-use claim::claim;
+use claim::{Claimed, claim};
 use contact_sheet::ContactSheet;
 use dapple::color::LinearRgb;
 use dapple::raster::Raster;
@@ -302,19 +302,10 @@ pub(super) fn bake_with(
     args.check_document()?;
     args.check_samples()?;
     args.material.check_single()?;
-    let by_preset = args.by_preset()?;
-    let rows = u64::from(args.n_rows()?) * by_preset.len() as u64;
+    let works = Work::of_presets(&args, recipe, folder)?;
+    let rows = u64::from(args.n_rows()?) * works.len() as u64;
     let progress = Progress::bar("baking", rows, context).until(stop);
-    for args in by_preset {
-        let mut recipe = recipe.clone();
-        args.change(&mut recipe)?;
-        let work = Work {
-            files: args.files_for(1)?,
-            args,
-            recipe,
-            folder: folder.to_owned(),
-            list: None,
-        };
+    for work in works {
         work.bake(context, &progress)?;
     }
     Ok(())
@@ -371,6 +362,22 @@ impl Work {
         })
     }
 
+    /// Prepares a recipe from memory with the options of each preset. `folder` is that of its images.
+    fn of_presets(args: &Args, recipe: &Recipe, folder: &Path) -> Result<Vec<Self>> {
+        let work = |args: Args| {
+            let mut recipe = recipe.clone();
+            args.change(&mut recipe)?;
+            Ok(Self {
+                files: args.files_for(1)?,
+                args,
+                recipe,
+                folder: folder.to_owned(),
+                list: None,
+            })
+        };
+        args.by_preset()?.into_iter().map(work).collect()
+    }
+
     /// Bakes all frames of a looping animation, or a single image. Nodes that do not change with time are evaluated
     /// once. Returns the lit preview of the first frame if the options need one.
     fn bake(&self, context: &Context, progress: &Progress) -> Result<Option<Raster<LinearRgb>>> {
@@ -417,21 +424,10 @@ impl Work {
             return Ok(None);
         }
         let time = args.frame.map_or(0.0, Frame::time);
-        let images = match &mut made.images {
-            Some(images) => images,
-            images => images.insert(read_images(recipe, &self.folder, args.material.finite)?),
-        };
+        let images = self.images(&mut made.images)?;
         progress.check()?;
-        let (limits, cache) = (PlanLimits::default(), made.cache.as_ref());
-        let listen = progress.listener();
-        let plan = Plan::new_with_progress(recipe, images, time, &limits, cache, listen);
-        // Report a stop as such, before an error of the plan is attributed to an option.
-        progress.check()?;
-        let mut plan = plan.map_err(|error| args.material.blame(error))?;
-        if args.gpu {
-            plan = gpu::on_gpu(recipe, &plan)?;
-        }
-        if args.frames.is_some() && args.frame.is_none_or(Frame::is_first) && !plan.moves() {
+        let plan = self.plan(images, made.cache.as_ref(), time, progress)?;
+        if args.frames.is_some() && args.is_first_frame() && !plan.moves() {
             job.note_work(STILL);
         }
         let options = args.options(claimed.map_kinds())?;
@@ -447,9 +443,51 @@ impl Work {
         if let Some(note) = args.import_note(&recipe.material) {
             job.note_work(&note);
         }
+        self.finish(args, job, &claimed, images, time)
+    }
+
+    /// Returns the recipe's images, which are read for the first frame.
+    fn images<'a>(&self, images: &'a mut Option<Images>) -> Result<&'a Images> {
+        Ok(match images {
+            Some(images) => images,
+            images => {
+                let finite = self.args.material.finite;
+                images.insert(read_images(&self.recipe, &self.folder, finite)?)
+            }
+        })
+    }
+
+    /// Builds the plan of a frame, on the GPU if the options ask for it.
+    fn plan(
+        &self,
+        images: &Images,
+        cache: Option<&PlanCache>,
+        time: f64,
+        progress: &Progress,
+    ) -> Result<Plan> {
+        let (limits, listen) = (PlanLimits::default(), progress.listener());
+        let plan = Plan::new_with_progress(&self.recipe, images, time, &limits, cache, listen);
+        // Report a stop as such, before an error of the plan is attributed to an option.
+        progress.check()?;
+        let plan = plan.map_err(|error| self.args.material.blame(error))?;
+        match self.args.gpu {
+            true => gpu::on_gpu(&self.recipe, &plan),
+            false => Ok(plan),
+        }
+    }
+
+    /// Finishes the files of an image, and returns its lit preview if the options need one.
+    fn finish(
+        &self,
+        args: &Args,
+        mut job: Job<'_>,
+        claimed: &Claimed,
+        images: &Images,
+        time: f64,
+    ) -> Result<Option<Raster<LinearRgb>>> {
+        let recipe = &self.recipe;
         // The contact sheet shows the first frame.
-        let is_first = args.frames.is_none() || args.frame.is_none_or(Frame::is_first);
-        let preview = if args.preview.is_some() || (args.contact_sheet && is_first) {
+        let preview = if args.preview.is_some() || (args.contact_sheet && args.is_first_frame()) {
             let thing = args.preview.unwrap_or(Thing::Sphere);
             Some(preview::picture(recipe, images, time, thing)?)
         } else {
@@ -553,8 +591,13 @@ impl Args {
 
     /// Returns the note about images of data, once for a loop.
     fn import_note(&self, material: &Material) -> Option<String> {
-        let is_first = self.frames.is_none() || self.frame.is_none_or(Frame::is_first);
-        self.preset().filter(|_| is_first)?.import_note(material)
+        let preset = self.preset().filter(|_| self.is_first_frame())?;
+        preset.import_note(material)
+    }
+
+    /// Returns whether these are the options of a still image, or of the first frame of a loop.
+    fn is_first_frame(&self) -> bool {
+        self.frames.is_none() || self.frame.is_none_or(Frame::is_first)
     }
 
     /// Returns the number of frames of a loop; `None` for a still image.

@@ -8,7 +8,7 @@ use anyhow::Result;
 use clap::{ArgMatches, Command, Error, FromArgMatches};
 use dapple::recipe::{Images, Recipe};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::Path;
 
 /// The ids of the options.
 const IDS: [&str; 10] = [
@@ -90,19 +90,10 @@ impl MaterialFiles {
     ) -> Result<()> {
         let mut args = (*self.0).clone();
         args.material.size = Size(size);
-        let by_preset = args.by_preset()?;
-        let rows = u64::from(args.n_rows()?) * by_preset.len() as u64;
+        let works = Work::of_presets(&args, &recipe, Path::new(""))?;
+        let rows = u64::from(args.n_rows()?) * works.len() as u64;
         let progress = Progress::bar("baking", rows, context);
-        for args in by_preset {
-            let mut recipe = recipe.clone();
-            args.change(&mut recipe)?;
-            let work = Work {
-                files: args.files_for(1)?,
-                args,
-                recipe,
-                folder: PathBuf::new(),
-                list: None,
-            };
+        for work in works {
             let made = Made {
                 images: Some(images.clone()),
                 cache: None,

@@ -1,19 +1,16 @@
 //! Bakes all frames of a loop into one image for each map, as a grid.
 
 use super::claim::claim;
-use super::{BakeSidecar, Made, STILL, Work};
+use super::{Made, STILL, Work};
 use crate::args::{Frame, Size};
-use crate::baking::{self, GridWriter, advise, read_images, report};
+use crate::baking::{self, GridWriter, advise};
 use crate::error::{Hint, usage};
-use crate::gpu;
 use crate::job::Job;
-use crate::preview::{self, Thing};
 use crate::progress::Progress;
 use anyhow::Result;
 use dapple::color::LinearRgb;
 use dapple::raster::Raster;
-use dapple::recipe::{Bake, Plan, PlanLimits};
-use dapple::tile::Map;
+use dapple::recipe::Bake;
 
 impl Work {
     /// Bakes a grid of frames, row by row, and returns the lit preview of the first frame if the options need one. The
@@ -29,32 +26,21 @@ impl Work {
         made: &mut Made,
         progress: &Progress,
     ) -> Result<Option<Raster<LinearRgb>>> {
-        let (args, recipe) = (&self.args, &self.recipe);
+        let args = &self.args;
         let Size([columns, rows]) = grid;
         let claimed = claim(args, &self.files, self, &mut job)?;
         let options = args.options(claimed.map_kinds())?;
         let frame = options.region.map_or(options.size, |region| region.size);
         let size = size_of(frame, grid)?;
-        let images = match &mut made.images {
-            Some(images) => images,
-            images => images.insert(read_images(recipe, &self.folder, args.material.finite)?),
-        };
+        let images = self.images(&mut made.images)?;
         let mut writer = GridWriter::new(&job, claimed.files(), size)?;
-        let (limits, cache) = (PlanLimits::default(), made.cache.as_ref());
+        let cache = made.cache.as_ref();
         let times: Vec<_> = Frame::all(args.n_frames())
             .map(|frame| frame.map_or(0.0, Frame::time))
             .collect();
         for times in times.chunks(columns as usize).take(rows as usize) {
-            let plans = times.iter().map(|&time| {
-                let listen = progress.listener();
-                let plan = Plan::new_with_progress(recipe, images, time, &limits, cache, listen);
-                progress.check()?;
-                let plan = plan.map_err(|error| args.material.blame(error))?;
-                match args.gpu {
-                    true => gpu::on_gpu(recipe, &plan),
-                    false => Ok(plan),
-                }
-            });
+            let plan = |&time: &f64| self.plan(images, cache, time, progress);
+            let plans = times.iter().map(plan);
             let plans = plans.collect::<Result<Vec<_>>>()?;
             if times.contains(&0.0) && !plans[0].moves() {
                 job.note_work(STILL);
@@ -65,17 +51,7 @@ impl Work {
             writer.write(bakes, progress)?;
         }
         writer.finish(&mut job, claimed.files())?;
-        let preview = if args.preview.is_some() || args.contact_sheet {
-            let thing = args.preview.unwrap_or(Thing::Sphere);
-            Some(preview::picture(recipe, images, 0.0, thing)?)
-        } else {
-            None
-        };
-        if let (Some((output, format)), Some(preview)) = (claimed.preview, &preview) {
-            job.write_map(output, &Map::Color(preview.clone()), format)?;
-        }
-        job.finish(&BakeSidecar { args, recipe }, report(recipe))?;
-        Ok(preview)
+        self.finish(args, job, &claimed, images, 0.0)
     }
 }
 
