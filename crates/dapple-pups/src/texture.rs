@@ -62,11 +62,11 @@ impl Texture {
 }
 
 impl Field for Texture {
-    #[inline]
     fn parts(&self) -> FieldParts<'_> {
         FieldParts::Generator(self)
     }
 
+    #[inline]
     fn value(&self, position: [f64; 2]) -> f32 {
         let mut value = [0.0];
         self.values.sample(position.into(), &mut value);
