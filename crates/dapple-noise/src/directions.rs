@@ -70,8 +70,8 @@ impl Equirectangular {
         (0..width).map(move |column| {
             let (longitude, turn) = fraction(column, width, self.on_corners);
             let [x, z] = turned(longitude, turn);
-            // The first column looks along −x.
-            [-radius * x + 0.0, up, -radius * z + 0.0]
+            // The first column looks along −x. Adding 0 turns −0 into 0.
+            [-radius * x + 0.0, up + 0.0, -radius * z + 0.0]
         })
     }
 }
@@ -96,7 +96,8 @@ impl CubeMap {
                 CubeFace::NegativeZ => [-s, -t, -1.0],
             };
             let length = (x * x + y * y + z * z).sqrt();
-            [x, y, z].map(|part| part / length)
+            // Adding 0 turns −0 into 0, which are on different faces.
+            [x, y, z].map(|part| part / length + 0.0)
         })
     }
 }
@@ -106,7 +107,7 @@ fn fraction(index: u32, count: u32, on_corners: bool) -> (u64, u64) {
     let (index, count) = (u64::from(index), u64::from(count));
     match on_corners {
         true => (index, count.saturating_sub(1).max(1)),
-        false => (2 * index + 1, 2 * count),
+        false => (2 * index + 1, 2 * count.max(1)),
     }
 }
 
@@ -118,11 +119,11 @@ fn turned(part: u64, whole: u64) -> [f64; 2] {
     let rest = 4 * part - quarter * whole;
     let near = rest.min(whole - rest);
     let (sin, cos) = libm::sincos(FRAC_PI_2 * near as f64 / whole as f64);
-    let [cos, sin] = match near.cmp(&(whole - rest)) {
+    let [cos, sin] = match rest.cmp(&(whole - rest)) {
+        Ordering::Less => [cos, sin],
         // The cosine and the sine of an eighth turn round differently.
-        Ordering::Equal if near == rest => [FRAC_1_SQRT_2; 2],
-        Ordering::Equal => [sin, cos],
-        _ => [cos, sin],
+        Ordering::Equal => [FRAC_1_SQRT_2; 2],
+        Ordering::Greater => [sin, cos],
     };
     match quarter {
         0 => [cos, sin],
@@ -139,8 +140,7 @@ mod tests {
     use dapple_raster::Named as _;
 
     fn bits(directions: &[[f64; 3]]) -> Vec<[u64; 3]> {
-        let bits = |direction: &[f64; 3]| direction.map(|part| (part + 0.0).to_bits());
-        directions.iter().map(bits).collect()
+        directions.iter().map(|at| at.map(f64::to_bits)).collect()
     }
 
     #[test]
@@ -188,36 +188,39 @@ mod tests {
 
     #[test]
     fn faces_of_a_cube_share_their_edges() {
-        let map = CubeMap {
-            side: 6,
-            on_corners: true,
-        };
-        let mut edges: Vec<[u64; 3]> = Vec::new();
-        for &face in CubeFace::ALL {
-            let rows: Vec<Vec<_>> = (0..6)
-                .map(|row| map.directions(face, row).collect())
-                .collect();
-            assert!(rows.iter().flatten().all(|direction: &[f64; 3]| {
-                let square: f64 = direction.iter().map(|part| part * part).sum();
-                (square - 1.0).abs() < 1e-15
-            }));
-            edges.extend(bits(&rows[0]));
-            edges.extend(bits(&rows[5]));
-            for row in &rows[1..5] {
-                edges.extend(bits(&[row[0], row[5]]));
+        for side in [5, 6] {
+            let last = side as usize - 1;
+            let map = CubeMap {
+                side,
+                on_corners: true,
+            };
+            let mut edges: Vec<[u64; 3]> = Vec::new();
+            for &face in CubeFace::ALL {
+                let rows: Vec<Vec<_>> = (0..side)
+                    .map(|row| map.directions(face, row).collect())
+                    .collect();
+                assert!(rows.iter().flatten().all(|direction: &[f64; 3]| {
+                    let square: f64 = direction.iter().map(|part| part * part).sum();
+                    (square - 1.0).abs() < 1e-15
+                }));
+                edges.extend(bits(&rows[0]));
+                edges.extend(bits(&rows[last]));
+                for row in &rows[1..last] {
+                    edges.extend(bits(&[row[0], row[last]]));
+                }
             }
-        }
-        // A cube has 8 corners on three faces each, and 12 edges of 4 inner samples on two faces each.
-        edges.sort_unstable();
-        let (mut on_two, mut on_three) = (0, 0);
-        for same in edges.chunk_by(|a, b| a == b) {
-            match same.len() {
-                2 => on_two += 1,
-                3 => on_three += 1,
-                count => panic!("a direction on {count} faces"),
+            // A cube has 8 corners on three faces each, and 12 edges whose inner samples are on two faces each.
+            edges.sort_unstable();
+            let (mut on_two, mut on_three) = (0, 0);
+            for same in edges.chunk_by(|a, b| a == b) {
+                match same.len() {
+                    2 => on_two += 1,
+                    3 => on_three += 1,
+                    count => panic!("a direction on {count} faces of {side}"),
+                }
             }
+            assert_eq!((on_two, on_three), (12 * (last - 1), 8), "{side}");
         }
-        assert_eq!((on_two, on_three), (12 * 4, 8));
     }
 
     #[test]
