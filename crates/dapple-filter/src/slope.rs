@@ -50,8 +50,8 @@ impl SlopeBlur {
     /// If there are fewer heights or values than in the part and its halo, which must be [`halo`](Self::halo).
     #[must_use]
     pub fn apply(&self, values: &[f32], heights: &[f32], part: &Part) -> Vec<f32> {
-        let numbers = self.run(heights, part, &|index| [values[index]]);
-        numbers.into_iter().map(|[number]| number).collect()
+        let numbers = self.apply_colors(values.as_chunks::<1>().0, heights, part);
+        numbers.into_flattened()
     }
 
     /// Averages the colors of a part along the path that leads uphill from each pixel; see [`apply`](Self::apply).
@@ -60,15 +60,11 @@ impl SlopeBlur {
     ///
     /// Same as [`apply`](Self::apply).
     #[must_use]
-    pub fn apply_colors(&self, colors: &[[f32; 3]], heights: &[f32], part: &Part) -> Vec<[f32; 3]> {
-        self.run(heights, part, &|index| colors[index])
-    }
-
-    fn run<const N: usize>(
+    pub fn apply_colors<const N: usize>(
         &self,
+        colors: &[[f32; N]],
         heights: &[f32],
         part: &Part,
-        value: &(impl Fn(usize) -> [f32; N] + Sync),
     ) -> Vec<[f32; N]> {
         let paths = Paths::new(
             heights,
@@ -77,12 +73,12 @@ impl SlopeBlur {
             FlowDirection::Downhill,
             self.weights.is_empty(),
         );
-        paths.follow(part, value, |lanes| {
-            let here = lanes.values(value);
+        paths.follow(part, colors, |lanes| {
+            let here = lanes.values(colors);
             let mut sums = here;
             for &weight in &self.weights {
                 lanes.step();
-                let there = lanes.values(value);
+                let there = lanes.values(colors);
                 for (lane, sum) in sums.iter_mut().enumerate() {
                     for ((sum, there), here) in sum.iter_mut().zip(there[lane]).zip(here[lane]) {
                         *sum += weight * (there - here);
@@ -141,8 +137,8 @@ impl FlowWarp {
     /// If there are fewer heights or values than in the part and its halo, which must be [`halo`](Self::halo).
     #[must_use]
     pub fn apply(&self, values: &[f32], heights: &[f32], part: &Part) -> Vec<f32> {
-        let numbers = self.run(heights, part, &|index| [values[index]]);
-        numbers.into_iter().map(|[number]| number).collect()
+        let numbers = self.apply_colors(values.as_chunks::<1>().0, heights, part);
+        numbers.into_flattened()
     }
 
     /// Moves the colors of a part; see [`apply`](Self::apply).
@@ -151,23 +147,19 @@ impl FlowWarp {
     ///
     /// Same as [`apply`](Self::apply).
     #[must_use]
-    pub fn apply_colors(&self, colors: &[[f32; 3]], heights: &[f32], part: &Part) -> Vec<[f32; 3]> {
-        self.run(heights, part, &|index| colors[index])
-    }
-
-    fn run<const N: usize>(
+    pub fn apply_colors<const N: usize>(
         &self,
+        colors: &[[f32; N]],
         heights: &[f32],
         part: &Part,
-        value: &(impl Fn(usize) -> [f32; N] + Sync),
     ) -> Vec<[f32; N]> {
         let is_still = self.steps == 0;
         let paths = Paths::new(heights, part, self.length, self.direction, is_still);
-        paths.follow(part, value, |lanes| {
+        paths.follow(part, colors, |lanes| {
             for _ in 0..self.steps {
                 lanes.step();
             }
-            lanes.values(value)
+            lanes.values(colors)
         })
     }
 }
@@ -250,31 +242,28 @@ impl Paths {
     fn follow<const N: usize>(
         &self,
         part: &Part,
-        value: &(impl Fn(usize) -> [f32; N] + Sync),
+        values: &[[f32; N]],
         follow: impl Fn(&mut Lanes<'_>) -> [[f32; N]; LANES] + Sync,
     ) -> Vec<[f32; N]> {
         let width = part.size[0] as usize;
         let [left, above] = part.halo.map(|side| side as usize);
-        let mut values = vec![[0.0; N]; width * part.size[1] as usize];
-        parallel::for_each_chunk(&mut values, width, |row, out| {
+        let mut followed = vec![[0.0; N]; width * part.size[1] as usize];
+        parallel::for_each_chunk(&mut followed, width, |row, out| {
             let start = (row + above) * self.wide + left;
             for (group, out) in out.chunks_mut(LANES).enumerate() {
                 let start = start + group * LANES;
                 if self.gradients.is_empty() {
-                    for (column, out) in out.iter_mut().enumerate() {
-                        *out = value(start + column);
-                    }
+                    out.copy_from_slice(&values[start..start + out.len()]);
                     continue;
                 }
                 // Lanes past the end of the row repeat its last pixel.
                 let last = out.len() - 1;
                 let mut lanes =
                     Lanes::new(self, core::array::from_fn(|lane| start + lane.min(last)));
-                let followed = follow(&mut lanes);
-                out.copy_from_slice(&followed[..=last]);
+                out.copy_from_slice(&follow(&mut lanes)[..=last]);
             }
         });
-        values
+        followed
     }
 }
 
@@ -293,7 +282,7 @@ impl<'a> Lanes<'a> {
     fn step(&mut self) {
         let paths = self.paths;
         for lane in 0..LANES {
-            let uphill = self.places[lane].mix(paths.wide, &|index| paths.gradients[index]);
+            let uphill = self.places[lane].mix(paths.wide, &paths.gradients);
             let [x, y] = uphill.map(f64::from);
             let length = (x * x + y * y).sqrt();
             if length > 0.0 && length.is_finite() {
@@ -314,8 +303,8 @@ impl<'a> Lanes<'a> {
 
     /// Interpolates values where the paths are.
     #[inline(always)]
-    fn values<const N: usize>(&self, value: &impl Fn(usize) -> [f32; N]) -> [[f32; N]; LANES] {
-        self.places.map(|place| place.mix(self.paths.wide, value))
+    fn values<const N: usize>(&self, values: &[[f32; N]]) -> [[f32; N]; LANES] {
+        self.places.map(|place| place.mix(self.paths.wide, values))
     }
 }
 
@@ -332,13 +321,13 @@ impl Place {
 
     /// Interpolates between the four pixels.
     #[inline(always)]
-    fn mix<const N: usize>(self, wide: usize, value: &impl Fn(usize) -> [f32; N]) -> [f32; N] {
+    fn mix<const N: usize>(self, wide: usize, values: &[[f32; N]]) -> [f32; N] {
         let mix = |a: [f32; N], b: [f32; N], part: f32| {
             core::array::from_fn(|channel| a[channel] + part * (b[channel] - a[channel]))
         };
         let index = self.index;
-        let upper = mix(value(index), value(index + 1), self.part[0]);
-        let lower = mix(value(index + wide), value(index + wide + 1), self.part[0]);
+        let upper = mix(values[index], values[index + 1], self.part[0]);
+        let lower = mix(values[index + wide], values[index + wide + 1], self.part[0]);
         mix(upper, lower, self.part[1])
     }
 }
