@@ -102,14 +102,8 @@ impl<'a> Grid<'a> {
                 first..=self.bucket(axis, high[axis] - shift[axis])
             });
             for row in rows {
-                let row = row * self.cells[0];
-                let first = self.groups.range(row + columns.start()).start;
-                let end = self.groups.range(row + columns.end()).end;
-                // Visiting a row takes time even if it is empty.
-                budget.take((end - first) as u64 + 1)?;
-                for &index in &self.groups.items[first..end] {
-                    visit(index, self.sites[index as usize] + shift);
-                }
+                let columns = [*columns.start(), *columns.end()];
+                self.visit_row(row, columns, budget, |index, at| visit(index, at + shift))?;
             }
             image.x += 1.0;
             if image.x > x_last {
@@ -138,13 +132,27 @@ impl<'a> Grid<'a> {
             let high = (row + 1) as f64 / self.per_step.y;
             let across = (low - center.y).max(center.y - high).max(0.0);
             let along = ((radius - across).max(0.0) * (radius + across)).sqrt();
-            let [first, last] = [-along, along].map(|along| self.bucket(0, center.x + along));
-            let first = self.groups.range(row * self.cells[0] + first).start;
-            let end = self.groups.range(row * self.cells[0] + last).end;
-            budget.take((end - first) as u64 + 1)?;
-            for &index in &self.groups.items[first..end] {
-                visit(index, self.sites[index as usize]);
-            }
+            let columns = [-along, along].map(|along| self.bucket(0, center.x + along));
+            self.visit_row(row, columns, budget, &mut visit)?;
+        }
+        Ok(())
+    }
+
+    /// Calls `visit` with the index and position of every site in a row of buckets, from the first to the last column.
+    fn visit_row(
+        &self,
+        row: usize,
+        [first, last]: [usize; 2],
+        budget: &mut Budget,
+        mut visit: impl FnMut(u32, DVec2),
+    ) -> Result<(), TooThin> {
+        let row = row * self.cells[0];
+        let first = self.groups.range(row + first).start;
+        let end = self.groups.range(row + last).end;
+        // Visiting a row takes time even if it is empty.
+        budget.take((end - first) as u64 + 1)?;
+        for &index in &self.groups.items[first..end] {
+            visit(index, self.sites[index as usize]);
         }
         Ok(())
     }

@@ -188,9 +188,7 @@ pub fn estimate_material(
 
 impl EstimateOptions {
     fn check(&self) -> Result<(), TileError> {
-        let check = |range: Range, what, value| {
-            TileError::check(range.holds(value), what, value, range.text)
-        };
+        let check = TileError::check_in;
         check(COARSENESS, "coarseness", self.coarseness)?;
         check(LIGHT, "direction of the light", self.light.unwrap_or(0.0))?;
         check(SLOPE, "slope", self.slope)?;

@@ -123,7 +123,7 @@ pub struct DetailKept {
     pub source_lowest_local_detail: f64,
     /// Strangeness: how much the tile near its seams differs from the source.
     ///
-    /// Squares of 8 × 8 pixels across and next to the wrap are compared with all squares of the source. The strangeness
+    /// Squares of 8 × 8 pixels of the reduced images across and next to the wrap are compared with all squares of the source. The strangeness
     /// is their mean distance to the nearest square of the source, divided by the mean distance of the source's own
     /// squares to the nearest other square in it, copies excepted. The largest value of all zones is used. It is about 1
     /// where a seam was moved and not repaired, more for stains and double exposures of images with clear shapes, and
@@ -132,7 +132,7 @@ pub struct DetailKept {
     /// Images are reduced by the smallest whole number that leaves at most 65,536 pixels of the source. `None` if a side
     /// of a reduced image is below 24 pixels, or the source is flat.
     pub strangeness: Option<f64>,
-    /// Strangeness of both images at half of that size, where a square covers 16 × 16 pixels.
+    /// Strangeness of both images at half of that size, where a square covers 16 × 16 pixels of the reduced images.
     ///
     /// Elements that end at a seam, such as courses of a wall, are detected at this size. `None` if a side of a reduced
     /// image is below 48 pixels, or the source is flat.

@@ -58,11 +58,12 @@ pub(crate) fn split(coordinate: f64) -> Option<(i64, i32)> {
 /// Magnitude below which coordinates are split by [`split_near`]: their steps are below 2^51.
 const NEAR: f64 = (1_u64 << 30) as f64;
 
+/// 1.5 · 2^52. All `f64` within a quarter of it are integers, and their low bits hold the difference from this number.
+pub(crate) const WHOLE: f64 = (3_u64 << 51) as f64;
+
 /// Splits a coordinate without converting between integers and floating point, which takes longer than all else.
 #[inline]
 fn split_near(mut coordinate: f64) -> (i64, i32) {
-    /// All `f64` within a quarter of it are integers, and their low bits hold the difference from this number.
-    const WHOLE: f64 = (3_u64 << 51) as f64;
     // Below zero, `split_far` rounds to the precision of numbers up to one.
     if coordinate < 0.0 && coordinate > -0.5 {
         coordinate = (coordinate + 1.0) - 1.0;

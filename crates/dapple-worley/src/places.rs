@@ -3,7 +3,7 @@
 //! The code of a neighbor has two bits for each axis: 0 for the own cell, 1 for the neighbor on the nearer side, 2 for
 //! the neighbor on the farther side.
 
-use crate::fixed::{STEPS, split};
+use crate::fixed::{STEPS, WHOLE, split};
 use crate::lattice::{Lattice, both, parts_each};
 use fearless_simd::{f64x8, i32x16, prelude::*, u32x16, u64x8};
 
@@ -30,9 +30,6 @@ pub(crate) struct Cells<S: Simd, const N: usize> {
     /// Coordinates of the positions, in steps from the lower corners of the cells.
     pub(crate) origins: [i32x16<S>; N],
 }
-
-/// 1.5 · 2^52. All `f64` within a quarter of it are integers, and their low bits hold the difference from this number.
-const WHOLE: f64 = (3_u64 << 51) as f64;
 
 impl<S: Simd, const N: usize> Places<S, N> {
     /// Converts a register of positions to fixed point. The bit mask has a bit for each position that is in range;

@@ -95,7 +95,8 @@ impl<'a> Tiles<'a> {
             is_refused.fetch_or(rows.is_err(), Relaxed);
             Ok::<Rows, Refusal>(rows?)
         });
-        // Return the error of the first failing tile, regardless of the order of threads.
+        // After a refusal, the order of threads decides which error comes first. The caller looks for coincident sites
+        // itself.
         let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
         Ok(merged(&tiles, &parts, sites.len()))
     }
