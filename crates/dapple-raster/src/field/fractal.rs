@@ -101,8 +101,7 @@ impl<F> Fractal<F> {
             octaves: Vec::new(),
             shape,
         };
-        // One octave more than allowed is enough to refuse the number.
-        for field in octaves.into_iter().take(33) {
+        for field in octaves {
             sum.octaves.push(Octave {
                 field,
                 frequency,
@@ -110,6 +109,10 @@ impl<F> Fractal<F> {
             });
             frequency *= lacunarity;
             weight *= gain;
+            // One octave more than allowed is enough to refuse the number.
+            if !Fractal::COUNT.holds(sum.octaves.len() as f64) {
+                break;
+            }
         }
         let count = sum.octaves.len();
         RasterError::check_in(Fractal::COUNT, "number of octaves", count as f64)?;
