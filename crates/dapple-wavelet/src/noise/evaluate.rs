@@ -31,11 +31,11 @@ impl WaveletNoise<2> {
 
 /// Positions are in cells. Windows are rendered on all cores if the feature `rayon` is enabled.
 impl Field for WaveletNoise<2> {
-    #[inline]
     fn parts(&self) -> FieldParts<'_> {
         FieldParts::Generator(self)
     }
 
+    #[inline]
     fn value(&self, position: [f64; 2]) -> f32 {
         self.sample(position)
     }
