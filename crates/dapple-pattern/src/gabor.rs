@@ -141,7 +141,7 @@ impl GaborNoise {
     /// for a texture.
     #[doc(hidden)]
     pub fn shader_words(&self) -> Result<Vec<u32>, PatternError> {
-        let [columns, rows] = self.options.period.map(|cells| cells.unwrap_or(0));
+        let [columns, rows] = lattice::period_words(self.options.period);
         let cells = f64::from(columns) * f64::from(rows);
         let (what, range) = (
             "period of Gabor noise",

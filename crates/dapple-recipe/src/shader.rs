@@ -70,7 +70,8 @@ impl Recipe {
     /// come from a buffer: it keeps compilers from changing the results.
     ///
     /// Nodes that look up tiles, control points or stamps, such as wavelet noise, add the argument
-    /// `data: texture_2d<u32>` before `zero`: a texture of the words in [`MaterialShader::data`]. Looping motion stands still at the time 0.
+    /// `data: texture_2d<u32>` before `zero`: a texture of the words in [`MaterialShader::data`]. Looping motion stands
+    /// still at the time 0.
     ///
     /// The emission is without the strength of the material. Maps that the material does not set have their defaults.
     ///

@@ -88,6 +88,21 @@ impl Values {
         }
     }
 
+    /// Applies a filter to numbers, or to colors as arrays.
+    pub(crate) fn filtered(
+        &self,
+        numbers: impl FnOnce(&[f32]) -> Vec<f32>,
+        colors: impl FnOnce(&[[f32; 3]]) -> Vec<[f32; 3]>,
+    ) -> Self {
+        match self {
+            Self::Numbers(values) => Self::Numbers(numbers(values)),
+            Self::Colors(values) => {
+                let arrays: Vec<_> = values.iter().map(|color| color.to_array()).collect();
+                Self::Colors(colors(&arrays).into_iter().map(LinearRgb::from).collect())
+            }
+        }
+    }
+
     /// Applies a function to the numbers, or separately to the three channels of the colors.
     pub(crate) fn each_channel(&self, change: impl Fn(&[f32]) -> Vec<f32>) -> Self {
         let colors = match self {

@@ -88,21 +88,20 @@ impl NodeKind for BricksNode {
         let bricks = Bricks::new(shader.seed(self.seed.as_ref()), options)?;
         shader.needs(module);
         let at = shader.position(self.frequency.0);
-        let mut constant =
-            shader.constant("BRICKS", pattern_value("Bricks", &bricks.shader_words()));
+        let name = shader.constant("BRICKS", pattern_value("Bricks", &bricks.shader_words()));
+        let mut arguments = name.clone();
         if self.bond == Bond::Hexagons {
             let sides = pattern_value("array", &bricks.hexagon_words());
             let sides = shader.constant("SIDES", format!("HexagonSides({sides})"));
-            constant += &format!(", {sides}");
+            arguments += &format!(", {sides}");
         }
         if self.value == BrickValue::EdgeDistance {
             return Ok(Code::number(format!(
-                "{kind}_edge_distance({constant}, {at})"
+                "{kind}_edge_distance({arguments}, {at})"
             )));
         }
-        let brick = shader.name("brick", format!("{kind}_brick({constant}, {at})"));
-        let bricks = constant.split(',').next().unwrap_or_default();
-        let random = |index: u32| format!("brick_random({bricks}, {brick}.id, {index}u)");
+        let brick = shader.name("brick", format!("{kind}_brick({arguments}, {at})"));
+        let random = |index: u32| format!("brick_random({name}, {brick}.id, {index}u)");
         Ok(Code::number(match self.value {
             BrickValue::Height | BrickValue::EdgeDistance => {
                 format!("double_to_float(double_unit({brick}.height))")

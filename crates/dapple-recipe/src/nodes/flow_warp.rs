@@ -2,8 +2,7 @@
 
 use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
-use crate::{Input, RecipeError, Values};
-use dapple_color::LinearRgb;
+use crate::{Input, RecipeError};
 use dapple_filter::FlowDirection;
 use dapple_raster::{Range, range};
 use serde::{Deserialize, Serialize};
@@ -52,17 +51,10 @@ impl NodeKind for FlowWarpNode {
         let halo = move |pixel| of_halo.halo(pixel);
         let step = plan.neighborhood(vec![input, height], halo, move |around| {
             let heights = around.inputs[1].numbers();
-            Ok(match &*around.inputs[0] {
-                Values::Numbers(numbers) => {
-                    Values::Numbers(warp.apply(numbers, heights, &around.part))
-                }
-                Values::Colors(colors) => {
-                    let colors: Vec<_> = colors.iter().map(|color| color.to_array()).collect();
-                    let moved = warp.apply_colors(&colors, heights, &around.part);
-                    let color = |[r, g, b]: [f32; 3]| LinearRgb::new(r, g, b);
-                    Values::Colors(moved.into_iter().map(color).collect())
-                }
-            })
+            Ok(around.inputs[0].filtered(
+                |numbers| warp.apply(numbers, heights, &around.part),
+                |colors| warp.apply_colors(colors, heights, &around.part),
+            ))
         });
         Ok(if is_color { step } else { step.with_numbers() })
     }

@@ -76,23 +76,35 @@ impl NodeKind for FractalOf {
 
     fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
         let input = shader.moved(&self.input)?;
-        shader.needs(Module::Fractal);
         let octaves = core::iter::repeat_n((), self.octaves as usize);
         let fractal = Fractal::new(octaves, self.gain, self.lacunarity, self.shape)?;
-        let mut sum = literal(0.0);
-        for (_, frequency, weight) in fractal.octaves() {
-            let at = shader.position([frequency; 2]);
-            let value = input(&at).text;
-            let value = shaped_code(self.shape, value)?;
-            let weight = literal(weight);
-            sum = shader.name("sum", format!("add_octave({sum}, {weight}, {value}, zero)"));
-        }
+        let sum = sum_code(shader, self.shape, fractal.octaves(), |_, (), at| {
+            Ok(input(&at).text)
+        })?;
         Ok(Code::number(sum))
     }
 }
 
+/// Writes a fractal sum. `octave` writes the value of an octave at a position.
+pub(crate) fn sum_code<'a, T>(
+    shader: &mut NodeShader<'_, 'a>,
+    shape: FractalShape,
+    octaves: impl IntoIterator<Item = (T, f64, f32)>,
+    octave: impl Fn(&mut NodeShader<'_, 'a>, T, String) -> Result<String, Refusal>,
+) -> Result<String, Refusal> {
+    shader.needs(Module::Fractal);
+    let mut sum = literal(0.0);
+    for (field, frequency, weight) in octaves {
+        let at = shader.position([frequency; 2]);
+        let value = shaped_code(shape, octave(shader, field, at)?)?;
+        let weight = literal(weight);
+        sum = shader.name("sum", format!("add_octave({sum}, {weight}, {value}, zero)"));
+    }
+    Ok(sum)
+}
+
 /// Writes the function of a fractal sum that is applied to the value of an octave.
-pub(crate) fn shaped_code(shape: FractalShape, value: String) -> Result<String, Refusal> {
+fn shaped_code(shape: FractalShape, value: String) -> Result<String, Refusal> {
     Ok(match shape {
         FractalShape::Sum => value,
         FractalShape::Ridged => format!("ridge({value}, zero)"),

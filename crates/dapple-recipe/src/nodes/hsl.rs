@@ -67,9 +67,8 @@ impl NodeKind for HslChange {
     }
 
     fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
-        let tables = srgb_shader_words().map(|words| shader.data(&words));
-        let [borders, linear] = tables;
-        let (borders, linear) = (borders?, linear?);
+        let [borders, linear] = srgb_shader_words();
+        let (borders, linear) = (shader.data(&borders)?, shader.data(&linear)?);
         shader.needs(Module::Hsl);
         let color = shader.any(&self.input)?.to_color();
         let [turns, saturation, lightness] = [

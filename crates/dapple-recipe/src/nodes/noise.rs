@@ -1,5 +1,6 @@
 //! Sums octaves of noise to fractal noise with values from 0 to 1.
 
+use super::fractal::sum_code;
 use super::{Frequency, NodeKind, NodeSeed, pups, wavelet};
 use crate::plan::{Builder, FREQUENCY, Step, Work};
 use crate::shader::{Code, NodeShader, Refusal, literal};
@@ -125,15 +126,13 @@ impl NodeKind for FractalNode {
         let noise = GradientNoise2::new(shader.seed(self.seed.as_ref()));
         let noise = noise.with_period(shader.periods(frequency))?;
         let octaves = noise.fractal(self.octaves, self.gain, 2.0, FractalShape::Sum)?;
-        shader.needs(Module::Fractal);
         let first = shader.position(frequency);
-        let mut sum = literal(0.0);
-        for (noise, frequency, weight) in octaves.octaves() {
-            let at = shader.scaled(&first, [frequency; 2]);
-            let value = gradient_code(shader, noise, weight, &at)?;
-            let weight = literal(weight);
-            sum = shader.name("sum", format!("add_octave({sum}, {weight}, {value}, zero)"));
-        }
+        let octaves = octaves.octaves();
+        let sum = shader.at(first, |shader| {
+            sum_code(shader, FractalShape::Sum, octaves, |shader, noise, at| {
+                gradient_code(shader, noise, &at)
+            })
+        })?;
         let scale = literal(self.weights(GradientNoise2::VARIANCE.into())[0]);
         let sum = format!("number_mul({scale}, {sum}, zero)");
         Ok(Code::number(about_half_code(&sum)))
@@ -159,7 +158,9 @@ impl FractalNode {
 
     /// Returns the octave weights, scaled so that the sum has a standard deviation of 1/6. `variance` is that of the
     /// noise of one octave.
-    fn weights(&self, variance: f64) -> Vec<f32> {
+    #[doc(hidden)]
+    #[must_use]
+    pub fn weights(&self, variance: f64) -> Vec<f32> {
         let weights = core::iter::successors(Some(1.0), |weight| Some(weight * self.gain));
         let weights: Vec<f64> = weights.take(self.octaves as usize).collect();
         let squares = weights.iter().map(|weight| weight * weight * variance);
@@ -175,11 +176,11 @@ impl FractalNode {
 pub(crate) fn gradient_code(
     shader: &mut NodeShader<'_, '_>,
     noise: &GradientNoise2,
-    weight: f32,
     at: &str,
 ) -> Result<String, Refusal> {
     shader.needs(Module::GradientNoise2d);
-    let mut words = noise.shader_words(weight)?;
+    // The sum has the weight of an octave, which the noise itself does not use.
+    let mut words = noise.shader_words(1.0)?;
     // Add the offset of the octave to the position with 64 bits, as the CPU does.
     let offset = [8, 9].map(|at| f64::from(words[at]) / f64::from(1 << 24));
     words[8..12].fill(0);

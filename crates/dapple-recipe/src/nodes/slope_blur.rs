@@ -2,8 +2,7 @@
 
 use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
-use crate::{Input, RecipeError, Values};
-use dapple_color::LinearRgb;
+use crate::{Input, RecipeError};
 use serde::{Deserialize, Serialize};
 
 /// Blur of a number or a color along the slope of a height: values run downhill, as rust and dirt do.
@@ -35,17 +34,10 @@ impl NodeKind for SlopeBlur {
         let step = plan.neighborhood(vec![input, height], halo, move |around| {
             let blur = dapple_filter::SlopeBlur::new(radius, around.part.pixel);
             let heights = around.inputs[1].numbers();
-            Ok(match &*around.inputs[0] {
-                Values::Numbers(numbers) => {
-                    Values::Numbers(blur.apply(numbers, heights, &around.part))
-                }
-                Values::Colors(colors) => {
-                    let colors: Vec<_> = colors.iter().map(|color| color.to_array()).collect();
-                    let runs = blur.apply_colors(&colors, heights, &around.part);
-                    let color = |[r, g, b]: [f32; 3]| LinearRgb::new(r, g, b);
-                    Values::Colors(runs.into_iter().map(color).collect())
-                }
-            })
+            Ok(around.inputs[0].filtered(
+                |numbers| blur.apply(numbers, heights, &around.part),
+                |colors| blur.apply_colors(colors, heights, &around.part),
+            ))
         });
         Ok(if is_color { step } else { step.with_numbers() })
     }

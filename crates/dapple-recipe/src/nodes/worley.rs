@@ -9,8 +9,8 @@ use dapple_raster::{Field, FieldExt};
 use dapple_raster::{Range, range};
 use dapple_wgsl::{Module, number_value, worley_value};
 use dapple_worley::{
-    CellValues, Cellular, Combination, Dimensions, EdgeDistances, Metric, OctaveSeeds, Octaves,
-    Scatter, Space, Worley, Worley2, Worley4,
+    Cellular, Combination, Dimensions, Metric, OctaveSeeds, Octaves, Scatter, Space, Worley,
+    Worley2, Worley4,
 };
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
@@ -211,25 +211,19 @@ impl WorleyNode {
         let worley = self.basis(worley)?;
         let combination = match self.value {
             WorleyValue::Combination(combination) => combination,
-            WorleyValue::CellValue => {
-                let features = self.features(shader, &worley, 1, 1.0, z)?;
-                return Ok(Code::number(format!("cell_value({features}[0].id)")));
-            }
+            WorleyValue::CellValue => return self.cell_value_code(shader, &worley, z),
             WorleyValue::EdgeDistance if N > 2 => {
                 let reason = "distances to edges in four dimensions have no shader";
                 return Err(Refusal::new(reason));
             }
-            WorleyValue::EdgeDistance => {
-                shader.needs(Module::WorleyEdges2d);
-                let (worley, place) = self.placed(shader, &worley, 1.0)?;
-                let value = format!("edge_distance_2d({worley}, {place}, zero)");
-                return Ok(Code::number(value));
-            }
+            WorleyValue::EdgeDistance => return self.edge_distance_code(shader, &worley),
         };
-        let depth = combination.depth();
         let Some(octaves) = self.octaves else {
-            let features = self.features(shader, &worley, depth, 1.0, z)?;
-            return Ok(Code::number(tone(&features, combination, self.range)));
+            let mut cellular = worley.combine(combination);
+            if let Some(range) = self.range {
+                cellular = cellular.with_range(range)?;
+            }
+            return self.cellular_code(shader, &cellular, z);
         };
         // Sum the octaves, each with its own period, and its own seed unless they share one.
         let mut sum = literal(0.0);
@@ -241,8 +235,8 @@ impl WorleyNode {
             if octaves.seeds == OctaveSeeds::Own {
                 octave = octave.with_seed(worley.seed().child("octave", index.into()));
             }
-            let features = self.features(shader, &octave, depth, ratio, z)?;
-            let value = tone(&features, combination, None);
+            let features = self.features(shader, &octave, combination.depth(), ratio, z)?;
+            let value = weighted(&features, combination.coefficients(), 0.0);
             let value = format!("number_mul({value}, {}, zero)", literal(weight as f32));
             sum = shader.name("sum", format!("number_add({sum}, {value}, zero)"));
             ratio *= octaves.lacunarity;
@@ -255,6 +249,51 @@ impl WorleyNode {
                 format!("number_add({shift}, number_mul({sum}, {scale}, zero), zero)")
             }
         }))
+    }
+
+    /// Writes a combination of distances.
+    pub(crate) fn cellular_code<const N: usize>(
+        &self,
+        shader: &mut NodeShader<'_, '_>,
+        field: &Cellular<N>,
+        z: f64,
+    ) -> Result<Code, Refusal>
+    where
+        Dimensions: Space<N>,
+    {
+        let (weights, shift) = field.shader_tone();
+        let features = self.features(shader, field.worley(), weights.depth(), 1.0, z)?;
+        let value = weighted(&features, weights.coefficients(), shift);
+        Ok(Code::number(value))
+    }
+
+    /// Writes the random number of the nearest feature point.
+    pub(crate) fn cell_value_code<const N: usize>(
+        &self,
+        shader: &mut NodeShader<'_, '_>,
+        worley: &Worley<N>,
+        z: f64,
+    ) -> Result<Code, Refusal>
+    where
+        Dimensions: Space<N>,
+    {
+        let features = self.features(shader, worley, 1, 1.0, z)?;
+        Ok(Code::number(format!("cell_value({features}[0].id)")))
+    }
+
+    /// Writes the distance to the nearest edge of a cell in the plane.
+    pub(crate) fn edge_distance_code<const N: usize>(
+        &self,
+        shader: &mut NodeShader<'_, '_>,
+        worley: &Worley<N>,
+    ) -> Result<Code, Refusal>
+    where
+        Dimensions: Space<N>,
+    {
+        shader.needs(Module::WorleyEdges2d);
+        let (worley, place) = self.placed(shader, worley, 1.0)?;
+        let value = format!("edge_distance_2d({worley}, {place}, zero)");
+        Ok(Code::number(value))
     }
 
     /// Writes the parameters of a basis, and the place at the position times the node's frequency times `ratio`.
@@ -336,49 +375,6 @@ fn split(coordinate: f64) -> Result<(i32, String), Refusal> {
         cell as i32,
         number_value((steps.rem_euclid(STEPS) / STEPS) as f32),
     ))
-}
-
-/// Writes a generator of a cellular basis as an expression at the shader's position.
-pub(crate) enum WorleyField<'a> {
-    Cellular(&'a Cellular<2>),
-    CellValues(&'a CellValues<2>),
-    EdgeDistances(&'a EdgeDistances<2>),
-}
-
-impl WorleyField<'_> {
-    /// Writes the field at the shader's position, which is in cells.
-    pub(crate) fn code(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
-        let node = WorleyNode {
-            frequency: Frequency([1.0; 2]),
-            ..WorleyNode::default()
-        };
-        Ok(Code::number(match self {
-            Self::Cellular(field) => {
-                let (weights, shift) = field.shader_tone();
-                let depth = weights.depth();
-                let features = node.features(shader, field.worley(), depth, 1.0, 0.0)?;
-                weighted(&features, weights.coefficients(), shift)
-            }
-            Self::CellValues(field) => {
-                let features = node.features(shader, field.worley(), 1, 1.0, 0.0)?;
-                format!("cell_value({features}[0].id)")
-            }
-            Self::EdgeDistances(field) => {
-                shader.needs(Module::WorleyEdges2d);
-                let (worley, place) = node.placed(shader, field.worley(), 1.0)?;
-                format!("edge_distance_2d({worley}, {place}, zero)")
-            }
-        }))
-    }
-}
-
-/// Writes a combination of distances, mapped from `range` to 0 to 1 if there is one.
-fn tone(features: &str, combination: Combination, range: Option<[f32; 2]>) -> String {
-    let [low, high] = range.unwrap_or([0.0, 1.0]);
-    let weights = combination
-        .coefficients()
-        .map(|weight| weight / (high - low));
-    weighted(features, weights, -low / (high - low) + 0.0)
 }
 
 /// Writes the sum of a number and of weighted distances.

@@ -2,15 +2,15 @@
 
 use super::writer::Writer;
 use super::{Code, NodeShader, Refusal, literal, quotient};
-use crate::nodes::{fractal, noise, pups, wavelet, worley};
+use crate::nodes::{WorleyNode, fractal, noise, pups, wavelet};
 use crate::{Images, Plan, Recipe, RecipeError, RecipeErrorKind};
 use core::any::Any;
 use dapple_noise::GradientNoise2;
 use dapple_pups::{LabelTexture, NetField as _, Texture};
 use dapple_raster::{Field, FieldParts, PairOperation};
 use dapple_wavelet::WaveletNoise2;
-use dapple_wgsl::{Module, double_value};
-use worley::WorleyField;
+use dapple_wgsl::double_value;
+use dapple_worley::{CellValues, Cellular, EdgeDistances};
 
 /// A field as a shader.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -29,9 +29,9 @@ pub struct FieldShader {
 /// fn field64(at: Position2d, zero: u32) -> f32
 /// ```
 ///
-/// The arguments are those of [`Recipe::to_wgsl`]. Generators are gradient noise, Worley's basis, wavelet noise and
-/// PUPs. All compositions of [`FieldExt`](dapple_raster::FieldExt) have a shader, except for
-/// [`map`](dapple_raster::FieldExt::map) with a function.
+/// The arguments are those of [`Recipe::to_wgsl`]. Generators are gradient noise, Worley's basis without octaves,
+/// wavelet noise and PUPs. Compositions by [`FieldExt`](dapple_raster::FieldExt) have a shader, except for
+/// [`map`](dapple_raster::FieldExt::map) with a function, `slice` and `extrude`.
 ///
 /// # Errors
 ///
@@ -107,16 +107,9 @@ fn code(field: &dyn Field, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refu
             format!("number_mix({from}, {to}, {by}, zero)")
         }
         FieldParts::Fractal(octaves, shape) => {
-            shader.needs(Module::Fractal);
-            let mut sum = literal(0.0);
-            for (field, frequency, weight) in octaves {
-                let at = shader.position([frequency; 2]);
-                let value = shader.at(at, |shader| number(field, shader))?;
-                let value = fractal::shaped_code(shape, value)?;
-                let weight = literal(weight);
-                sum = shader.name("sum", format!("add_octave({sum}, {weight}, {value}, zero)"));
-            }
-            sum
+            fractal::sum_code(shader, shape, octaves, |shader, field, at| {
+                shader.at(at, |shader| number(field, shader))
+            })?
         }
         parts => return moved_code(parts, shader),
     };
@@ -161,7 +154,7 @@ fn moved_code(parts: FieldParts<'_>, shader: &mut NodeShader<'_, '_>) -> Result<
 fn generator_code(generator: &dyn Any, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
     if let Some(noise) = generator.downcast_ref::<GradientNoise2>() {
         let at = shader.position([1.0; 2]);
-        return Ok(Code::number(noise::gradient_code(shader, noise, 1.0, &at)?));
+        return Ok(Code::number(noise::gradient_code(shader, noise, &at)?));
     }
     if let Some(noise) = generator.downcast_ref::<WaveletNoise2>() {
         return wavelet::noise_code(shader, noise, [1.0; 2]);
@@ -172,11 +165,16 @@ fn generator_code(generator: &dyn Any, shader: &mut NodeShader<'_, '_>) -> Resul
     if let Some(texture) = generator.downcast_ref::<LabelTexture>() {
         return pups::code(shader, &texture.shader_layers());
     }
-    let field = generator.downcast_ref().map(WorleyField::Cellular);
-    let field = field.or_else(|| generator.downcast_ref().map(WorleyField::CellValues));
-    let field = field.or_else(|| generator.downcast_ref().map(WorleyField::EdgeDistances));
-    match field {
-        Some(field) => field.code(shader),
-        None => Err(Refusal::new("a generator of this type has no shader")),
+    // Positions are in cells.
+    let cells = WorleyNode::default();
+    if let Some(field) = generator.downcast_ref::<Cellular<2>>() {
+        return cells.cellular_code(shader, field, 0.0);
     }
+    if let Some(field) = generator.downcast_ref::<CellValues<2>>() {
+        return cells.cell_value_code(shader, field.worley(), 0.0);
+    }
+    if let Some(field) = generator.downcast_ref::<EdgeDistances<2>>() {
+        return cells.edge_distance_code(shader, field.worley());
+    }
+    Err(Refusal::new("a generator of this type has no shader"))
 }
