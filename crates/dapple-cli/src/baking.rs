@@ -21,7 +21,7 @@ use std::io::{BufWriter, Cursor, Write};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Maximum number of pixels in a bake without `--banded`, which is 32768 × 32768.
+/// Maximum number of pixels in a flipbook, or in a bake without `--banded`: 32768 × 32768.
 pub(crate) const MOST_PIXELS: u64 = 1 << 30;
 
 /// The file of a baked image.
@@ -204,12 +204,13 @@ impl GridWriter {
                 return Ok(());
             };
             let n_rows = first.maps.first().map_or(0, |(_, rows)| rows.size()[1]);
-            for rows in &mut self.rows {
+            let written = parallel::map_mut_at_least(1, &mut self.rows, |_, rows| {
                 let parts = bands.iter().map(|band| rows.layers.rows(band));
                 let parts = parts.collect::<Result<Vec<_>>>()?;
                 let parts: Vec<_> = parts.iter().collect();
-                rows.write(&LayerRows::side_by_side(&parts)?)?;
-            }
+                rows.write(&LayerRows::side_by_side(&parts)?)
+            });
+            written.into_iter().collect::<Result<()>>()?;
             progress.add(u64::from(n_rows) * bands.len() as u64);
             progress.check()?;
         }

@@ -440,9 +440,6 @@ impl Work {
         progress.check()?;
         let bake = bake.map_err(|error| refused(error).wrong_value())?;
         claimed.write(&mut job, bake, recipe, progress)?;
-        if let Some(note) = args.import_note(&recipe.material) {
-            job.note_work(&note);
-        }
         self.finish(args, job, &claimed, images, time)
     }
 
@@ -476,7 +473,7 @@ impl Work {
         }
     }
 
-    /// Finishes the files of an image, and returns its lit preview if the options need one.
+    /// Writes what goes with an image, finishes its files, and returns its lit preview if the options need one.
     fn finish(
         &self,
         args: &Args,
@@ -486,6 +483,10 @@ impl Work {
         time: f64,
     ) -> Result<Option<Raster<LinearRgb>>> {
         let recipe = &self.recipe;
+        claimed.write_metas(&job, recipe)?;
+        if let Some(note) = args.import_note(&recipe.material) {
+            job.note_work(&note);
+        }
         // The contact sheet shows the first frame.
         let preview = if args.preview.is_some() || (args.contact_sheet && args.is_first_frame()) {
             let thing = args.preview.unwrap_or(Thing::Sphere);
@@ -591,8 +592,10 @@ impl Args {
 
     /// Returns the note about images of data, once for a loop.
     fn import_note(&self, material: &Material) -> Option<String> {
-        let preset = self.preset().filter(|_| self.is_first_frame())?;
-        preset.import_note(material)
+        if self.document().is_some() || !self.is_first_frame() {
+            return None;
+        }
+        self.preset()?.import_note(material)
     }
 
     /// Returns whether these are the options of a still image, or of the first frame of a loop.

@@ -243,28 +243,31 @@ impl Claimed {
         recipe: &Recipe,
         progress: &Progress,
     ) -> Result<()> {
+        let Some((output, document)) = self.document else {
+            return baking::write(job, bake, &self.files, progress);
+        };
+        let text = match document {
+            Document::Glb => {
+                let images = baking::encode(bake, &self.images, progress)?;
+                let layers = self.images.iter().map(|image| image.layers);
+                return job.write(output, &glb(recipe, layers.zip(images))?);
+            }
+            Document::Mtlx => mtlx,
+            Document::Tres => tres,
+        };
+        baking::write(job, bake, &self.files, progress)?;
+        let name = |file: &MapFile| (file.image.layers, job.target(file.output).name());
+        let names: Vec<_> = self.files.iter().map(name).collect();
+        job.write(output, text(recipe, &names).as_bytes())
+    }
+
+    /// Writes the import settings of the images.
+    pub(super) fn write_metas(&self, job: &Job<'_>, recipe: &Recipe) -> Result<()> {
         for (output, layers, image) in &self.metas {
             let meta = unity::meta(recipe, *layers, image);
             job.write(*output, meta.as_bytes())?;
         }
-        match self.document {
-            None => baking::write(job, bake, &self.files, progress),
-            Some((output, Document::Glb)) => {
-                let images = baking::encode(bake, &self.images, progress)?;
-                let layers = self.images.iter().map(|image| image.layers);
-                job.write(output, &glb(recipe, layers.zip(images))?)
-            }
-            Some((output, document)) => {
-                baking::write(job, bake, &self.files, progress)?;
-                let name = |file: &MapFile| (file.image.layers, job.target(file.output).name());
-                let names: Vec<_> = self.files.iter().map(name).collect();
-                let text = match document {
-                    Document::Tres => tres(recipe, &names),
-                    Document::Mtlx | Document::Glb => mtlx(recipe, &names),
-                };
-                job.write(output, text.as_bytes())
-            }
-        }
+        Ok(())
     }
 
     /// Returns the files of the images.

@@ -35,14 +35,14 @@ impl Work {
         let images = self.images(&mut made.images)?;
         let mut writer = GridWriter::new(&job, claimed.files(), size)?;
         let cache = made.cache.as_ref();
-        let times: Vec<_> = Frame::all(args.n_frames())
-            .map(|frame| frame.map_or(0.0, Frame::time))
-            .collect();
-        for times in times.chunks(columns as usize).take(rows as usize) {
-            let plan = |&time: &f64| self.plan(images, cache, time, progress);
-            let plans = times.iter().map(plan);
+        let mut frames = Frame::all(args.n_frames());
+        for row in 0..rows {
+            let plans = frames.by_ref().take(columns as usize).map(|frame| {
+                let time = frame.map_or(0.0, Frame::time);
+                self.plan(images, cache, time, progress)
+            });
             let plans = plans.collect::<Result<Vec<_>>>()?;
-            if times.contains(&0.0) && !plans[0].moves() {
+            if row == 0 && !plans[0].moves() {
                 job.note_work(STILL);
             }
             let bakes = plans.iter().map(|plan| Bake::new(plan, &options));
@@ -55,12 +55,21 @@ impl Work {
     }
 }
 
+/// Maximum number of frames of a loop, as for `--frames`.
+const MOST_FRAMES: u64 = 100_000;
+
 /// Returns the size of a grid of frames, in pixels.
 fn size_of(frame: [u32; 2], Size(grid): Size) -> Result<[u32; 2]> {
     let [width, height] = [0, 1].map(|axis| u64::from(frame[axis]) * u64::from(grid[axis]));
     if width.saturating_mul(height) > baking::MOST_PIXELS {
         let message = format!("a flipbook of {width} × {height} pixels has more than 2^30");
         return Err(usage(message).hint("take a smaller --size, or fewer frames"));
+    }
+    let count = u64::from(grid[0]) * u64::from(grid[1]);
+    if count > MOST_FRAMES {
+        let message =
+            format!("a flipbook has at most {MOST_FRAMES} frames, and {count} are too many");
+        return Err(usage(message).hint("take fewer columns or rows"));
     }
     // Sides of an image of at most 2^30 pixels fit.
     Ok([width as u32, height as u32])

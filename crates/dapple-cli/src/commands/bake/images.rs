@@ -20,7 +20,7 @@ impl Args {
     }
 
     /// Returns the document of the material, if the preset has one. A material of Godot is left out with images that
-    /// it cannot name: frames, parts of the tile, and samples on corners.
+    /// it cannot name: frames, parts of the tile, samples on corners, and normals with green down.
     pub(super) fn document(&self) -> Option<Document> {
         let document = self.preset()?.document?;
         let is_left_out = document == Document::Tres

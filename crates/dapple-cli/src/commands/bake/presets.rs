@@ -254,7 +254,7 @@ impl Preset {
     /// Returns the note that names the images of data for a program that does not read how to import them; `None` if
     /// another file says so, or if the preset has no such image for the material.
     pub(super) fn import_note(&self, material: &Material) -> Option<String> {
-        if self.has_metas || self.document.is_some() {
+        if self.has_metas {
             return None;
         }
         let layers = |image: &PresetImage| image.image.layers.of(material);
