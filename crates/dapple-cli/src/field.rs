@@ -196,7 +196,7 @@ impl FieldArgs {
 
 /// Converts an error about the recipe to an error about an option. The message lacks the node, which users of the
 /// subcommand do not see.
-fn refused(error: RecipeError) -> Error {
+pub(crate) fn refused(error: RecipeError) -> Error {
     let message = error.kind().to_string();
     Error::new(error).context(message).wrong_value()
 }

@@ -41,8 +41,8 @@ pub(crate) struct Args {
 
     /// Draw the noise in space on a sphere, as an equirectangular image: twice as wide as high, without a seam.
     ///
-    /// The center looks along +x, and y is up. With --samples corners, the last column equals the first, and the size is
-    /// odd, such as 1025x513.
+    /// It needs a --size, such as 1024x512. The center looks along +x, and y is up. With --samples corners, the last
+    /// column equals the first, and the width is 2 × height − 1, such as 1025x513.
     #[arg(long, conflicts_with_all = ["cube", "region", "wrap", "recipe"], help_heading = "Texture")]
     sphere: bool,
 

@@ -342,6 +342,13 @@ fn noise_on_a_sphere_meets_itself() {
         ("noise --sphere --size 64 -o a.png", "twice as wide"),
         ("noise --cube --size 64x32 -o a/", "square"),
         ("noise --sphere --cube -o a/", "--cube"),
+        ("noise --sphere --size 1048576x524288 -o a.png", "pixels"),
+        (
+            "noise --sphere --size 64x32 --cells nan -o a.png",
+            "extent",
+        ),
+        ("noise --sphere --size 64x32 --cells inf -o a.png", "extent"),
+        ("noise --cube --size 8 --gain -1 -o a/", "gain"),
     ] {
         let words: Vec<_> = line.split(' ').collect();
         assert_refused(&folder.run(&words), 2, part, line);
@@ -376,10 +383,25 @@ fn a_flipbook_holds_the_frames_of_a_loop_row_by_row() {
     }
     let first = read("all/tide_height_001.png");
     assert_ne!(first, read("all/tide_height_002.png"), "the loop moves");
-    let line = "bake tide.toml --size 1024 --flipbook 1000x1000 --maps height -o large/";
-    let words: Vec<_> = line.split(' ').collect();
-    assert_refused(&folder.run(&words), 2, "2^30", "a large flipbook");
+    for (line, part) in [
+        (
+            "bake tide.toml --size 1024 --flipbook 1000x1000 --maps height -o large/",
+            "2^30",
+        ),
+        (
+            "bake tide.toml --size 1 --flipbook 32768x32768 --maps height -o large/",
+            "100000",
+        ),
+    ] {
+        let words: Vec<_> = line.split(' ').collect();
+        assert_refused(&folder.run(&words), 2, part, line);
+    }
     assert!(!folder.path("large").exists());
+    let line = "bake tide.toml --size 16 --preset unity --flipbook 2x1 -o unity/";
+    let words: Vec<_> = line.split(' ').collect();
+    assert_done(&folder.run(&words), line);
+    let meta = fs::read_to_string(folder.path("unity/tide_Normal.png.meta")).unwrap();
+    assert!(meta.starts_with("fileFormatVersion: 2\n"), "{meta}");
 }
 
 #[test]

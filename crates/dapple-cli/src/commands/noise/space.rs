@@ -3,13 +3,13 @@
 use super::Args;
 use crate::args::Size;
 use crate::error::{Exit, Hint, usage};
-use crate::field::RangeArg;
+use crate::field::{RangeArg, refused};
 use crate::job::{Context, Job};
 use anyhow::Result;
 use dapple::hash::Seed;
 use dapple::noise::{CubeFace, CubeMap, Equirectangular, GradientNoise3};
-use dapple::raster::{Field, FractalShape, Named as _, Raster, parallel};
-use dapple::recipe::{FractalNode, Samples};
+use dapple::raster::{Field, FractalShape, Named as _, Raster};
+use dapple::recipe::{FractalNode, Images, Node, Plan, Recipe, Samples};
 use dapple::tile::Map;
 use serde_json::json;
 
@@ -19,25 +19,9 @@ use serde_json::json;
 ///
 /// If the size does not fit, an option is out of range, or writing fails.
 pub(super) fn draw(args: &Args, node: &FractalNode, context: &Context) -> Result<Exit> {
+    check(args, node)?;
     let Size(size) = args.field.size;
-    args.field.spaces()?;
     let on_corners = args.field.samples.samples == Samples::Corners;
-    // Samples on corners have one column and one row more than the spaces between them.
-    let width = 2 * u64::from(size[1]) - u64::from(on_corners);
-    if args.sphere && u64::from(size[0]) != width {
-        let message = "an equirectangular image is twice as wide as high";
-        return Err(
-            usage(format!("{message}, and --size is {}", args.field.size))
-                .hint(format!("take --size {width}x{}", size[1])),
-        );
-    }
-    if args.cube && size[0] != size[1] {
-        let message = format!(
-            "the faces of a cube are square, and --size is {}",
-            args.field.size
-        );
-        return Err(usage(message).hint(format!("take --size {}", size[0])));
-    }
     let faces = match args.cube {
         true => CubeFace::ALL.iter().copied().map(Some).collect(),
         false => vec![None],
@@ -56,11 +40,11 @@ pub(super) fn draw(args: &Args, node: &FractalNode, context: &Context) -> Result
     let octaves =
         GradientNoise3::new(seed).fractal(node.octaves, node.gain, 2.0, FractalShape::Sum);
     let octaves = octaves.map_err(|error| anyhow::Error::new(error).wrong_value())?;
-    let (scale, radius) = (scale(node), args.cells / 2.0);
+    // The standard deviation is a sixth, as in the plane.
+    let scale = node.weights(GradientNoise3::VARIANCE.into())[0];
+    let (radius, range) = (args.cells / 2.0, args.field.range);
     for (face, output) in faces.into_iter().zip(outputs) {
-        let mut pixels = vec![0.0; size[0] as usize * size[1] as usize];
-        parallel::for_each_chunk(&mut pixels, size[0] as usize, |row, out| {
-            let row = row as u32;
+        let row = |row: u32| {
             let place = |direction: [f64; 3]| direction.map(|part| radius * part);
             let places: Vec<_> = match face {
                 Some(face) => {
@@ -75,27 +59,50 @@ pub(super) fn draw(args: &Args, node: &FractalNode, context: &Context) -> Result
                     .map(place)
                     .collect(),
             };
+            let mut values = vec![0.0; places.len()];
             // Both slices have a row of pixels.
-            let _ = octaves.values(&places, out);
-            for value in out {
-                *value = mapped((0.5 + scale * *value).clamp(0.0, 1.0), args.field.range);
-            }
-        });
-        let map = Map::Value(Raster::from_vec(size, pixels)?);
-        job.write_image(output, map, true, &args.image)?;
+            let _ = octaves.values(&places, &mut values);
+            let values = values.into_iter();
+            values.map(move |value| mapped((0.5 + scale * value).clamp(0.0, 1.0), range))
+        };
+        let pixels = Raster::from_rows(size, row);
+        let pixels = pixels.map_err(|error| anyhow::Error::new(error).wrong_value())?;
+        let map = Map::Value(pixels);
+        job.write_image(output, map, false, &args.image)?;
     }
     job.finish(args, json!(null))?;
     Ok(Exit::Done)
 }
 
-/// Returns the factor that makes the standard deviation of the sum a sixth, as for the node `noise`.
-fn scale(node: &FractalNode) -> f32 {
-    let weights = std::iter::successors(Some(1.0), |weight| Some(weight * node.gain));
-    let squares = weights
-        .take(node.octaves as usize)
-        .map(|weight: f64| weight * weight);
-    let variance = squares.sum::<f64>() * f64::from(GradientNoise3::VARIANCE);
-    (1.0 / (6.0 * variance.sqrt())) as f32
+/// Refuses sizes that do not fit, and options that noise in the plane refuses.
+fn check(args: &Args, node: &FractalNode) -> Result<()> {
+    let Size(size) = args.field.size;
+    args.field.spaces()?;
+    let on_corners = args.field.samples.samples == Samples::Corners;
+    // Samples on corners have one column and one row more than the spaces between them.
+    let width = 2 * u64::from(size[1]) - u64::from(on_corners);
+    if args.sphere && u64::from(size[0]) != width {
+        let rule = match on_corners {
+            true => "one column narrower than twice its rows on corners",
+            false => "twice as wide as high",
+        };
+        let message = format!("an equirectangular image is {rule}");
+        return Err(
+            usage(format!("{message}, and --size is {}", args.field.size))
+                .hint(format!("take --size {width}x{}", size[1])),
+        );
+    }
+    if args.cube && size[0] != size[1] {
+        let message = format!(
+            "the faces of a cube are square, and --size is {}",
+            args.field.size
+        );
+        return Err(usage(message).hint(format!("take --size {}", size[0])));
+    }
+    let mut plane = Recipe::of_node("noise", Node::Noise(node.clone()), Seed(args.field.seed));
+    (plane.extent, plane.wrap) = ([args.cells; 2], [false; 2]);
+    Plan::new(&plane, &Images::new(), 0.0).map_err(refused)?;
+    Ok(())
 }
 
 /// Maps the ends of a range to 0 and 1.
