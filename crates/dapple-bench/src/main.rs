@@ -104,6 +104,10 @@ fn main() -> Result<ExitCode> {
     synth::run(&mut bench)?;
     recipe::run(&mut bench)?;
     let rows = bench.into_rows();
+    if arguments.missing && rows.is_empty() {
+        eprintln!("the results have all rows");
+        return Ok(ExitCode::SUCCESS);
+    }
     ensure!(!rows.is_empty(), "no case matches {:?}", arguments.filters);
 
     let page = Page::new(&Machine::this(), &rows);
