@@ -1,7 +1,7 @@
 //! Materials of dapple's recipes as assets of Bevy.
 //!
 //! [`RecipePlugin`] loads recipes (`.toml`) as [`RecipeMaterial`]: images with all mip levels and samplers that repeat where
-//! the recipe does, and a `StandardMaterial` that uses them. Level 0 of each image has the bytes of `dapple bake`.
+//! the recipe does, and a `StandardMaterial` that uses them. Level 0 of each image has the values of `dapple bake`.
 //!
 //! ```no_run
 //! use bevy_app::App;
@@ -17,7 +17,7 @@
 //! # }
 //! ```
 //!
-//! With the feature `file_watcher`, Bevy loads a changed recipe again, and all meshes that use its parts change.
+//! With the feature `file_watcher`, Bevy loads a changed recipe again.
 
 use bevy_app::{App, Plugin};
 use bevy_asset::io::Reader;
@@ -54,14 +54,14 @@ pub struct RecipeMaterial {
     pub normal: Handle<Image>,
     /// Occlusion, roughness and metalness in red, green and blue (`Rgba8Unorm`). Label `orm`.
     pub orm: Handle<Image>,
-    /// Heights from 0 to 1 (`R32Float`, which most devices do not filter). Label `height`.
+    /// Heights, not clamped (`R32Float`, which devices filter only with an optional feature). Label `height`.
     pub height: Handle<Image>,
-    /// A material with these images. Label `material`.
+    /// A material with these images, without emission, opacity, specular strength and clear coat. Label `material`.
     #[cfg(feature = "pbr")]
     pub material: Handle<StandardMaterial>,
 }
 
-/// How a recipe is baked, for `AssetServer::load_with_settings` and `.meta` files.
+/// How a recipe is baked, for `AssetServer::load_builder` and `.meta` files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RecipeSettings {

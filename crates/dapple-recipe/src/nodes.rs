@@ -223,9 +223,9 @@ macro_rules! nodes {
         ///
         /// Most nodes compute a number at every position. `ramp`, `color`, `hsl`, `image` and `synth` with a color image,
         /// and `pups = { color_noise = … }` compute a color. `add`, `multiply`, `mix`, `select`, `invert`, `blur`,
-        /// `slope_blur`, `sharpen`, `dilate`, `erode`, `tile`, `disturb`, `match_borders`, `corner_tiles`, `blend` and
-        /// nodes that evaluate another node elsewhere, such as `warp`, compute a color if an input is a color; numbers
-        /// among their inputs are then grays.
+        /// `slope_blur`, `flow_warp`, `sharpen`, `dilate`, `erode`, `tile`, `disturb`, `match_borders`, `corner_tiles`,
+        /// `blend` and nodes that evaluate another node elsewhere, such as `warp`, compute a color if an input is a
+        /// color; numbers among their inputs are then grays.
         #[derive(Clone, Debug, Serialize, Deserialize)]
         #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
         #[non_exhaustive]
