@@ -343,10 +343,7 @@ fn noise_on_a_sphere_meets_itself() {
         ("noise --cube --size 64x32 -o a/", "square"),
         ("noise --sphere --cube -o a/", "--cube"),
         ("noise --sphere --size 1048576x524288 -o a.png", "pixels"),
-        (
-            "noise --sphere --size 64x32 --cells nan -o a.png",
-            "extent",
-        ),
+        ("noise --sphere --size 64x32 --cells nan -o a.png", "extent"),
         ("noise --sphere --size 64x32 --cells inf -o a.png", "extent"),
         ("noise --cube --size 8 --gain -1 -o a/", "gain"),
     ] {
