@@ -68,8 +68,8 @@ impl CellHash {
         hash
     }
 
-    /// Creates a hash state from two words that are already random, such as the parts of two
-    /// [`LatticeHash`](crate::LatticeHash)es.
+    /// Creates a hash state directly from two random words, for example the [parts](crate::LatticeHash::part) of two
+    /// lattice hashes. Nothing is absorbed.
     #[must_use]
     #[inline]
     pub const fn of_words(words: [u32; 2]) -> Self {

@@ -159,7 +159,8 @@ fn finish<S: Simd, const C: usize>([mut a, mut b]: [InStep<S, C>; 2]) -> [InStep
     [a ^ (b << 7 | b >> 25), b]
 }
 
-/// A group of registers. Each operation is applied to all of them before the next operation starts.
+/// Several SIMD registers in lockstep. Each operation is applied to all of them before the next one starts, which
+/// hides the latency of dependent operations.
 #[derive(Clone, Copy)]
 struct InStep<S: Simd, const C: usize>([u32x16<S>; C]);
 
@@ -190,7 +191,8 @@ fn out_of_step<S: Simd, const C: usize>([a, b]: [InStep<S, C>; 2]) -> [[u32x16<S
     pairs
 }
 
-/// Implements binary operators, with registers or a number, in terms of the assigning operators.
+/// Implements binary operators for [`InStep`], lane by lane. The right operand is another group of registers or a
+/// scalar.
 macro_rules! operators {
     ($($operator:ident $function:ident $assign:tt $other:ty $(, $register:tt)?;)*) => {$(
         impl<S: Simd, const C: usize> $operator<$other> for InStep<S, C> {

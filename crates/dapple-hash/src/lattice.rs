@@ -45,8 +45,8 @@ impl<const N: usize> LatticeHash<N> {
         self.keys[axis]
     }
 
-    /// Hashes a coordinate along `axis`; the result is the coordinate's part of a corner's hash. For coordinates from
-    /// -2³¹ to 2³¹ - 1, this is a bijection.
+    /// Hashes a coordinate along `axis`. [`bits`](Self::bits) turns the exclusive or of the results for all axes into
+    /// a corner's hash. For coordinates from -2³¹ to 2³¹ - 1, this is a bijection.
     ///
     /// Beyond this range, the upper 32 bits of a coordinate permute the parts, so that the lattice does not repeat
     /// after 2³² corners.
