@@ -15,7 +15,8 @@ pub struct DirectionalBlur {
     samples: Vec<Sample>,
 }
 
-/// A sample on the line: two pixels at offsets in columns and rows, and the part of the second one.
+/// A sample on the line, interpolated between two pixels. `near` and `far` are their offsets in columns and rows.
+/// `part` is the interpolation weight of `far`, and `weight` is the weight of the sample in the blur.
 #[derive(Clone, Debug)]
 struct Sample {
     near: [i64; 2],
@@ -63,7 +64,7 @@ impl DirectionalBlur {
         }
     }
 
-    /// Returns the number of columns and rows that the samples are away from the pixel.
+    /// Returns the halo of the blur: the maximum offset from a pixel to a sample, in columns and rows.
     #[must_use]
     pub fn halo(&self) -> [u32; 2] {
         let offsets = self
@@ -82,7 +83,7 @@ impl DirectionalBlur {
     ///
     /// # Panics
     ///
-    /// If there are fewer values than in the part and its halo, which must be [`halo`](Self::halo).
+    /// If `values` has fewer pixels than the part and its halo, which must equal [`halo`](Self::halo).
     #[must_use]
     pub fn apply(&self, values: &[f32], part: &Part) -> Vec<f32> {
         let [width, height] = part.size.map(|side| side as usize);

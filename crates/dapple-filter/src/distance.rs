@@ -1,19 +1,19 @@
 //! Distance to a mask, up to a radius.
 //!
-//! The first pass finds the nearest pixel of the mask in each column, and the second one the nearest of these in each
-//! row, as in: Toyofumi Saito and Jun-ichiro Toriwaki, "New algorithms for Euclidean distance transformation of an
-//! n-dimensional digitized picture with applications", Pattern Recognition 27(11), 1994.
-//! DOI 10.1016/0031-3203(94)90133-3. Here both passes end at the radius.
+//! The first pass finds the nearest mask pixel in each pixel's column. The second pass combines these distances along
+//! each row, as in: Toyofumi Saito and Jun-ichiro Toriwaki, "New algorithms for Euclidean distance transformation of
+//! an n-dimensional digitized picture with applications", Pattern Recognition 27(11), 1994. DOI
+//! 10.1016/0031-3203(94)90133-3. Here both passes search only up to the radius.
 
 use crate::Part;
 use dapple_raster::parallel;
 
-/// Returns the distance from each pixel of a part to the nearest pixel at which `mask` is above ½, between pixel centers,
-/// in units of the plane. It is at most `radius`.
+/// Returns the distance from each pixel of a part to the nearest pixel at which `mask` is above ½. Distances are
+/// between pixel centers, in units of the plane, and clamped to `radius`.
 ///
 /// # Panics
 ///
-/// If there are fewer values than in the part and its halo, which must be that of [`disk_halo`](crate::disk_halo).
+/// If `mask` has fewer pixels than the part and its halo, which must equal [`disk_halo`](crate::disk_halo).
 #[must_use]
 pub fn distances(mask: &[f32], part: &Part, radius: f32) -> Vec<f32> {
     let [width, height] = part.size.map(|side| side as usize);

@@ -1,32 +1,32 @@
 //! Maximum and minimum over a disk, known as dilation and erosion.
 //!
-//! A row of the disk is a range of columns. Its maximum is that of two ranges whose length is a power of two, from a
-//! table for each line (a sparse table: Michael Bender and Martin Farach-Colton, "The LCA Problem Revisited", LATIN
-//! 2000). A maximum is exact, so the order of comparisons does not change a bit.
+//! A row of the disk is a range of columns. Two overlapping ranges whose length is a power of two cover it, and a
+//! table holds the maxima of these for each line (a sparse table: Michael Bender and Martin Farach-Colton, "The LCA
+//! Problem Revisited", LATIN 2000). A maximum is exact, so the order of comparisons does not change a bit.
 
 use crate::Part;
 use crate::part::pixels_within;
 use dapple_raster::parallel;
 use glam::DVec2;
 
-/// Returns the number of columns and rows within a radius, in units of the plane.
+/// Returns the halo of a disk: the number of columns and rows within `radius`, in units of the plane.
 #[must_use]
 pub fn disk_halo(radius: f64, pixel: DVec2) -> [u32; 2] {
     [pixel.x, pixel.y].map(|pixel| pixels_within(radius, pixel))
 }
 
-/// Returns the maximum of the disk around each pixel of a part. The disk contains the pixels whose centers are at most
-/// `radius` away, in units of the plane. NaN counts as no value.
+/// Returns, for each pixel of a part, the maximum over the disk around it. The disk contains the pixels whose centers
+/// are at most `radius` away, in units of the plane. NaN pixels are ignored.
 ///
 /// # Panics
 ///
-/// If there are fewer values than in the part and its halo, which must be that of [`disk_halo`].
+/// If `values` has fewer pixels than the part and its halo, which must equal [`disk_halo`].
 #[must_use]
 pub fn dilate(values: &[f32], part: &Part, radius: f64) -> Vec<f32> {
     extremes(values, part, radius, 1.0)
 }
 
-/// Returns the minimum of the disk around each pixel of a part; see [`dilate`].
+/// Returns, for each pixel of a part, the minimum over the disk around it; see [`dilate`].
 ///
 /// # Panics
 ///
@@ -36,10 +36,10 @@ pub fn erode(values: &[f32], part: &Part, radius: f64) -> Vec<f32> {
     extremes(values, part, radius, -1.0)
 }
 
-/// Number of rows for which the tables of lines are computed at a time.
+/// Number of rows in a band. The sparse tables are computed for one band at a time.
 const ROWS: usize = 32;
 
-/// Returns the maximum within the radius of each pixel if `sign` is 1, and the minimum if it is -1.
+/// Returns, for each pixel of a part, the maximum over the disk if `sign` is 1, and the minimum if it is -1.
 fn extremes(values: &[f32], part: &Part, radius: f64, sign: f32) -> Vec<f32> {
     let [width, height] = part.size.map(|side| side as usize);
     let [left, above] = part.halo.map(|side| side as usize);
@@ -83,7 +83,8 @@ fn extremes(values: &[f32], part: &Part, radius: f64, sign: f32) -> Vec<f32> {
     found
 }
 
-/// Returns for each power of two up to the longest range, the maximum of that many columns from each column on.
+/// Returns the sparse table of a line of pixels. Element `[k][x]` is the maximum of `sign` · value over the 2^k
+/// columns starting at `x`.
 fn tables(line: &[f32], left: usize, sign: f32) -> Vec<Vec<f32>> {
     // NaN is the maximum of nothing, and zero has one sign.
     let number = |&value: &f32| match value.is_nan() {

@@ -4,7 +4,8 @@
 //! standard deviations, divided by their sum. Each pass adds weighted differences from the center in a fixed order, from
 //! near pixels to far ones. A constant therefore stays the same, bit for bit.
 //!
-//! Running sums and recursive filters would be faster for large radii, but their rounding depends on where a part starts.
+//! Running sums and recursive filters would be faster for large radii, but their rounding depends on the first pixel
+//! of a part.
 
 use crate::Part;
 use crate::extremes::disk_halo;
@@ -17,8 +18,8 @@ pub fn gaussian_halo(radius: f64, pixel: DVec2) -> [u32; 2] {
     disk_halo(3.0 * radius, pixel)
 }
 
-/// Returns the weights of the pixels at distances of 1 to `reach` pixels on one side; those on `sides` sides and the
-/// center sum to 1.
+/// Returns the Gaussian weights at distances of 1 to `reach` pixels on one side. They are normalized: the weights on
+/// all `sides` sides and the center weight sum to 1.
 pub(crate) fn weights(radius: f64, pixel: f64, reach: u32, sides: f64) -> Vec<f32> {
     let weight = |distance: u32| {
         let part = f64::from(distance) * pixel / radius;
@@ -33,7 +34,7 @@ pub(crate) fn weights(radius: f64, pixel: f64, reach: u32, sides: f64) -> Vec<f3
 ///
 /// # Panics
 ///
-/// If there are fewer values than in the part and its halo, which must be that of [`gaussian_halo`].
+/// If `values` has fewer pixels than the part and its halo, which must equal [`gaussian_halo`].
 #[must_use]
 pub fn gaussian(values: &[f32], part: &Part, radius: f64) -> Vec<f32> {
     let ([width, height], halo) = (part.size.map(|side| side as usize), part.halo);
@@ -72,7 +73,7 @@ pub fn gaussian(values: &[f32], part: &Part, radius: f64) -> Vec<f32> {
     blurred
 }
 
-/// Adds the weighted differences of two lines from the center line.
+/// Adds two taps of a filter: the weighted differences of the lines `before` and `after` from the center line `here`.
 fn add_pair(out: &mut [f32], here: &[f32], [before, after]: [&[f32]; 2], weight: f32) {
     let pairs = before.iter().zip(after);
     for ((out, &here), (&before, &after)) in out.iter_mut().zip(here).zip(pairs) {

@@ -1,22 +1,22 @@
-//! Differences of values along both axes.
+//! Gradient lengths by central differences.
 
 use crate::Part;
 use dapple_raster::parallel;
 use glam::DVec2;
 
-/// Returns a radius, in units of the plane, as a whole number of columns and rows, at least 1.
+/// Returns the halo of a central difference: `radius`, in units of the plane, in whole columns and rows, at least 1.
 #[must_use]
 pub fn difference_spans(radius: f64, pixel: DVec2) -> [u32; 2] {
     // The small term makes exact half pixels round up, whatever the rounding error of the pixel size.
     [pixel.x, pixel.y].map(|pixel| ((radius / pixel + 0.5 + 1e-9) as u32).max(1))
 }
 
-/// Computes a number for each pixel of a part from the length of the gradient times `scale`, in units of the plane. The
-/// gradient is that of the differences along x and y between the values at both ends of the halo.
+/// Returns `number(length · scale)` for each pixel of a part, where `length` is the length of the gradient per unit of
+/// the plane. The gradient consists of central differences along x and y, between the values at both ends of the halo.
 ///
 /// # Panics
 ///
-/// If there are fewer values than in the part and its halo.
+/// If `values` has fewer pixels than the part and its halo.
 #[must_use]
 pub fn gradients(
     values: &[f32],

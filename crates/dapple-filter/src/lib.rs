@@ -1,9 +1,9 @@
 //! Filters of rasters: Gaussian, directional and slope blurs, gradients, dilation and erosion, distances to a mask,
 //! connected regions.
 //!
-//! A filter computes a [`Part`] of a raster from the part and a halo around it. The value of a pixel depends on the
-//! pixels within the halo alone, and sums are in a fixed order. A part therefore has the bits of the whole, so that
-//! rasters of any size can be filtered band by band.
+//! A filter computes a [`Part`] of a raster from the part and a halo around it. A pixel of the result depends only on
+//! the pixels within the halo, and sums run in a fixed order. A filtered part therefore equals the same pixels of the
+//! filtered raster, bit for bit, and rasters of any size can be filtered in bands.
 //!
 //! ```
 //! use dapple_filter::{Part, dilate, disk_halo};

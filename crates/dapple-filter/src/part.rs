@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-/// Returns the number of pixels, or of other steps, of a length within a distance.
+/// Returns the number of whole pixels (or other steps) of length `pixel` within a distance.
 pub(crate) fn pixels_within(distance: f64, pixel: f64) -> u32 {
     // The small factor keeps a whole number of pixels whole, whatever the rounding error of the pixel size.
     (distance / pixel * (1.0 + 1e-9)).floor() as u32

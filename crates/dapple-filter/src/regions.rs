@@ -14,8 +14,9 @@ struct Run {
 
 /// Returns the connected region of each pixel, counted from 1, and 0 where `mask` is not above ½.
 ///
-/// `width` is the number of columns of the mask. Pixels are connected along rows and columns, and across the sides along
-/// axes that repeat. Regions are numbered in the order of their first pixels, row by row.
+/// `width` is the number of columns of the mask, and `repeats` says whether it wraps along x and y. Pixels are
+/// connected to their neighbors in the same row and column (4-connectivity). Regions are numbered in the order of
+/// their first pixels, row by row.
 #[must_use]
 pub fn regions(mask: &[f32], width: usize, repeats: [bool; 2]) -> Vec<u32> {
     // Cut the rows into runs.

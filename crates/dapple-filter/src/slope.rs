@@ -1,10 +1,10 @@
 //! Blur and warp along the paths on which water runs down a height.
 //!
-//! The path of a pixel follows the gradient of the height uphill, in steps of equal length. Values are averaged along it,
-//! so that they run downhill, as in line integral convolution (Brian Cabral and Leith Leedom, "Imaging vector
-//! fields using line integral convolution", SIGGRAPH 1993). Gradients and values are interpolated between pixels. Paths
-//! are in pixels relative to the pixel, so that they have the same bits in every window. The warp takes the value at the
-//! end of a path.
+//! The path of a pixel follows the gradient of the height uphill, in steps of equal length. The blur averages values
+//! along it, so that they smear downhill, as in line integral convolution (Brian Cabral and Leith Leedom, "Imaging
+//! vector fields using line integral convolution", SIGGRAPH 1993). The warp takes the value at the end of the path.
+//! Gradients and values are interpolated between pixels. A position on a path is an offset in pixels from the path's
+//! first pixel, so that it has the same bits in every window.
 
 use crate::Part;
 use crate::gaussian::weights;
@@ -37,24 +37,25 @@ impl SlopeBlur {
         }
     }
 
-    /// Returns the columns and rows that a path can reach, with the pixels that interpolation and gradients read.
+    /// Returns the halo of the blur: the columns and rows that a path can reach, plus the pixels for interpolation and
+    /// gradients.
     #[must_use]
     pub fn halo(&self, pixel: DVec2) -> [u32; 2] {
         halo(self.length * self.weights.len() as f64, pixel)
     }
 
-    /// Averages the numbers of a part along the path that leads uphill from each pixel.
+    /// Blurs the values of a part. Each pixel becomes the average along the path that leads uphill from it.
     ///
     /// # Panics
     ///
-    /// If there are fewer heights or values than in the part and its halo, which must be [`halo`](Self::halo).
+    /// If `heights` or `values` has fewer pixels than the part and its halo, which must equal [`halo`](Self::halo).
     #[must_use]
     pub fn apply(&self, values: &[f32], heights: &[f32], part: &Part) -> Vec<f32> {
         let numbers = self.apply_colors(values.as_chunks::<1>().0, heights, part);
         numbers.into_flattened()
     }
 
-    /// Averages the colors of a part along the path that leads uphill from each pixel; see [`apply`](Self::apply).
+    /// Blurs the colors of a part along the paths that lead uphill; see [`apply`](Self::apply).
     ///
     /// # Panics
     ///
@@ -124,24 +125,25 @@ impl FlowWarp {
         }
     }
 
-    /// Returns the columns and rows that a path can reach, with the pixels that interpolation and gradients read.
+    /// Returns the halo of the warp: the columns and rows that a path can reach, plus the pixels for interpolation and
+    /// gradients.
     #[must_use]
     pub fn halo(&self, pixel: DVec2) -> [u32; 2] {
         halo(self.length * f64::from(self.steps), pixel)
     }
 
-    /// Moves the numbers of a part.
+    /// Warps the values of a part. Each pixel takes the value at the end of its path.
     ///
     /// # Panics
     ///
-    /// If there are fewer heights or values than in the part and its halo, which must be [`halo`](Self::halo).
+    /// If `heights` or `values` has fewer pixels than the part and its halo, which must equal [`halo`](Self::halo).
     #[must_use]
     pub fn apply(&self, values: &[f32], heights: &[f32], part: &Part) -> Vec<f32> {
         let numbers = self.apply_colors(values.as_chunks::<1>().0, heights, part);
         numbers.into_flattened()
     }
 
-    /// Moves the colors of a part; see [`apply`](Self::apply).
+    /// Warps the colors of a part; see [`apply`](Self::apply).
     ///
     /// # Panics
     ///
@@ -164,7 +166,8 @@ impl FlowWarp {
     }
 }
 
-/// Returns the columns and rows within `reach` units of the plane, with the pixels that interpolation and gradients read.
+/// Returns the halo for paths of length `reach`, in units of the plane: columns and rows, plus the pixels for
+/// interpolation and gradients. It is 0 if `reach` is 0.
 fn halo(reach: f64, pixel: DVec2) -> [u32; 2] {
     if reach == 0.0 {
         return [0; 2];
@@ -173,15 +176,15 @@ fn halo(reach: f64, pixel: DVec2) -> [u32; 2] {
     [pixel.x, pixel.y].map(|pixel| (reach / pixel + 1e-6).ceil() as u32 + 2)
 }
 
-/// Number of paths that are followed at the same time. Each step waits for the one before, so that a processor is busy
-/// only with several paths.
+/// Number of paths that are followed at the same time. A step depends on the previous step of its path, so a single
+/// path would leave the processor idle.
 const LANES: usize = 4;
 
-/// The paths from the pixels of a part against the flow, which moves values in a direction of the slope.
+/// The data that the paths of all pixels share. Paths run against the direction in which values flow.
 struct Paths {
     /// Gradients of the heights at all pixels with neighbors on all sides; empty if no path has a step.
     gradients: Vec<[f32; 2]>,
-    /// Columns of the part and its halo.
+    /// Number of columns of the part with its halo.
     wide: usize,
     /// Pixels per unit of the plane.
     per_pixel: [f64; 2],
@@ -190,16 +193,16 @@ struct Paths {
     direction: FlowDirection,
 }
 
-/// The paths from a few pixels in a row, and where they are.
+/// The paths of several adjacent pixels of a row, and their current positions.
 struct Lanes<'a> {
     paths: &'a Paths,
     first: [usize; LANES],
-    /// Columns and rows from the first pixel.
+    /// Current position of each path: columns and rows from its first pixel.
     offsets: [[f64; 2]; LANES],
     places: [Place; LANES],
 }
 
-/// The first of four pixels, and the position between them from 0 to 1.
+/// A position between four pixels: index of the upper left pixel, and offset from it in pixels, from 0 to 1.
 #[derive(Clone, Copy)]
 struct Place {
     index: usize,
@@ -238,7 +241,8 @@ impl Paths {
         }
     }
 
-    /// Computes a value for each pixel of a part from its path, for a few pixels at a time.
+    /// Computes a value for each pixel of a part. `follow` receives the paths of [`LANES`] adjacent pixels at a time,
+    /// and returns their values.
     fn follow<const N: usize>(
         &self,
         part: &Part,
@@ -277,7 +281,7 @@ impl<'a> Lanes<'a> {
         }
     }
 
-    /// Takes a step along each path. On level ground a path stays where it is.
+    /// Advances each path by a step. On level ground, a path stays in place.
     #[inline(always)]
     fn step(&mut self) {
         let paths = self.paths;
@@ -301,7 +305,7 @@ impl<'a> Lanes<'a> {
         }
     }
 
-    /// Interpolates values where the paths are.
+    /// Returns the interpolated values at the current positions of the paths.
     #[inline(always)]
     fn values<const N: usize>(&self, values: &[[f32; N]]) -> [[f32; N]; LANES] {
         self.places.map(|place| place.mix(self.paths.wide, values))
@@ -319,7 +323,7 @@ impl Place {
         }
     }
 
-    /// Interpolates between the four pixels.
+    /// Interpolates bilinearly between the four pixels.
     #[inline(always)]
     fn mix<const N: usize>(self, wide: usize, values: &[[f32; N]]) -> [f32; N] {
         let mix = |a: [f32; N], b: [f32; N], part: f32| {

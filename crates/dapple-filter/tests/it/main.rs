@@ -1,4 +1,5 @@
-//! Tests that parts have the bits of the whole. The tests of recipes compare each filter with a naive formula.
+//! Tests that a filtered part equals the same pixels of the filtered raster. The tests of recipes compare each filter
+//! with a naive formula.
 
 use dapple_filter::glam::DVec2;
 use dapple_filter::{
@@ -9,7 +10,7 @@ use dapple_filter::{
 const WHOLE: [i64; 2] = [40, 30];
 const RADIUS: f64 = 0.17;
 
-/// Returns a number from 0 to 1 that follows no pattern, for a pixel of an endless plane.
+/// Returns a pseudorandom number from 0 to 1 for a pixel of an endless plane.
 fn random([x, y]: [i64; 2]) -> f32 {
     let bits = (x as u32).wrapping_mul(0x9E37_79B1) ^ (y as u32).wrapping_mul(0x85EB_CA77);
     let bits = (bits ^ bits >> 15).wrapping_mul(0xC2B2_AE3D);
