@@ -38,7 +38,7 @@ dapple_raster::named! {
     }
 }
 
-/// A cube map. Its faces are turned as in OpenGL, with the first row at the top.
+/// A cube map. Its faces are oriented as in OpenGL, with the first row at the top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CubeMap {
     /// Width and height of a face, in pixels.

@@ -336,8 +336,8 @@ impl<const N: usize> GradientNoise<N> {
         self.value_and_gradient(position.into())
     }
 
-    /// Returns the gradients at a line of corners, which differ only in the first coordinate and have it from
-    /// `columns`. The first coordinate of `at` is ignored.
+    /// Returns the gradients at lattice corners along a line parallel to the first axis. `columns` are the first
+    /// coordinates of the corners; `at` has the other coordinates, and its first one is ignored.
     pub(crate) fn line(&self, level: Level, at: [i64; N], columns: &[i64]) -> Vec<[f32; N]> {
         let row = self.row(at);
         let mut gradients = Vec::with_capacity(columns.len());
@@ -391,8 +391,8 @@ impl<const N: usize> GradientNoise<N> {
         }
     }
 
-    /// Returns the noise for each octave of a fractal sum, coarsest first. Each octave has a separate seed and
-    /// offset. Its period is the common one, measured in the octave's cells.
+    /// Returns the noise for each octave of a fractal sum, coarsest first. Each octave has a separate seed and offset.
+    /// Its period equals the period of this noise, converted to the octave's cells.
     ///
     /// Without offsets, all octaves with an integer lacunarity would be 0 at integer positions. Offsets are odd
     /// multiples of 2^-9, so that positions on a coarser grid are shifted exactly and periods are preserved.
@@ -573,7 +573,8 @@ impl Column {
         Self { slope, value }
     }
 
-    /// Blends the corners of a column, in the order of [`corner`], along all axes except the first, last axis last.
+    /// Interpolates between the corners of a column, given in the order of [`corner`], along the second axis first and
+    /// the last axis last.
     #[inline(always)]
     pub(crate) fn blend<const N: usize>(
         mut columns: [Self; MOST_CORNERS],

@@ -17,7 +17,7 @@ const ROWS: u32 = 32;
 /// Minimum mean run length, in pixels, for rendering runs with the widest registers.
 const LONG: usize = 24;
 
-/// The data that all rows of a window share.
+/// The data that all rows of a window share: cells, offsets and fade values of its columns of pixels.
 pub(crate) struct Lines<'a, const N: usize> {
     noise: &'a GradientNoise<N>,
     window: &'a Window<N>,
@@ -36,7 +36,7 @@ struct Run {
     cell: i64,
     /// Whether the first coordinates of the pixels are finite.
     is_finite: bool,
-    /// Indices of the columns of corners on the left and on the right.
+    /// Indices into [`Lines::columns`] of the corners on the left and on the right.
     sides: [usize; 2],
     pixels: Range<usize>,
 }
