@@ -1,31 +1,31 @@
-//! Constructs a graph from the axes that each point chooses.
+//! Builds a graph from the neighbors that each point chooses.
 
 use crate::lattice::Lattice;
 use crate::{Axis, Graph, GraphError, GraphErrorKind};
 use dapple_points::PointIdx;
 use glam::DVec2;
 
-/// Whether an edge belongs to the point that chose it or to both of its ends.
+/// Whether the edges that a point chooses lead in one direction or in both.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum EdgeDirection {
-    /// Each point has only the axes that it chose.
+    /// Directed graph: each point has only the axes that it chose.
     #[default]
     Directed,
-    /// Each point has the axes that it chose, and the opposites of axes that lead to it.
+    /// Undirected graph: each chosen axis also gives its target the opposite axis.
     Symmetric,
 }
 
-/// An axis that a point has chosen: the target point, and the offset from the choosing point to the target's image,
-/// in steps.
+/// A chosen axis: index of the target point, and the vector from the choosing point to the target's image, in lattice
+/// steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Choice {
     pub(crate) to: u32,
     pub(crate) steps: DVec2,
 }
 
-/// Builds the graph from the chosen axes. `rows` has one list per site, in any order.
+/// Builds the graph from the chosen axes. `rows` has the axes of each site, in any order within a row.
 pub(crate) fn graph_of(
     lattice: Lattice,
     sites: Vec<DVec2>,

@@ -1,6 +1,6 @@
 //! Serializes graphs, and validates serialized graphs.
 //!
-//! Positions and vectors are integers in steps, so that no format rounds them.
+//! Positions and vectors are stored as whole numbers of lattice steps, so that no format rounds them.
 
 use crate::delaunay::is_delaunay;
 use crate::lattice::Lattice;

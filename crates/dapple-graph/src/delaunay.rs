@@ -3,11 +3,11 @@
 //! Reference: Boris Delaunay, "Sur la sphère vide", Izvestia Akademii Nauk SSSR, 1934. The crate `spade` computes the
 //! triangulations.
 //!
-//! On a wrapping domain, the graph connects the points and all of their images, restricted to the points in the
-//! domain. Only a few images are needed: first those in a margin around the domain, then, circle by circle, those
-//! inside the circumcircle of a triangle at a point of the domain. When no such circumcircle contains another image,
-//! all of these triangles belong to the true triangulation. Any number of points is accepted, including one or two,
-//! and points may be connected to their own images.
+//! On a wrapping domain, the graph connects the points and all of their images (periodic copies), restricted to the
+//! points in the domain. Only a few images are needed: first those in a margin around the domain, then, circle by
+//! circle, those inside the circumcircle of a triangle at a point of the domain. When no such circumcircle contains
+//! another image, all of these triangles belong to the true triangulation. Any number of points is accepted, including
+//! one or two, and points may be connected to their own images.
 //!
 //! If four or more points (including images) are on one empty circle, the triangulation is not unique. The diagonals
 //! in that circle are dropped, by exact predicates. The remaining graph is unique: it connects the pairs of points
@@ -120,7 +120,7 @@ pub(crate) fn is_delaunay(graph: &Graph) -> bool {
     expected.is_ok_and(|rows| rows.offsets == graph.offsets && rows.axes == graph.axes)
 }
 
-/// Why the rows could not be computed.
+/// Reason why a graph could not be computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Refusal {
     /// Two sites coincide.
@@ -145,7 +145,7 @@ impl From<TooThin> for Refusal {
     }
 }
 
-/// Computes the rows of the graph.
+/// Computes the axes of all points, in tiles if there are enough points.
 fn rows(lattice: &Lattice, sites: &[DVec2], is_cancelled: &IsCancelled) -> Result<Rows, Refusal> {
     let margin = MARGIN * (lattice.size.x * (lattice.size.y / sites.len().max(1) as f64)).sqrt();
     if let Some(tiles) = Tiles::new(lattice, sites.len(), margin) {
@@ -158,7 +158,7 @@ fn rows(lattice: &Lattice, sites: &[DVec2], is_cancelled: &IsCancelled) -> Resul
     whole(lattice, sites, margin, is_cancelled)
 }
 
-/// Computes the rows from a single triangulation.
+/// Computes the axes of all points from a single triangulation.
 fn whole(
     lattice: &Lattice,
     sites: &[DVec2],

@@ -9,7 +9,8 @@ use crate::{EdgeDirection, GraphError, GraphErrorKind};
 use dapple_points::{PointIdx, PointSet};
 use glam::DVec2;
 
-/// An edge, as seen from one of its ends.
+/// A directed edge from a point to one of its neighbors. Texture models with partition of unity call it an axis of the
+/// point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axis {
     /// Target point of the axis.
@@ -116,7 +117,7 @@ impl Graph {
         self.offsets.len() - 1
     }
 
-    /// Returns the number of axes: twice the number of edges if the graph is symmetric.
+    /// Returns the number of axes, which are directed edges. In a symmetric graph, this is twice the number of edges.
     #[must_use]
     pub fn n_axes(&self) -> usize {
         self.axes.len()

@@ -163,10 +163,12 @@ impl<'a> Grid<'a> {
         (size.x * (size.y / self.sites.len().max(1) as f64)).sqrt()
     }
 
-    /// Returns the radius that contains all neighbors that a graph may need; images within it are exact.
+    /// Returns a search radius, in steps, within which each point finds all neighbors that a graph may need. Up to
+    /// this radius, the positions of images are exact.
     ///
-    /// Without wrapping, all points are within the diagonal of the domain. With wrapping, each point has at least ten
-    /// images within five periods, and one in each nonempty cone of 1/32 of a turn: 1 / sin(2π / 32) is below 5.2.
+    /// Without wrapping, it is the diagonal of the domain. With wrapping, ten images of each point are within five
+    /// periods, so [`k_nearest`](crate::k_nearest) finds enough neighbors. A cone of [`yao`](crate::yao) is at least
+    /// 1/32 of a turn wide, and reaches the width of a period within 1 / sin(2π / 32) < 5.2 periods.
     pub(crate) fn farthest(&self) -> f64 {
         let size = self.lattice.size;
         if self.lattice.wraps() {

@@ -94,7 +94,7 @@ pub fn k_nearest_cancellable(
 /// millisecond.
 const POINTS: usize = 256;
 
-/// Computes the row of each site, unless canceled.
+/// Collects the axes that `row` returns for each site, unless canceled.
 pub(crate) fn rows_of(
     sites: &[DVec2],
     is_cancelled: &IsCancelled,
@@ -110,7 +110,7 @@ pub(crate) fn rows_of(
     Ok(rows)
 }
 
-/// Converts the reason why rows are missing to a graph error.
+/// Converts a [`Refusal`] to a graph error.
 pub(crate) fn made<T>(rows: Result<T, Refusal>, points: &PointSet) -> Result<T, GraphError> {
     rows.map_err(|refusal| match refusal {
         Refusal::Cancelled => GraphError::new(GraphErrorKind::Cancelled),
@@ -145,7 +145,7 @@ pub(crate) fn near(
     Ok(found.into_iter().map(|(_, choice)| choice).collect())
 }
 
-/// Returns the exact squared length in steps: products of integers below 2^53.
+/// Returns the exact squared length in steps. Coordinates are integers below 2^53.
 fn length_sq(steps: DVec2) -> i128 {
     let [x, y] = [steps.x, steps.y].map(|coordinate| coordinate as i128);
     x * x + y * y

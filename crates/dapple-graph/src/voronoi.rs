@@ -242,8 +242,8 @@ impl Voronoi {
         best
     }
 
-    /// Returns the first in order of all sites at the same minimum distance as `start`. These sites are on an empty
-    /// circle, along which neighbors are connected.
+    /// Returns the first, by index and then by angle, of all sites at the same minimum distance as `start`. These
+    /// sites are on an empty circle, along which neighbors are connected.
     fn first_of_equals(&self, start: Step) -> Step {
         let mut equals = vec![start];
         let mut at = 0;
@@ -259,7 +259,7 @@ impl Voronoi {
         equals.into_iter().min_by(Step::order).unwrap_or(start)
     }
 
-    /// Returns the neighbors of a site, with steps to the same searched position.
+    /// Returns the neighbors of a site, each with its vector to the searched position.
     fn neighbors<'a>(&'a self, from: &'a Step) -> impl Iterator<Item = Step> + 'a {
         let axes = self.graph.axes(from.site).iter();
         axes.map(move |axis| Step {
@@ -269,7 +269,7 @@ impl Voronoi {
     }
 }
 
-/// A site, and the vector in steps from one of its images to the searched position.
+/// A site, and the vector from one of its images to the searched position, in lattice steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Step {
     site: PointIdx,

@@ -5,8 +5,8 @@
 //! for partition of unity parametrics.
 //!
 //! Cone `i` of `k` contains the directions from the angle `2π i / k` (included) to `2π (i + 1) / k`. The borders are
-//! vectors that are computed once. They are the same for all points and on every machine. Which side of a border a
-//! neighbor is on is decided exactly. Borders along the axes are exact; the others are rounded.
+//! vectors that are computed once, equal for all points and on every machine. Borders along the axes are exact; the
+//! others are rounded. An exact test decides on which side of a border a neighbor is.
 
 use crate::angle::{by_angle, turn};
 use crate::build::{Choice, EdgeDirection, graph_of};

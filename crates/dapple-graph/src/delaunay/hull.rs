@@ -1,9 +1,9 @@
-//! The convex hull of sites that do not wrap.
+//! The convex hull of the sites of a domain that does not wrap.
 //!
-//! Tiles of a set that does not wrap contain the hull's corners, so that the border of their triangulations is the border
-//! of the whole. Reference: A. M. Andrew, "Another efficient algorithm for convex hulls in two dimensions", Information
-//! Processing Letters 9 (1979), after dropping the sites inside of an octagon: S. G. Akl and G. T. Toussaint, "A fast
-//! convex hull algorithm", Information Processing Letters 7 (1978).
+//! Without wrapping, each tile also triangulates the hull's corners, so that the border of its triangulation is the
+//! hull of all sites. Reference: A. M. Andrew, "Another efficient algorithm for convex hulls in two dimensions",
+//! Information Processing Letters 9 (1979), after dropping the sites inside of an octagon: S. G. Akl and G. T.
+//! Toussaint, "A fast convex hull algorithm", Information Processing Letters 7 (1978).
 
 use super::images::key;
 use glam::DVec2;
@@ -13,11 +13,11 @@ use std::collections::BTreeMap;
 /// The convex hull of at least three sites that are not collinear.
 #[derive(Debug)]
 pub(super) struct Hull {
-    /// Sites on the hull's border, counterclockwise, with those between two corners.
+    /// Sites on the hull's border, counterclockwise, including sites on the line between two corners.
     border: Vec<u32>,
     /// Sites at the corners.
     pub(super) corners: Vec<u32>,
-    /// Indices into `border`, by position.
+    /// Index into `border` of the site at each position.
     places: BTreeMap<(i64, i64), usize>,
 }
 
@@ -53,7 +53,7 @@ impl Hull {
         })
     }
 
-    /// Returns the sites before and after a site on the border; `None` for a site inside.
+    /// Returns the previous and the next site on the border; `None` for a site inside the hull.
     pub(super) fn beside(&self, site: DVec2) -> Option<[u32; 2]> {
         let (n, at) = (self.border.len(), *self.places.get(&key(site))?);
         Some([self.border[(at + n - 1) % n], self.border[(at + 1) % n]])
@@ -75,7 +75,8 @@ fn chain(order: impl Iterator<Item = u32>, turn: impl Fn([u32; 3]) -> f64) -> Ve
     chain
 }
 
-/// Returns the sites that are not clearly inside the octagon of the sites that are extreme along the axes and diagonals.
+/// Returns the candidates for the hull: sites that are not clearly inside the octagon of the sites that are extreme
+/// along the axes and diagonals.
 fn outside_of_octagon(sites: &[DVec2], size: DVec2) -> Vec<u32> {
     const DIRECTIONS: [[f64; 2]; 8] = [
         [1.0, 0.0],

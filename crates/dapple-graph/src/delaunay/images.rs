@@ -48,7 +48,8 @@ impl Cover {
         (at - self.low).min(self.high - at).min_element()
     }
 
-    /// Returns all images of all points in the rectangle; images in the domain itself have a row.
+    /// Returns all images of all points in the rectangle. The points themselves get a row of the graph; their copies
+    /// do not.
     ///
     /// Fails if their number exceeds the limit.
     pub(super) fn images(&self, lattice: &Lattice, sites: &[DVec2]) -> Result<Vec<Image>, TooThin> {
@@ -97,14 +98,14 @@ pub(super) struct Missing<'g, 'a> {
     grid: &'g LazyGrid<'a>,
     /// The hull of all sites, on a domain that does not wrap.
     hull: Option<&'g Hull>,
-    /// Maximum extent, along each axis, of the circumcircles of a point's triangles in the final triangulation
-    /// (inside the strip of the domain).
+    /// Maximum extent, along each axis, of the circumcircles of the triangles at a point in the final triangulation.
+    /// Along an axis that does not wrap, only the part within the domain counts.
     reach: DVec2,
     /// Positions of images that were already inserted.
     inserted: BTreeSet<(i64, i64)>,
     /// Positions of images found since the last insertion.
     pending: BTreeSet<(i64, i64)>,
-    /// Images to insert next, each with the row that requires it.
+    /// Images to insert next, each with the row whose star needs it.
     found: Vec<(Image, u32)>,
     scaffolded: bool,
     /// Row of the point whose star is being searched.

@@ -12,7 +12,7 @@ use glam::DVec2;
 use spade::handles::{FixedVertexHandle, VertexHandle};
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
-/// An image of a point.
+/// An image of a point: the point itself, or its copy in another period.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Image {
     pub(super) position: Point2<f64>,
@@ -46,7 +46,7 @@ impl HasPosition for Image {
 /// A vertex of a patch.
 pub(super) type Vertex<'a> = VertexHandle<'a, Image>;
 
-/// Graph rows in compressed form.
+/// The axes of a range of points as compressed rows. The axes of row `i` are `axes[offsets[i]..offsets[i + 1]]`.
 #[derive(Debug)]
 pub(super) struct Rows {
     pub(super) offsets: Vec<u32>,

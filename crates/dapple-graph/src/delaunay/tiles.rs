@@ -1,6 +1,7 @@
 //! Divides large sets into independent tiles, whose triangulations fit the cache.
 //!
-//! A tile of a set that does not wrap has the corners of the hull as well, so that no star of it has a wrong gap.
+//! Without wrapping, each tile also triangulates the corners of the hull, so that the stars of its points have gaps
+//! only on the hull.
 
 use super::hull::Hull;
 use super::images::Cover;
@@ -25,7 +26,7 @@ pub(super) struct Tiles<'a> {
     starts: [Vec<f64>; 2],
 }
 
-/// A tile: its images, and the points whose rows it computes.
+/// A tile: the images that it triangulates, and the points whose axes it computes.
 #[derive(Default)]
 struct Tile {
     images: Vec<Image>,
@@ -62,8 +63,8 @@ impl<'a> Tiles<'a> {
         })
     }
 
-    /// Computes the rows of all points. Fails with [`Refusal::Thin`] if the points are collinear, most of them are corners
-    /// of the hull, or they are distributed too unevenly.
+    /// Computes the axes of all points. Fails with [`Refusal::Thin`] if the points are collinear, most of them are
+    /// corners of the hull, or they are distributed too unevenly.
     pub(super) fn rows(
         &self,
         sites: &[DVec2],
@@ -148,8 +149,8 @@ impl<'a> Tiles<'a> {
         tiles
     }
 
-    /// Returns the column (or row) that contains a coordinate, followed by those within the margin, each with the
-    /// shift to add.
+    /// Returns the tile column (or row) that contains a coordinate, followed by the adjacent ones whose margin
+    /// contains it. Each has the shift, in steps, to the image of the coordinate near that column.
     fn near(&self, axis: usize, at: f64) -> [Option<(usize, f64)>; 3] {
         let starts = &self.starts[axis];
         let (count, size) = (self.count(axis), self.lattice.size[axis]);

@@ -1,4 +1,4 @@
-//! Compares the Delaunay graph with a search through all pairs and all images, in whole numbers.
+//! Compares the Delaunay graph with a brute-force search over all pairs of images, in exact arithmetic.
 
 use dapple_graph::glam::DVec2;
 use dapple_graph::points::hash::{Seed, rand_core::Rng};
@@ -8,8 +8,8 @@ use dapple_graph::{Graph, GraphErrorKind, delaunay};
 /// An edge: from, to, and the vector.
 type Edge = (u32, u32, i64, i64);
 
-/// Points with whole coordinates, relative to the origin; below 2^20, so that sums of two products are exact in an
-/// `f64`.
+/// Points with integer coordinates relative to the origin. They are below 2^20, so that sums of two products are exact
+/// in an `f64`.
 struct Case {
     size: DVec2,
     wrap: [bool; 2],
@@ -27,8 +27,9 @@ impl Case {
         PointSet::new(domain, self.sites.iter().map(position).collect()).unwrap()
     }
 
-    /// Two images are connected if a circle through both has no other image on it or in it. The circles through both
-    /// have their centers on the bisector, at a parameter t; each other image leaves an open half-line of them.
+    /// Returns the Delaunay edges by brute force. Two images are connected if a circle through both has no other image
+    /// on it or in it. The centers of circles through both are on the bisector, at a parameter t, and each other image
+    /// excludes a half-line of them.
     fn oracle(&self) -> Vec<Edge> {
         let diagonal = self.size.x + self.size.y;
         let reach = |axis: usize| {
@@ -126,7 +127,7 @@ fn check(case: &Case, name: &str) {
 
 const WRAPS: [[bool; 2]; 4] = [[false, false], [true, false], [false, true], [true, true]];
 
-/// `n` different sites by the given rule.
+/// Returns `n` distinct positions drawn from `site`.
 fn distinct(n: usize, mut site: impl FnMut() -> DVec2) -> Vec<DVec2> {
     let mut sites: Vec<DVec2> = Vec::new();
     while sites.len() < n {

@@ -1,4 +1,4 @@
-//! Tests of graphs against searches through all pairs, through the public interface.
+//! Tests of graphs against brute-force searches, through the public interface.
 
 mod delaunay_oracle;
 mod other_graphs;

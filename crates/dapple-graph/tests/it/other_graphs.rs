@@ -1,4 +1,4 @@
-//! Compares the other graphs than Delaunay's with a search through all images of points.
+//! Compares nearest-neighbor, Yao and Gabriel graphs with a brute-force search over all images of points.
 
 use dapple_graph::glam::DVec2;
 use dapple_graph::points::hash::{Seed, rand_core::Rng};
@@ -7,7 +7,7 @@ use dapple_graph::{EdgeDirection, Graph, GraphErrorKind, delaunay, gabriel, k_ne
 
 type Edge = (u32, u32, i64, i64);
 
-/// Random points with whole coordinates.
+/// Returns `n` random points with integer coordinates.
 fn points(seed: u64, n: usize, wrap: [bool; 2], size: DVec2) -> PointSet {
     let mut stream = Seed(seed).stream();
     let mut positions: Vec<DVec2> = Vec::new();
@@ -91,7 +91,7 @@ fn oracle(points: &PointSet, choose: impl Fn(Vec<(u32, DVec2)>) -> Vec<(u32, DVe
     edges
 }
 
-/// Sets of 1 to 40 points on all kinds of domains.
+/// Returns sets of 1 to 16 points on domains with every kind of wrapping.
 fn sets() -> impl Iterator<Item = PointSet> {
     let wraps = [[false, false], [true, false], [false, true], [true, true]];
     [1, 2, 3, 7, 16].into_iter().flat_map(move |n| {

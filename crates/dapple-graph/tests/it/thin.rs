@@ -1,5 +1,5 @@
-//! Tests of domains of extreme sizes. A wrapping domain much thinner than the distance of its points gets a graph or an
-//! error within a short time; tiny and huge domains get the same graphs as others.
+//! Tests of domains of extreme sizes. A wrapping domain much thinner than the distance between its points gets a graph
+//! or an error within a short time. Tiny and huge domains get the same graphs as others.
 
 use dapple_graph::glam::DVec2;
 use dapple_graph::points::hash::{Seed, rand_core::Rng, unit_f64};
@@ -7,7 +7,7 @@ use dapple_graph::points::{Domain, PointSet};
 use dapple_graph::{EdgeDirection, Graph, GraphError, GraphErrorKind};
 use dapple_graph::{delaunay, gabriel, k_nearest, yao};
 
-/// Random points on a torus of width 1.
+/// Returns `n` random points on a torus of width 1 and the given height.
 fn points(n: usize, height: f64) -> PointSet {
     let size = DVec2::new(1.0, height);
     let mut stream = Seed(7).stream();

@@ -1,4 +1,4 @@
-//! Voronoi diagrams beside searches through all sites and their images.
+//! Compares Voronoi diagrams with a brute-force search over all sites and their images.
 
 use dapple_graph::points::hash::{Seed, rand_core::Rng, unit_f64};
 use dapple_graph::points::{Domain, poisson_disk};
@@ -9,7 +9,7 @@ use dapple_graph::{
 const PLANE: [bool; 2] = [false, false];
 const TORUS: [bool; 2] = [true, true];
 
-/// Points of a domain of `size` from the origin.
+/// Creates a point set on a domain of `size` whose origin is 0.
 fn set(wrap: [bool; 2], size: DVec2, positions: Vec<DVec2>) -> PointSet {
     let domain = Domain {
         wrap,
@@ -18,7 +18,7 @@ fn set(wrap: [bool; 2], size: DVec2, positions: Vec<DVec2>) -> PointSet {
     PointSet::new(domain, positions).unwrap()
 }
 
-/// Distinct random points with coordinates that are multiples of `step`, so that many are co-circular if it is large.
+/// Returns distinct random points whose coordinates are multiples of `step`. If `step` is large, many are co-circular.
 fn random(seed: u64, n: usize, size: DVec2, step: f64) -> Vec<DVec2> {
     let mut stream = Seed(seed).stream();
     let mut positions = Vec::new();
@@ -37,7 +37,7 @@ fn grid(columns: u32, rows: u32) -> Vec<DVec2> {
     (0..columns * rows).map(at).collect()
 }
 
-/// Sets of every kind, with their names.
+/// Returns named point sets: random, regular and degenerate ones, with every kind of wrapping.
 fn sets() -> Vec<(String, PointSet)> {
     let size = DVec2::new(16.0, 12.0);
     let mut sets = Vec::new();
@@ -65,7 +65,7 @@ fn sets() -> Vec<(String, PointSet)> {
     sets
 }
 
-/// All images of the points that may be nearest to a place of the domain.
+/// Returns all images of the points that may be nearest to a position in the domain.
 fn images(points: &PointSet) -> Vec<(u32, DVec2)> {
     let domain = points.domain();
     let turns = |axis: usize| if domain.wrap[axis] { -3..=3 } else { 0..=0 };
@@ -241,7 +241,8 @@ fn rays_are_the_places_nearest_to_both_of_their_sites() {
     assert_eq!(n_rays, 2 * hull);
 }
 
-/// The lowest index of the sites nearest to a position, and its distance squared, by a search through all images.
+/// Returns the site nearest to a position and its squared distance, by brute force over all images. On a tie, the
+/// lowest index wins.
 fn nearest(images: &[(u32, DVec2)], position: DVec2) -> (u32, f64) {
     let mut best = (u32::MAX, f64::INFINITY);
     for &(site, image) in images {
