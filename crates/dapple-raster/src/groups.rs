@@ -1,4 +1,4 @@
-//! Items sorted by group, in compressed rows.
+//! Items sorted by group, in compressed rows (CSR).
 
 use core::ops::Range;
 

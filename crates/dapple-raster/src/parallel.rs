@@ -31,14 +31,12 @@ pub fn for_each(count: usize, work: &(dyn Fn(usize) + Sync)) {
     (0..count).for_each(work);
 }
 
-/// Collects the results of `make` for the numbers below `count`, in order. Each call may run as a separate parallel
-/// task.
+/// Returns `make(0)` to `make(count - 1)` in order. Each call may run as a separate parallel task.
 pub fn map<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync) -> Vec<T> {
     map_at_least(1, count, make)
 }
 
-/// Collects the results of `make` for the numbers below `count`, in order. A parallel task makes at least `least`
-/// calls.
+/// Returns `make(0)` to `make(count - 1)` in order. A parallel task makes at least `least` calls.
 pub fn map_at_least<T: Send>(
     least: usize,
     count: usize,
@@ -53,8 +51,8 @@ fn all_of<T: Send>(least: usize, count: usize, make: &(dyn Fn(usize) -> T + Sync
     map_parts(least, count, &|part| part.map(make).collect())
 }
 
-/// Concatenates the results of `make` for ranges of the numbers below `count`. A parallel task covers at least
-/// `least` numbers.
+/// Concatenates the results of `make` for consecutive ranges of `0..count`. A parallel task covers at least `least`
+/// numbers.
 ///
 /// On one thread there is a single range: `make` has only one call site, so that it is compiled once.
 #[inline(never)]
@@ -190,7 +188,7 @@ fn consume_all<T: Send, S: Send>(
 
 /// Runs all workers concurrently, each with its index. Pass at most [`n_threads`] workers.
 ///
-/// A worker that starts late may find that the others have completed all work.
+/// Workers share the work, so one that starts late may find nothing left to do.
 pub fn together<W: Send>(workers: &mut [W], work: impl Fn(usize, &mut W) + Sync) {
     #[cfg(feature = "rayon")]
     if workers.len() > 1 {

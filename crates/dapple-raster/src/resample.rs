@@ -52,15 +52,15 @@ impl<T: Texel> Raster<T> {
 /// Maximum side of a rectangle, in pixels, at which values are interpolated.
 const ONE_PIXEL: f64 = 1.0 + 1e-9;
 
-/// The overlap of an interval with the pixels of a line.
+/// The overlap of an interval with a row or column of pixels.
 struct Shares {
     first: i64,
     /// Ends of the interval, in pixels relative to the first pixel.
     ends: [f64; 2],
 }
 
-/// Returns the overlap of an interval with a line of `size` pixels. An interval shorter than a pixel is extended to
-/// one pixel, so its weights equal those of linear interpolation.
+/// Returns the overlap of an interval with a row or column of `size` pixels. An interval shorter than a pixel is
+/// extended to one pixel, so its weights equal those of linear interpolation.
 fn shares(middle: f64, length: f64, size: f64) -> Shares {
     let length = if length > ONE_PIXEL {
         length.min(size)
@@ -83,7 +83,7 @@ fn shares(middle: f64, length: f64, size: f64) -> Shares {
 const PARTS: f64 = (1 << 20) as f64;
 
 impl Shares {
-    /// Returns the weights of the overlapped pixels, from the first one on. They sum to 1.
+    /// Returns the weights of the overlapped pixels, starting with the first one. They sum to 1.
     fn weights(&self) -> impl Iterator<Item = f32> {
         let [from, end] = self.ends;
         let length = end - from;
@@ -97,7 +97,8 @@ impl Shares {
     }
 }
 
-/// Returns the weighted mean of values, with weights that sum to 1. It is exact if all values are equal.
+/// Returns the weighted mean of the pixels starting at `first`; `weights` must sum to 1. It is exact if all pixels are
+/// equal.
 fn mean<T: Texel>(first: i64, weights: impl Iterator<Item = f32>, at: impl Fn(i64) -> T) -> T {
     let base = at(first);
     let mut sum = base;

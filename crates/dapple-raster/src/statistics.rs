@@ -51,7 +51,7 @@ impl Raster<f32> {
         }
     }
 
-    /// Returns the number of pixels in each of `bins` equal intervals of the range from `from` to `to`.
+    /// Returns the number of pixels in each of `bins` equal intervals from `from` to `to`.
     ///
     /// Values outside the range count in the first or last interval; NaN is ignored.
     #[must_use]

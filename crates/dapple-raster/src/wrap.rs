@@ -15,7 +15,7 @@ crate::named! {
 }
 
 impl Wrap {
-    /// Maps `index` into the range `0..length`. `length` must be at least 1.
+    /// Maps an index to a pixel index in `0..length`. `length` must be at least 1.
     #[must_use]
     #[inline]
     pub fn index(self, index: i64, length: u32) -> u32 {

@@ -59,7 +59,7 @@ impl<const N: usize> Gradient<N> for Constant {
     }
 }
 
-/// Multiplies a gradient by a number.
+/// Multiplies a gradient by a scalar.
 fn times<const N: usize>(mut gradient: [f32; N], factor: f32) -> [f32; N] {
     for part in &mut gradient {
         *part *= factor;
@@ -232,7 +232,7 @@ mod tests {
     use super::Gradient;
     use crate::{Constant, Field, FieldExt as _, Fractal, FractalShape};
 
-    /// Waves in space with exact derivatives.
+    /// A 3-D sum of waves with exact derivatives.
     #[derive(Clone, Copy)]
     struct Waves;
 

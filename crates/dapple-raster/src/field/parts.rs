@@ -1,11 +1,11 @@
-//! How fields are composed, for programs that translate fields, such as to shaders.
+//! The composition of fields, for programs that translate fields, for example to shaders.
 
 use super::{FractalShape, PairOperation};
 use crate::Field;
 use core::any::Any;
 use core::fmt;
 
-/// The composition of a field: its parts, and how their values follow from positions.
+/// The composition of a field: its operation and the fields that the operation combines.
 ///
 /// [`Field::parts`] returns it.
 #[derive(Clone, Default)]
@@ -14,7 +14,7 @@ pub enum FieldParts<'a, const N: usize = 2> {
     /// A field whose composition is not known, such as a function.
     #[default]
     Unknown,
-    /// A generator, which programs know by its type.
+    /// A generator, identified by its concrete type.
     Generator(&'a dyn Any),
     /// The same value everywhere.
     Constant(f32),

@@ -61,7 +61,7 @@ displacement!(2: X 0, Y 1);
 displacement!(3: X 0, Y 1, Z 2);
 displacement!(4: X 0, Y 1, Z 2, W 3);
 
-/// Renders a window by evaluating its positions, on all cores if the feature `rayon` is enabled.
+/// Renders a window by sampling the field at each pixel's position, on all cores if the feature `rayon` is enabled.
 fn render_rows<const N: usize>(
     field: &impl Field<N>,
     window: &Window<N>,
@@ -189,7 +189,7 @@ impl<F: Field<N>, const N: usize> Field<N> for Rotated<F> {
 }
 
 impl<F, D> Warped<F, D> {
-    /// Adds the displacements along `axis` to positions.
+    /// Displaces positions along `axis` by `amount` times the values of the displacement field.
     fn displace<const N: usize>(&self, positions: &mut [[f64; N]], axis: usize, by: &[f32]) {
         for (position, &by) in positions.iter_mut().zip(by) {
             position[axis] += self.amount * f64::from(by);

@@ -242,7 +242,7 @@ pub(super) fn unit(value: f32) -> f32 {
     value.clamp(0.0, 1.0)
 }
 
-/// Renders a field band by band, and calls `change` with each output value and the rendered value.
+/// Renders a field in bands, and calls `change` with each pixel of `out` and the rendered value at that pixel.
 fn join<const N: usize>(
     field: &impl Field<N>,
     window: &Window<N>,
@@ -281,7 +281,7 @@ pub(super) fn by_bands<const N: usize>(
     done.into_iter().collect()
 }
 
-/// Calls `change` for each value, with the other raster's value at the same pixel.
+/// Calls `change` for each pixel of `values`, with the pixel of `others` at the same position.
 pub(super) fn zip_rows(
     values: &mut RasterViewMut<'_, f32>,
     others: &mut RasterViewMut<'_, f32>,

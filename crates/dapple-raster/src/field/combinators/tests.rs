@@ -1,4 +1,4 @@
-//! Tests of every combinator against its formula, with all methods of a field, and of its errors.
+//! Tests of every combinator against its formula, through all sampling methods, and of its errors.
 
 use super::FieldExt;
 use crate::{Constant, Field, Fractal, FractalShape, RasterErrorKind, Window, field_fn};
@@ -19,7 +19,7 @@ impl Field for Waves {
     }
 }
 
-/// Returns a fractal sum of one field.
+/// Returns a fractal sum whose octaves are copies of one field.
 fn octaves<F: Clone>(
     field: F,
     count: usize,
@@ -35,7 +35,8 @@ fn slope(position: DVec2) -> f32 {
     (0.5 * position.x - 0.25 * position.y) as f32
 }
 
-/// Compares the values of all methods with a formula, on a window larger than a band, with irregular positions.
+/// Checks that all sampling methods give the values of a formula, on a window larger than a band and at irregular
+/// positions.
 fn check(name: &str, field: &dyn Field, formula: impl Fn(DVec2) -> f32) {
     let origin = DVec2::new(-1.3, 0.7);
     let whole = Window::new(origin, DVec2::new(5.1, 3.3), [420, 340]).unwrap();
