@@ -13,7 +13,7 @@ pub type IsCancelled<'a> = dyn Fn() -> bool + Sync + 'a;
 pub struct Cancel(Option<Arc<dyn Fn() -> bool + Send + Sync>>);
 
 impl Cancel {
-    /// Creates a cancellation from a callback.
+    /// Creates a handle from a callback that returns whether to cancel.
     #[must_use]
     pub fn by(is_cancelled: impl Fn() -> bool + Send + Sync + 'static) -> Self {
         Self(Some(Arc::new(is_cancelled)))

@@ -8,11 +8,11 @@
 //! <https://doi.org/10.1111/j.1467-8659.2012.03059.x>), darts are thrown only where the area is not known to be
 //! covered. This implementation differs from theirs in two ways:
 //!
-//! * Time is divided into slices. In each slice every cell throws at most one dart, at the part of the cell that is
-//!   not known to be covered, and darts of one slice are settled by random ranks. There are no passes over colored
-//!   cells, which leave a lattice in the spectrum, and the result does not depend on the order of work.
-//! * The last gaps are found by an exact search down to single positions of a lattice of 2^22 steps per cell. It
-//!   proves that the set is maximal: the largest empty circle has a radius of at most `radius` · (1 + 1e-6).
+//! * Time is divided into slices. In each slice, every cell throws at most one dart, at the part of the cell that is
+//!   not known to be covered, and random ranks resolve the conflicts between these darts. The result does not depend
+//!   on the order of work. Passes over colored cells, which leave a lattice in the spectrum, are not needed.
+//! * An exact search, down to single positions of a lattice of 2^22 steps per cell, finds the last gaps. It proves
+//!   that the set is maximal: the largest empty circle has a radius of at most `radius` · (1 + 1e-6).
 //!
 //! Positions are in the units of the domain. A large set has [`RSA_DENSITY`] · area / radius² points.
 
@@ -261,7 +261,7 @@ impl PoissonDisk {
         PointSet::new(self.grid.domain, positions)
     }
 
-    /// Returns the given points as cells and offsets, sorted by cell.
+    /// Converts the given points to cells and offsets, sorted by cell.
     fn places(&self, given: &PointSet) -> Result<Vec<(Cell, [f32; 2])>, PointsError> {
         let grid = &self.grid;
         let mut holders = vec![u32::MAX; grid.stride() * grid.rows()];
@@ -309,8 +309,7 @@ impl PoissonDisk {
     }
 }
 
-/// Returns the SIMD level of this machine, without 16-lane levels, whose registers a row of five neighbors cannot
-/// fill.
+/// Returns the SIMD level of this machine, at most AVX2: a row of five neighbors cannot fill 16 lanes.
 pub(crate) fn level() -> Level {
     let level = Level::new();
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

@@ -4,9 +4,9 @@
 //! 5(1), 1986, <https://doi.org/10.1145/7529.8927>) with darts that are hashes of their cell. The plane is divided
 //! into square cells whose diagonal is the radius, so that a cell contains at most one point. A cell throws at most
 //! [`N_ROUNDS`] darts, one per round; within a round, darts have random ranks. A dart becomes a point if no point of
-//! an earlier dart is too close. This depends on the earlier darts around it, which depend on the darts around them.
-//! These chains end after a few radii and are followed completely: the points are exactly those that constructing the
-//! whole plane would give.
+//! an earlier dart is too close. Whether a dart becomes a point thus depends on the earlier darts around it, which
+//! depend on the darts around them. These chains end after a few radii and are followed completely. The points are
+//! therefore exactly the points of a construction of the whole plane.
 //!
 //! The idea of sampling an unbounded plane on demand is from D. Dunbar and G. Humphreys ("A Spatial Data Structure
 //! for Fast Poisson-Disk Sample Generation", SIGGRAPH 2006, <https://doi.org/10.1145/1141911.1141915>) and from
@@ -236,12 +236,12 @@ struct Axis {
     period: Option<Period>,
 }
 
-/// The period of an axis.
+/// The period of the point set along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Period {
-    /// Length in the caller's units.
+    /// Length of the period in the caller's units.
     length: f64,
-    /// Length in whole steps. A remainder of less than a step stays empty.
+    /// Length of the period in whole steps. A remainder of less than a step stays empty.
     n_steps: i64,
     n_cells: i64,
 }
@@ -249,13 +249,13 @@ struct Period {
 /// A column or a row of cells.
 #[derive(Clone, Copy, Debug)]
 struct Strip {
-    /// Index of the cell, equal in all periods.
+    /// Index of the cell within its period.
     cell: i64,
-    /// Total length of all preceding periods.
+    /// Start of the cell's period, in the caller's units.
     origin: f64,
-    /// Start of the cell in its period, in steps.
+    /// Start of the cell relative to its period, in steps.
     start: i64,
-    /// Start of the cell across all periods, in steps.
+    /// Start of the cell relative to the origin of the plane, in steps.
     absolute: i64,
     width: i64,
 }
@@ -385,7 +385,7 @@ impl Axis {
         cells.floor() as i64
     }
 
-    /// Returns the column or row for a cell index, which may be in any period.
+    /// Returns the column or row of cells with this index, which counts across periods.
     fn strip(&self, cell: i64) -> Strip {
         let Some(period) = self.period else {
             return Strip {

@@ -143,8 +143,8 @@ pub fn variable_poisson_disk_cancellable(
     }
 }
 
-/// Places the points. Assumes that between sampled positions, the slope of the radius is at most the slope between
-/// the samples, or `field.rise` if that is larger.
+/// Places the points. Between lattice samples, the slope of the radius is assumed to be at most `field.rise`, or the
+/// slope between the samples if that is larger.
 fn place_points(
     field: RadiusField<'_>,
     options: &VariablePoissonOptions,
@@ -202,7 +202,7 @@ fn check_periods(domain: &Domain, tree: &Tree) -> Result<(), PointsError> {
     Ok(())
 }
 
-/// Creates a block for each leaf, and finds its neighbors.
+/// Creates a block for each leaf, with its list of neighboring blocks.
 fn blocks_of(tree: &Tree, setting: &Setting<'_>) -> Vec<Block> {
     parallel::map(tree.leaves.len(), |index| {
         let leaf = &tree.leaves[index];

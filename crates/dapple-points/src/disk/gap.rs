@@ -14,7 +14,7 @@ use super::sheet::{COLUMNS, LANES, Sheet};
 use dapple_hash::CellHash;
 use fearless_simd::{f32x8, prelude::*};
 
-/// First corner of a square of positions, in lattice steps.
+/// The first lattice position of a square, in steps from the corner of the cell.
 type Corner = [u32; 2];
 
 /// Maximum number of discs that reach into a cell, one per surrounding cell, rounded up to whole lanes.
@@ -117,7 +117,7 @@ impl GapSearch {
         }
     }
 
-    /// Splits every square into four of side `size`, and keeps those that no single disc covers.
+    /// Splits every square into four of side `size`, and drops quarters that a single disc covers.
     #[inline(always)]
     fn cut<S: Simd>(&mut self, simd: S, grid: &Grid, size: u32) {
         let mut quarters = core::mem::take(&mut self.quarters);
@@ -164,7 +164,8 @@ impl GapSearch {
         covered
     }
 
-    /// Returns whether a single disc covers a whole square, given by its first and last position along each axis.
+    /// Returns whether a single disc covers a whole square. The square is given by its first and last position along
+    /// each axis.
     #[inline(always)]
     fn is_covered<S: Simd>(&self, simd: S, grid: &Grid, [x, y]: [[f32; 2]; 2]) -> bool {
         let discs = self.x.chunks_exact(LANES).zip(self.y.chunks_exact(LANES));

@@ -19,8 +19,8 @@ const BOXES: usize = 16;
 /// Number of cells that a disc reaches along an axis: its cell and two on each side.
 pub(crate) const REACH: usize = 2 * HALO as usize + 1;
 
-/// Table of coverage masks. For each box of offsets, it holds the masks of the subcells that stay open in the 5 × 5
-/// cells around a point, row by row.
+/// Table of coverage masks. Each box of offsets has the masks, row by row, of the subcells that remain open in the 5 ×
+/// 5 cells around a point with such an offset.
 #[derive(Clone, Debug)]
 pub(crate) struct Coverage {
     kept: Vec<[[u64; REACH]; REACH]>,

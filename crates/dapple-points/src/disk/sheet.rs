@@ -17,7 +17,8 @@ pub(crate) const HIGHEST_PROPOSAL: i32 = i32::MAX - 2;
 /// Number of lanes processed together; a row of [`REACH`] cells fits.
 pub(crate) const LANES: usize = 8;
 
-/// Columns of a row of neighbors, relative to the center; lanes beyond the reach are far away.
+/// Column offsets of five adjacent cells, relative to the middle one. The other lanes are far away, so that they never
+/// conflict.
 pub(crate) const COLUMNS: [f32; LANES] = [-2.0, -1.0, 0.0, 1.0, 2.0, FAR, FAR, FAR];
 
 /// Offsets and ranks of all cells including the margin, row by row.

@@ -22,7 +22,7 @@ const BAND_ROWS: u32 = 64;
 /// Mean number of darts per cell in each slice.
 const DARTS: [f64; 8] = [0.3, 0.4, 0.6, 1.0, 2.0, 4.0, 8.0, 16.0];
 
-/// A set under construction. After a cancellation, every step fails without doing work.
+/// A point set under construction. After a cancellation, every step returns an error without doing work.
 pub(crate) struct Solution<'a> {
     is_cancelled: &'a IsCancelled<'a>,
     grid: &'a Grid,
@@ -121,7 +121,7 @@ impl<'a> Solution<'a> {
         positions
     }
 
-    /// Lets open cells propose random darts.
+    /// Throws random darts at the open cells, as proposals of points.
     fn throw_darts(&mut self, mean: f64, seed: Seed) -> Result<(), PointsError> {
         let (grid, level) = (self.grid, self.level);
         let chances = dart_chances(mean);
@@ -133,7 +133,7 @@ impl<'a> Solution<'a> {
         })
     }
 
-    /// Lets open cells propose random free positions.
+    /// Proposes a random free position in each open cell.
     fn search_gaps(&mut self, seed: Seed) -> Result<(), PointsError> {
         let (grid, sheet, level) = (self.grid, &self.sheet, self.level);
         let masks = self.masks[domain_rows(grid)].chunks_mut(BAND_ROWS as usize * grid.stride());

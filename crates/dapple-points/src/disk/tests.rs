@@ -141,8 +141,8 @@ fn spectrum_is_isotropic_and_that_of_darts() {
     );
 }
 
-/// Throws darts sequentially, but none at squares of a fine grid that a single disc covers. It ends after `misses`
-/// rejected darts in a row.
+/// Throws darts sequentially, except at squares of a fine grid that a single disc covers. Stops after `misses`
+/// consecutive rejected darts.
 fn throw_darts(domain: Domain, radius: f64, misses: u32, seed: Seed) -> PointSet {
     const SIDE: u32 = 100;
     let square = domain.size / f64::from(SIDE);
@@ -382,7 +382,7 @@ fn value_stability_poisson_disk() {
     assert_eq!(bits, 8764673758391801309);
 }
 
-/// A function that creates points unless it is canceled.
+/// A function that creates points unless canceled.
 type Make<'a> = &'a dyn Fn(&IsCancelled) -> Result<PointSet, PointsError>;
 
 /// Creates points with a callback that cancels at call number `last` and later, and returns the number of calls.

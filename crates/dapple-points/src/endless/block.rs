@@ -1,4 +1,4 @@
-//! Evaluates a block of cells, that is, decides which darts become points.
+//! Evaluates a block of cells: decides which darts become points.
 //!
 //! Lengths are in steps, relative to the first cell of the block.
 
@@ -27,7 +27,7 @@ pub(super) struct Block<'a, F> {
     cells: Vec<Cell>,
     /// Neighbors of a cell, nearest first.
     around: Vec<Neighbor>,
-    /// Stack of cells that must be decided before the darts in progress.
+    /// Stack of cells that must be decided before the current darts.
     earlier: Vec<usize>,
     /// Scratch memory for [`cover_around`](Self::cover_around).
     quarters: [Vec<[f64; 4]>; 2],
@@ -350,7 +350,8 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         [self.columns[index % width], self.rows[index / width]]
     }
 
-    /// Marks the parts of surrounding cells that a new point covers for every radius of a dart.
+    /// Marks the sixteenths of surrounding cells in which a new point excludes every dart, whatever the dart's radius
+    /// is.
     fn cover_around(&mut self, index: usize) {
         let point = self.cells[index].dart;
         let reach = self.plane.rule.distance(self.radii[0], point.radius);
@@ -411,7 +412,7 @@ const ID: u32 = 1;
 const RANK: u32 = 2;
 const THIN: u32 = RANK + N_ROUNDS as u32;
 
-/// First numbers of Sobol's sequence, x in the upper half. In each round, one is combined with the position bits of a
+/// First points of the Sobol sequence, x in the upper half. In each round, one is combined with the position bits of a
 /// cell, so that the darts of a cell fall into different parts of it.
 const DARTS: [u64; N_ROUNDS as usize] = {
     let mut darts = [0; N_ROUNDS as usize];

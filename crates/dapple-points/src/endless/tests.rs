@@ -76,8 +76,7 @@ fn naive(
     points
 }
 
-/// Returns element `i` of the first two dimensions of Sobol's sequence: bit reversal, and the matrix of binomials
-/// modulo 2.
+/// Returns point `i` of the 2-D Sobol sequence: bit reversal for x, and the matrix of binomials modulo 2 for y.
 fn sobol(i: u32) -> [u32; 2] {
     let odd_binomial = |n: u32, k: u32| n & k == k;
     let mut y = 0;
@@ -242,7 +241,7 @@ fn the_density_is_nine_tenths_of_a_maximal_set_everywhere() {
     }
 }
 
-/// Returns a repeating set on a torus of about 10,000 points, and a maximal set on the same torus.
+/// Returns a repeating endless set with about 10,000 points per period, and a maximal set on the same torus.
 fn tori(seed: u64) -> [PointSet; 2] {
     let domain = Domain::torus(DVec2::ZERO, DVec2::splat(127.0));
     let set = EndlessPoissonDisk::new(1.0, Seed(seed))

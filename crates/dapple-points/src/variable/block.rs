@@ -22,7 +22,7 @@ const LANES: usize = 8;
 /// at most 5e-6 of a cell.
 const QUICK_MARGIN: f64 = 4e-5;
 
-/// Maximum width of the margin in cells; points farther out go to a separate list.
+/// Maximum width of the margin in cells. Points farther away are listed separately.
 const MOST_MARGIN: f64 = 6.0;
 
 const NOBODY: u32 = u32::MAX;
@@ -34,14 +34,14 @@ pub(super) struct Sample {
     pub(super) radius: f64,
 }
 
-/// A point of this block or near it, relative to the block.
+/// A point in or near this block, relative to the block's minimum corner.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Local {
     pub(super) at: DVec2,
     pub(super) radius: f64,
 }
 
-/// A nearby block, or a copy of this block around a wrapped axis.
+/// A nearby block, or a copy of this block across a wrapped axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Neighbor {
     pub(super) block: u32,
@@ -87,7 +87,7 @@ pub(super) struct Block {
     quick: [Vec<f32>; 3],
     /// For each cell, the index of its point in `locals`.
     slots: Vec<u32>,
-    /// Indices of points that have no cell slot.
+    /// Indices into `locals` of the points that are not in `slots`.
     aside: Vec<u32>,
     /// Scratch memory for the indices of points that were found.
     found: Vec<u32>,
@@ -219,7 +219,8 @@ impl Block {
         DVec2::new(f64::from(column), f64::from(row)) * self.cell
     }
 
-    /// Throws a dart into a part of the block, and adds it as a point if it fits.
+    /// Throws a dart into a rectangle of the block, and adds it as a point if it fits. `place` is the dart's position
+    /// in the rectangle, from 0 to 1 along each axis. Returns whether a point was added.
     pub(super) fn throw(
         &mut self,
         min: DVec2,
@@ -336,14 +337,14 @@ impl Block {
         is_covered
     }
 
-    /// Returns the first slot that the quick test reads around a cell.
+    /// Returns the index of the first cell that the quick test reads around a cell.
     #[inline(always)]
     fn quick_corner(&self, [column, row]: [u16; 2]) -> usize {
         let first = self.margin - QUICK_REACH;
         (usize::from(row) + first) * self.stride + usize::from(column) + first
     }
 
-    /// Returns the quick-test data of consecutive cells in a row.
+    /// Returns x, y and squared reach of consecutive cells in a row, for the quick test.
     #[inline(always)]
     fn quick_lanes(&self, from: usize) -> Option<[&[f32; LANES]; 3]> {
         let [xs, ys, reaches] = &self.quick;

@@ -27,10 +27,10 @@ const DARTS: usize = 4;
 /// Maximum number of parts of a cell; a cell with more is left unfilled. This happens only for a discontinuous radius.
 const MOST_PARTS: usize = 4096;
 
-/// Maximum slack of the bound of the radius, relative to the sum of a part's half-side lengths.
+/// Maximum uncertainty of the radius in a part, relative to the sum of the part's half-side lengths.
 const LOOSE: f64 = 0.25;
 
-/// Offsets from the center of a part to the centers of its quarters, in multiples of a quarter's half-side length.
+/// Directions from the center of a part to the centers of its quarters, in half-side lengths of a quarter.
 const WAYS: [DVec2; 4] = [
     DVec2::NEG_ONE,
     DVec2::new(1.0, -1.0),

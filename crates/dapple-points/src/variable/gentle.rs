@@ -106,7 +106,7 @@ struct Lattice<'a> {
     domain: &'a Domain,
     columns: usize,
     rows: usize,
-    /// Maximum increase of the radius to the next column, the next row, and the next diagonal position.
+    /// Maximum increase of the radius from a lattice position to the next one along a row, a column and a diagonal.
     rises: [f64; 3],
 }
 

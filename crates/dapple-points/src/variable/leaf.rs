@@ -25,13 +25,13 @@ const FEW_CELLS: f64 = 4.0;
 /// Maximum ratio of the largest to the smallest radius in a leaf with more cells.
 const MOST_RATIO: f64 = 1.5;
 
-/// Factor by which slopes in between lattice samples may exceed the slopes from sample to sample.
+/// Ratio by which the slope between lattice samples may exceed the maximum slope from sample to sample.
 const SLOPE_MARGIN: f64 = 1.5;
 
 /// Relative upper bound, with some slack, of the rounding error of the diagonal of a cell.
 const ROUNDING: f64 = 1e-9;
 
-/// A rectangle and its radii. Positions are relative to the domain's origin.
+/// A rectangle of the domain, and the radii in it. Positions are relative to the domain's origin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Leaf {
     pub(super) min: DVec2,
@@ -89,7 +89,7 @@ pub(super) struct Tree {
 struct Node {
     min: DVec2,
     size: DVec2,
-    /// Maximum of `most` over the leaves below.
+    /// Upper bound of the radius over the leaves below.
     most: f64,
     below: Below,
 }
@@ -307,7 +307,7 @@ fn cells_of(size: DVec2, radii: &Radii) -> Option<[u32; 2]> {
     is_leaf.then(|| cells.to_array().map(|count| (count as u32).max(1)))
 }
 
-/// Returns the halves of a rectangle, divided across its longer side.
+/// Returns the two halves of a rectangle, which is cut across its longer side.
 fn halves(min: DVec2, size: DVec2) -> [(DVec2, DVec2); 2] {
     let along = if size.x >= size.y { DVec2::X } else { DVec2::Y };
     let half = size * (DVec2::ONE - 0.5 * along);

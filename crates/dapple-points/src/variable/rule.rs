@@ -21,7 +21,7 @@ dapple_raster::named! {
 }
 
 impl DiskRule {
-    /// Returns the minimum distance of points with these radii.
+    /// Returns the minimum distance between two points with the radii `a` and `b`.
     #[must_use]
     #[inline]
     pub fn distance(self, a: f64, b: f64) -> f64 {

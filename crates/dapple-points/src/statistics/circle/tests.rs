@@ -1,4 +1,4 @@
-//! Tests of the largest empty circle against all positions of a lattice, and for few points by hand.
+//! Tests of the largest empty circle against all positions of a lattice, and against known circles of a few points.
 
 use crate::statistics::test_sets::{domains, random_set};
 use crate::{Domain, PointSet};

@@ -1,7 +1,8 @@
 //! Periodograms at integer frequencies.
 //!
-//! exp(i(a ± b)) needs only the four products of the sines and cosines of a and b, so that one pass over the points
-//! gives two frequencies. The sines and cosines of multiples are computed by complex multiplication.
+//! Each frequency needs the sum of exp(i(a ± b)) over the points, where a and b are a point's phases along x and y.
+//! Four products of the sines and cosines of a and b give both signs, so that one pass over the points computes two
+//! frequencies. The sines and cosines of multiples come from complex multiplication.
 
 use crate::{IsCancelled, PointSet};
 use core::f64::consts::TAU;
@@ -21,11 +22,12 @@ pub(super) struct Periodogram {
     powers: Vec<[f64; 2]>,
 }
 
-/// Σ cos a cos b, Σ sin a sin b, Σ sin a cos b, Σ cos a sin b over the points, where a and b are their angles along x
-/// and y.
+/// Sums over the points of cos a cos b, sin a sin b, sin a cos b and cos a sin b, where a and b are a point's phases
+/// along x and y.
 type Products = [f64; 4];
 
-/// Cosines and sines of multiples of angles, ordered by multiple and padded with zeros to whole lanes.
+/// Cosines and sines of multiples of the points' phases along an axis. Each multiple has a row, padded with zeros to
+/// whole lanes.
 struct Multiples {
     cos: Vec<[f64; LANES]>,
     sin: Vec<[f64; LANES]>,
@@ -117,8 +119,8 @@ impl Multiples {
         multiples
     }
 
-    /// Returns the sums over the points of the products of multiple `a` of these angles and multiple `b` of the
-    /// others.
+    /// Returns the sums over the points of the products for multiple `a` of these phases and multiple `b` of the
+    /// phases along the other axis.
     fn products(&self, a: usize, others: &Self, b: usize) -> Products {
         let [a, b] = [a, b].map(|multiple| multiple * self.per_row..(multiple + 1) * self.per_row);
         let mut sums = [[0.0; LANES]; 4];
