@@ -45,7 +45,8 @@ impl<const N: usize> Cellular<N>
 where
     Dimensions: Space<N>,
 {
-    /// Returns the coefficients of the distances, scaled to the range, and the number that is added, for shaders.
+    /// Returns the coefficients of the distances, scaled to the texture's range, and the constant that is added to
+    /// their sum. For shaders.
     #[doc(hidden)]
     #[must_use]
     pub fn shader_tone(&self) -> (Combination, f32) {
@@ -95,7 +96,7 @@ where
     }
 
     /// Renders several planes, such as the slices of a volume. Neighboring planes share their feature points, which is
-    /// faster than rendering them one by one, most of all if they are close together.
+    /// faster than rendering them one by one, especially if they are close together.
     ///
     /// # Errors
     ///
@@ -245,7 +246,8 @@ where
     }
 }
 
-/// Renders 2-D windows of N-D space. `render` renders several planes of one window together.
+/// Renders windows of N-dimensional space. `render` receives all planes that have the same 2-D window, and renders
+/// them together.
 pub(crate) fn render_windows<'v, const N: usize>(
     windows: &[Window<N>],
     outs: Vec<RasterViewMut<'v, f32>>,

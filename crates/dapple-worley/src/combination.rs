@@ -104,9 +104,9 @@ impl Combination {
         last.map_or(1, |last| last + 1)
     }
 
-    /// Combines the given distances; there must be at least [`depth`](Self::depth) of them.
+    /// Returns the combination of the distances F1, F2, …; there must be at least [`depth`](Self::depth) of them.
     ///
-    /// Skips distances with a coefficient of zero. Adds terms from F1 up.
+    /// Distances with a coefficient of zero are skipped, and products are added from F1 up.
     #[must_use]
     #[inline]
     pub fn of(&self, distances: &[f32]) -> f32 {

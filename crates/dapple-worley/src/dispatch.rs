@@ -1,7 +1,7 @@
-//! Entry points that ensure that the code for two, three and four axes is compiled in this crate only.
+//! Entry points that ensure that the code for two, three and four dimensions is compiled in this crate only.
 //!
-//! A function with the number of axes as a parameter is compiled again in every crate that calls it. So the public
-//! functions are thin, and call all heavy code through the functions of this module, which have no generic parameters.
+//! A function that is generic over the number of axes is compiled again in every crate that calls it. The public
+//! functions are therefore thin, and call all heavy code through the functions of this module, which are not generic.
 
 use crate::fixed::Place;
 use crate::lattice::Lattice;
@@ -13,7 +13,7 @@ use fearless_simd::Level;
 
 /// The functions that are compiled separately for each number of axes. [`Dimensions`] implements them for 2, 3 and 4.
 pub trait DimensionDispatch<const N: usize>: Sized {
-    /// Returns the basis in the form that rendering uses.
+    /// Returns the basis as a trait object for rendering, independent of the number of axes.
     fn basis(worley: &Worley<N>) -> &dyn Basis;
 
     /// Finds the points nearest to `place`, nearest first; at most four.
@@ -22,8 +22,8 @@ pub trait DimensionDispatch<const N: usize>: Sized {
     /// Finds all points whose keys are at most the key of `distance`, unordered.
     fn within(metric: Metric, lattice: &Lattice, place: &Place<N>, distance: f32) -> Vec<Hit<N>>;
 
-    /// Finds the nearest points of each position in a group. Returns a bit mask of the positions whose points are
-    /// certain.
+    /// Finds the nearest points of each position in a group. Returns a bit mask of the positions for which the result
+    /// is known to be exact; the others must be searched individually.
     fn search_group(worley: &Worley<N>, level: Level, group: &mut Group<N>) -> u64;
 }
 

@@ -1,4 +1,4 @@
-//! A texture of the distance to the nearest edge of the Voronoi cell.
+//! A texture with the distance to the nearest edge of the Voronoi cell.
 
 use crate::render::Output;
 use crate::{Dimensions, Metric, Plane, Space, Worley};

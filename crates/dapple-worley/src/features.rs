@@ -72,8 +72,8 @@ impl FeatureRows<'_> {
     }
 }
 
-/// Returns a feature point's coordinate along one axis, in cells, from a pixel's coordinate and the vector between
-/// them.
+/// Returns a feature point's coordinate along one axis, in cells: the pixel's coordinate minus `way`, the component of
+/// the vector from the point to the pixel.
 pub(crate) fn position((cell, steps): (i64, i32), way: f32) -> f64 {
     cell as f64 + f64::from(steps) * f64::from(STEP) - f64::from(way)
 }
@@ -184,7 +184,7 @@ pub(crate) fn flattened<T, const N: usize>(rows: Vec<&mut [[T; N]]>) -> Vec<&mut
 }
 
 impl Tone {
-    /// Returns the gradient of the combination, for the given vectors from the nearest points.
+    /// Returns the gradient of the combination at a pixel, given the vectors to it from its nearest points.
     #[inline]
     pub(crate) fn gradient<const N: usize>(
         &self,

@@ -1,10 +1,10 @@
 //! Fixed-point positions: a cell and an integer number of steps within it.
 //!
 //! All search methods use these coordinates. A coordinate is rounded down to a multiple of 2^-21 of a cell; the
-//! coordinates of feature points are such multiples, too. So differences are exact integers, whatever the points'
-//! positions and the corner that is their origin. Only the difference is rounded to `f32`, once; below 8 cells it is
-//! exact even then. So searches of one position, of many positions and of a window agree to the last bit, and an image
-//! at 1e9 is as sharp as at 0.
+//! coordinates of feature points are such multiples, too. Differences are therefore exact integers, wherever the
+//! points are and whichever corner is the origin. A difference is rounded to `f32` once; below 8 cells, even that is
+//! exact. Searches of one position, of many positions and of a window thus agree to the last bit, and an image at 1e9
+//! is as sharp as at 0.
 
 /// Binary logarithm of the number of steps in a cell.
 pub(crate) const STEP_BITS: u32 = 21;

@@ -1,10 +1,10 @@
 //! Generates the feature points of each cell from a hash of the cell, without any storage.
 //!
-//! The hash of a cell is two words. Each word is the exclusive or of one hash for each coordinate. So a search computes
-//! the hashes of a few rows and columns, and combines them. The number of points is drawn from the first word after
-//! mixing. The position of each point is drawn from both words, by adding a constant for every point and mixing.
-//! Interpreted as the state of a [`CellHash`], the words give the id of point `i` at counter `2^31 + i`. With a period,
-//! a cell has the same words as the cell that it repeats.
+//! The hash of a cell is two words. Each word is the exclusive or of one hash for each coordinate, so a search hashes
+//! only a few rows and columns, and combines the results. The first word, after mixing, gives the number of points.
+//! Both words, after adding a constant once per point and mixing, give a point's position. Interpreted as the state of
+//! a [`CellHash`], the words give the id of point `i` at counter `2^31 + i`. With a period, a cell has the same words
+//! as the cell that it repeats.
 
 use crate::fixed::{MOST_AXES, STEP_BITS, STEPS};
 use crate::places::LANES;
@@ -18,7 +18,7 @@ use dapple_hash::{
 use fearless_simd::{prelude::*, u32x16};
 use std::sync::Arc;
 
-/// Constants that are added to a cell's two words once for each point. They are odd, so all sums differ.
+/// Constants for a cell's two words, added `i + 1` times for point `i`. They are odd, so all sums differ.
 pub(crate) const STRIDES: [u32; 2] = [0x9E37_79B9, 0xC2B2_AE3D];
 
 /// Counter at which a cell's hash gives the id of its point 0.
@@ -31,7 +31,8 @@ pub struct Lattice {
     pub(crate) n_axes: usize,
     /// For each of a cell's two words, the hash that computes it.
     pub(crate) hashes: [LatticeHash<MOST_AXES>; 2],
-    /// For each of `hashes`, the keys of three cells along each axis, one key in each lane.
+    /// For each of `hashes`, its key for the axis of each lane. Lanes 0 to 2 are for the first axis, lanes 3 to 5 for
+    /// the second, and so on.
     pub(crate) lane_keys: [[u32; LANES]; 2],
     /// Distribution of the number of points per cell.
     pub(crate) counts: PoissonCounts,
@@ -57,7 +58,7 @@ impl Lattice {
         }
     }
 
-    /// Returns the hashes that compute a cell's two words.
+    /// Returns the two hashes that compute a cell's two words.
     fn hashes(seed: Seed) -> [LatticeHash<MOST_AXES>; 2] {
         [0, 1].map(|word| LatticeHash::new(seed.child("feature points", word)))
     }
@@ -76,7 +77,8 @@ impl Lattice {
         hashes.map(|hash| core::array::from_fn(|lane| hash.key(lane / 3 % MOST_AXES)))
     }
 
-    /// Returns the hash parts that a cell's coordinate along an axis contributes to its two words, after wrapping.
+    /// Hashes a cell's coordinate along an axis, after wrapping. The exclusive or of the results for all axes gives
+    /// the cell's two words.
     #[inline(always)]
     pub(crate) fn parts(&self, axis: usize, cell: i64) -> [u32; 2] {
         let cell = self.wrap(axis, cell);
@@ -94,7 +96,7 @@ impl Lattice {
         }
     }
 
-    /// Returns the number of bits for a point's index in its cell, if the density is constant.
+    /// Returns the number of bits that hold the index of a point in its cell. Valid only for a constant density.
     #[inline]
     pub(crate) fn index_bits(&self) -> u32 {
         u32::BITS - self.counts.range().end().leading_zeros()
@@ -125,7 +127,7 @@ impl Lattice {
         periods.all(|period| period > 0 && period <= 2 * ring + 1)
     }
 
-    /// Returns a cell's two hash words.
+    /// Returns the two hash words of a cell.
     #[inline]
     pub(crate) fn words<const N: usize>(&self, cell: [i64; N]) -> [u32; 2] {
         (0..N).fold([0; 2], |words, axis| {
@@ -133,7 +135,8 @@ impl Lattice {
         })
     }
 
-    /// Returns a point's position in its cell, in steps, from the cell's words.
+    /// Returns the position of point `index` in its cell, in steps from the lower corner. `words` are the hash words
+    /// of the cell.
     #[inline]
     pub(crate) fn steps<const N: usize>(&self, words: [u32; 2], index: u32) -> [i32; N] {
         let word = |which: usize| {
@@ -167,7 +170,7 @@ impl Lattice {
         }
     }
 
-    /// Returns the number of points in a cell, from the cell's first word.
+    /// Returns the number of points in a cell; `word` is the first hash word of the cell.
     #[inline]
     pub(crate) fn count(&self, cell: &[i64], word: u32) -> u32 {
         match &self.density {
@@ -212,14 +215,14 @@ impl fmt::Debug for Density {
     }
 }
 
-/// Combines the words of a cell with the hash parts of one more axis.
+/// Combines the hash words of a cell with the hashed coordinate of one more axis.
 #[inline(always)]
 pub(crate) fn both<W: BitXor<Output = W> + Copy>(words: [W; 2], parts: [W; 2]) -> [W; 2] {
     [words[0] ^ parts[0], words[1] ^ parts[1]]
 }
 
-/// Computes the hash parts that cell coordinates along an axis contribute, one cell in each lane; see
-/// [`Lattice::parts`]. The coordinates must be wrapped.
+/// Hashes cell coordinates along an axis, one cell in each lane of `C` register pairs; see [`Lattice::parts`]. The
+/// coordinates are given as low and high words, and must be wrapped.
 #[inline(always)]
 pub(crate) fn parts_each<S: Simd, const C: usize>(
     simd: S,
@@ -234,7 +237,7 @@ pub(crate) fn parts_each<S: Simd, const C: usize>(
 /// Hash words and point counts of sixteen cells, one in each lane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SixteenCells<S: Simd> {
-    /// The two words of each cell.
+    /// The two hash words of each cell.
     pub(crate) words: [u32x16<S>; 2],
     /// Number of points of each cell, if the density is constant.
     pub(crate) counts: u32x16<S>,
@@ -247,7 +250,8 @@ impl<S: Simd> SixteenCells<S> {
         cells
     }
 
-    /// Builds several registers of cells at once, like [`new`](Self::new), with interleaved operations.
+    /// Builds `C` groups of sixteen cells at once, like [`new`](Self::new). Their operations are interleaved, which is
+    /// faster.
     #[inline(always)]
     pub(crate) fn new_each<const C: usize>(
         simd: S,
@@ -308,7 +312,7 @@ impl<S: Simd> SixteenCells<S> {
         }
     }
 
-    /// Returns the random words of one point of each cell.
+    /// Returns 64 random bits, as two words, for point `index` of each cell.
     #[inline(always)]
     fn words_of(&self, index: u32x16<S>) -> [u32x16<S>; 2] {
         let mut words = self.words;
@@ -325,8 +329,8 @@ impl<S: Simd> SixteenCells<S> {
         steps(self.words_of(index), jitter)
     }
 
-    /// Returns the positions of points in several registers of cells at once, like [`steps`](Self::steps), with
-    /// interleaved operations.
+    /// Returns the positions of points in `C` groups of sixteen cells at once, like [`steps`](Self::steps). Operations
+    /// are interleaved, which is faster.
     #[inline(always)]
     pub(crate) fn steps_each<const N: usize, const C: usize>(
         cells: [Self; C],

@@ -1,9 +1,9 @@
 //! Dispatches code by SIMD level.
 //!
 //! On processors with wide registers (nearly all x86-64 processors since 2013), the inner loops are compiled for each
-//! way to accumulate terms and for the common numbers of nearest points. All other cases share one loop of each kind,
-//! for any metric and number. Minkowski's metric uses that loop everywhere, since its powers are so slow that wide
-//! registers gain nothing.
+//! kind of [metric](crate::metric) (sum of squares, sum, maximum) and for one and two nearest points. All other cases
+//! share one loop that supports any metric and number. Minkowski's metric always uses that loop, since its powers are
+//! so slow that wide registers gain nothing.
 
 /// Runs an operation in wide registers and returns `Some(result)`. Returns `None` if the level has no wide registers.
 #[cfg(target_arch = "x86_64")]
@@ -27,7 +27,8 @@ macro_rules! wide {
     }};
 }
 
-/// Runs an operation in the level's registers, which count as wide, and returns its result.
+/// Runs an operation at the given SIMD level, and returns `Some(result)`. On this platform, every level counts as
+/// wide.
 #[cfg(not(target_arch = "x86_64"))]
 macro_rules! wide {
     ($level:expr, $simd:ident => $op:expr) => {
@@ -47,7 +48,8 @@ pub(crate) fn is_wide(_: fearless_simd::Level) -> bool {
     true
 }
 
-/// Runs an operation with the metric converted to a [`Measure`](crate::metric::Measure).
+/// Runs an operation with the metric converted to a [`Measure`](crate::metric::Measure), at the widest SIMD level for
+/// that metric.
 macro_rules! measured {
     ($level:expr, $metric:expr, ($simd:ident, $measure:ident) => $op:expr) => {{
         let metric: crate::Metric = $metric;

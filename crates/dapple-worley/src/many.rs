@@ -1,12 +1,13 @@
 //! Searches many scattered positions, sixteen at a time, one in each lane.
 //!
-//! Every lane visits the cell of its position and the neighbors. Most lanes need the nearer neighbors, so all lanes
-//! visit them together. Few lanes need the farther ones. These visits are collected in a list for a whole group of
-//! positions, and then processed with all lanes in use.
+//! Every lane visits the cell of its position and the neighboring cells. The nearer neighbors are needed by most
+//! lanes, so all lanes visit them together. The farther neighbors are needed by few lanes. These visits are collected
+//! in a list for a whole group of positions, and then processed with all lanes in use.
 //!
-//! During the search, the low bits of a key store the code of its point. So one minimum and one maximum sort keys and
-//! codes at once. The order of two points whose keys agree in the other bits is then unknown. A position with such
-//! points, or one that needs cells beyond the neighbors, is searched again on its own.
+//! A search compares points by key, a stand-in for the distance (see [`metric`](crate::metric)). The low bits of a key
+//! are replaced by a code that identifies the point, so that one minimum and one maximum sort keys and codes at once.
+//! If the other bits of two keys are equal, the order of their points is unknown. Positions with such points, and
+//! positions that need cells beyond the neighbors, are searched again individually.
 
 use crate::fixed::{MOST_AXES, STEP, STEPS};
 use crate::lattice::{IDS, Lattice, SixteenCells, both, parts_each};
@@ -28,9 +29,10 @@ pub(crate) const NOTHING: u32 = f32::MAX.to_bits();
 pub(crate) struct Search<'a> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) exact: Exact,
-    /// Number of bits for a point's index in its cell. Two bits for each axis follow above.
+    /// Number of bits that hold a point's index in its cell. Above them, the code has two bits per axis for the
+    /// neighbor.
     pub(crate) index_bits: u32,
-    /// Mask of all bits of the code.
+    /// Mask of the code's bits in a key.
     pub(crate) code_mask: u32,
 }
 
@@ -44,17 +46,17 @@ pub struct Group<const N: usize> {
     /// Positions in cells, axis by axis. Only the first `len` are in use.
     pub(crate) positions: [[f64; GROUP]; N],
     pub(crate) len: usize,
-    /// Bit mask of the positions that are in range.
+    /// Bit mask of the positions that are in range (finite and below 2^62).
     has_place: u64,
-    /// Cells of the positions, as low and high words of their coordinates.
+    /// Cells of the positions: low and high words of the coordinates along each axis.
     cells: [[[u32; GROUP]; 2]; N],
     /// Steps of the positions within their cells.
     steps: [[i32; GROUP]; N],
-    /// Own cells and nearer neighbors of the current register of positions.
+    /// Own cells and nearer neighbors of the sixteen positions that are being searched.
     near: [Near; MOST_NEAR],
-    /// Farther neighbors that are still to be visited.
+    /// List of farther neighbors that remain to be visited.
     visits: Visits,
-    /// Keys of the nearest points so far.
+    /// Smallest keys of each position so far, in ascending order.
     best: [[u32; GROUP]; MAX_NEAREST],
     /// For each position, the smallest key of all points that are not among the nearest.
     next: [u32; GROUP],
@@ -62,7 +64,7 @@ pub struct Group<const N: usize> {
     points: [Points<N>; MAX_NEAREST],
 }
 
-/// The own cells of a register of positions, or one of their nearer neighbors.
+/// One neighbor (or the own cell) of each of sixteen positions: hash words and point counts.
 #[derive(Clone, Copy, Debug)]
 struct Near {
     words: [[u32; LANES]; 2],
@@ -95,9 +97,9 @@ const MOST_FAR: usize = 81 - MOST_NEAR;
 /// The points of one rank for all positions of a group.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Points<const N: usize> {
-    /// Distances, in cells.
+    /// Distance from each position to its point, in cells.
     pub(crate) distances: [f32; GROUP],
-    /// Vectors from the points to the positions, in cells.
+    /// Vector from the point to each position, in cells, axis by axis.
     pub(crate) vectors: [[f64; GROUP]; N],
     pub(crate) ids: [u64; GROUP],
 }
@@ -144,12 +146,13 @@ impl<const N: usize> Group<N> {
         }
     }
 
-    /// Returns the points that the last search found, nearest first.
+    /// Returns the points that the last search found, one element per rank, nearest first.
     pub(crate) fn points(&self) -> &[Points<N>] {
         &self.points[..self.depth]
     }
 
-    /// Finds the nearest points of the positions. Returns a bit mask of the positions whose points are certain.
+    /// Finds the nearest points of the positions. Returns a bit mask of the positions for which the result is known to
+    /// be exact.
     pub(crate) fn search(&mut self, worley: &Worley<N>, level: Level) -> u64 {
         // Powers are so slow that SIMD gains nothing, and the counts of a varying density are drawn one by one.
         let is_scalar = worley.metric.is_slow();
@@ -162,7 +165,7 @@ impl<const N: usize> Group<N> {
         holds.unwrap_or(0)
     }
 
-    /// Finds the nearest points, with the loop compiled for the requested number of points.
+    /// Finds the keys of the nearest points. Selects the loop that is compiled for the requested number of points.
     fn search_by_depth(&mut self, search: Search<'_>, level: Level) -> Option<u64> {
         // Four-dimensional positions are rare, and share one loop.
         if const { N < MOST_AXES } && self.depth == 1 {
@@ -183,7 +186,7 @@ impl<const N: usize> Group<N> {
         self.search_in_step::<S, K, 4>(simd, search)
     }
 
-    /// Looks up the ids, distances and vectors of the nearest points.
+    /// Computes the ids, distances and vectors of the nearest points from the codes in their keys.
     #[inline(always)]
     fn finish_with<S: Simd>(&mut self, simd: S, search: Search<'_>) {
         // The arrays also have registers beyond the last position, whose contents are ignored.
@@ -199,7 +202,7 @@ impl<const N: usize> Group<N> {
         }
     }
 
-    /// Searches the nearest points of all registers. Hashes are computed for `C` registers at a time.
+    /// Finds the nearest points of all positions, sixteen at a time. Hashes for `C` registers are computed together.
     #[inline(always)]
     fn search_in_step<S: Simd, const K: usize, const C: usize>(
         &mut self,
@@ -226,7 +229,8 @@ impl<const N: usize> Group<N> {
         holds & self.has_place
     }
 
-    /// Visits the nearer neighbors of a register, and appends the farther ones to the list.
+    /// Visits the own cells and nearer neighbors of sixteen positions, and appends their farther neighbors to the
+    /// list.
     #[inline(always)]
     fn visit_near<S: Simd, const K: usize, const C: usize>(
         &mut self,
@@ -282,7 +286,8 @@ impl<const N: usize> Group<N> {
         store(found.next, &mut self.next, register);
     }
 
-    /// Computes the hashes of the nearer neighbors early, so that the processor knows the point counts in time.
+    /// Computes the hash words and point counts of the own cells and nearer neighbors. Done before the visits, so that
+    /// the loops over points do not wait for the counts.
     #[inline(always)]
     fn hash_near<S: Simd, const C: usize>(
         &mut self,
@@ -365,7 +370,8 @@ impl<const N: usize> Group<N> {
         }
     }
 
-    /// Inserts a point's key into the sorted keys of the position with index `place`.
+    /// Inserts a key into the sorted keys of the position with index `place`. `coded` is the key with the code in its
+    /// low bits.
     #[inline(always)]
     fn insert<const K: usize>(&mut self, place: usize, mut coded: u32) {
         for best in &mut self.best[..K] {
@@ -376,7 +382,7 @@ impl<const N: usize> Group<N> {
         self.next[place] = self.next[place].min(coded);
     }
 
-    /// Returns a bit mask of the lanes of a register whose nearest points are certain.
+    /// Returns a bit mask of the sixteen positions in `register` for which the nearest points are known to be exact.
     #[inline(always)]
     fn holds<S: Simd, const K: usize>(&self, simd: S, search: Search<'_>, register: usize) -> u64 {
         let mask = search.code_mask;
@@ -397,8 +403,8 @@ impl<const N: usize> Group<N> {
         holds.to_bitmask()
     }
 
-    /// Looks up `C` registers of nearest points, starting at register `first`. All ranks of the first register of
-    /// positions come first, then all ranks of the second, and so on.
+    /// Decodes `C` registers of nearest points, starting at register `first`: computes their vectors, distances and
+    /// ids. The registers of one group of sixteen positions are consecutive, one per rank.
     #[inline(always)]
     fn finish<S: Simd, const C: usize>(&mut self, simd: S, search: Search<'_>, first: usize) {
         let lattice = search.lattice;
@@ -437,7 +443,7 @@ impl<const N: usize> Group<N> {
 }
 
 impl<const N: usize> Points<N> {
-    /// Stores a register of points, given their vectors in steps, and the high and low words of their ids.
+    /// Stores sixteen points. Their vectors are given in steps, their ids as high and low words.
     #[inline(always)]
     fn put<S: Simd>(
         &mut self,
@@ -465,7 +471,7 @@ impl<const N: usize> Points<N> {
 }
 
 impl Visits {
-    /// Appends the visits selected by a mask to the list.
+    /// Appends the visits whose lanes are set in `which`.
     #[inline(always)]
     fn push<S: Simd>(&mut self, visits: u32x16<S>, which: mask32x16<S>) {
         let visits = visits.compress(which);
@@ -473,7 +479,8 @@ impl Visits {
         self.len += which.to_bitmask().count_ones() as usize;
     }
 
-    /// Removes up to sixteen visits from the list, and returns them with their number. Further elements are stale.
+    /// Removes up to sixteen visits from the list, and returns them with their number. The remaining array elements
+    /// are undefined.
     #[inline(always)]
     fn take(&mut self) -> ([u32; LANES], usize) {
         let n_visits = self.len.min(LANES);
@@ -484,16 +491,16 @@ impl Visits {
     }
 }
 
-/// Returns the index in the group of a visit's position.
+/// Returns the index in the group of the position that a visit is for.
 #[inline(always)]
 fn place(visit: u32) -> usize {
     // All indices are below `GROUP`; the remainder proves it to the compiler.
     (visit >> PLACE_SHIFT) as usize % GROUP
 }
 
-/// The keys of the points nearest to sixteen positions.
+/// The smallest keys found for sixteen positions, with codes in the low bits.
 pub(crate) struct Found<S: Simd, const K: usize> {
-    /// Smallest keys in ascending order, after some unused ranks that stay zero.
+    /// The `K` smallest keys in ascending order. Unused ranks come first, and stay zero.
     best: [u32x16<S>; K],
     /// Smallest key of all other points.
     next: u32x16<S>,
@@ -515,7 +522,7 @@ impl<S: Simd, const K: usize> Found<S, K> {
         }
     }
 
-    /// Removes the smallest key among all lanes, and returns it.
+    /// Removes the smallest key of all lanes, and returns it. Used if all lanes belong to a single position.
     #[inline(always)]
     pub(crate) fn pop(&mut self) -> u32 {
         let least = self.best[0].reduce_min();
@@ -528,8 +535,8 @@ impl<S: Simd, const K: usize> Found<S, K> {
         least
     }
 
-    /// Compares the points of one cell in each lane. `origins` are the positions relative to the cells, `codes` the
-    /// neighbors' codes without point indices, and `most` is the maximum number of points in a cell.
+    /// Inserts the keys of all points in sixteen cells, one cell in each lane. `origins` are the positions relative to
+    /// the cells, `codes` identify the cells, and `most` is the maximum number of points in any of the cells.
     #[inline(always)]
     pub(crate) fn look<const N: usize>(
         &mut self,
@@ -572,7 +579,8 @@ pub(crate) fn vector<S: Simd, const N: usize>(
     vector
 }
 
-/// Computes, for each axis, the terms of the distances to the own cell, the nearer and the farther neighbor, in steps.
+/// Returns, for each axis, the key terms of the distances from the positions to the own cell (zero), the nearer and
+/// the farther neighbor, in steps.
 #[inline(always)]
 fn gaps<S: Simd, const N: usize>(
     simd: S,
@@ -589,7 +597,7 @@ fn gaps<S: Simd, const N: usize>(
     gaps
 }
 
-/// Returns a lower bound on the keys of all points beyond the neighbors, in steps.
+/// Returns a lower bound on the keys of all points beyond the neighboring cells. Lengths are in steps.
 #[inline(always)]
 fn border<S: Simd, const N: usize>(simd: S, exact: Exact, places: &Places<S, N>) -> f32x16<S> {
     let mut nearest = i32x16::splat(simd, STEPS);
@@ -600,18 +608,19 @@ fn border<S: Simd, const N: usize>(simd: S, exact: Exact, places: &Places<S, N>)
     exact.terms([(nearest + STEPS).to_float()])[0]
 }
 
-/// Mask for a neighbor's code. A set bit means that the neighbor is on the farther side along some axis.
+/// Mask for a neighbor's code. A set bit means that the neighbor is the farther one along some axis.
 const FARTHER: u32 = 0b1010_1010;
 
-/// Returns the index in [`Group::near`] of a neighbor on the nearer sides. It has one bit for each axis, the first axis
-/// lowest.
+/// Returns the index in [`Group::near`] of the own cell or a nearer neighbor. Bit `k` is set if the cell is the nearer
+/// neighbor along axis `k`.
 #[inline(always)]
 fn near_index<const N: usize>(neighbor: u32) -> usize {
     (0..N).fold(0, |index, axis| index | digit(neighbor, axis) << axis)
 }
 
-/// Returns the hash parts of the columns (own cell and nearer neighbor) and the combined parts of the rows. The index
-/// of a row has one bit for each axis except the first.
+/// Returns the hashed coordinates of the two columns (own cell and nearer neighbor along the first axis), and the
+/// combined hashed coordinates of the rows along the other axes. The index of a row has one bit for each axis except
+/// the first.
 #[inline(always)]
 fn columns_and_rows<S: Simd, const N: usize>(
     simd: S,
@@ -631,5 +640,5 @@ fn columns_and_rows<S: Simd, const N: usize>(
     (columns, rows)
 }
 
-/// Indices of the lanes.
+/// Index of each lane.
 const ASCENDING: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];

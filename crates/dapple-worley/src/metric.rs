@@ -1,9 +1,10 @@
 //! Metrics: Euclidean, Manhattan, Chebyshev and Minkowski.
 //!
 //! Worley proposes the Manhattan metric for rigid rectangular regions ("A Cellular Texture Basis Function", SIGGRAPH
-//! 1996, <https://doi.org/10.1145/237170.237267>). All four metrics accumulate one term for each axis, so rendering can
-//! compute the terms of a column and of a row once. Searches compare points by the *key*, a monotone stand-in for the
-//! distance that is cheaper to compute. For the Euclidean metric, it is the squared distance.
+//! 1996, <https://doi.org/10.1145/237170.237267>). Searches compare points by *key*, a monotone stand-in for the
+//! distance that is cheaper to compute; for the Euclidean metric, it is the squared distance. A key is the sum (for
+//! Chebyshev, the maximum) of one *term* for each axis, a function of the coordinate difference: `d²`, `|d|` or
+//! `|d|^p`. Rendering can therefore compute the terms of a column and of a row once.
 //!
 //! Terms are accumulated from the last axis to the first, in the same order everywhere, so that the bits agree.
 
@@ -108,7 +109,7 @@ fn sign(part: f32) -> f32 {
 // of a vector. Keys are compared instead of distances; the Euclidean key is the squared distance. Keys are at least
 // zero, and do not decrease when a difference grows; `rounding_slack` bounds the exceptions that rounding causes.
 impl Metric {
-    /// Returns the factor that turns a key into a bound that is valid despite rounding.
+    /// Returns a factor, at least 1. A bound on exact keys, multiplied by it, is valid for rounded keys.
     #[inline]
     pub(crate) fn rounding_slack(self) -> f32 {
         match self {
@@ -131,7 +132,7 @@ impl Metric {
         matches!(self, Self::Minkowski(_))
     }
 
-    /// Returns the number of the metric in shaders; `None` for the metric that they lack.
+    /// Returns the metric's number in shaders; `None` for Minkowski's metric, which shaders do not support.
     pub(crate) fn shader_word(self) -> Option<u32> {
         match self {
             Self::Euclidean => Some(0),
@@ -141,7 +142,8 @@ impl Metric {
         }
     }
 
-    /// Returns the term of a difference along one axis. It is also the key of a vector along that axis.
+    /// Returns the key term of a difference along one axis, in cells. It equals the key of a vector parallel to that
+    /// axis.
     #[inline(always)]
     pub(crate) fn term(self, difference: f32) -> f32 {
         match self {
@@ -161,7 +163,7 @@ impl Metric {
         key
     }
 
-    /// Accumulates one more term into a key.
+    /// Accumulates the key term of one more axis into a key.
     #[inline(always)]
     pub(crate) fn accumulate(self, term: f32, key: f32) -> f32 {
         match self {
@@ -181,7 +183,8 @@ impl Metric {
         }
     }
 
-    /// Tightens a bound for exact keys so that it is valid for rounded keys.
+    /// Lowers a bound on keys by the rounding slack. A key whose rounded value is below the result is exactly below
+    /// `bound`.
     #[inline]
     pub(crate) fn tightened(self, bound: f32) -> f32 {
         bound / self.rounding_slack()
@@ -215,13 +218,13 @@ impl Metric {
     }
 }
 
-/// A metric that operates on registers, for the inner loops. The default methods support all metrics except
+/// A metric that operates on SIMD registers, for the inner loops. The default methods support all metrics except
 /// Minkowski's.
 pub(crate) trait Measure: Copy {
     /// Returns the metric, which is a compile-time constant for some types.
     fn metric(self) -> Metric;
 
-    /// Computes the terms of the differences in several registers.
+    /// Returns the key terms of coordinate differences, in `C` registers.
     #[inline(always)]
     fn terms<S: Simd, V: SimdFloat<S, Element = f32>, const C: usize>(
         self,
@@ -243,7 +246,7 @@ pub(crate) trait Measure: Copy {
         differences
     }
 
-    /// Accumulates one more term into the keys.
+    /// Accumulates the key terms of one more axis into the keys.
     #[inline(always)]
     fn accumulate<S: Simd, V: SimdFloat<S, Element = f32>>(self, terms: V, keys: V) -> V {
         match self.metric() {
@@ -274,7 +277,7 @@ pub(crate) trait Measure: Copy {
     }
 }
 
-/// Any metric except Minkowski's. (A function call for terms would spill all registers of a loop.)
+/// Any metric except Minkowski's, whose function calls would spill all registers of a loop.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Exact(pub(crate) Metric);
 
@@ -356,11 +359,11 @@ impl Measure for General {
     }
 }
 
-/// Factor applied to differences before they are raised to a power. It centers the powers of a step and of 16 cells in
-/// the range of `f32`.
+/// Factor applied to differences before they are raised to a power. It keeps both the power of a step and the power of
+/// 16 cells in the range of `f32`.
 const MINKOWSKI_SCALE: f32 = 256.0;
 
-/// Returns the Minkowski term of a difference.
+/// Returns the Minkowski key term of a difference.
 fn power(difference: f32, p: f32) -> f32 {
     libm::powf(difference.abs() * MINKOWSKI_SCALE, p)
 }
@@ -384,7 +387,7 @@ fn root_each(keys: &mut [f32], p: f32) {
     }
 }
 
-/// Applies a function to the lanes of a register one by one, through memory.
+/// Applies a function to the lanes of a register one by one, through memory. `p` is passed to the function.
 #[inline(always)]
 fn each_lane<S: Simd, V: SimdFloat<S, Element = f32>>(
     lanes: V,

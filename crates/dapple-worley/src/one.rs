@@ -1,7 +1,7 @@
 //! Searches the nearest points of one position, with one cell in each lane.
 //!
-//! Keys are coded as in [`many`](crate::many). The nearest points may be uncertain, because two points are at nearly
-//! the same distance, or because other cells can contain a nearer point. Then the search by rings is used.
+//! Keys have codes in their low bits, as in [`many`](crate::many). The result is inexact if two points are at nearly
+//! the same distance, or if a cell that was not visited can contain a nearer point. Then the search by rings is used.
 
 use crate::Metric;
 use crate::fixed::{Place, STEP, STEP_BITS, STEPS};
@@ -15,8 +15,8 @@ use dapple_hash::mix32_pairs;
 use dapple_raster::simd;
 use fearless_simd::{i32x16, mask32x16, prelude::*, u32x16};
 
-/// Returns the number of visited cells: the own cell and the neighbors that are nearest on average. The few neighbors
-/// left out are on the farther side along at least two axes.
+/// Returns the number of visited cells: the own cell and the neighbors with the smallest mean distance. Neighbors that
+/// are the farther one along several axes are not visited.
 const fn n_visited(n_axes: usize) -> usize {
     [0, 0, 8, 24][n_axes]
 }
@@ -33,7 +33,7 @@ pub(crate) fn nearest<const N: usize>(
     }
 }
 
-/// Finds the nearest points among the nearer neighbors. Returns whether the points are certain.
+/// Finds the nearest points in the visited cells. Returns whether the result is known to be exact.
 #[inline(always)]
 fn finds<const N: usize>(
     lattice: &Lattice,
@@ -57,7 +57,8 @@ fn finds<const N: usize>(
     is_certain.unwrap_or(false)
 }
 
-/// The cell of a position and its neighbors. Each axis lists the own cell, the nearer and the farther neighbor.
+/// The cell of a position and its neighbors. For each axis, the elements are the own cell, the nearer and the farther
+/// neighbor.
 struct Around<const N: usize> {
     /// Coordinates of the cells, wrapped by the period.
     cells: [[i64; 3]; N],
@@ -82,7 +83,7 @@ impl<const N: usize> Around<N> {
         around
     }
 
-    /// Returns whether all cells have coordinates that are signed 32-bit integers, whose hash parts are one mixing each.
+    /// Returns whether the coordinates of all cells fit into 32 bits, which makes them cheaper to hash.
     #[inline(always)]
     fn is_near(&self, lattice: &Lattice) -> bool {
         let mut is_near = true;
@@ -95,7 +96,8 @@ impl<const N: usize> Around<N> {
         is_near
     }
 
-    /// Returns the cells' hash words and the position in steps from the cells' lower corners, in `C` registers.
+    /// Returns the hash words of the visited cells, and the position relative to each, one cell per lane of `C`
+    /// registers.
     #[inline(always)]
     fn lanes<S: Simd, const C: usize>(&self, simd: S, lattice: &Lattice) -> Lanes<S, N, C> {
         let mut words = [[u32x16::splat(simd, 0); 2]; C];
@@ -116,7 +118,8 @@ impl<const N: usize> Around<N> {
         Lanes::new(simd, lattice, words, origins)
     }
 
-    /// Returns the hash parts of all cells for both words, three numbers for each axis.
+    /// Returns the hashed coordinates of the cells for both hash words. Each axis has three elements: own cell, nearer
+    /// and farther neighbor.
     #[inline(always)]
     fn parts<S: Simd>(&self, simd: S, lattice: &Lattice) -> [[u32; LANES]; 2] {
         let mut parts = [[0; LANES]; 2];
@@ -148,7 +151,7 @@ impl<const N: usize> Around<N> {
         parts
     }
 
-    /// Searches cells that contain any number of points.
+    /// Searches cells that may contain several points. Returns whether the result is known to be exact.
     #[inline(always)]
     fn search_several<S: Simd, const K: usize, const C: usize>(
         &self,
@@ -191,7 +194,7 @@ impl<const N: usize> Around<N> {
         true
     }
 
-    /// Returns the hit for a point in a neighbor, given the neighbor's words.
+    /// Returns the hit for point `index` of a neighbor, given the neighbor's code and hash words.
     #[inline(always)]
     fn hit(&self, search: Search<'_>, neighbor: u8, words: [u32; 2], index: u32) -> Hit<N> {
         let steps: [i32; N] = search.lattice.steps(words, index);
@@ -206,7 +209,7 @@ impl<const N: usize> Around<N> {
     }
 }
 
-/// Distances from a position to its own cell, to the nearer and to the farther neighbor along each axis, in steps.
+/// Distances along each axis, in steps, from a position to its own cell (zero), the nearer and the farther neighbor.
 struct Sides<const N: usize>([[i32; 3]; N]);
 
 impl<const N: usize> Sides<N> {
@@ -252,7 +255,8 @@ impl<const N: usize> Sides<N> {
     }
 }
 
-/// Visits the remaining neighbors that can contain a nearer point. Returns whether no cell beyond them can.
+/// Visits the remaining neighbors that can contain a nearer point. Returns whether no cell beyond the neighbors can
+/// contain one.
 #[cold]
 fn visit_rest<const N: usize>(search: Search<'_>, place: &Place<N>, hits: &mut [Hit<N>]) -> bool {
     let Search { lattice, exact, .. } = search;
@@ -280,15 +284,15 @@ fn visit_rest<const N: usize>(search: Search<'_>, place: &Place<N>, hits: &mut [
 /// The cells that a search visits, one in each lane.
 struct Lanes<S: Simd, const N: usize, const C: usize> {
     cells: [SixteenCells<S>; C],
-    /// Coordinates of the position, in steps from the lower corners of the cells.
+    /// Position relative to the lower corner of each cell, in steps.
     origins: [[i32x16<S>; N]; C],
-    /// Hash words of the cells in memory, eight at a time.
+    /// Hash words of the cells, stored in memory for lookups, eight cells at a time.
     halves: [[[u32; 8]; 2]; 4],
 }
 
 impl<S: Simd, const N: usize> Lanes<S, N, 1> {
-    /// Returns the cells around a position without periods whose coordinates are signed 32-bit integers. The coordinates
-    /// of each cell are mixed in its lane, which is cheaper for one register than to distribute the mixed ones.
+    /// Builds the lanes for a position without periods, whose cell coordinates fit into 32 bits. Coordinates are
+    /// hashed in each lane, which is cheaper for one register than to distribute hashed coordinates.
     #[inline(always)]
     fn near(simd: S, lattice: &Lattice, place: &Place<N>) -> Self {
         let mut coordinates = [[u32x16::splat(simd, 0); 2]; N];
@@ -337,7 +341,7 @@ impl<S: Simd, const N: usize, const C: usize> Lanes<S, N, C> {
         }
     }
 
-    /// Searches cells that contain one point each.
+    /// Searches cells that contain one point each. Returns whether the result is known to be exact.
     #[inline(always)]
     fn search_single(&self, simd: S, search: Search<'_>, hits: &mut [Hit<N>]) -> bool {
         let mut keys = [u32x16::splat(simd, NOTHING); C];
@@ -388,7 +392,7 @@ impl<S: Simd, const N: usize, const C: usize> Lanes<S, N, C> {
         true
     }
 
-    /// Returns the hash words of a cell.
+    /// Returns the two hash words of the cell with this number.
     #[inline(always)]
     fn words(&self, number: usize) -> [u32; 2] {
         let [first, second] = &self.halves[number / 8];
@@ -404,7 +408,8 @@ fn is_visited<S: Simd, const N: usize>(simd: S, register: usize) -> mask32x16<S>
     numbers.simd_lt(n_visited(N) as u32)
 }
 
-/// Searches up to `K` points. `K` = 0 means any number of points, in cells that contain one point each.
+/// Searches the visited cells for up to `K` points. With `K` = 0, cells contain one point each, and any number of
+/// points can be found. Returns whether the result is known to be exact.
 #[inline(always)]
 fn search_by_axes<S: Simd, const N: usize, const K: usize>(
     simd: S,
@@ -444,7 +449,7 @@ fn is_simple<const N: usize>(lattice: &Lattice, place: &Place<N>) -> bool {
     is_simple
 }
 
-/// Returns the direction of each cell along each axis, relative to the nearer neighbor's: 0, 1 or -1.
+/// Returns, for each axis and visited cell, the cell's offset as a multiple of the nearer neighbor's: 0, 1 or -1.
 const fn directions<const N: usize>() -> [[i32; LANES]; N] {
     let mut directions = [[0; LANES]; N];
     let digits = digits::<N>();
@@ -460,7 +465,7 @@ const fn directions<const N: usize>() -> [[i32; LANES]; N] {
     directions
 }
 
-/// Returns the code of each cell along each axis, in two registers; see [`places`](crate::places).
+/// Returns, for each axis, the neighbor codes of the visited cells in two registers; see [`places`](crate::places).
 const fn digits<const N: usize>() -> [[[u32; LANES]; 2]; N] {
     let mut digits = [[[0; LANES]; 2]; N];
     let cells = cells_by_distance::<N>();
@@ -476,7 +481,7 @@ const fn digits<const N: usize>() -> [[[u32; LANES]; 2]; N] {
     digits
 }
 
-/// Returns the indices of the cells, in two registers.
+/// Returns the numbers of the visited cells, counted in order of their mean distance, in two registers.
 const fn numbers() -> [[u32; LANES]; 2] {
     let mut numbers = [[0; LANES]; 2];
     let mut number = 0;
@@ -487,8 +492,8 @@ const fn numbers() -> [[u32; LANES]; 2] {
     numbers
 }
 
-/// Selects, in each lane, one of the first three numbers of `of`: for the own cell, the nearer, or the farther neighbor
-/// along an axis.
+/// Selects an element of `of` in each lane: `of[0]` for the own cell, `of[1]` for the nearer and `of[2]` for the
+/// farther neighbor along an axis.
 #[inline(always)]
 fn pick<S: Simd, const N: usize>(simd: S, axis: usize, register: usize, of: &[u32]) -> u32x16<S> {
     let digits = u32x16::from_slice(simd, &const { digits::<N>() }[axis][register]);

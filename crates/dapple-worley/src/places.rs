@@ -1,7 +1,7 @@
 //! Sixteen fixed-point positions, one in each lane, and the neighbors of their cells.
 //!
-//! The code of a neighbor has two bits for each axis: 0 for the own cell, 1 for the neighbor on the nearer side, 2 for
-//! the neighbor on the farther side.
+//! The code of a neighbor has two bits for each axis: 0 for the own cell, 1 for the adjacent cell on the nearer side,
+//! 2 for the adjacent cell on the farther side.
 
 use crate::fixed::{STEPS, WHOLE, split};
 use crate::lattice::{Lattice, both, parts_each};
@@ -18,11 +18,11 @@ pub(crate) type Words<S> = [u32x16<S>; 2];
 pub(crate) struct Places<S: Simd, const N: usize> {
     /// Cells of the positions.
     pub(crate) cells: [Words<S>; N],
-    /// Steps from the lower corners of the cells.
+    /// Steps of the positions from the lower corners of their cells.
     pub(crate) steps: [i32x16<S>; N],
 }
 
-/// One cell for each of sixteen positions.
+/// One cell for each of sixteen positions, such as a neighbor.
 #[derive(Clone, Copy)]
 pub(crate) struct Cells<S: Simd, const N: usize> {
     /// Hash words of the cells.
@@ -32,8 +32,8 @@ pub(crate) struct Cells<S: Simd, const N: usize> {
 }
 
 impl<S: Simd, const N: usize> Places<S, N> {
-    /// Converts a register of positions to fixed point. The bit mask has a bit for each position that is in range;
-    /// other lanes are arbitrary.
+    /// Converts sixteen positions, the elements of `register`, to fixed point. Also returns a bit mask of the
+    /// positions that are in range; the lanes of other positions are undefined.
     #[inline(always)]
     pub(crate) fn new<const LEN: usize>(
         simd: S,
@@ -91,14 +91,15 @@ impl<S: Simd, const N: usize> Places<S, N> {
         }
     }
 
-    /// Returns the direction of the neighbor on the nearer side along an axis: -1 or 1.
+    /// Returns the direction along an axis to the nearer neighboring cell: -1 or 1.
     #[inline(always)]
     pub(crate) fn nearer(&self, simd: S, axis: usize) -> i32x16<S> {
         let [one, minus_one] = [i32x16::splat(simd, 1), i32x16::splat(simd, -1)];
         self.steps[axis].simd_lt(STEPS / 2).select(minus_one, one)
     }
 
-    /// Returns the cells' coordinates shifted along an axis, wrapped by the period.
+    /// Returns the coordinates along an axis of the cells `shift` away from the positions' cells, wrapped by the
+    /// period.
     #[inline(always)]
     pub(crate) fn shifted(&self, lattice: &Lattice, axis: usize, shift: i32x16<S>) -> Words<S> {
         let [low, high] = self.cells[axis];
@@ -113,7 +114,8 @@ impl<S: Simd, const N: usize> Places<S, N> {
         words
     }
 
-    /// Returns each position's neighbor with the given code, for several registers with interleaved operations.
+    /// Returns each position's neighbor with the given code, for `C` registers at once. Operations are interleaved,
+    /// which is faster.
     #[inline(always)]
     pub(crate) fn neighbors_each<const C: usize>(
         simd: S,
@@ -148,7 +150,7 @@ impl<S: Simd, const N: usize> Places<S, N> {
     }
 }
 
-/// Loads a register from memory.
+/// Loads the register with index `register` from a slice.
 #[inline(always)]
 pub(crate) fn load<S: Simd>(simd: S, words: &[u32], register: usize) -> u32x16<S> {
     u32x16::from_slice(simd, &words[register * LANES..][..LANES])
@@ -159,8 +161,8 @@ pub(crate) fn store<S: Simd>(lanes: u32x16<S>, words: &mut [u32], register: usiz
     lanes.store_slice(&mut words[register * LANES..][..LANES]);
 }
 
-/// Splits sixteen coordinates into cells and steps from their lower edges, with a bit mask of the coordinates that are
-/// in range; see [`split`].
+/// Splits sixteen coordinates into cells and steps from the cells' lower edges; see [`split`]. Also returns a bit mask
+/// of the coordinates that are in range.
 #[inline(always)]
 fn split_lanes<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x16<S>, u64) {
     let halves = [&coordinates[..8], &coordinates[8..]].map(|half| f64x8::from_slice(simd, half));
@@ -213,7 +215,7 @@ fn split_each<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x16
     (words, i32x16::from_slice(simd, &steps), has_place)
 }
 
-/// Returns the next cells along one axis.
+/// Returns the cells after the given ones along an axis.
 #[inline(always)]
 fn next<S: Simd>([low, high]: Words<S>) -> Words<S> {
     let next = low + 1;
@@ -221,7 +223,7 @@ fn next<S: Simd>([low, high]: Words<S>) -> Words<S> {
     [next, carries.select(high + 1, high)]
 }
 
-/// Wraps the coordinates of cells by the period.
+/// Wraps the coordinates of cells along `axis` by the period.
 #[inline(never)]
 fn wrap<S: Simd>(lattice: &Lattice, axis: usize, [mut low, mut high]: Words<S>) -> Words<S> {
     for lane in 0..LANES {
@@ -232,13 +234,13 @@ fn wrap<S: Simd>(lattice: &Lattice, axis: usize, [mut low, mut high]: Words<S>) 
     [low, high]
 }
 
-/// Returns a neighbor's code along one axis.
+/// Returns the part of a neighbor's code for one axis: 0 for the own cell, 1 for the nearer, 2 for the farther side.
 #[inline(always)]
 pub(crate) const fn digit(cell: u32, axis: usize) -> usize {
     (cell >> (2 * axis) & 3) as usize
 }
 
-/// Returns the codes of a cell and its neighbors, sorted by mean distance.
+/// Returns the codes of a cell and its neighbors, sorted by their mean distance from a random position in the cell.
 pub(crate) const fn cells_by_distance<const N: usize>() -> &'static [u8] {
     const TWO: [u8; 9] = sorted_cells(2);
     const THREE: [u8; 27] = sorted_cells(3);
@@ -250,7 +252,8 @@ pub(crate) const fn cells_by_distance<const N: usize>() -> &'static [u8] {
     }
 }
 
-/// Returns the codes of all cells with `n_axes` axes, sorted by mean squared distance.
+/// Returns the codes of a cell and its neighbors in `n_axes` dimensions, sorted by mean squared distance from a random
+/// position in the cell.
 const fn sorted_cells<const LEN: usize>(n_axes: u32) -> [u8; LEN] {
     let mut cells = [0; LEN];
     let mut len = 0;

@@ -66,7 +66,7 @@ where
         }))
     }
 
-    /// Converts the plane to the form that rendering uses, for any number of axes.
+    /// Converts the plane to a [`Section`], which rendering uses for any number of axes.
     pub(crate) fn section(&self) -> Section {
         let flat = |part: Vector<N>| {
             let mut parts = [0.0; MOST_AXES];
@@ -92,26 +92,27 @@ pub(crate) struct Section {
 }
 
 impl Section {
-    /// Returns one coordinate, in space, of a position on the plane.
+    /// Returns the coordinate along `axis`, in space, of a position on the plane.
     #[inline]
     pub(crate) fn coordinate(&self, axis: usize, [x, y]: [f64; 2]) -> f64 {
         self.origin[axis] + (self.u[axis] * x + self.v[axis] * y)
     }
 
-    /// Returns whether another plane has the same coordinates along an axis.
+    /// Returns whether positions on another plane have the same coordinates along an axis.
     pub(crate) fn is_same_along(&self, axis: usize, other: &Self) -> bool {
         let parts = |plane: &Self| [plane.origin, plane.u, plane.v].map(|part| part[axis]);
         parts(self) == parts(other)
     }
 
-    /// Returns the axis along which rows differ, if there is exactly one and it is not the first.
+    /// Returns the axis of space along which rows of pixels differ. `None` if there are several, or if it is the first
+    /// axis.
     pub(crate) fn row_axis(&self) -> Option<usize> {
         let mut axes = (0..self.n_axes).filter(|&axis| self.v[axis] != 0.0);
         axes.next()
             .filter(|&axis| axis > 0 && axes.next().is_none())
     }
 
-    /// Returns whether columns differ along the first axis only, and rows do not differ along it.
+    /// Returns whether pixels of a row differ along the first axis only, and rows do not differ along it.
     pub(crate) fn is_upright(&self) -> bool {
         self.v[0] == 0.0 && self.u[1..].iter().all(|&part| part == 0.0)
     }

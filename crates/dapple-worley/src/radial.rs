@@ -14,7 +14,7 @@
 //! is not continuous there, like a map of the Earth. On the axis the azimuth is defined as 0.
 //!
 //! The gradient is transformed back to `[x, y, z]` by the derivatives of the three coordinates. The derivative of the
-//! azimuth is unbounded toward the axis. On the axis and at the center, undefined terms are left out.
+//! azimuth is unbounded toward the axis. On the axis and at the center, undefined derivatives are omitted.
 
 use crate::{Cellular, Worley3, WorleyError};
 use core::f64::consts::{PI, TAU};

@@ -8,16 +8,16 @@
 //! then for each of its tiles, points that cannot be among the nearest are culled ([`cull`], [`flat`], then
 //! [`candidates`]); the rest are the candidates. The pixels of a tile are compared with its candidates only, sixteen
 //! adjacent pixels at once ([`kernel`]; [`track`] also identifies the nearest points). Neighboring slices of a volume
-//! share their candidates. Where a tile needs points beyond its neighborhood, the neighborhood grows; where coordinates
-//! in it would no longer be exact, each pixel is searched on its own.
+//! share their candidates. If a tile needs points beyond its neighborhood, the neighborhood grows. If coordinates in
+//! it would no longer be exact, each pixel is searched individually.
 //!
 //! Where cells have few pixels, points are sorted into bins of pixels ([`bins`]), and each tile is compared with all
 //! points of the bins around it ([`splat`]). For the distance to the edge of the Voronoi cell, the cells are drawn one
 //! by one ([`edge`]).
 //!
-//! SIMD code is split into stages that communicate through memory. Each stage is compiled only for the parameters that
-//! it depends on, and only once: most stages for any metric, the inner loops for the common metrics and numbers of
-//! nearest points ([`levels`](crate::levels)).
+//! SIMD code is split into stages that communicate through memory. Each stage is compiled once for each parameter that
+//! it depends on. Most stages support any metric, and the inner loops are compiled for the common metrics and numbers
+//! of nearest points ([`levels`](crate::levels)).
 
 mod area;
 mod basis;
@@ -70,19 +70,19 @@ pub(crate) struct Picture<'a> {
     pub(crate) basis: &'a dyn Basis,
     pub(crate) section: Section,
     pub(crate) window: &'a Window,
-    /// Factor from window positions to lattice coordinates.
+    /// Factor that converts window positions to cells.
     pub(crate) frequency: f64,
 }
 
 /// Output rows of a band. The variant is the quantity to compute.
 pub(crate) enum Output<'a> {
-    /// Values of a texture.
+    /// Values of a scalar texture.
     Values(Values, Vec<&'a mut [f32]>),
     /// Nearest points, one element for each rank: F1, F2, and so on.
     Features(Vec<FeatureRows<'a>>),
     /// Gradients of a texture, with interleaved components.
     Gradients(Tone, Vec<&'a mut [f32]>),
-    /// Distances to the edges of the Voronoi cells.
+    /// Distances to the nearest edge of the Voronoi cell.
     Edges(Vec<&'a mut [f32]>),
 }
 
@@ -127,7 +127,7 @@ impl Picture<'_> {
         render_stack(vec![(*self, bands)]);
     }
 
-    /// Returns the coordinates of the columns, shared with the preceding image if they are equal.
+    /// Returns the fixed-point coordinates of the columns. They are shared with the preceding image if equal.
     fn columns(&self, before: Option<(&Self, &Arc<Line>)>) -> Arc<Line> {
         match before {
             Some((before, columns)) if before.section.is_same_along(0, &self.section) => {
@@ -139,8 +139,8 @@ impl Picture<'_> {
         }
     }
 
-    /// Returns the coordinates of `n` rows along an axis, starting at row `first`. They are shared with the preceding
-    /// image if they are equal.
+    /// Returns the fixed-point coordinates along an axis of `n` rows, starting at row `first`. They are shared with
+    /// the preceding image if equal.
     fn rows(&self, axis: usize, first: usize, n: usize, before: Option<&Band<'_>>) -> Arc<Line> {
         match before {
             Some(before) if before.picture.section.is_same_along(axis, &self.section) => {
@@ -159,8 +159,8 @@ impl Picture<'_> {
         }
     }
 
-    /// Returns the coordinates of `len` columns or rows along one axis. If the plane is upright, they equal those from
-    /// [`place`](Self::place), since the other component of the position then adds zero.
+    /// Returns the fixed-point coordinates of `len` columns or rows along one axis. For an upright plane, they equal
+    /// the result of [`place`](Self::place), since the other component of the position then adds zero.
     fn line(&self, axis: usize, len: u32, position: impl Fn(u32) -> [f64; 2]) -> Line {
         let coordinate = |index| self.section.coordinate(axis, position(index)) * self.frequency;
         // Stop at the first coordinate that is not finite or out of range.
@@ -172,7 +172,7 @@ impl Picture<'_> {
         Line { places, is_finite }
     }
 
-    /// Returns the lattice coordinates of a pixel; `None` if they are not finite or out of range.
+    /// Returns the fixed-point position of a pixel; `None` if it is not finite or out of range.
     fn place(&self, column: usize, row: usize) -> Option<FlatPlace> {
         let position = self.window.position(column as u32, row as u32);
         let mut place = FlatPlace {
@@ -222,7 +222,7 @@ pub(crate) fn render_stack<'a>(stack: Vec<(Picture<'a>, Vec<Output<'a>>)>) {
     });
 }
 
-/// Renders one band of several images. Consecutive slices of a volume are rendered together.
+/// Renders one band of several images. Bands of consecutive slices of a volume are rendered together.
 fn render_bands(
     level: Level,
     mut bands: &[Band<'_>],
@@ -284,7 +284,7 @@ impl<'a> Band<'a> {
         }
     }
 
-    /// Returns whether this band and another one are slices along the first two axes with equal columns and rows.
+    /// Returns whether both bands are slices along the first two axes with the same columns and rows.
     fn is_slice(&self, other: &Self) -> bool {
         // Rows of a slice differ along the second axis only.
         let is_flat = |band: &Self| band.picture.section.row_axis() == Some(1);
@@ -295,7 +295,7 @@ impl<'a> Band<'a> {
     }
 }
 
-/// The coordinates of columns or rows along one axis. Each is a cell and the steps within it.
+/// The fixed-point coordinates of columns or rows along one axis: a cell, and steps within it.
 struct Line {
     places: Vec<(i64, i32)>,
     /// Whether all coordinates are finite and in range.

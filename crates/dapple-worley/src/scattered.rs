@@ -105,8 +105,8 @@ where
         });
     }
 
-    /// Calls `found` for each group of positions. Its arguments are the range of their indices, a bit mask of the
-    /// positions whose nearest points are certain, and these points: 1, 2 or 4 for each position.
+    /// Calls `found` for each group of positions. Its arguments are the range of the positions' indices, a bit mask of
+    /// the positions for which the result is known to be exact, and the nearest points: 1, 2 or 4 for each position.
     fn each_group(
         &self,
         depth: usize,
@@ -129,7 +129,7 @@ where
     }
 }
 
-/// Writes the features of the nearest points, position by position.
+/// Writes the nearest points of each position to `features`.
 fn put<const N: usize, const K: usize>(
     points: &[Points<N>],
     features: &mut [[Feature<Vector<N>>; K]],

@@ -6,8 +6,8 @@
 //! Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>). This occasionally misses points,
 //! the more often the higher the n of `F_n`.
 //!
-//! Bounds are computed from the same exact differences, terms and sums as the keys themselves. Rounding is monotonic,
-//! so a bound never excludes a point wrongly and needs no margin.
+//! Bounds are computed from the same exact coordinate differences, key terms and sums as the keys themselves. Rounding
+//! is monotonic, so a bound never excludes a point wrongly and needs no margin.
 //!
 //! Points at equal distances are ordered by id, so the result does not depend on the order in which they are found.
 
@@ -232,9 +232,9 @@ struct Around<const N: usize> {
     cells: [[i64; 3]; N],
     /// Coordinates of the position, in steps from the lower edges of the cells.
     origins: [[i32; 3]; N],
-    /// Terms of the distances from the position to the cells.
+    /// Key terms of the distances from the position to the cells.
     gaps: [[f32; 3]; N],
-    /// Parts of the cells' hash words.
+    /// Hashed coordinates of the cells, for both hash words.
     parts: [[[u32; 2]; 3]; N],
 }
 
@@ -308,8 +308,8 @@ impl<const N: usize> Search<'_, N> {
         self.batch(&around, &batch[..n], ranking);
     }
 
-    /// Adds the points of a few neighbors to a ranking. Hashing a batch of cells at once lets the processor work in
-    /// parallel, since it predicts the number of points in a cell badly.
+    /// Adds the points of several neighbors to a ranking. A batch of cells is hashed before its points are added,
+    /// since the numbers of points are unpredictable branches.
     #[inline]
     fn batch(&self, around: &Around<N>, neighbors: &[u8], ranking: &mut Ranking<N>) {
         let rounding_slack = self.metric.rounding_slack();
@@ -336,13 +336,13 @@ impl<const N: usize> Search<'_, N> {
         }
     }
 
-    /// Returns the coordinates of the cell that is `shift` cells from the position's own.
+    /// Returns the coordinates of the cell that is offset by `shift` from the position's cell.
     #[inline(always)]
     fn shifted(&self, shift: [i64; N]) -> [i64; N] {
         core::array::from_fn(|axis| self.place.cell[axis] + shift[axis])
     }
 
-    /// Returns the hit for a point in the cell that is `shift` cells from the position's own.
+    /// Returns the hit for a point in the cell that is offset by `shift` from the position's cell.
     #[inline(always)]
     fn hit(&self, shift: [i64; N], steps: [i32; N], name: PointId) -> Hit<N> {
         let mut vector = [0.0; N];
@@ -384,7 +384,7 @@ impl<const N: usize> Search<'_, N> {
         }
     }
 
-    /// Calls `each` with the points in the cell that is `shift` cells from the position's own.
+    /// Calls `each` with the points in the cell that is offset by `shift` from the position's cell.
     #[inline(always)]
     fn cell(&self, shift: [i64; N], mut each: impl FnMut(Hit<N>)) {
         self.lattice.visit(self.shifted(shift), |steps, name| {
@@ -392,7 +392,7 @@ impl<const N: usize> Search<'_, N> {
         });
     }
 
-    /// Returns a lower bound on the keys of all points in the cell that is `shift` cells from the position's own.
+    /// Returns a lower bound on the keys of all points in the cell that is offset by `shift` from the position's cell.
     #[inline]
     fn gap(&self, shift: [i64; N]) -> f32 {
         let mut gap = [0.0; N];

@@ -7,7 +7,7 @@ use crate::search::Hit;
 use crate::{Combination, Dimensions, MAX_NEAREST, Space, Worley, WorleyError};
 use fearless_simd::{f32x16, prelude::*};
 
-/// A combination of distances, mapped to a range: `shift + W1·F1 + W2·F2 + …`.
+/// A combination of distances, mapped to an output range: `shift + W1·F1 + W2·F2 + …`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tone {
     /// Coefficients of the distances, scaled to the range.
@@ -46,7 +46,7 @@ impl Tone {
         self.weights.depth()
     }
 
-    /// Returns the value at `place`.
+    /// Returns the value of the combination at `place`.
     pub(crate) fn at<const N: usize>(&self, worley: &Worley<N>, place: &Place<N>) -> f32
     where
         Dimensions: Space<N>,
@@ -55,7 +55,8 @@ impl Tone {
         self.of(&hits.map(|hit| worley.metric.distance(hit.key)))
     }
 
-    /// Returns the value for the given distances; there must be at least [`Tone::depth`] of them.
+    /// Returns the value of the combination for the distances F1, F2, …; there must be at least [`Tone::depth`] of
+    /// them.
     pub(crate) fn of(&self, distances: &[f32]) -> f32 {
         let mut sum = self.shift;
         for (&weight, &distance) in self.weights.coefficients().iter().zip(distances) {
@@ -67,7 +68,7 @@ impl Tone {
     }
 }
 
-/// How values of a combination are written to rows. They replace the output, or are added to it with a weight.
+/// A combination and the way its values are written: replacing the output, or added to it with a weight.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Values {
     pub(crate) tone: Tone,
@@ -95,7 +96,8 @@ impl Values {
         };
     }
 
-    /// Broadcasts the parameters to sixteen lanes, for `K` keys, of which the last `depth` are in use.
+    /// Broadcasts the parameters to sixteen lanes, for kernels with `K` keys per pixel. Only the last `depth` keys are
+    /// in use.
     #[inline(always)]
     pub(crate) fn lanes<S: Simd, const K: usize>(&self, simd: S, depth: usize) -> ValueLanes<S, K> {
         let coefficients = self.tone.weights.coefficients();
@@ -130,7 +132,7 @@ pub(crate) struct ValueLanes<S: Simd, const K: usize> {
 }
 
 impl<S: Simd, const K: usize> ValueLanes<S, K> {
-    /// Writes the values for the keys of sixteen pixels.
+    /// Writes the values of sixteen pixels, given their sorted keys.
     #[inline(always)]
     pub(crate) fn put<M: Measure>(&self, measure: M, keys: [f32x16<S>; K], out: &mut [f32]) {
         let mut values = self.shift;
@@ -146,7 +148,7 @@ impl<S: Simd, const K: usize> ValueLanes<S, K> {
         values.store_slice(out);
     }
 
-    /// Writes the values for the keys of fewer than sixteen pixels.
+    /// Writes the values of fewer than sixteen pixels, given their sorted keys.
     #[inline(always)]
     pub(crate) fn put_part<M: Measure>(&self, measure: M, keys: [f32x16<S>; K], out: &mut [f32]) {
         let mut lanes = [0.0; 16];

@@ -1,7 +1,7 @@
-//! Computes measures of Voronoi cells: the distance to the edge, the radius of the inscribed sphere, and smooth F1.
+//! Measures of Voronoi cells: the distance to the edge, the radius of the inscribed sphere, and smooth F1.
 //!
-//! The distance to the edge and the radius of the sphere are known from Blender's Voronoi texture; here they are exact.
-//! The smooth F1 is our own definition, since the usual ones depend on the order of the points.
+//! Blender's Voronoi texture has the distance to the edge and the radius of the sphere, too; here they are exact. The
+//! definition of smooth F1 is new, since the usual ones depend on the order of the points.
 
 use crate::dispatch::DimensionDispatch as _;
 use crate::fixed::{Place, STEP, STEPS};
@@ -138,8 +138,8 @@ fn smooth_minimum(distances: &[f64], radius: f64) -> f64 {
     s
 }
 
-/// Returns the distance of a position from the bisecting plane of two points, given the vectors from the points to the
-/// position.
+/// Returns the signed distance of a position from the bisecting plane of two points, given the vectors from the points
+/// to the position.
 fn to_plane<const N: usize>(first: [f64; N], other: [f64; N]) -> f64 {
     let between: [f64; N] = core::array::from_fn(|axis| first[axis] - other[axis]);
     let [near, far] = [first, other].map(|way| dot(way, way));

@@ -1,4 +1,4 @@
-//! Worley's basis, the distances to the nearest feature points.
+//! Worley's cellular basis: feature points, and the distances to the nearest of them.
 
 use crate::dispatch::DimensionDispatch as _;
 use crate::fixed::{MOST_AXES, Place, STEP, STEPS, first_axes};

@@ -11,7 +11,7 @@ pub(super) struct Area {
 }
 
 impl Area {
-    /// Divides the area into parts with at most the given numbers of columns and rows.
+    /// Divides the area into tiles with at most the given numbers of columns and rows.
     pub(super) fn parts(&self, size: [usize; 2]) -> Parts<'_> {
         Parts {
             column: self.columns.start,
@@ -27,11 +27,11 @@ impl Area {
     }
 }
 
-/// Iterator over the parts of an area, row by row.
+/// Iterator over the tiles of an area, row by row.
 pub(super) struct Parts<'a> {
     area: &'a Area,
     size: [usize; 2],
-    /// First column of the next part.
+    /// First column of the next tile.
     column: usize,
     row: usize,
 }

@@ -1,4 +1,4 @@
-//! The interface between rendering and a basis with any number of axes.
+//! The interface between rendering and a basis, independent of the number of axes.
 
 use crate::dispatch::DimensionDispatch as _;
 use crate::fixed::{FlatPlace, MOST_AXES, Place, first_axes};
@@ -7,8 +7,8 @@ use crate::search::Hit;
 use crate::{Dimensions, MAX_NEAREST, Metric, Space, Worley};
 use core::fmt;
 
-/// A basis in the form that rendering uses, independent of the number of axes. Positions and vectors are zero along
-/// missing axes.
+/// A basis as rendering sees it, independent of the number of axes. Positions and vectors have four components;
+/// components of missing axes are zero.
 pub trait Basis: Sync + fmt::Debug {
     /// Returns the metric of the basis.
     fn metric(&self) -> Metric;
@@ -54,7 +54,7 @@ where
     }
 }
 
-/// Removes the coordinates along missing axes from a position.
+/// Converts a position with four components to the basis's number of axes.
 fn own_axes<const N: usize>(place: &FlatPlace) -> Place<N> {
     Place {
         cell: first_axes(place.cell),

@@ -1,10 +1,10 @@
 //! Sorts feature points into bins of pixels.
 //!
 //! The pixels of a block are covered by tiles of 4 × 4. A bin is as wide as a tile and half as high. Points are sorted
-//! by bin, with bins ordered column by column. So the points near a tile are one contiguous run in each of the bin
-//! columns around it. If the number of bin columns is odd, they are aligned with the tiles; if it is even, they begin
-//! in the middle of tiles. The terms of a point are computed once, for the pixel columns of all tiles that are compared
-//! with it.
+//! by bin, with bins ordered column by column. The points near a tile are therefore one contiguous run in each of the
+//! bin columns around it. If the number of bin columns is odd, they are aligned with the tiles; if it is even, they
+//! begin in the middle of tiles. The key terms of a point along the image's x axis are computed once, for the pixel
+//! columns of all tiles that are compared with the point.
 
 use super::LANES;
 use super::table::{CellBox, numbers, row_words};
@@ -34,7 +34,7 @@ pub(super) struct Reach {
     pub(super) columns: usize,
     /// Number of bin rows above the tile. The number below is the same.
     pub(super) halves: usize,
-    /// Largest accumulated key along the axes that are orthogonal to the image.
+    /// Maximum accumulated key term, along the axes orthogonal to the image, of points that are included.
     pub(super) key: f32,
 }
 
@@ -45,31 +45,31 @@ pub(super) struct Grid {
     pub(super) n_axes: usize,
     pub(super) metric: Metric,
     pub(super) reach: Reach,
-    /// Lower corner of the cell from which coordinates are counted.
+    /// Lower corner of the cell that is the origin of the coordinates.
     pub(super) origin: [i64; MOST_AXES],
-    /// Coordinates of the first pixel, in steps.
+    /// Coordinates of the first pixel, in steps from the origin.
     pub(super) first: [i32; MOST_AXES],
-    /// Number of columns and of rows.
+    /// Number of pixel columns and rows.
     pub(super) size: [usize; 2],
-    /// Distance from one column to the next, and from one row to the next, in steps.
+    /// Distance between adjacent columns and between adjacent rows, in steps.
     pub(super) pixel: [f32; 2],
-    /// The axis along which rows differ.
+    /// Axis of space along which rows differ.
     pub(super) row_axis: usize,
 }
 
-/// A point, with its terms at the columns of `TILES` tiles.
+/// A feature point, with its key terms at the pixel columns of the `TILES` tiles around it.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Point<const TILES: usize> {
-    /// Terms at the pixel columns of the tiles near the point.
+    /// Key terms along the first axis, for the pixel columns of the tiles around the point.
     pub(super) terms: [[f32; TILE]; TILES],
-    /// Coordinate along the rows' axis, in steps.
+    /// Coordinate along the axis in which pixel rows differ, in steps.
     pub(super) row: i32,
-    /// Accumulated terms along the axes that are orthogonal to the image.
+    /// Accumulated key terms along the axes orthogonal to the image.
     pub(super) across: f32,
 }
 
-/// Scratch memory for points, one list for each number of tiles that a point's terms cover.
+/// Scratch memory for points sorted by bin, one list for each number of tiles that a point has terms for.
 #[derive(Debug, Default)]
 pub(super) struct PointLists {
     /// Points for two or three bin columns.
@@ -77,13 +77,13 @@ pub(super) struct PointLists {
     pub(super) five: Vec<Point<5>>,
 }
 
-/// The points of a block sorted by bin, with the parameters for reading the points near a row of tiles.
+/// The points of a block sorted by bin, and the parameters for finding the points near a row of tiles.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Runs<'a, const TILES: usize> {
     pub(super) metric: Metric,
     /// Whether there are axes orthogonal to the image.
     pub(super) is_deep: bool,
-    /// Keys at or above this value may be wrong.
+    /// Keys at or above this value may miss a nearer point.
     pub(super) limit: f32,
     /// Index of the first point of each bin.
     pub(super) starts: &'a [u32],
@@ -92,7 +92,7 @@ pub(super) struct Runs<'a, const TILES: usize> {
     /// Number of bin rows above the tile. The number below is the same.
     pub(super) halves: usize,
     pub(super) points: &'a [Point<TILES>],
-    /// Coordinates of the rows, in steps.
+    /// Coordinates of the pixel rows, in steps.
     pub(super) rows: &'a [i32],
 }
 
@@ -101,13 +101,13 @@ pub(super) struct Runs<'a, const TILES: usize> {
 pub(super) struct Bins {
     /// Number of points.
     len: usize,
-    /// Coordinates of the points along the axes of the image, in steps, in the order of the cells.
+    /// Coordinates of the points along the image's two axes, in steps, ordered by cell.
     steps: [Vec<i32>; 2],
-    /// Accumulated terms of the points along the other axes, in the order of the cells. They stay zero in 2-D, since
-    /// one `Bins` serves a single basis.
+    /// Accumulated key terms of the points along the axes orthogonal to the image, ordered by cell. They stay zero in
+    /// 2-D, since one `Bins` serves a single basis.
     across: Vec<f32>,
-    /// Bins of the points, in the order of the cells. The upper half of the word is the bin's column, the lower half
-    /// its index. 16 bits are enough for the 2^12 bins of a block and those around it.
+    /// Bins of the points, ordered by cell. The upper half of each word is the bin's column, the lower half its index.
+    /// 16 bits are enough for the 2^12 bins of a block and the bins around it.
     places: Vec<u32>,
     /// Number of bin rows.
     n_halves: usize,
@@ -255,7 +255,7 @@ impl Bins {
         }
     }
 
-    /// Appends the points selected by a mask.
+    /// Appends the points whose lanes are set in `matters`: their coordinates and bins.
     #[inline(always)]
     fn push<S: Simd>(&mut self, matters: mask32x16<S>, steps: [i32x16<S>; 2], place: u32x16<S>) {
         let to = self.len..self.len + LANES;
@@ -279,7 +279,7 @@ impl Bins {
         }
     }
 
-    /// Sorts the points by bin into `points`. `rows` are the coordinates of the rows.
+    /// Sorts the points by bin into `points`. `rows` are the coordinates of the pixel rows, in steps.
     pub(super) fn runs<'a, const TILES: usize>(
         &'a mut self,
         level: Level,
@@ -301,7 +301,7 @@ impl Bins {
         }
     }
 
-    /// Sorts the points by bin, and computes their terms.
+    /// Sorts the points by bin, and computes their key terms at the pixel columns.
     fn sort<const TILES: usize>(
         &mut self,
         level: Level,
@@ -361,12 +361,12 @@ impl Bins {
     }
 }
 
-/// Indices of the lanes.
+/// Index of each lane.
 const ASCENDING: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
-/// Returns the indices of the groups of `pixels` pixels that contain sixteen points, given the points' offsets from the
-/// center of the first pixel. Group 0 begins `before` pixels before that pixel. The index of a point before group 0 is
-/// either 0 or a very large number.
+/// Returns the index of the bin that contains each of sixteen points, for bins of `pixels` pixels. `ahead` are the
+/// points' offsets from the center of the first pixel, in steps. Bin 0 begins `before` pixels before that pixel. The
+/// index of a point before bin 0 is either 0 or a very large number.
 #[inline(always)]
 fn bin<S: Simd>(ahead: i32x16<S>, pixel: f32, pixels: usize, before: usize) -> u32x16<S> {
     let group = pixels as f32;
@@ -375,7 +375,7 @@ fn bin<S: Simd>(ahead: i32x16<S>, pixel: f32, pixels: usize, before: usize) -> u
     bins.to_int::<i32x16<S>>().bitcast()
 }
 
-/// Extracts a bin's index from its packed word.
+/// Returns the index of a bin from the packed word in [`Bins::places`].
 #[inline(always)]
 fn index(place: u32) -> usize {
     (place & 0xFFFF) as usize

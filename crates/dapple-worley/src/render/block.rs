@@ -28,7 +28,7 @@ pub(super) const LONGEST_SIDE: usize = 1000;
 /// Maximum distance between slices that are rendered together, in steps.
 const DEEPEST: i32 = STEPS * 5 / 16;
 
-/// A range of columns in a band.
+/// A range of columns in a band, rendered with a shared table of feature points.
 pub(super) struct Block<'a> {
     /// The block's band, or the bands of several slices with equal columns and rows.
     pub(super) bands: &'a [Band<'a>],
@@ -42,35 +42,35 @@ pub(super) struct Memory {
     pub(super) table: Table,
     /// Table of the points around a square whose neighborhood had to grow.
     pub(super) wide_table: Table,
-    /// Whether the candidates come from `wide_table`.
+    /// Whether the candidates of the current square come from `wide_table`.
     pub(super) is_wide: bool,
-    /// Candidates of a square, in space and projected to the image.
+    /// Candidates of a square, in space (`list`) and projected to the image (`square`).
     pub(super) list: PointList,
     pub(super) square: FlatPoints,
     /// Origin of the coordinates of `square`, in steps from the lower corner of the table.
     pub(super) low: [i32; MOST_AXES],
-    /// Candidates of a tile, in space and projected to the image.
+    /// Candidates of a tile, in space (`tile_list`) and projected to the image (`tile`).
     pub(super) tile_list: PointList,
     pub(super) tile: FlatPoints,
     pub(super) candidates: Vec<Candidate>,
     pub(super) lookup: Lookup,
     pub(super) dominance: Dominance,
-    /// Pixels that need points beyond the neighborhood.
+    /// Areas of pixels that need points beyond their neighborhood.
     pub(super) unknown: Vec<Area>,
-    /// Bisecting planes between a feature point and its neighbors.
+    /// Neighbors of a feature point, and the bisecting planes that bound its Voronoi cell.
     pub(super) neighbors: Neighbors,
     pub(super) planes: Planes,
-    /// Distances to edges that are already computed.
+    /// Distances to cell edges, computed so far.
     pub(super) values: Vec<f32>,
     pub(super) runs: Vec<Range<usize>>,
     /// Points sorted into bins of pixels, in the order of their cells.
     pub(super) bins: Bins,
-    /// Points of `bins`, sorted by bin.
+    /// Points of `bins` in the order of their bins, with their key terms.
     pub(super) points: PointLists,
-    /// Coordinates of the block's columns (first axis) and the band's rows (other axes), in steps from the lower corner
-    /// of the table. The last one is repeated to fill a register.
+    /// Coordinates of the block's columns (first axis) and the band's rows (other axes), in steps from the lower
+    /// corner of the table. The last coordinate is repeated to fill a register.
     pub(super) lines: [Vec<i32>; MOST_AXES],
-    /// Coordinates of several slices along the axes orthogonal to them, in steps.
+    /// Coordinates of the slices along the axes orthogonal to them, in steps; empty for a single slice.
     pub(super) slices: Vec<[i32; MOST_AXES]>,
     n_axes: usize,
 }
@@ -102,7 +102,7 @@ impl Memory {
         }
     }
 
-    /// Returns the bounds of an area's pixels in all of its slices.
+    /// Returns the bounds of an area's pixels, over all slices of the area.
     #[inline]
     pub(super) fn pixel_box(&self, area: &Area) -> PixelBox {
         let mut pixels = PixelBox {
@@ -224,7 +224,7 @@ impl Block<'_> {
         bands.iter().take_while(is_near).count().max(1)
     }
 
-    /// Returns the number of nearest points that the inner loops find: one, two or four for values, otherwise two or
+    /// Returns the number of nearest points that the inner loops track: one, two or four for values, otherwise two or
     /// four.
     fn depth(out: &Output<'_>) -> usize {
         match (out, out.depth()) {
@@ -234,19 +234,19 @@ impl Block<'_> {
         }
     }
 
-    /// Estimates the distance to the nearest points, for pixels in the middle of the block.
+    /// Estimates the distance to the nearest points of a pixel in the middle of the block.
     fn guess(&self, out: &Output<'_>) -> Guess {
         let Picture { basis, section, .. } = self.bands[0].picture;
         Guess::new(basis, self.middle(), section.n_axes, Self::depth(out))
     }
 
-    /// Returns the parameters for rendering small cells; `None` if that method does not apply.
+    /// Returns the parameters of the method for small cells; `None` if the method does not apply.
     fn splat(&self, out: &Output<'_>, guess: Guess) -> Option<Splat> {
         let is_values = matches!(out, Output::Values(..));
         Splat::new(self, Self::depth(out), guess.distance).filter(|_| is_values)
     }
 
-    /// Renders the pixels of slices that share their candidates.
+    /// Renders one or several slices that share their candidates.
     fn render_together(&self, outs: &mut [Output<'_>], memory: &mut Memory) {
         if let Output::Edges(rows) = &mut outs[0] {
             self.edges(rows, memory);
@@ -306,7 +306,7 @@ impl Block<'_> {
         }
     }
 
-    /// Returns the cell of the pixel in the middle.
+    /// Returns the cell of the block's middle pixel.
     pub(super) fn middle(&self) -> [i64; MOST_AXES] {
         let mut middle = [0; MOST_AXES];
         let band = &self.bands[0];
@@ -358,7 +358,7 @@ impl Block<'_> {
             .is_none_or(|cells| cells.n_cells() > MANY_CELLS)
     }
 
-    /// Renders pixels with a separate search for each pixel.
+    /// Renders the pixels of an area with an individual search for each pixel.
     pub(super) fn one_by_one(&self, area: &Area, outs: &mut [Output<'_>]) {
         for slice in area.slices.clone() {
             for row in area.rows.clone() {

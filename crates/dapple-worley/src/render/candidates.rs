@@ -1,4 +1,4 @@
-//! Selects the candidates of a tile, and computes their terms at its pixels.
+//! Selects the candidates of a tile, and computes their key terms at its columns and rows.
 
 use super::LANES;
 use super::area::Area;
@@ -13,7 +13,8 @@ use crate::metric::Measure;
 use fearless_simd::{Level, f32x16, i32x16, prelude::*};
 
 impl Memory {
-    /// Selects the candidates of a tile from the candidates of its square, and computes their terms.
+    /// Selects the candidates of a tile from the candidates of its square, and computes their key terms at the tile's
+    /// pixels.
     pub(super) fn candidates(&mut self, level: Level, area: &Area, square: &Square) {
         let (plan, low) = (&square.plan, &square.pixels.low);
         // Remove dominated points from the candidates of the square.
@@ -64,10 +65,10 @@ impl Memory {
         self.terms(level, area, square, None);
     }
 
-    /// Computes the terms of a tile's candidates at its columns and, if there is a single slice, at its rows.
+    /// Computes the key terms of a tile's candidates at the tile's columns and, for a single slice, at its rows.
     ///
-    /// With `slice`, computes only the terms at the rows of this slice, which is given as steps from the lower corner
-    /// of the square.
+    /// With `slice`, computes only the terms at the rows of this slice. It is the slice's coordinate, in steps from
+    /// the lower corner of the square.
     pub(super) fn terms(&mut self, level: Level, area: &Area, square: &Square, slice: Option<i32>) {
         let plan = &square.plan;
         measured!(level, plan.metric, (simd, measure) => {
@@ -103,7 +104,7 @@ impl Memory {
         cuboid
     }
 
-    /// Computes the terms at the columns of a tile.
+    /// Computes the candidates' key terms at the columns of a tile.
     #[inline(always)]
     fn column_terms<S: Simd, M: Measure>(
         &mut self,
@@ -123,8 +124,8 @@ impl Memory {
         }
     }
 
-    /// Computes the terms at the rows of a tile in one slice, given as steps from the lower corner of the square. Rows
-    /// differ along the second axis.
+    /// Computes the candidates' key terms at the rows of a tile in one slice. Rows differ along the second axis, and
+    /// `place` is the slice's coordinate, in steps from the lower corner of the square.
     #[inline(always)]
     fn slice_terms<S: Simd, M: Measure>(
         &mut self,
@@ -158,7 +159,7 @@ impl Memory {
         }
     }
 
-    /// Computes the terms at the rows of a tile, where rows differ along one axis.
+    /// Computes the candidates' key terms at the rows of a tile whose rows differ along one axis.
     #[inline(always)]
     fn row_terms<S: Simd, M: Measure>(
         &mut self,
@@ -182,7 +183,7 @@ impl Memory {
         }
     }
 
-    /// Computes the terms at the rows of a tile, where rows differ along several axes.
+    /// Computes the candidates' key terms at the rows of a tile whose rows differ along several axes.
     #[inline(always)]
     fn slanted_terms<S: Simd, M: Measure>(
         &mut self,

@@ -1,12 +1,12 @@
 //! Culling: selects the candidates of a box of pixels, which are the feature points that can be among the nearest of
 //! some pixel.
 //!
-//! A point is a candidate if its smallest distance to the box is at most a bound. There are two bounds:
+//! A point is a candidate if the smallest key that it has in the box is at most a bound. There are two bounds:
 //!
-//! * The `K`-th smallest of the points' distances to the farthest corner of the box. It always holds, and is best for
-//!   small boxes.
-//! * A guess of the `K`-th smallest distance. It is best for large boxes, and holds for pixels whose resulting
-//!   distances are below it.
+//! * The `K`-th smallest of the keys that the points have at their farthest corner of the box. It is always valid, and
+//!   is best for small boxes.
+//! * An estimate of the `K`-th smallest key. It is best for large boxes, and is valid for pixels whose resulting keys
+//!   are below it.
 //!
 //! The candidates of a small box are selected from those of a larger box around it.
 
@@ -38,7 +38,7 @@ impl PixelBox {
         cells
     }
 
-    /// Returns the distance from the box to the border of a range of cells, in steps.
+    /// Returns the minimum distance from the box to the border of a range of cells, in steps.
     pub(super) fn border(&self, [first, last]: [[i32; MOST_AXES]; 2]) -> i32 {
         let mut border = i32::MAX;
         for axis in 0..self.n_axes {
@@ -78,27 +78,27 @@ pub(super) struct PointList {
     pub(super) steps: [Vec<i32>; MOST_AXES],
     /// Indices of the points in the table, if needed.
     pub(super) numbers: Vec<u32>,
-    /// Scratch memory for the smallest keys of points in the box.
+    /// Scratch memory for the smallest key that each point has in the box.
     near: Vec<f32>,
 }
 
-/// The points from which candidates are selected.
+/// The feature points from which candidates are selected.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Points<'a> {
     pub(super) steps: &'a [Vec<i32>; MOST_AXES],
     /// Indices of the points in the table; `None` if they are consecutive.
     pub(super) numbers: Option<&'a [u32]>,
-    /// Ranges of points to select from.
+    /// Ranges of indices to select from.
     pub(super) runs: &'a [Range<usize>],
     pub(super) wants_numbers: bool,
 }
 
-/// The criterion by which candidates are selected.
+/// Criterion for keeping a point as a candidate.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Keep {
-    /// Points that can be among the given number of nearest ones. The bound is multiplied by the rounding slack.
+    /// Keeps points that can be among the given number of nearest ones. The factor is the rounding slack of the bound.
     Nearest(usize, f32),
-    /// Points whose smallest key in the box is at most this value.
+    /// Keeps points whose smallest key in the box is at most this value.
     Within(f32),
 }
 
@@ -120,7 +120,7 @@ impl PointList {
         }
     }
 
-    /// Returns the points of the list in the form that culling reads.
+    /// Returns the points in `run` as input for culling.
     pub(super) fn points<'a>(&'a self, run: &'a Range<usize>, wants_numbers: bool) -> Points<'a> {
         Points {
             steps: &self.steps,
@@ -130,7 +130,7 @@ impl PointList {
         }
     }
 
-    /// Replaces the list by the candidates among `points`, in their order.
+    /// Replaces the list by the candidates among `points`, in the order of `points`.
     pub(super) fn cull(&mut self, level: Level, cull: Cull<'_>, points: Points<'_>) {
         measured!(level, cull.metric, (simd, measure) => {
             self.cull_by(simd, measure, cull, points);
@@ -200,7 +200,7 @@ impl PointList {
         room
     }
 
-    /// Appends the points selected by a mask.
+    /// Appends the points whose lanes are set in `matters`, starting at index `start` of `points`.
     #[inline(always)]
     fn push<S: Simd>(
         &mut self,
@@ -228,7 +228,7 @@ impl PointList {
     }
 }
 
-/// Indices of the lanes.
+/// Index of each lane.
 const ASCENDING: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 /// Returns a mask of the first `n` lanes, at most sixteen.
@@ -238,7 +238,7 @@ pub(super) fn lanes_before<S: Simd>(simd: S, n: usize) -> mask32x16<S> {
 }
 
 impl PixelBox {
-    /// Returns the smallest and the largest keys of sixteen points in the box.
+    /// Returns the smallest and the largest key that each of sixteen points has in the box.
     #[inline(always)]
     fn keys<S: Simd, M: Measure>(
         &self,
@@ -268,10 +268,11 @@ impl PixelBox {
     }
 }
 
-/// Returns the smallest number in the lanes after the `n` smallest are removed. Equal numbers are removed together,
-/// which may give a larger result.
+/// Returns the smallest lane after the `n` smallest ones are removed. Equal lanes are removed together, which may give
+/// a larger result.
 ///
-/// Each lane holds the largest key of a different point, so at least `n + 1` points have keys up to the result.
+/// Each lane holds the largest key of a different point in the box, so at least `n + 1` points have keys up to the
+/// result.
 #[inline(always)]
 fn smallest_but<S: Simd>(n: usize, mut far: f32x16<S>) -> f32 {
     for _ in 0..n {

@@ -1,18 +1,18 @@
 //! Renders the distance to the edge of the Voronoi cell.
 //!
-//! The cells with pixels in a block are drawn one by one. A bisecting plane lies halfway between the feature point of a
-//! cell and each other point ([`planes`](super::planes)). The signed distance to such a plane, negative beyond it, is
-//! linear along a row of pixels. The smallest of these distances is the distance to the edge, and it is positive only
-//! inside the cell. So the nearest point of a pixel need not be known in advance, and a superset of the cell may be
-//! drawn.
+//! The cells with pixels in a block are drawn one by one. A bisecting plane lies halfway between the feature point of
+//! a cell and each other point ([`planes`](super::planes)). The signed distance to such a plane, negative beyond it,
+//! is linear along a row of pixels. The smallest of these distances is the distance to the edge, and is positive only
+//! inside the cell. The nearest point of a pixel is therefore not needed in advance, and more pixels than the cell
+//! contains may be drawn.
 //!
-//! For each cell, the nearest planes give an outline, and the outline gives a ball that contains the cell's pixels.
-//! Planes that are farther than another one from the whole ball are left out. About as many remain as the cell has
-//! edges.
+//! For each cell, the nearest planes give an outline, and the outline gives a ball that contains the cell's pixels. A
+//! plane is dropped if another plane is nearer to every position in the ball. The number of remaining planes is close
+//! to the number of the cell's edges.
 //!
 //! Distances are computed in `f64`. A pixel is drawn only if their rounding error cannot change the `f32` nearest to
 //! its value, and if no other point can be as near by the `f32` keys that [`Worley::edge_distance`] compares. The few
-//! other pixels are searched on their own.
+//! other pixels are searched individually.
 //!
 //! [`Worley::edge_distance`]: crate::Worley::edge_distance
 
@@ -27,36 +27,36 @@ use core::ops::Range;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{f32x16, f64x8, i32x16, prelude::*};
 
-/// Length of a row of values in memory. A row ends with an incomplete register if needed.
+/// Number of values per row in memory: the maximum number of columns, plus a register as padding.
 const STRIDE: usize = BLOCK_COLUMNS + LANES;
 
-/// Distances within which a point's neighbors are searched, as multiples of the estimated distance to the nearest
-/// points. The larger one is used if the smaller one was not enough.
+/// Radii within which a point's neighbors are searched, as multiples of the estimated distance to the nearest points.
+/// The larger radius is used if the smaller one is not sufficient.
 const REACHES: [f32; 2] = [1.7, 2.6];
 
 /// Maximum length of a vector to a neighbor, in cells. Vectors up to one and a half times as long are exact in `f32`.
 const LONGEST_REACH: f32 = 5.0;
 
-/// Number of rings of cells around a block in which points are needed, as a multiple of the estimate's ring. They cover
-/// the distance from a pixel to its nearest point, and from there to the neighbors.
+/// Number of rings of cells around a block for which points are generated, as a multiple of [`Guess::ring`]. They
+/// cover the distance from a pixel to its nearest point, and from there to the point's neighbors.
 const RINGS: i32 = 4;
 
 /// The coordinates of a block's pixels.
 struct Pixels<'a> {
     n_rows: usize,
     n_columns: usize,
-    /// Coordinates of the columns, and of the rows along the other axes, in steps.
+    /// Coordinates of the columns (first axis) and of the rows (other axes), in steps.
     lines: &'a [Vec<i32>; MOST_AXES],
     /// Number of columns per cell; negative if coordinates decrease from column to column.
     columns_per_cell: f32,
     /// Maximum offset of a column from its evenly spaced position, in columns.
     unevenness: f32,
-    /// Smallest and largest coordinate of the columns, relative to the first column, in cells.
+    /// Coordinates of the first and the last column in ascending order, relative to the first column, in cells.
     ends: [f32; 2],
 }
 
 impl Block<'_> {
-    /// Renders the distances from the block's pixels to the nearest edges.
+    /// Renders the distances from the block's pixels to the nearest edges of their cells.
     pub(super) fn edges(&self, out: &mut [&mut [f32]], memory: &mut Memory) {
         let Picture { basis, section, .. } = self.bands[0].picture;
         // An edge lies between two points.
@@ -92,7 +92,7 @@ impl Block<'_> {
         }
     }
 
-    /// Computes the value of a single pixel by a search.
+    /// Computes the edge distance of a single pixel by an individual search. `row` is a row of the band.
     #[cold]
     pub(super) fn edge(&self, column: usize, row: usize) -> f32 {
         let band = &self.bands[0];
@@ -166,7 +166,7 @@ impl<'a> Pixels<'a> {
         }
     }
 
-    /// Draws a cell. Returns whether the neighbors within reach determine it.
+    /// Draws the pixels of a cell. Returns whether the neighbors within reach were sufficient.
     #[inline(always)]
     fn draw<S: Simd>(
         &self,
@@ -218,8 +218,8 @@ impl<'a> Pixels<'a> {
         is_enough
     }
 
-    /// Finds the range of columns that can be in the cell for each of sixteen rows, and extends the radius of the cell
-    /// by them. Returns whether any of the rows is near enough to the point to have pixels.
+    /// Finds the range of columns that can be in the cell, for sixteen rows starting at `first`, and extends the
+    /// outline's radius accordingly. Returns whether any of the rows can contain pixels of the cell.
     #[inline(always)]
     fn outline<S: Simd>(
         &self,
@@ -281,7 +281,7 @@ impl<'a> Pixels<'a> {
     }
 }
 
-/// The pixels that can be in a cell.
+/// The pixels that may be in a cell.
 struct Outline {
     /// For each row, the first column and the one after the last.
     starts: [i32; BAND_ROWS],
@@ -290,20 +290,20 @@ struct Outline {
     radius_sq: f32,
 }
 
-/// A row of pixels in a cell, with the cell's planes.
+/// A row of pixels in a cell, and the planes that bound the cell.
 struct Along<'a> {
     /// Coordinates of the columns, in steps.
     steps: &'a [i32],
-    /// Coordinate of the point along the row, in steps.
+    /// Coordinate of the cell's feature point along the row, in steps.
     point: i32,
-    /// Squared distance of the row from the point along the other axes, in cells.
+    /// Squared distance from the point to the row along all other axes, in cells.
     rest_sq: f32,
     planes: &'a Planes,
     sight: &'a Sight,
 }
 
 impl Along<'_> {
-    /// Draws some pixels of the row. Returns whether the planes determine them.
+    /// Draws the pixels in `columns` of the row. Returns whether the planes were sufficient to determine them.
     #[inline(always)]
     fn draw<S: Simd>(&self, simd: S, columns: Range<usize>, values: &mut [f32]) -> bool {
         let (planes, sight) = (self.planes, self.sight);
@@ -337,26 +337,27 @@ impl Along<'_> {
     }
 }
 
-/// The limits within which the computed distances of a cell are reliable, in cells.
+/// The limits within which the computed edge distances of a cell are reliable. Lengths are in cells.
 struct Sight {
-    /// Maximum error of a distance.
+    /// Maximum rounding error of a distance.
     error: f64,
-    /// Distance to an edge up to which rounded keys may make another point the nearest.
+    /// Minimum reliable edge distance. Below it, rounded keys may make another point the nearest.
     least: f32,
-    /// Maximum sum of the distance to an edge and the distance to the point. Above it, a plane beyond the reach may be
-    /// nearer.
+    /// Maximum reliable sum of a pixel's edge distance and its distance to the point. Above it, a plane beyond the
+    /// search radius may be nearer.
     half: f32,
-    /// Squared distance to the point above which a plane that was not selected may be nearer.
+    /// Maximum reliable squared distance from a pixel to the point. Above it, a plane that was dropped may be nearer.
     radius_sq: f32,
 }
 
 impl Sight {
-    /// Computes the limits for a cell. Distances to planes are sums of products with normals, and the relevant ones are
-    /// at most half of the reach. They take fewer than sixteen roundings, including those of
-    /// [`Worley::edge_distance`](crate::Worley::edge_distance), each of at most 2⁻⁵³ of that distance.
+    /// Computes the limits for a cell. A distance to a plane is a dot product with the plane's normal, and a relevant
+    /// one is at most half of the search radius. It takes fewer than sixteen roundings, including those in
+    /// [`Worley::edge_distance`](crate::Worley::edge_distance), each with an error of at most 2⁻⁵³ of the distance.
     ///
-    /// A key of the search is a squared distance with at most five roundings, each of at most 2⁻²⁴ of it. The squared
-    /// distances to two points differ by twice the distance between the points, times the distance from the plane.
+    /// A search key is a squared distance with at most five roundings, each with an error of at most 2⁻²⁴ of the key.
+    /// The squared distances to two points differ by twice the distance between the points, times the distance from
+    /// their bisecting plane.
     fn new(neighbors: &Neighbors, planes: &Planes, radius_sq: f32) -> Self {
         let half = neighbors.reach / 2.0;
         let key_error = f64::from(half * half) / f64::from(1 << 20);

@@ -1,13 +1,13 @@
 //! Projects candidates to the image, and removes dominated candidates.
 //!
-//! The axes orthogonal to the image add the same amount to the keys of a point at all pixels. So three numbers describe
-//! a point: its column, its row, and the accumulated terms of the other axes.
+//! The axes orthogonal to the image contribute the same amount to the key of a point at all pixels. Three numbers
+//! therefore describe a point: its column, its row, and its accumulated key terms along the other axes.
 //!
-//! If a key is a sum of terms, the difference between the keys of two points is a sum over the axes. Along each axis
-//! the difference is monotonic, since terms are convex. Its smallest value in a rectangle is therefore the sum, over
-//! the axes, of the smaller of its values at the two ends. If this sum is above zero, the one point *dominates* the
-//! other: it is nearer in the whole rectangle. A point that `K` others dominate is not among the `K` nearest of any
-//! pixel.
+//! If a key is a sum of terms, one per axis, the difference between the keys of two points is also a sum over the
+//! axes. Along each axis the difference is monotonic, since terms are convex. Its minimum in a rectangle is therefore
+//! the sum, over the axes, of the smaller of its values at the two ends. If this sum is above zero, the first point
+//! *dominates* the second: it is nearer in the whole rectangle. A point that `K` others dominate is not among the `K`
+//! nearest of any pixel.
 //!
 //! This removes about half of the points that remain after culling by bounds for each point alone.
 
@@ -19,7 +19,7 @@ use crate::levels::{is_wide, measured, wide};
 use crate::metric::{Exact, Measure};
 use fearless_simd::{Level, f32x16, i32x16, mask32x16, prelude::*, u32x16};
 
-/// The bounds of an area of pixels along the axes of the columns, of the rows, and of the slices, in cells.
+/// The bounds of an area of pixels, in cells, along three axes: those in which columns, rows and slices differ.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cuboid {
     pub(super) low: [f32; 3],
@@ -28,10 +28,10 @@ pub(super) struct Cuboid {
     pub(super) is_deep: bool,
 }
 
-/// The criterion for dominated points, and scratch memory for the test.
+/// The criterion for removing dominated points, and scratch memory for the test.
 #[derive(Debug)]
 pub(super) struct Dominance {
-    /// Number of dominators that a point needs to be removed.
+    /// Minimum number of dominators for a point to be removed.
     pub(super) depth: usize,
     /// Distance from the center of the rectangle within which points are tested as dominators, in cells. Points farther
     /// away dominate few.
@@ -40,7 +40,7 @@ pub(super) struct Dominance {
     dominators: Dominators,
 }
 
-/// Returns whether dominated points can be removed. This requires a metric whose terms are added, and wide registers.
+/// Returns whether dominated points can be removed. This requires a metric whose key is a sum, and wide registers.
 pub(super) fn culls_dominated(level: Level, metric: Metric) -> bool {
     is_wide(level) && metric.is_exact_sum()
 }
@@ -54,7 +54,8 @@ impl Dominance {
         }
     }
 
-    /// Returns the largest key, at the far corner of the rectangle, for which a point is tested as a dominator.
+    /// Returns the maximum key for testing a point as a dominator. Compared with the point's key at the far corner of
+    /// the rectangle.
     #[inline(always)]
     fn nearby(&self, metric: Metric, cuboid: &Cuboid) -> f32 {
         // The far corner is up to half of the diagonal farther away than the center.
@@ -64,19 +65,20 @@ impl Dominance {
     }
 }
 
-/// Allowance for rounding, relative to a point's largest key. The keys of two points and their comparison take fewer
-/// than 64 roundings, each of at most 2⁻²⁴ of that key. (A second point with larger terms does not dominate in any
-/// case.)
+/// Margin for rounding, relative to a point's largest key in the rectangle. The keys of two points and their
+/// comparison take fewer than 64 roundings, each of at most 2⁻²⁴ of that key. (A second point with larger terms does
+/// not dominate in any case.)
 const SPARE: f32 = 128.0 / (1 << 24) as f32;
 
-/// Sixteen points, with their terms at the ends of a rectangle.
+/// Sixteen points, with their key terms at both ends of a rectangle along each axis.
 #[derive(Clone, Copy)]
 struct Seen<S: Simd> {
-    /// Terms at the low and at the high end of the three axes. The third axis is unused if there is one slice.
+    /// Key terms of the points at the low and at the high end of the rectangle, along three axes. The third axis is
+    /// unused for a single slice.
     ends: [[f32x16<S>; 2]; 3],
-    /// Accumulated terms of the other axes.
+    /// Accumulated key terms of the points along all other axes.
     rest: f32x16<S>,
-    /// Largest keys in the rectangle.
+    /// Largest key of each point in the rectangle.
     far: f32x16<S>,
 }
 
@@ -106,9 +108,9 @@ impl<S: Simd> Seen<S> {
 #[derive(Debug)]
 struct Dominators {
     len: usize,
-    /// Terms at the low and at the high end of the three axes.
+    /// Key terms of each point at the low and at the high end of the rectangle, along three axes.
     ends: [[Vec<f32>; 2]; 3],
-    /// Accumulated terms of the other axes.
+    /// Accumulated key terms of each point along all other axes.
     rest: Vec<f32>,
 }
 
@@ -135,7 +137,7 @@ impl Dominators {
         }
     }
 
-    /// Appends the points selected by a mask.
+    /// Appends the points whose lanes are set in `mask`.
     #[inline(always)]
     fn push<S: Simd, const DEEP: bool>(&mut self, seen: &Seen<S>, mask: mask32x16<S>) {
         let to = self.len..self.len + LANES;
@@ -177,24 +179,24 @@ impl Dominators {
     }
 }
 
-/// The axes of space along which rows and slices differ. Columns differ along the first axis.
+/// The axes of space along which rows and slices of an image differ. Columns differ along the first axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PictureAxes {
     pub(super) rows: usize,
     pub(super) slices: Option<usize>,
 }
 
-/// Feature points projected to the image.
+/// Feature points projected to the image. Each array has one element per point, and a register of padding.
 #[derive(Debug)]
 pub(super) struct FlatPoints {
     pub(super) len: usize,
-    /// Coordinates along the axes of the columns and of the rows, in cells from a corner, padded by a register. The
-    /// corner is less than 8 cells away, so they are exact.
+    /// Coordinates along the axes in which columns and rows differ, in cells from the corner of an area. The corner is
+    /// less than 8 cells away, so they are exact.
     pub(super) x: Vec<f32>,
     pub(super) y: Vec<f32>,
-    /// Coordinates along the axis orthogonal to the slices, in cells.
+    /// Coordinates along the axis in which slices differ, in cells.
     pub(super) z: Vec<f32>,
-    /// Accumulated terms of the other axes.
+    /// Accumulated key terms along all other axes.
     pub(super) rest: Vec<f32>,
     /// Indices of the points in the table, if needed; otherwise empty.
     pub(super) numbers: Vec<u32>,
@@ -230,7 +232,8 @@ impl FlatPoints {
         }
     }
 
-    /// Replaces the points by those of a list, with coordinates relative to the lower corner of `pixels`.
+    /// Replaces the points by the projections of a list's points, with coordinates relative to the lower corner of
+    /// `pixels`.
     pub(super) fn flatten(
         &mut self,
         level: Level,
@@ -281,8 +284,8 @@ impl FlatPoints {
         }
     }
 
-    /// Selects the points that fewer than `dominance.depth` others dominate in a cuboid. Supports only metrics whose
-    /// terms are added.
+    /// Replaces the points by those of `points` that fewer than `dominance.depth` others dominate in a cuboid.
+    /// Supports only metrics whose key is a sum.
     pub(super) fn take_undominated(
         &mut self,
         level: Level,
@@ -342,7 +345,7 @@ impl FlatPoints {
         }
     }
 
-    /// Returns the columns, rows, depths and remaining terms of sixteen points.
+    /// Returns x, y, z and the accumulated other key terms of sixteen points, starting at index `start`.
     #[inline(always)]
     fn lanes<S: Simd>(&self, simd: S, start: usize) -> [f32x16<S>; 4] {
         let at = start..start + LANES;

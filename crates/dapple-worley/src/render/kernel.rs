@@ -1,4 +1,5 @@
-//! The inner loop for values. It finds the smallest keys of sixteen adjacent pixels, for several rows at once.
+//! The inner loop for values. It finds the smallest keys of sixteen adjacent pixels at a time, for several rows at
+//! once.
 
 use super::LANES;
 use crate::metric::Measure;
@@ -9,8 +10,8 @@ use fearless_simd::{f32x16, prelude::*};
 /// Maximum width and height of a tile, in pixels; two registers.
 pub(super) const TILE: usize = 2 * LANES;
 
-/// A candidate's terms at the pixels of a tile: one for each column, and the accumulated terms of all other axes for
-/// each row. Elements after the last column or row are unused.
+/// A candidate's key terms at the pixels of a tile: one for each column, and one for each row that accumulates all
+/// other axes. The elements after the last column or row are unused.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
     pub(super) columns: [f32; TILE],
@@ -27,7 +28,7 @@ pub(super) struct Rows<'a> {
     /// Index of the first register of the tile's columns, 0 or 1; 0 if both are rendered.
     pub(super) register: usize,
     pub(super) candidates: &'a [Candidate],
-    /// Keys at or above this value may be wrong.
+    /// Keys at or above this value may miss a nearer point.
     pub(super) limit: f32,
     pub(super) values: &'a Values,
 }
@@ -59,7 +60,7 @@ impl Rows<'_> {
         }
     }
 
-    /// Renders up to one register of columns, as [`fill`](Self::fill) does.
+    /// Renders at most one register of columns, otherwise like [`fill`](Self::fill).
     #[inline(always)]
     pub(super) fn fill_register<S: Simd, M: Measure, const K: usize>(
         &self,
@@ -76,7 +77,7 @@ impl Rows<'_> {
         }
     }
 
-    /// Renders groups of `R` rows and `C` registers of columns. `C = 0` stands for part of a register.
+    /// Renders groups of `R` rows and `C` registers of columns. `C` = 0 means less than a whole register.
     #[inline(always)]
     pub(super) fn fill_groups<
         S: Simd,
@@ -143,7 +144,7 @@ impl Rows<'_> {
     }
 }
 
-/// Returns `K` sorted keys, before any comparison. The last `depth` are in use and hold `nothing`. The others stay
+/// Returns `K` sorted keys before any comparison. The last `depth` keys are `nothing`. The others are unused, and stay
 /// zero, below all keys.
 #[inline(always)]
 pub(super) fn empty<S: Simd, const K: usize>(
@@ -170,7 +171,7 @@ fn insert<S: Simd, const K: usize>(best: &mut [f32x16<S>; K], key: f32x16<S>) {
     best[0] = lesser(best[0], key);
 }
 
-/// Returns the smaller of two numbers that are at least zero. The bits of such floats have the same order, and most
+/// Returns the smaller of two nonnegative numbers. The bits of such floats have the same order as integers, and most
 /// processors compare integers faster.
 #[inline(always)]
 pub(super) fn lesser<S: Simd, V: SimdFloat<S, Element = f32>>(a: V, b: V) -> V {
@@ -181,7 +182,7 @@ pub(super) fn lesser<S: Simd, V: SimdFloat<S, Element = f32>>(a: V, b: V) -> V {
     }
 }
 
-/// Returns the larger of two numbers that are at least zero; see [`lesser`].
+/// Returns the larger of two nonnegative numbers; see [`lesser`].
 #[inline(always)]
 pub(super) fn greater<S: Simd, V: SimdFloat<S, Element = f32>>(a: V, b: V) -> V {
     if floats_are_faster(a.token()) {

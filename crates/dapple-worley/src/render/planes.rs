@@ -7,42 +7,43 @@ use crate::fixed::{MOST_AXES, STEP};
 use core::ops::Range;
 use fearless_simd::{f32x16, f64x8, i32x16, mask32x16, prelude::*};
 
-/// Bound on the error of distances computed in `f32`, in cells.
+/// Maximum error of a distance computed in `f32`, in cells.
 pub(super) const SLACK: f32 = 1.0 / (1 << 14) as f32;
 
-/// Fraction of the reach within which neighbors are used for the outline of the cell.
+/// Fraction of the search radius within which neighbors contribute to the outline of the cell.
 const INNER: f32 = 0.75;
 
-/// The neighbors of a feature point and their bisecting planes, in `f32`; padded by a register.
+/// The neighbors of a feature point and their bisecting planes, in `f32`. Arrays are padded by a register.
 #[derive(Debug)]
 pub(super) struct Neighbors {
     pub(super) n_axes: usize,
     /// Coordinates of the feature point, in steps from the corner of the table.
     pub(super) point: [i32; MOST_AXES],
-    /// Distance within which all neighbors are included, in cells.
+    /// Search radius: all neighbors up to this distance are included, in cells.
     pub(super) reach: f32,
-    /// Vectors from the neighbors to the point in cells, axis by axis, and their squared lengths.
+    /// Vectors from the neighbors to the point, in cells, axis by axis. `lengths_sq` are their squared lengths.
     ways: [Vec<f32>; MOST_AXES],
     lengths_sq: Vec<f32>,
     len: usize,
-    /// Unit normals of the planes, towards the point, and distances of the planes from the point in cells.
+    /// Unit normals of the planes, pointing toward the point, axis by axis. `distances` are the distances of the
+    /// planes from the point, in cells.
     pub(super) normals: [Vec<f32>; MOST_AXES],
     pub(super) distances: Vec<f32>,
-    /// Indices of the neighbors that are used for the outline of the cell.
+    /// Indices of the neighbors that contribute to the outline of the cell.
     pub(super) inner: Vec<usize>,
 }
 
-/// The planes that can bound a cell; padded by a register.
+/// The planes that can bound a cell. Arrays are padded by a register.
 #[derive(Debug)]
 pub(super) struct Planes {
     pub(super) n_axes: usize,
     pub(super) len: usize,
-    /// Unit normals towards the point, axis by axis.
+    /// Unit normals, pointing toward the feature point, axis by axis.
     pub(super) normals: [Vec<f64>; MOST_AXES],
-    /// Distances from the point, in cells.
+    /// Distances of the planes from the feature point, in cells.
     distances: Vec<f64>,
-    /// For the current row of pixels, distances of the planes from the position in the row with the first coordinate of
-    /// the point, in cells.
+    /// Signed distances of the planes, in cells, from the position on the current row of pixels whose first coordinate
+    /// equals the feature point's.
     pub(super) offsets: Vec<f64>,
 }
 
@@ -114,7 +115,7 @@ impl Neighbors {
         }
     }
 
-    /// Appends the points selected by a mask.
+    /// Appends the neighbors whose lanes are set in `mask`.
     #[inline(always)]
     fn push<S: Simd>(
         &mut self,
@@ -132,8 +133,8 @@ impl Neighbors {
         self.len += mask.to_bitmask().count_ones() as usize;
     }
 
-    /// Returns whether a single neighbor is nearer than the point to the whole box. Only the part of the box within
-    /// half of the reach counts.
+    /// Returns whether a single neighbor is nearer than the point in the whole box. Only the part of the box within
+    /// half of the search radius is considered.
     #[inline(always)]
     pub(super) fn hide<S: Simd>(&self, simd: S, pixels: &PixelBox) -> bool {
         let half = self.reach / 2.0;
@@ -191,10 +192,11 @@ impl Neighbors {
         }
     }
 
-    /// Selects the planes that can be the nearest within a given radius of the point, into `planes`.
+    /// Copies the planes that can be the nearest one somewhere in the ball of squared radius `radius_sq` around the
+    /// point into `planes`.
     ///
-    /// A plane is left out if another one is nearer to the whole ball. This holds if the other plane is nearer to the
-    /// point by more than the difference of the two unit normals times the radius.
+    /// A plane is dropped if another plane is nearer to every position in the ball. This is the case if the other
+    /// plane is nearer to the point by more than the radius times the length of the difference of the unit normals.
     #[inline(always)]
     pub(super) fn pick<S: Simd>(&self, simd: S, radius_sq: f32, planes: &mut Planes) {
         planes.clear(self.n_axes, self.len);
@@ -245,7 +247,7 @@ impl Planes {
         }
     }
 
-    /// Clears the planes, and reserves memory for `n`.
+    /// Clears the planes, and reserves memory for `n` planes.
     fn clear(&mut self, n_axes: usize, n: usize) {
         (self.n_axes, self.len) = (n_axes, 0);
         let room = n + F64_LANES;
@@ -257,7 +259,7 @@ impl Planes {
         }
     }
 
-    /// Computes the planes from the vectors to the neighbors, which are stored in `normals` at first.
+    /// Computes the planes from the vectors to the neighbors, which `normals` contains initially.
     #[inline(always)]
     fn make<S: Simd>(&mut self, simd: S) {
         for start in (0..self.len).step_by(F64_LANES) {
@@ -278,7 +280,7 @@ impl Planes {
         }
     }
 
-    /// Computes the offsets for a row of pixels. `rest` is the vector from the point to the row, along all axes except
+    /// Computes `offsets` for a row of pixels. `rest` is the vector from the point to the row along all axes except
     /// the first, in cells.
     #[inline(always)]
     pub(super) fn take_row<S: Simd>(&mut self, simd: S, rest: &[f64; MOST_AXES]) {

@@ -1,9 +1,9 @@
 //! Renders small cells by comparing every tile with all feature points of a rectangle around it.
 //!
-//! Where a cell has only a few pixels, culling points for each tile takes longer than comparing them. So tiles have
-//! 4 × 4 pixels, one register, and each is compared with all points in the bins around it ([`bins`](super::bins)). The
-//! bins include all points nearer to a pixel than the edge of their rectangle. So the keys of a pixel are exact if the
-//! `K`-th is smaller than the key of that distance.
+//! If a cell has only a few pixels, culling points for each tile takes longer than comparing them. Tiles therefore
+//! have 4 × 4 pixels, one register, and each is compared with all points in the bins around it
+//! ([`bins`](super::bins)). The bins include all points that are nearer to a pixel than the edge of their rectangle.
+//! The keys of a pixel are therefore exact if the `K`-th key is smaller than the key of the distance to that edge.
 
 use super::bins::{Grid, HALF, Reach, Runs, TILE, beyond};
 use super::block::{Block, Memory};
@@ -29,28 +29,29 @@ const SURE: f32 = 0.999;
 /// Maximum reach of the rectangle around a tile, in cells. Coordinates that differ by less are exact in `f32`.
 const FARTHEST: f32 = 8.0;
 
-/// Maximum ratio of the reach to the required distance. Above it, searching each pixel on its own is as fast.
+/// Maximum ratio of the reach to the required distance. Above it, searching each pixel individually is as fast.
 const MOST_WASTE: f32 = 10.0;
 
-/// Numbers of bin columns that a tile may be compared with. The first is used only for 2-D metrics whose terms are
-/// added, the most common case.
+/// Numbers of bin columns that a tile may be compared with. The first is used only in 2-D, for metrics whose key is a
+/// sum, which is the most common case.
 const COLUMNS: [usize; 3] = [2, 3, 5];
 
 /// Upper limit, exclusive, for the number of bin rows above a tile, and for the number below it.
 const MOST_HALVES: usize = 8;
 
-/// Distance along the axes orthogonal to the image within which points are used, as a multiple of the estimated
-/// distance. Searching a pixel on its own takes as long as comparing hundreds of points.
+/// Maximum distance of points along the axes orthogonal to the image, as a multiple of the estimated distance to the
+/// nearest points. A larger value would compare too many points, a smaller one would leave more pixels to individual
+/// searches, which take as long as comparing hundreds of points.
 const SPARE: f32 = 1.1;
 
 /// Parameters of the method for small cells, for one block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Splat {
-    /// Number of bin columns that a tile is compared with, and of bin rows on either side of it.
+    /// Number of bin columns that a tile is compared with, and number of bin rows above (and below) it.
     around: [usize; 2],
     /// Distance from any pixel within which all points are compared, in cells.
     pub(super) reach: f32,
-    /// Distance from one column to the next, and from one row to the next along `row_axis`, in steps.
+    /// Distance between adjacent columns, and between adjacent rows along `row_axis`, in steps.
     pixel: [f32; 2],
     /// Axis along which rows differ.
     row_axis: usize,
@@ -103,7 +104,7 @@ impl Splat {
         None
     }
 
-    /// Returns whether pixels are spaced evenly enough for tiles. Far from zero, rounding of `f64` may make them
+    /// Returns whether pixels are spaced evenly enough for bins. Far from the origin, rounding of `f64` may make them
     /// uneven.
     pub(super) fn is_even(&self, lines: &[Vec<i32>; MOST_AXES]) -> bool {
         let is_even = |axis: usize, pixel: f32| {
@@ -168,7 +169,7 @@ impl Splat {
         }
     }
 
-    /// Returns the cells whose points are within reach of the block.
+    /// Returns the box of cells whose points are within reach of the block.
     fn cells(&self, block: &Block<'_>, cells: &CellBox, memory: &Memory) -> CellBox {
         let pixels = memory.pixel_box(&block.all());
         let reach = (self.reach / STEP) as i32 + 1;
@@ -240,16 +241,16 @@ fn fill_block<const SLOTS: usize>(
 
 /// A row of tiles.
 struct TileRow<'a> {
-    /// Index of the row of tiles in the band.
+    /// Index of the row of tiles in its band.
     index: usize,
     values: &'a Values,
-    /// Rows of pixels.
+    /// Rows of pixels in this row of tiles.
     pixels: [&'a mut [f32]; TILE],
-    /// For each tile, a mask of the pixels whose keys reach the limit; their values are not stored.
+    /// For each tile, a mask of the pixels with a key at or above the limit. Their values are not stored.
     unknown: &'a mut [u16],
 }
 
-/// Renders a row of tiles from two bin columns. Supports 2-D, metrics whose terms are added, one or two nearest points,
+/// Renders a row of tiles from two bin columns. Supports 2-D, metrics whose key is a sum, one or two nearest points,
 /// and wide registers.
 fn fill_two(level: Level, runs: Runs<'_, 3>, tiles: &mut TileRow<'_>) {
     let sum = Additive(runs.metric);
@@ -273,8 +274,8 @@ fn fill_three(level: Level, runs: Runs<'_, 3>, tiles: &mut TileRow<'_>) {
     }
 }
 
-/// Renders a row of tiles from as many bin columns as points have terms for, with the loop that is compiled for the
-/// metric and the number of nearest points.
+/// Renders a row of tiles from `TILES` bin columns, with the loop that is compiled for the metric and the number of
+/// nearest points.
 fn fill_any<const TILES: usize>(level: Level, runs: Runs<'_, TILES>, tiles: &mut TileRow<'_>) {
     let depth = match tiles.values.tone.depth() {
         depth @ ..=2 => depth,
@@ -305,10 +306,11 @@ fn fill_any<const TILES: usize>(level: Level, runs: Runs<'_, TILES>, tiles: &mut
     }
 }
 
-/// Renders a row of tiles. Each bin column is compared with `TILES` tiles, which are held in registers.
+/// Renders a row of tiles. Each bin column is compared with the `TILES` tiles around it, whose keys are held in
+/// registers.
 ///
-/// `depth` is the number of nearest points to find, at most `K`. Points have terms for `SLOTS` tiles. `DEEP` means that
-/// there may be axes orthogonal to the image.
+/// `depth` is the number of nearest points to find, at most `K`. Points have key terms for `SLOTS` tiles. `DEEP` means
+/// that there may be axes orthogonal to the image.
 #[inline(always)]
 fn fill<
     S: Simd,
@@ -368,7 +370,7 @@ fn fill<
 }
 
 impl TileRow<'_> {
-    /// Stores the values of a tile, except for pixels whose keys reach the limit.
+    /// Stores the values of a tile, except for pixels with a key at or above the limit.
     #[inline(always)]
     fn put<S: Simd, M: Measure, const K: usize>(
         &mut self,

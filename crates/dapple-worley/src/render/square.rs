@@ -1,7 +1,7 @@
 //! Renders squares of up to 64 × 64 pixels and their tiles of up to 32 × 32, from candidates to values.
 //!
-//! The candidates of a square are selected from the table, and those of a tile from the candidates of its square. Where
-//! a key reaches the border of the neighborhood that the candidates come from, the pixels are rendered again from a
+//! The candidates of a square are selected from the table, and the candidates of a tile from its square's. If the key
+//! of a pixel reaches the border of the neighborhood that the candidates come from, pixels are rendered again with a
 //! larger neighborhood.
 
 use super::area::Area;
@@ -25,7 +25,7 @@ use fearless_simd::Level;
 pub(super) struct Guess {
     /// The estimated distance, in cells.
     pub(super) distance: f32,
-    /// Number of cells that the distance spans, rounded up; at least 1.
+    /// The distance in whole cells, rounded up; at least 1.
     pub(super) ring: i32,
 }
 
@@ -60,7 +60,8 @@ pub(super) struct Plan {
     pub(super) depth: usize,
     pub(super) guess: Guess,
     pub(super) metric: Metric,
-    /// Axis of the rows, if the terms of all other axes can be accumulated before those of the rows; otherwise `None`.
+    /// Axis along which rows differ, if the key terms of all other axes can be accumulated before the terms of the
+    /// rows; otherwise `None`.
     pub(super) row_axis: Option<usize>,
     /// Width and height of a tile, in pixels.
     pub(super) tile: [usize; 2],
@@ -69,12 +70,13 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// Returns the criterion for points that can be among the nearest.
+    /// Returns the culling criterion for points that can be among the nearest.
     pub(super) fn nearest(&self) -> Keep {
         Keep::Nearest(self.depth, self.metric.rounding_slack())
     }
 
-    /// Returns the bounds of an area of pixels, in cells from its lower corner.
+    /// Returns the bounds of an area of pixels along the axes of columns, rows and slices, in cells from the area's
+    /// lower corner.
     fn cuboid(&self, pixels: &PixelBox) -> Cuboid {
         let mut high = [0.0; 3];
         for (high, axis) in high
@@ -92,7 +94,7 @@ impl Plan {
         }
     }
 
-    /// Returns whether values are rendered by a kernel that takes two registers of columns at once.
+    /// Returns whether values are rendered by the kernel that processes two registers of columns at once.
     fn has_wide_kernel(&self, level: Level) -> bool {
         is_wide(level) && self.depth <= 2 && self.metric.is_exact_sum()
     }
@@ -103,7 +105,7 @@ impl Plan {
     }
 }
 
-/// A square with its selected candidates.
+/// A square of pixels whose candidates have been selected.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Square {
     pub(super) pixels: PixelBox,
@@ -111,7 +113,7 @@ pub(super) struct Square {
     pub(super) cuboid: Cuboid,
     /// Whether the square is a single tile.
     pub(super) is_tile: bool,
-    /// Keys at or above this value may be wrong.
+    /// Keys at or above this value may miss a nearer point.
     pub(super) limit: f32,
     pub(super) plan: Plan,
 }
@@ -134,13 +136,13 @@ const SPAN: i32 = 8;
 struct Neighborhood {
     /// Number of rings of cells around the cells that the square touches.
     ring: i32,
-    /// Distance from the square within which points are selected, in cells. `None` selects all points that can be among
-    /// the nearest.
+    /// Maximum distance of selected points from the square, in cells. `None` selects all points that can be among the
+    /// nearest.
     guess: Option<f32>,
 }
 
 impl Neighborhood {
-    /// Returns whether coordinates within the neighborhood are exact.
+    /// Returns whether coordinates within the neighborhood are exact in `f32`.
     fn fits(&self, pixels: &PixelBox) -> bool {
         let [first, last] = pixels.cells(self.ring);
         (0..pixels.n_axes).all(|axis| last[axis] - first[axis] < SPAN)
@@ -224,7 +226,7 @@ impl Block<'_> {
         }
     }
 
-    /// Selects the candidates of a square from a table. Keys below the returned limit are exact.
+    /// Selects the candidates of a square from a table. Returns the limit below which the pixels' keys are exact.
     fn pick(
         &self,
         area: &Area,
@@ -343,7 +345,7 @@ impl Block<'_> {
         }
     }
 
-    /// Renders one or two registers of columns of a tile. Returns the first row that has a key at or above the limit,
+    /// Renders one or two registers of a tile's columns. Returns the first row that has a key at or above the limit,
     /// or the end of the rows.
     fn fill_part(&self, part: Part<'_>, out: &mut Output<'_>, memory: &Memory) -> usize {
         match out {
@@ -417,7 +419,7 @@ impl Block<'_> {
         })
     }
 
-    /// Returns the kernel's parameters for a part of a tile.
+    /// Returns the parameters of the value kernel for a part of a tile.
     fn rows_of<'a>(&self, part: Part<'_>, values: &'a Values, memory: &'a Memory) -> Rows<'a> {
         Rows {
             rows: part.area.rows.clone(),
@@ -435,7 +437,8 @@ impl Block<'_> {
         left + area.columns.start..left + area.columns.end
     }
 
-    /// Stores the nearest points of a row of pixels. Pixels whose order of points is unknown are searched on their own.
+    /// Stores the nearest points of a row of pixels. Pixels whose points have an unknown order are searched
+    /// individually.
     fn put(&self, slice: usize, found: &Found, out: &mut Output<'_>) {
         match out {
             Output::Features(features) => found.put(&self.bands[slice], features),
@@ -460,18 +463,18 @@ impl Block<'_> {
     }
 }
 
-/// Stores the gradients of some pixels of a row with interleaved components.
+/// Stores the gradients of adjacent pixels of a row, with interleaved components.
 fn put_gradients<const N: usize>(tone: &Tone, metric: Metric, found: &Found, out: &mut [f32]) {
     for (lane, out) in out.as_chunks_mut::<N>().0.iter_mut().enumerate() {
         *out = tone.gradient(metric, &found.vectors::<N>(lane));
     }
 }
 
-/// One or two registers of columns of a tile.
+/// One or two registers of a tile's columns.
 #[derive(Clone, Copy)]
 struct Part<'a> {
     area: &'a Area,
-    /// Index of the first register of the tile's columns.
+    /// Index of the part's first register among the tile's columns, 0 or 1.
     register: usize,
     square: &'a Square,
 }

@@ -8,7 +8,7 @@ use dapple_hash::CellHashes;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, prelude::*, u32x16};
 
-/// A box of cells, from the first to the last along each axis. Along missing axes it has only the cell 0.
+/// A box of cells, from the first to the last along each axis. Along missing axes, both are 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct CellBox {
     pub(super) n_axes: usize,
@@ -31,8 +31,8 @@ impl CellBox {
         self
     }
 
-    /// Iterates over the rows of cells along the first axis. Each item is the row's part of the cell words, and its
-    /// first cell.
+    /// Iterates over the rows of cells along the first axis. Each item has the combined hashed coordinates of the row
+    /// along the other axes, and the row's first cell.
     pub(super) fn rows(
         &self,
         lattice: &Lattice,
@@ -62,7 +62,7 @@ impl CellBox {
     }
 }
 
-/// Number of points that are copied for a cell without checking its count.
+/// Number of points per cell that are copied unconditionally, without a branch on the cell's count.
 const USUAL: usize = 4;
 
 /// The feature points in a box of cells, stored row by row.
@@ -235,14 +235,15 @@ impl Table {
         point
     }
 
-    /// Returns whether the table holds the cells from `first` to `last` along each axis.
+    /// Returns whether the table contains the cells from `first` to `last` along each axis, counted from the box's
+    /// first cell.
     pub(super) fn has_cells(&self, [first, last]: [[i32; MOST_AXES]; 2]) -> bool {
         (0..self.cells.n_axes)
             .all(|axis| first[axis] >= 0 && (last[axis] as usize) < self.cells.side(axis))
     }
 
-    /// Returns the ranges of points in the cells within `reach` steps of a point along each axis; `None` if the table
-    /// lacks a cell.
+    /// Returns the ranges of points in the cells within `reach` steps of a point along each axis; `None` if a cell is
+    /// outside the table.
     pub(super) fn around<'a>(
         &self,
         point: &[i32; MOST_AXES],
@@ -279,7 +280,7 @@ impl Table {
         }
     }
 
-    /// Returns the range of points in the given columns (along the first axis) of a row of cells.
+    /// Returns the range of points in the given cells of a row. `columns` are cell indices along the first axis.
     #[inline(always)]
     fn run(&self, row: usize, columns: Range<usize>) -> Range<usize> {
         let first = row * self.cells.side(0);
@@ -307,7 +308,8 @@ pub(super) fn numbers<S: Simd>(
     numbers
 }
 
-/// Returns the words of sixteen cells of a row, combined from the parts of the row and of the columns.
+/// Returns the hash words of sixteen cells of a row, by combining the hashed coordinates of the row and of the
+/// columns.
 #[inline(always)]
 pub(super) fn row_words<S: Simd>(
     simd: S,

@@ -1,7 +1,7 @@
-//! The inner loop for outputs that need to identify the nearest feature points.
+//! The inner loop for outputs that identify the nearest feature points (features and gradients).
 //!
-//! Keys store the index of their candidate in the low bits, as in [`many`](crate::many). If the remaining bits do not
-//! determine the order of the nearest points, the pixel is searched on its own.
+//! The low bits of a key hold the index of its candidate, as in [`many`](crate::many). If the remaining bits do not
+//! determine the order of the nearest points, the pixel is searched individually.
 
 use super::flat::FlatPoints;
 use super::kernel::{Candidate, empty, greater, lesser};
@@ -16,11 +16,11 @@ use crate::worley::cell_value;
 use core::ops::Range;
 use fearless_simd::{f32x16, i32x16, prelude::*, u8x64, u32x16};
 
-/// The candidates of a tile, for looking up the nearest ones by index.
+/// The coordinates and ids of a tile's candidates, for looking up the nearest ones by index.
 #[derive(Debug)]
 pub(super) struct Lookup {
     n_axes: usize,
-    /// Coordinates along each axis, in cells from a corner of the tile, padded to whole registers.
+    /// Coordinates along each axis, in cells from the corner `low`, padded to whole registers.
     coordinates: [Vec<f32>; MOST_AXES],
     /// Candidate ids, if needed; otherwise empty.
     ids: Vec<u64>,
@@ -35,7 +35,7 @@ impl Lookup {
         }
     }
 
-    /// Copies the candidates from the table. `low` is the corner from which coordinates are counted, in steps.
+    /// Copies the candidates' coordinates and ids from the table. `low` is the origin of the coordinates, in steps.
     pub(super) fn fill(&mut self, points: &FlatPoints, table: &Table, low: [i32; MOST_AXES]) {
         let numbers = &points.numbers[..points.len];
         let room = points.len.next_multiple_of(LANES).max(LANES);
@@ -65,19 +65,20 @@ pub(super) struct TrackedRows<'a> {
     pub(super) rows: Range<usize>,
     /// Columns, in the window; at most [`LANES`].
     pub(super) columns: Range<usize>,
-    /// Index of the register of the tile's columns, 0 or 1.
+    /// Which register of sixteen columns of the tile is rendered, 0 or 1.
     pub(super) register: usize,
-    /// Coordinates of the columns and, along the other axes, of the band's rows, in steps.
+    /// Coordinates of the columns (first axis) and of the band's rows (other axes), in steps.
     pub(super) lines: [&'a [i32]; MOST_AXES],
-    /// Corner from which the candidates' coordinates are counted, in steps.
+    /// Origin of the candidates' coordinates, in steps.
     pub(super) low: [i32; MOST_AXES],
     pub(super) candidates: &'a [Candidate],
     pub(super) lookup: &'a Lookup,
-    /// Keys at or above this value may be wrong.
+    /// Keys at or above this value may miss a nearer point.
     pub(super) limit: f32,
 }
 
-/// The nearest points of a row of pixels. Arrays come first, so that registers do not cross cache lines.
+/// The nearest points of up to sixteen adjacent pixels of a row. Arrays come first, so that registers do not cross
+/// cache lines.
 #[repr(C, align(64))]
 pub(super) struct Found {
     pub(super) distances: [[f32; LANES]; MAX_NEAREST],
@@ -89,7 +90,7 @@ pub(super) struct Found {
     pub(super) row: usize,
     pub(super) columns: Range<usize>,
     pub(super) n_axes: usize,
-    /// Number of nearest points for each pixel.
+    /// Number of nearest points per pixel.
     depth: usize,
 }
 
@@ -97,17 +98,17 @@ pub(super) struct Found {
 struct Keys<S: Simd, const K: usize> {
     /// Keys of the nearest points in the last `depth` ranks; earlier ranks are unused.
     best: [u32x16<S>; K],
-    /// Smallest key of all other points.
+    /// Smallest key of all points that are not among the nearest.
     next: u32x16<S>,
-    /// Mask of the bits that hold the index.
+    /// Mask of the low bits, which hold the candidate's index.
     mask: u32,
-    /// Number of unused ranks.
+    /// Number of unused ranks at the start of `best`.
     unused: usize,
 }
 
 impl TrackedRows<'_> {
-    /// Finds the `depth` nearest points row by row; `depth` is at most `K`. Returns the first row that has a key at or
-    /// above the limit, or the end of the rows.
+    /// Finds the `depth` nearest points (at most `K`) row by row. Returns the first row that has a key at or above the
+    /// limit, or the end of the rows.
     #[inline(always)]
     pub(super) fn fill<S: Simd, M: Measure, const K: usize>(
         &self,
@@ -157,8 +158,8 @@ impl TrackedRows<'_> {
         self.rows.end
     }
 
-    /// Finds the keys of the `depth` nearest points and of the next one, with the indices of their candidates in the
-    /// low bits.
+    /// Finds the keys of the `depth` nearest points and of the next one, for sixteen pixels of a row. The low bits
+    /// hold the indices of their candidates.
     #[inline(always)]
     fn smallest<S: Simd, M: Measure, const K: usize>(
         &self,
@@ -306,7 +307,7 @@ fn look_up<S: Simd>(simd: S, table: &[f32], indices: u32x16<S>) -> f32x16<S> {
 }
 
 impl Found {
-    /// Stores the row in the views of a band. The values of unknown pixels are replaced afterwards.
+    /// Copies the points of these pixels to the views of a band. Pixels whose order is unknown are overwritten later.
     pub(super) fn put(&self, band: &Band<'_>, features: &mut [FeatureRows<'_>]) {
         let columns = self.columns.clone();
         let n = columns.len();
@@ -348,7 +349,7 @@ impl Found {
         }
     }
 
-    /// Returns the vectors of one lane, nearest point first.
+    /// Returns the vectors of the nearest points to one pixel, nearest point first.
     pub(super) fn vectors<const N: usize>(&self, lane: usize) -> [[f32; N]; MAX_NEAREST] {
         let mut vectors = [[0.0; N]; MAX_NEAREST];
         for rank in 0..self.depth {

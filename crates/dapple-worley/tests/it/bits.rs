@@ -18,7 +18,7 @@ pub(super) const COMBINATIONS: [Combination; 5] = [
     Combination::new([0.3, -0.7, 0.0, 1.1]),
 ];
 
-/// Windows with large and small pixels, near and far, flipped, of odd sizes.
+/// Returns windows with large and small pixels, near the origin and far from it, flipped, and of odd sizes.
 pub(super) fn windows() -> Vec<Window> {
     let window = |origin: [f64; 2], pixel: [f64; 2], size: [u32; 2]| Window {
         origin,
@@ -43,8 +43,8 @@ pub(super) fn windows() -> Vec<Window> {
     ]
 }
 
-/// A combination for each kernel: of one, of two and of up to four nearest points. All of [`COMBINATIONS`] are
-/// compared in the plane, where samples take a tenth of the time.
+/// A combination for each kernel: one, two and up to four nearest points. All of [`COMBINATIONS`] are compared only in
+/// 2-D, where a sample takes a tenth of the time.
 const DEPTHS: [Combination; 3] = [COMBINATIONS[0], COMBINATIONS[1], COMBINATIONS[4]];
 
 fn ways_agree<const N: usize>(
@@ -256,7 +256,8 @@ fn many_positions_equal_single_ones_bit_for_bit() -> Result<(), WorleyError> {
     many_equal_single_ones::<4, 3>(&Worley::<4>::new(Seed(4)), 1e3)
 }
 
-/// Returns the feature points within `reach` cells, nearest first. Their vectors are exact, then rounded once to `f32`.
+/// Returns the feature points within `reach` cells as distances, ids and vectors, nearest first. Vectors are computed
+/// exactly, and rounded to `f32` once.
 fn nearest_of_all<const N: usize>(
     worley: &Worley<N>,
     at: [f64; N],

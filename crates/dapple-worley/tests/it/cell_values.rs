@@ -1,4 +1,4 @@
-//! Tests of random values of cells.
+//! Tests of the random numbers of cells.
 
 use dapple_hash::Seed;
 use dapple_raster::{Field, FieldExt as _, Window, glam::DVec2};

@@ -1,4 +1,4 @@
-//! Compares pictures of the distances to the edges of cells with single positions and all planes.
+//! Compares rendered edge distances with single evaluations, and with a brute-force search over all bisecting planes.
 
 use super::bits::windows;
 use super::oracle::{SCATTERS, brute_force_vectors};
@@ -74,7 +74,7 @@ fn edge_picture_equals_edge_distance_in_slices() -> Result<(), WorleyError> {
     picture_equals_distance(&Worley::<4>::new(Seed(23)), &plane, &window)
 }
 
-/// Windows around places on an edge, from a whole cell down to a few steps.
+/// Uses windows around positions on an edge, from a whole cell down to a few steps wide.
 #[test]
 fn edge_picture_equals_edge_distance_on_edges() -> Result<(), WorleyError> {
     for seed in 0..4 {

@@ -1,4 +1,4 @@
-//! Tests far from the origin: pictures stay as sharp as near it, and positions out of range have no value.
+//! Tests far from the origin: images are as sharp as near it, and positions out of range give NaN.
 
 use super::oracle::{METRICS, SCATTERS};
 use super::ways::{RANKS, agrees_with_oracle, sample_in_every_way};
@@ -10,7 +10,7 @@ use dapple_worley::{
 };
 use glam::DVec3;
 
-/// Walks along the first axis in steps of 1/64 and compares F1 to F4 with the previous step.
+/// Walks along the first axis in steps of 1/64 of a cell, and checks that F1 to F4 change at every step.
 fn steps_are_told_apart<const N: usize>(
     worley: &Worley<N>,
     start: [f64; N],
@@ -98,7 +98,7 @@ fn pattern_far_away_is_as_precise_as_near_the_origin() -> Result<(), WorleyError
     Ok(())
 }
 
-/// Coordinates out of range, each beside valid ones.
+/// Returns positions that are out of range along one axis, and valid along the others.
 fn positions_without_a_place<const N: usize>() -> Vec<[f64; N]> {
     let bad = [
         f64::NAN,
@@ -198,7 +198,7 @@ fn radial_positions_that_are_not_finite_have_no_value() -> Result<(), WorleyErro
     Ok(())
 }
 
-/// Windows that are wholly or partly out of range.
+/// Returns windows that are completely or partly out of range.
 fn windows_without_a_place() -> Vec<Window> {
     let edge = (1_u64 << 62) as f64;
     let window = |origin: [f64; 2], pixel: [f64; 2], first: [i64; 2]| Window {

@@ -1,14 +1,14 @@
-//! Tests of positions for which the own cell and its neighbors are not enough.
+//! Tests of positions whose nearest points are not all in the own cell and its neighbors.
 //!
-//! Points farther away than one cell are rare, so pictures seldom show whether they are missed. These tests search for
-//! such positions, fail if they find none, and check them by every sampling method and with the oracle.
+//! Points farther away than one cell are rare, so images seldom show whether they are missed. These tests search for
+//! such positions, fail if there are none, and compare every sampling method with the oracle there.
 
 use super::oracle::position;
 use super::ways::{agrees_with_oracle, reach_of, sample_in_every_way};
 use dapple_hash::Seed;
 use dapple_worley::{Dimensions, Feature, Metric, Scatter, Space, Vector, Worley, WorleyError};
 
-/// Returns the distance of a feature point in cells, along the axis where it is farthest.
+/// Returns how many cells a feature point is away, along the axis where it is farthest.
 fn cells_away<const N: usize>(at: [f64; N], feature: &Feature<Vector<N>>) -> i64
 where
     Dimensions: Space<N>,
@@ -18,8 +18,8 @@ where
     (0..N).map(away).max().unwrap_or(0)
 }
 
-/// Searches `n` positions for points two or more cells away; returns how often each of F1 to F4 was such a point. The
-/// first 25 positions found are checked.
+/// Searches `n` positions for nearest points that are two or more cells away. Returns the number of such points for
+/// each of F1 to F4. The first 25 positions found are checked.
 fn count_far_points<const N: usize>(
     metric: Metric,
     scatter: Scatter,
@@ -143,8 +143,8 @@ fn points_many_cells_away_are_found_at_the_least_density() -> Result<(), WorleyE
     Ok(())
 }
 
-/// Searches for cells whose only point lies within `corner` of a corner, and checks the opposite corner, where the own
-/// cell does not help the search. Returns how often the fourth point is beyond the neighbors.
+/// Searches for cells whose only point is within `corner` of a corner, and checks the opposite corner, where the own
+/// cell does not help the search. Returns the number of cases in which the fourth point is beyond the neighbors.
 fn far_corners_agree<const N: usize>(metric: Metric, corner: f64) -> Result<u32, WorleyError>
 where
     Dimensions: Space<N>,

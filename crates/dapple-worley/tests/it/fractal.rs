@@ -16,7 +16,7 @@ const ODD: Octaves = Octaves {
     seeds: OctaveSeeds::Own,
 };
 
-/// Windows with large and small pixels, near and far, flipped.
+/// Returns windows with large and small pixels, near the origin and far from it, and flipped.
 fn windows() -> [Window; 5] {
     let window = |origin: [f64; 2], pixel: [f64; 2]| Window {
         origin,
@@ -102,7 +102,7 @@ fn fractal_render_equals_value_bit_for_bit_in_space() -> Result<(), WorleyError>
     render_equals_value(&texture.fractal(ODD)?, &oblique)
 }
 
-/// Returns the sum as in the paper's formula, in double precision.
+/// Returns the sum by the paper's formula, in double precision.
 fn naive<const N: usize>(
     seed: Seed,
     texture: &Cellular<N>,
@@ -406,7 +406,7 @@ fn ranges_map_their_ends_to_zero_and_one() -> Result<(), WorleyError> {
     Ok(())
 }
 
-/// Counts how many of some new values lie outside of the measured range.
+/// Returns the numbers of values below and above a measured range, among `n` new positions.
 fn covers_most(range: [f32; 2], n: i64, value: impl Fn([f64; 2]) -> f32) -> [i64; 2] {
     let mut outside = [0; 2];
     for index in 0..n {

@@ -8,8 +8,8 @@ use dapple_hash::Seed;
 use dapple_raster::{Raster, Window};
 use dapple_worley::{Dimensions, Metric, POSITION_STEP, Plane, Space, Vector, Worley, WorleyError};
 
-/// The largest change of the difference of two distances by rounding. A key is rounded a few times and its root once,
-/// and powers are accurate to about 1e-6.
+/// Returns the maximum rounding error of the difference of two distances. A key is rounded a few times and its root
+/// once, and powers are accurate to about 1e-6.
 fn slack(metric: Metric, a: f32, b: f32) -> f32 {
     let relative = match metric {
         Metric::Minkowski(_) => 2e-6,
@@ -18,7 +18,8 @@ fn slack(metric: Metric, a: f32, b: f32) -> f32 {
     relative * (a + b)
 }
 
-/// Walks `n` steps. The start and the step are multiples of 2^-21, so that no position is rounded.
+/// Walks `n` steps, and checks that F1 to F4 change by at most the length of each step. The start and the step are
+/// multiples of 2^-21, so that no position is rounded.
 fn walk<const N: usize>(worley: &Worley<N>, start: [f64; N], step: [f64; N], n: u32)
 where
     Dimensions: Space<N>,
@@ -155,7 +156,7 @@ fn distances_do_not_jump_where_a_period_ends() -> Result<(), WorleyError> {
     Ok(())
 }
 
-/// Checks a window of each of F1 to F4 along its rows and its columns.
+/// Checks that F1 to F4 in a window change by at most the distance between adjacent pixels, along rows and columns.
 fn pictures_have_no_jumps<const N: usize>(
     worley: &Worley<N>,
     plane: &Plane<N>,

@@ -6,7 +6,8 @@ use dapple_raster::{Field, FieldExt as _};
 use dapple_worley::{Combination, OctaveSeeds, Octaves, Worley, Worley2, WorleyError};
 use glam::DVec2;
 
-/// Positions near and far, some on borders of cells and some out of range; their number is not a multiple of a group.
+/// Returns positions near and far, some on borders of cells and some out of range. Their number is not a multiple of a
+/// group.
 fn positions() -> Vec<DVec2> {
     let mut positions: Vec<DVec2> = (0..301)
         .map(|index| position::<2>(Seed(4), index, [3.0, 1e3, 1e9][index as usize % 3]).into())

@@ -1,4 +1,4 @@
-//! The oracle: F1 to F4 from all points of a wide neighborhood, sorted.
+//! The oracle: F1 to F4 by sorting all points of a wide neighborhood.
 
 use dapple_hash::{Seed, hash1, unit_f64};
 use dapple_worley::{Dimensions, Metric, Scatter, Space, Worley, WorleyError};
@@ -60,7 +60,7 @@ fn length<const N: usize>(metric: Metric, vector: [f64; N]) -> f64 {
     }
 }
 
-/// All metrics without an exponent, and two with one.
+/// All metrics without an exponent, and Minkowski's metric with two exponents.
 pub(super) const METRICS: [Metric; Metric::NAMED.len() + 2] = {
     let mut metrics = [Metric::Minkowski(10.0); Metric::NAMED.len() + 2];
     let mut at = 0;
@@ -98,7 +98,7 @@ where
     found
 }
 
-/// Returns a position in cells, a multiple of 2^-21, so that nothing is rounded.
+/// Returns a random position whose coordinates, in cells, are multiples of 2^-21, so that nothing is rounded.
 pub(super) fn position<const N: usize>(seed: Seed, index: i64, spread: f64) -> [f64; N] {
     core::array::from_fn(|axis| {
         let unit = unit_f64(hash1(seed.child("position", axis as u64), [index], 0));

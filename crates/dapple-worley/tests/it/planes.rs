@@ -1,10 +1,10 @@
-//! Tests of the planes that one search for the nearest points can fill.
+//! Tests of the outputs (distance, vector, position, id, cell value) that one search can render.
 
 use dapple_hash::Seed;
 use dapple_raster::{Raster, Window, glam::DVec2};
 use dapple_worley::{Dimensions, FeatureView, Metric, POSITION_STEP, Plane, Space, Vector, Worley};
 
-/// All planes of one of the nearest points.
+/// All outputs for one rank of nearest point.
 struct Planes<const N: usize> {
     distance: Raster<f32>,
     vector: Raster<[f32; N]>,

@@ -1,4 +1,4 @@
-//! Properties of every metric, scatter, period and seed.
+//! Property tests over every metric, scatter, period and seed.
 
 use super::ways::{RANKS, agrees_with_oracle, reach_of, sample_in_every_way};
 use dapple_hash::Seed;
@@ -46,7 +46,7 @@ where
     )
 }
 
-/// Returns longer periods for a scatter that may leave all cells of a short period empty.
+/// Returns longer periods if the scatter may leave all cells of a short period empty.
 fn fitting<const N: usize>(worley: &Worley<N>, period: [Option<u32>; N]) -> [Option<u32>; N]
 where
     Dimensions: Space<N>,
@@ -57,7 +57,8 @@ where
     }
 }
 
-/// Multiples of 2^-21, near and up to 2^29 away, so that nothing is rounded; some are corners of cells.
+/// Generates positions that are multiples of 2^-21 of a cell, near the origin and up to 2^29 cells away, so that
+/// nothing is rounded. Some are corners of cells.
 fn any_position<const N: usize>() -> impl Strategy<Value = [f64; N]> {
     let cell = prop_oneof![-8_i64..8, -(1_i64 << 29)..1 << 29];
     let steps = prop_oneof![0_i64..1 << 21, Just(0), Just(1 << 20), Just((1 << 21) - 1)];
@@ -96,7 +97,7 @@ where
     Ok(())
 }
 
-/// Checks that samples are equal, to the last bit, after shifts by periods along every combination of axes.
+/// Checks that samples are equal, bit for bit, after shifts by whole periods along every combination of axes.
 fn repeats<const N: usize>(
     worley: &Worley<N>,
     period: [Option<u32>; N],
@@ -126,7 +127,7 @@ fn any_combination() -> impl Strategy<Value = Combination> {
     ]
 }
 
-/// Windows with pixels from 2^-18 to 2^5 cells of either sign, and sometimes of size 0.
+/// Generates windows with pixels of 2^-18 to 2^5 cells of either sign, and sometimes of size 0.
 fn any_window() -> impl Strategy<Value = Window> {
     let exponent = prop_oneof![4 => -7.0..0.0, 1 => -18.0..5.0];
     let size = (exponent, any::<bool>(), 0..20).prop_map(|(exponent, is_flipped, zero)| {
@@ -153,7 +154,7 @@ fn any_window() -> impl Strategy<Value = Window> {
         })
 }
 
-/// Planes; in most, columns go along the first axis only and rows along the others.
+/// Generates planes. In most of them, columns differ along the first axis only, and rows along the others.
 fn any_plane<const N: usize>() -> impl Strategy<Value = Plane<N>>
 where
     Dimensions: Space<N>,
@@ -173,7 +174,7 @@ where
     })
 }
 
-/// Compares the values, the ids and the gradients of a window with those of its pixel centers.
+/// Checks that the values, ids and gradients of a rendered window equal those sampled at its pixel centers.
 fn window_holds_samples<const N: usize>(
     texture: &Cellular<N>,
     plane: &Plane<N>,
@@ -222,7 +223,7 @@ where
     Ok(())
 }
 
-/// Returns the sorted ids of all points in the cells from `first` on, as many cells as a period has.
+/// Returns the sorted ids of all points in one period of cells that starts at `first`.
 fn ids_of_a_period<const N: usize>(
     worley: &Worley<N>,
     period: [u32; N],
@@ -246,7 +247,7 @@ where
     ids
 }
 
-/// Returns the points of 3 × 3 cells, as offsets.
+/// Returns the offsets of the points in 3 × 3 cells starting at `[x, y]`.
 fn points_about(worley: &Worley<2>, [x, y]: [i64; 2]) -> Vec<[f64; 2]> {
     let cells = (0..9).map(|index| [x + index % 3, y + index / 3]);
     let points = cells.flat_map(|cell| worley.cell_points(cell));

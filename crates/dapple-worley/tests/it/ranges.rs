@@ -5,7 +5,7 @@ use dapple_worley::{
     Combination, Dimensions, Metric, Scatter, Space, Worley, Worley2, WorleyError, WorleyErrorKind,
 };
 
-/// The combinations whose range in the table differs from the measured range.
+/// Returns the combinations whose range in the table differs from a new measurement.
 fn measured_otherwise<const N: usize>() -> Vec<String>
 where
     Dimensions: Space<N>,

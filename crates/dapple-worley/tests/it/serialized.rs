@@ -1,4 +1,4 @@
-//! Tests of options as data: they stay the same when written and read again, and their names are those used in files.
+//! Tests of serialized options: a round trip preserves them, and their names are the documented ones.
 
 use dapple_worley::{Combination, Metric, Octaves, Profile, RadialCells, Scatter};
 use serde::{Serialize, de::DeserializeOwned};

@@ -1,4 +1,4 @@
-//! Compares the basis over placed points with a search through all of them.
+//! Compares the basis over points placed by the caller with a brute-force search over all of them.
 
 use dapple_hash::{Seed, hash1, unit_f64};
 use dapple_worley::{Dimensions, FeatureSet, Metric, Space, Vector};

@@ -1,4 +1,4 @@
-//! Parameters for shaders; the bits are compared in `dapple-wgsl-tests`.
+//! Tests of the parameters for shaders. `dapple-wgsl-tests` compares the shaders' bits.
 
 use dapple_worley::hash::Seed;
 use dapple_worley::{Metric, Scatter, Worley2, Worley3, Worley4};

@@ -1,4 +1,4 @@
-//! Tests of pictures in which points are culled, and of slices that are filled together.
+//! Tests of images for which points are culled, and of slices that are rendered together.
 
 use dapple_hash::Seed;
 use dapple_raster::{Field, Raster, RasterErrorKind, Window};
@@ -8,8 +8,8 @@ use dapple_worley::{
 };
 use glam::{DVec2, DVec3, DVec4};
 
-/// Returns a position that is about equally far from its two nearest points. It lies between `at` and a place with
-/// another nearest point.
+/// Returns a position that is about equally far from its two nearest points. It is on a line from `at` to a position
+/// with another nearest point.
 pub(super) fn middle_ground<const N: usize>(worley: &Worley<N>, at: [f64; N]) -> [f64; N]
 where
     Dimensions: Space<N>,
@@ -32,7 +32,7 @@ where
     along(at, here)
 }
 
-/// Returns a place at `way` along the first axis, and half as much along the second.
+/// Returns the position `way` away along the first axis, and half as far along the second.
 fn along<const N: usize>(mut at: [f64; N], way: f64) -> [f64; N] {
     at[0] += way;
     at[1] += way / 2.0;
@@ -64,7 +64,8 @@ where
     Ok(())
 }
 
-/// Windows around places where a tiny difference decides which point is nearer, from a whole cell down to a few steps.
+/// Compares windows with single values around positions that are nearly equally far from two points. The windows are
+/// from a whole cell down to a few steps wide.
 fn hairs_are_split_right<const N: usize>() -> Result<(), WorleyError>
 where
     Dimensions: Space<N>,
@@ -104,7 +105,7 @@ fn hairs_are_split_right_in_space() -> Result<(), WorleyError> {
     hairs_are_split_right::<3>()
 }
 
-/// More planes than are filled together: some close to one another, some not, turned ones, and one plane twice.
+/// Returns more planes than are rendered together: some close to each other, some not, some rotated, and one twice.
 fn planes() -> Vec<Plane<3>> {
     let slice = |x: f64, z: f64| Plane::slice(DVec3::new(x, 0.5, z));
     let mut planes: Vec<_> = (0..18)
@@ -154,7 +155,8 @@ fn slices_are_pictures_of_their_planes_bit_for_bit() -> Result<(), WorleyError> 
     Ok(())
 }
 
-/// Slices descending along the third axis, then ascending along the fourth, close enough to share their candidates.
+/// Renders slices that descend along the third axis, then ascend along the fourth, close enough to share their
+/// candidates.
 #[test]
 fn slices_of_four_dimensions_equal_values_bit_for_bit() -> Result<(), WorleyError> {
     let slice = |z: f64, w: f64| Plane::slice(DVec4::new(0.5, -2.0, z, w));
@@ -214,7 +216,7 @@ fn slices_of_another_size_are_refused_before_anything_is_drawn() -> Result<(), W
     Ok(())
 }
 
-/// Cells from less than a pixel to wider than a block of pixels.
+/// Renders cells from less than a pixel to wider than a block of pixels.
 #[test]
 fn wide_pictures_hold_what_values_are_at_any_size_of_cells() -> Result<(), WorleyError> {
     let size = [1100, 6];
@@ -240,7 +242,7 @@ fn wide_pictures_hold_what_values_are_at_any_size_of_cells() -> Result<(), Worle
     Ok(())
 }
 
-/// Compares extreme planes and windows with single values.
+/// Compares rendered planes and windows of extreme size and orientation with single values.
 #[test]
 fn odd_planes_and_windows_hold_what_values_are() -> Result<(), WorleyError> {
     let up = |v: DVec3| Plane {
@@ -262,7 +264,7 @@ fn odd_planes_and_windows_hold_what_values_are() -> Result<(), WorleyError> {
     Ok(())
 }
 
-/// Signed zeros and NaN have the same bits in pictures as in single values.
+/// Checks that signed zeros and NaN have the same bits in images as in single values.
 #[test]
 fn values_of_nothing_have_the_same_bits_in_pictures() -> Result<(), WorleyError> {
     let window = Window::new(DVec2::ZERO, DVec2::ONE, [20, 20])?;
@@ -293,7 +295,7 @@ fn values_of_nothing_have_the_same_bits_in_pictures() -> Result<(), WorleyError>
     Ok(())
 }
 
-/// If one point is the nearest in a whole tile, its features are still found in the tile, as for other points.
+/// Checks that features are found if one point is the nearest in a whole tile.
 #[test]
 fn features_of_f1_alone_are_those_of_samples() -> Result<(), WorleyError> {
     let worley = Worley2::new(Seed(4));

@@ -1,4 +1,4 @@
-//! Tests of slices of spaces as fields.
+//! Tests of planar slices of 3-D and 4-D bases as fields.
 
 use dapple_hash::Seed;
 use dapple_raster::{Field, FieldExt as _, Raster, Window, glam::DVec2};

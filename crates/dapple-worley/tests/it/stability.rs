@@ -1,4 +1,4 @@
-//! Pinned values of the crate, which must not change by accident.
+//! Pinned values of the crate, which must not change unintentionally.
 //!
 //! Each test writes its numbers as lines of text, floating-point numbers as their bits. To pin new values, copy the
 //! lines that a failing test prints.

@@ -5,18 +5,18 @@
 use dapple_hash::{Seed, hash1, unit_f64};
 use dapple_worley::{Dimensions, Metric, Scatter, Space, Vector, Worley, WorleyError};
 
-/// The quantile of the normal distribution for one in 10^4.
+/// The quantile of the standard normal distribution that is exceeded with a probability of 10^-4.
 const QUANTILE: f64 = 3.719;
 
-/// The value that chi-square with so many degrees of freedom exceeds one time in 10^4 (E. B. Wilson and M. M. Hilferty,
-/// "The Distribution of Chi-Square", 1931, <https://doi.org/10.1073/pnas.17.12.684>).
+/// Returns the value that chi-square with the given degrees of freedom exceeds with a probability of 10^-4 (E. B.
+/// Wilson and M. M. Hilferty, "The Distribution of Chi-Square", 1931, <https://doi.org/10.1073/pnas.17.12.684>).
 fn chi_square_bound(freedom: f64) -> f64 {
     let part = 2.0 / (9.0 * freedom);
     let root = 1.0 - part + QUANTILE * part.sqrt();
     freedom * root * root * root
 }
 
-/// Checks that counts are in proportion to `weights`.
+/// Checks by a chi-square test that counts are in proportion to `weights`.
 fn follows(what: &str, counts: &[u32], weights: &[f64]) {
     let n: u32 = counts.iter().sum();
     let all: f64 = weights.iter().sum();
@@ -41,7 +41,7 @@ fn is_uniform(what: &str, counts: &[u32]) {
     follows(what, counts, &vec![1.0; counts.len()]);
 }
 
-/// A histogram of numbers in `[0, 1)`.
+/// Returns a histogram of numbers in `[0, 1)`.
 fn histogram(n_bins: usize, values: impl IntoIterator<Item = f64>) -> Vec<u32> {
     let mut counts = vec![0; n_bins];
     for value in values {
@@ -50,7 +50,7 @@ fn histogram(n_bins: usize, values: impl IntoIterator<Item = f64>) -> Vec<u32> {
     counts
 }
 
-/// A histogram of pairs of numbers in `[0, 1)`.
+/// Returns a 2-D histogram of pairs of numbers in `[0, 1)`, row by row.
 fn histogram2(n_bins: usize, values: impl IntoIterator<Item = [f64; 2]>) -> Vec<u32> {
     let mut counts = vec![0; n_bins * n_bins];
     for [a, b] in values {
@@ -200,7 +200,8 @@ fn neighboring_cells_do_not_depend_on_each_other() {
     }
 }
 
-/// The probabilities of the counts from 0 on; the last entry is the probability of all larger counts together.
+/// Returns the probabilities of the counts 0, 1, … for a Poisson distribution. The last one is the total probability
+/// of all larger counts.
 fn poisson(mean: f64, len: usize) -> Vec<f64> {
     let mut probabilities = Vec::new();
     let mut probability = libm::exp(-mean);
@@ -212,8 +213,8 @@ fn poisson(mean: f64, len: usize) -> Vec<f64> {
     probabilities
 }
 
-/// Checks how many cells have the least number of points, one more, and so on; the last weight is for all larger
-/// numbers.
+/// Checks the numbers of cells with the minimum number of points, one more, and so on. The last weight is for all
+/// larger numbers.
 fn counts_follow<const N: usize>(
     side: i64,
     scatter: Scatter,
@@ -282,7 +283,7 @@ fn clamped_counts_follow_the_clamped_poisson_distribution() -> Result<(), Worley
     Ok(())
 }
 
-/// A random position, anywhere within 2^20 cells of the origin.
+/// Returns a random position within 2^20 cells of the origin along each axis.
 fn anywhere<const N: usize>(index: i64) -> [f64; N] {
     let unit = |axis: usize| unit_f64(hash1(Seed(75), [index], axis as u32));
     core::array::from_fn(|axis| (unit(axis) - 0.5) * f64::from(1 << 21))
@@ -330,7 +331,7 @@ fn mean_distances_at_the_default_density_are_those_measured() {
     means_are_those_measured::<4>(5000, [0.459, 0.575, 0.646, 0.700]);
 }
 
-/// The volume of the unit ball.
+/// Returns the volume of the metric's unit ball in `n_axes` dimensions.
 fn unit_ball(metric: Metric, n_axes: usize) -> f64 {
     use core::f64::consts::PI;
     let n = n_axes as f64;
@@ -341,8 +342,8 @@ fn unit_ball(metric: Metric, n_axes: usize) -> f64 {
     }
 }
 
-/// In an unclamped Poisson scatter, the ball about a position up to its nearest point holds an exponentially
-/// distributed number of points on average, and the mean distances follow.
+/// Checks the distances of an unclamped Poisson scatter. The expected number of points in the ball up to the nearest
+/// point is exponentially distributed, which determines the mean distances.
 fn distances_are_those_of_a_poisson_process<const N: usize>(
     metric: Metric,
     density: f64,

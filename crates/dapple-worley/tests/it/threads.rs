@@ -5,7 +5,7 @@ use dapple_raster::{Raster, Window};
 use dapple_worley::{Combination, FeatureView, Metric, Octaves, Plane, Worley, WorleyError};
 use glam::DVec2;
 
-/// Checks that 1, 2 and 7 threads make the same picture.
+/// Checks that an image has the same bits on 1, 2 and 7 threads.
 fn is_the_same_with_any_number_of_threads<T: PartialEq + Send>(
     what: &str,
     picture: impl Fn() -> T + Sync,
@@ -18,7 +18,7 @@ fn is_the_same_with_any_number_of_threads<T: PartialEq + Send>(
     assert!(pictures[0] == pictures[2], "{what}: one and seven threads");
 }
 
-/// Windows of several bands and blocks, with small and with large pixels.
+/// Returns windows of several bands and blocks, with small and with large pixels.
 fn windows() -> Result<[Window; 2], WorleyError> {
     Ok([
         Window::new(DVec2::new(-3.0, 1e5), DVec2::new(9.0, 7.0), [700, 333])?,

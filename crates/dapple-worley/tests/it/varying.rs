@@ -6,7 +6,8 @@ use dapple_hash::Seed;
 use dapple_raster::{Raster, Window};
 use dapple_worley::{Dimensions, Plane, Scatter, Space, Vector, Worley, WorleyError};
 
-/// Varies from the least density to the largest and back, several times within 40 cells, and is clamped at both ends.
+/// A density that varies from the minimum to the maximum and back, several times within 40 cells. It exceeds both
+/// limits.
 fn waves<const N: usize>(at: [f64; N]) -> f64 {
     let sum: f64 = at.iter().sum();
     let wave = 1.0 - (sum / 20.0 - (sum / 20.0).round()).abs() * 4.0;

@@ -1,10 +1,11 @@
-//! Tests of Voronoi cells against all feature points nearby.
+//! Tests of measures of Voronoi cells against all feature points nearby.
 
 use super::oracle::{brute_force_vectors, position};
 use dapple_hash::Seed;
 use dapple_worley::{Dimensions, Metric, Space, Worley};
 
-/// Returns the distance from a position to the plane halfway between two points, given the vectors from both of them.
+/// Returns the distance from a position to the bisecting plane of two points, given the vectors from both points to
+/// the position.
 fn to_plane<const N: usize>(first: [f64; N], other: [f64; N]) -> f64 {
     let square = |way: [f64; N]| way.iter().map(|part| part * part).sum::<f64>();
     let between = core::array::from_fn(|axis| first[axis] - other[axis]);

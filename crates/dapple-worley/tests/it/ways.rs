@@ -15,7 +15,7 @@ pub(super) const RANKS: [Combination; 4] = [
     Combination::F4,
 ];
 
-/// The size of a pixel, in cells.
+/// Width of a pixel, in cells.
 const PIXEL: f64 = 1.0 / 64.0;
 
 /// Returns the four nearest points of a position. All sampling methods must agree on them: one position, many
@@ -82,7 +82,7 @@ where
     (Plane::slice(origin.into()), window)
 }
 
-/// Returns the four nearest points of one of the pixels of a window.
+/// Returns the four nearest points of one pixel of a rendered window.
 fn render_features<const N: usize>(
     worley: &Worley<N>,
     plane: &Plane<N>,
@@ -111,7 +111,7 @@ where
     }))
 }
 
-/// Checks four features against the oracle, which looks at all cells within `reach`.
+/// Checks four nearest points against the oracle, which searches all cells within `reach`.
 pub(super) fn agrees_with_oracle<const N: usize>(
     worley: &Worley<N>,
     at: [f64; N],
@@ -144,7 +144,7 @@ pub(super) fn agrees_with_oracle<const N: usize>(
     }
 }
 
-/// Checks that the vector from a feature point begins exactly at a point with its id.
+/// Checks that the vector from a feature point starts exactly at a point with the feature's id.
 fn leads_to_its_point<const N: usize>(
     worley: &Worley<N>,
     at: [f64; N],
@@ -175,8 +175,8 @@ fn leads_to_its_point<const N: usize>(
     );
 }
 
-/// Returns the distance to which the oracle must look so that it misses one of the five nearest points at most once in
-/// 10^7 times. Within this distance 30 points are expected, in the metric with the smallest balls.
+/// Returns the search distance of the oracle, in cells, at which it misses one of the five nearest points with a
+/// probability below 10^-7. Within this distance 30 points are expected, in the metric with the smallest balls.
 pub(super) fn reach_of<const N: usize>(worley: &Worley<N>) -> Result<i64, WorleyError>
 where
     Dimensions: Space<N>,
