@@ -7,8 +7,8 @@ use dapple_raster::Raster;
 /// A raster's frequency bands: one detail raster per level, finest first, and the coarse remainder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bands {
-    /// Detail `(I − P)` that halving loses at each level. The first detail raster is the same size as the original
-    /// raster.
+    /// Detail that halving loses at each level: the raster minus its projection (halved and doubled again), `(I − P)`.
+    /// The first element has the size of the original raster.
     pub details: Vec<Raster<f32>>,
     /// Coarse raster that remains after the last level.
     pub coarse: Raster<f32>,

@@ -14,14 +14,15 @@ use fearless_simd::{Level, Simd};
 pub(crate) struct Doubling {
     pub(crate) fine: Line,
     pub(crate) coarse: Line,
-    /// Weights for even and for odd fine indices. Both parts have the same number of weights.
+    /// Weights of the fine coefficients with even and with odd index. Both have the same number of weights.
     parts: [Part; 2],
 }
 
-/// The coarse coefficients whose weighted sum is fine coefficient `2 i` or `2 i + 1`.
+/// The two-scale weights of fine coefficient `2 i` or `2 i + 1`, which is a weighted sum of adjacent coarse
+/// coefficients.
 #[derive(Clone, Debug)]
 struct Part {
-    /// Index of the first coefficient, relative to `i`.
+    /// Index of the first coarse coefficient of the sum, relative to `i`.
     first: i64,
     weights: Vec<f64>,
 }
@@ -66,7 +67,7 @@ impl Doubling {
         fine
     }
 
-    /// Doubles columns, rounds to `f32`, and doubles rows with `along_rows`.
+    /// Doubles columns, rounds to `f32`, then doubles rows with `along_rows`.
     pub(crate) fn plane(&self, level: Level, along_rows: &Self, coarse: &[f32], fine: &mut [f32]) {
         let width = along_rows.coarse.len;
         let scratch = || vec![0.0; width + 2 * PAD];
@@ -75,7 +76,7 @@ impl Doubling {
         });
     }
 
-    /// Computes a fine row, compiled for the SIMD level of `_simd`.
+    /// Computes a fine row. `_simd` selects the SIMD level that the loops are compiled for.
     #[inline(always)]
     fn row<S: Simd>(
         &self,
@@ -91,7 +92,8 @@ impl Doubling {
         along_rows.spread(padded, fine, |value| value as f32);
     }
 
-    /// Computes fine row `row`, rounded to `f32`, from the coarse rows, which are as long as `sums`.
+    /// Computes row `row` of the raster whose columns are doubled, rounded to `f32`, into `sums`. `coarse` has rows of
+    /// the same length.
     #[inline(always)]
     pub(crate) fn blend(&self, row: usize, coarse: &[f32], sums: &mut [f64]) {
         let part = &self.parts[row % 2];
@@ -111,7 +113,7 @@ impl Doubling {
         }
     }
 
-    /// Extends a coarse line, which has room for `PAD` values at both ends.
+    /// Fills the padding of a coarse line according to its border. The line has `PAD` values of padding at both ends.
     #[inline(always)]
     fn go_on(&self, padded: &mut [f64]) {
         let len = self.coarse.len;
@@ -120,7 +122,7 @@ impl Doubling {
         }
     }
 
-    /// Computes the fine values from an extended coarse line.
+    /// Computes the fine coefficients of a padded coarse line.
     #[inline(always)]
     fn spread<T>(&self, padded: &[f64], fine: &mut [T], round: impl Fn(f64) -> T) {
         let [even, odd] = &self.parts;
@@ -159,7 +161,7 @@ impl Part {
     }
 }
 
-/// Computes the weighted sum of rows, rounded to `f32`.
+/// Computes the weighted sum of rows, rounded to `f32`, into `sums`.
 #[inline(always)]
 fn blend<const T: usize>(weights: [f64; T], rows: [&[f32]; T], sums: &mut [f64]) {
     let rows = rows.map(|row| &row[..sums.len()]);
@@ -169,7 +171,7 @@ fn blend<const T: usize>(weights: [f64; T], rows: [&[f32]; T], sums: &mut [f64])
     }
 }
 
-/// Computes the even and odd values of a line, each a weighted sum of consecutive coarse values.
+/// Computes the even and odd coefficients of a fine line, each a weighted sum of consecutive coarse coefficients.
 #[inline(always)]
 fn spread<const T: usize, O>(
     weights: [[f64; T]; 2],
@@ -189,7 +191,7 @@ fn spread<const T: usize, O>(
     }
 }
 
-/// Returns the weighted sum of the terms, added in order.
+/// Returns `Σ weights[i] · term(i)`, added in order of `i`.
 #[inline(always)]
 fn weigh<const T: usize>(weights: [f64; T], term: impl Fn(usize) -> f64) -> f64 {
     let mut sum = weights[0] * term(0);

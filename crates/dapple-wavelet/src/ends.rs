@@ -2,7 +2,7 @@
 
 use crate::{Border, Phase, SplineFilter, WaveletError, WaveletErrorKind};
 
-/// A line of finite length with an infinite extension.
+/// A line of finite length, and the rule for values beyond its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Line {
     /// Number of stored values.
@@ -15,16 +15,17 @@ pub(crate) struct Line {
 enum Ends {
     /// The line repeats.
     Repeat,
-    /// The line is mirrored. `twice` says for the start and the end whether the end value occurs twice or once.
+    /// The line is mirrored at both ends. `twice` says, for the start and the end, whether the mirror repeats the end
+    /// value.
     Mirror { twice: [bool; 2] },
 }
 
-/// A fine line and its coarse line.
+/// A fine line, and the coarse line that halving produces from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Halving {
     pub(crate) fine: Line,
     pub(crate) coarse: Line,
-    /// Index of the first stored coarse coefficient, as defined by [`Phase`](crate::Phase): 0 or 1.
+    /// Index of the first stored coarse coefficient in the numbering of [`Phase`](crate::Phase): 0 or 1.
     pub(crate) offset: i64,
 }
 

@@ -1,7 +1,7 @@
 //! Tests of the equations of Du, Wang and Meng, one per equation, written out as in the paper.
 //!
-//! The paper positions φ and its shifts by their left end, where coefficient `i` is at `i`; here the spline is
-//! centered on its coefficient. [`Phase`](crate::Phase) defines where `h` and `a` begin.
+//! The paper positions the spline φ and its shifts by their left end, so that coefficient `i` is at `i`. Here the
+//! spline is centered on its coefficient. [`Phase`](crate::Phase) defines the first taps of `h` and `a`.
 
 use crate::oracle::{DEGREES, all_filters, binomials, coarse_center, distance, noise, spread};
 use crate::{Border, Degree, SplineFilter};
@@ -9,7 +9,7 @@ use dapple_raster::Raster;
 
 const PERIODIC: Border = Border::Periodic;
 
-/// Returns the scattered positions, away from the discontinuities of the constant spline.
+/// Returns scattered positions, away from the discontinuities of the constant spline.
 fn positions() -> impl Iterator<Item = f64> {
     noise(60).into_iter().map(|value| 9.0 * value)
 }
@@ -25,7 +25,7 @@ fn value(filter: SplineFilter, line: &[f64], x: f64) -> f64 {
     filter.value_line(line, x, PERIODIC).expect("a good line")
 }
 
-/// Returns the value of the spline of a periodic raster.
+/// Returns the value at `[x, y]` of the spline whose coefficients are a periodic raster.
 fn value_2d(filter: SplineFilter, raster: &Raster<f32>, x: f64, y: f64) -> f64 {
     let along = |row: u32| {
         let line: Vec<f64> = raster.row(row).iter().map(|&value| value.into()).collect();
@@ -46,8 +46,8 @@ fn noise_raster(side: u32) -> Raster<f32> {
     Raster::from_vec([side, side], pixels).expect("a good size")
 }
 
-/// Returns the halving filter `a`, from its responses to impulses in a periodic line of 64: tap `k`, for `k` from -32
-/// to 31.
+/// Returns the taps of the halving filter `a`, for `k` from -32 to 31, from its responses to impulses in a periodic
+/// line of 64 coefficients.
 fn halving_taps(filter: SplineFilter) -> impl Fn(i64) -> f64 {
     let taps: Vec<f64> = (0..64)
         .map(|k| {

@@ -1,12 +1,12 @@
 //! Filter kernels, given by their taps and poles.
 //!
-//! Halving is a least-squares fit. Let `h` be the two-scale coefficients and `b` the inner products of the spline
-//! with its own integer shifts (a B-spline of degree `2d + 1` at integers). The coarse coefficients `c` of the fine
-//! ones `g` solve `b * c = ↓2(q ⋆ g)` with `q = ½ h * b`. For least squares of the coefficients instead of the
-//! functions, `q` is `h`, and `b` is the autocorrelation of `h` at even distances. In both cases `b` is symmetric.
-//! Its inverse is a chain of first-order recursions, one pair for each pole inside the unit circle. The sum of `b` is
-//! 1, so the gain of the chain is the product of all `(1 − pole)²`.
-//!
+//! Halving is a least-squares fit. Let `h` be the two-scale coefficients of the spline, and `b` the inner products of
+//! the spline with its integer shifts (a B-spline of degree `2d + 1` at integers). The coarse coefficients `c` of the
+//! fine coefficients `g` solve `b * c = ↓2(q ⋆ g)` with `q = ½ h * b`, where `*` is convolution, `⋆` is correlation
+//! and `↓2` keeps every other value. For least squares of the coefficients instead of the functions, `q` is `h`, and
+//! `b` is the autocorrelation of `h` at even distances. In both cases `b` is symmetric. Its inverse is a chain of
+//! first-order recursions, one pair for each pole inside the unit circle. The sum of `b` is 1, so the gain of the
+//! chain is the product of all `(1 − pole)²`.
 //! Reference: Michael Unser, Akram Aldroubi and Murray Eden, "B-Spline Signal Processing: Part I, Theory", IEEE
 //! Transactions on Signal Processing 41(2), 1993, for inverses by recursion.
 
@@ -17,15 +17,14 @@ use crate::{Degree, Fit, SplineFilter};
 pub(crate) struct Kernel {
     /// Offset of the first tap relative to the value.
     pub(crate) first: i64,
-    /// Symmetric weights of the sum, which include the recursions' gain.
+    /// Symmetric weights of the sum, multiplied by the gain of the recursions.
     pub(crate) taps: Vec<f64>,
     /// Poles of the recursions, each run forward and backward.
     pub(crate) poles: &'static [f64],
 }
 
 impl Kernel {
-    /// Creates the halving filter. Its offsets are relative to the first of the two fine coefficients that belong to
-    /// a coarse one.
+    /// Creates the halving filter. Offsets are relative to fine coefficient `2 i` of coarse coefficient `i`.
     pub(crate) fn halving(filter: SplineFilter) -> Self {
         let h = two_scale(filter.degree);
         let first = filter.first_tap();
@@ -62,7 +61,7 @@ impl Kernel {
         }
     }
 
-    /// Returns the number of steps after which a recursion's initial value has an influence below 2^-58, which is
+    /// Returns the number of steps after which the initial value of a recursion has a relative influence below 2^-58,
     /// less than a rounding error.
     pub(crate) fn reach(&self) -> usize {
         let slowest = self
@@ -78,7 +77,7 @@ impl Kernel {
     }
 }
 
-/// Maximum remaining influence of a recursion's initial value: 2^-58.
+/// Influence below which the initial value of a recursion is negligible: 2^-58.
 const FORGOTTEN: f64 = 1.0 / (1_u64 << 58) as f64;
 
 /// Returns the two-scale coefficients `2^-d C(d + 1, k)` of equation 4.
@@ -91,7 +90,7 @@ pub(crate) fn two_scale(degree: Degree) -> Vec<f64> {
     }
 }
 
-/// Returns the inner products of the spline with its shifts by `-d ..= d`, scaled to the smallest integers.
+/// Returns the inner products of the B-spline with its shifts by `-d ..= d`, scaled to the smallest integers.
 pub(crate) fn gram(degree: Degree) -> &'static [f64] {
     match degree {
         Degree::Constant => &[1.0],
@@ -125,7 +124,8 @@ fn function_poles(degree: Degree) -> &'static [f64] {
     }
 }
 
-/// Returns the poles of the inverse of `HᵀH` of the coarse line, whose rows are 1; 1 6 1; 6 20 6; and 1 28 70 28 1.
+/// Returns the poles of the inverse of `HᵀH`, where `H` is the doubling of a line. The rows of `HᵀH` are 1; 1 6 1; 6
+/// 20 6; and 1 28 70 28 1 for degrees 0 to 3, up to a factor.
 fn coefficient_poles(degree: Degree) -> &'static [f64] {
     match degree {
         Degree::Constant => &[],

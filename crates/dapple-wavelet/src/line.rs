@@ -49,7 +49,7 @@ impl SplineFilter {
         Ok(filter_line(&halving, fine))
     }
 
-    /// Represents the same function with `fine_len` coefficients (equation 6).
+    /// Doubles a line: represents the same function with `fine_len` coefficients (equation 6).
     ///
     /// # Errors
     ///

@@ -1,10 +1,10 @@
 //! Generates seamless rasters of wavelet noise, with a weight per band.
 //!
 //! A raster contains the coefficients of a periodic quadratic B-spline. Each band of Cook and DeRose's wavelet noise
-//! (see [`WaveletNoise`](crate::WaveletNoise)) is generated at the size at which it occupies the highest octave,
-//! which no other band shares at that size. It is then doubled to the size of the raster, which changes only the
-//! number of coefficients. The result has no seam, bands do not overlap, and each band can be recovered by halving.
-//! Prefer this to making a noise image repeat afterward.
+//! (see [`WaveletNoise`](crate::WaveletNoise)) is generated at the size at which it occupies the highest octave. It is
+//! then doubled to the size of the raster, which represents the same function with more coefficients. The result has
+//! no seam, bands do not overlap, and each band can be recovered by halving. Prefer this to removing the seam of a
+//! noise image afterward.
 //!
 //! Every band is generated from separate white noise, and its period is never shorter than the raster.
 //!
@@ -82,7 +82,7 @@ fn check_size(size: [u32; 2], levels: u32) -> Result<(), WaveletError> {
     }
 }
 
-/// Adds a band to a raster of the same size, which will be doubled `level` more times.
+/// Adds a band to a raster of the same size. `level` is the number of times that the raster will still be doubled.
 fn add_band(
     raster: &Raster<f32>,
     weight: f32,

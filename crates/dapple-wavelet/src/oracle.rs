@@ -2,7 +2,7 @@
 
 use crate::{Border, Degree, Fit, Phase, SplineFilter};
 
-/// Returns all filters.
+/// Returns filters with every combination of options.
 pub(crate) fn all_filters() -> Vec<SplineFilter> {
     let mut filters = Vec::new();
     for degree in DEGREES {
@@ -43,7 +43,8 @@ pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
         .fold(0.0, |most, (a, b)| most.max((a - b).abs()))
 }
 
-/// Returns the first and last fine coefficient of coarse coefficient 0: the table of [`Phase`].
+/// Returns the indices of the first and the last fine coefficient that coarse coefficient 0 affects, as in the table
+/// of [`Phase`].
 pub(crate) fn spread(filter: SplineFilter) -> (i64, i64) {
     let (first, last) = match filter.degree {
         Degree::Constant => (0, 1),
@@ -55,7 +56,7 @@ pub(crate) fn spread(filter: SplineFilter) -> (i64, i64) {
     (first - earlier, last - earlier)
 }
 
-/// Returns one period of the repeating line that this line and its border are part of.
+/// Returns one period of the infinite line that extends a line according to its border.
 fn extended(filter: SplineFilter, line: &[f64], border: Border) -> Vec<f64> {
     let even = matches!(filter.degree, Degree::Constant | Degree::Quadratic);
     let mut line = line.to_vec();
@@ -68,7 +69,7 @@ fn extended(filter: SplineFilter, line: &[f64], border: Border) -> Vec<f64> {
     line
 }
 
-/// Returns the stored coarse coefficients: those with centers between the mirrors.
+/// Returns the indices of the stored coarse coefficients, whose centers are between the mirrors.
 fn kept(filter: SplineFilter, len: usize, border: Border) -> Vec<i64> {
     let (first, last) = spread(filter);
     if border == Border::Periodic {
@@ -85,7 +86,8 @@ fn kept(filter: SplineFilter, len: usize, border: Border) -> Vec<i64> {
     (-4..len as i64 + 4).filter(inside).collect()
 }
 
-/// Halves a line over its extension by a least-squares fit of the functions or of the coefficients.
+/// Halves a line by a dense least-squares fit, of the functions or of the coefficients, over one period of the
+/// extended line.
 pub(crate) fn down(filter: SplineFilter, fine: &[f64], border: Border) -> Vec<f64> {
     let line = extended(filter, fine, border);
     let (period, coarse_period) = (line.len(), line.len() / 2);
@@ -118,7 +120,7 @@ pub(crate) fn down(filter: SplineFilter, fine: &[f64], border: Border) -> Vec<f6
         .collect()
 }
 
-/// Doubles a line: spreads every coarse spline over the extended line.
+/// Doubles a line: adds the fine coefficients of every coarse spline over one period of the extended line.
 pub(crate) fn up(
     filter: SplineFilter,
     coarse: &[f64],
@@ -183,7 +185,7 @@ fn tap(filter: SplineFilter, period: usize, i: usize, j: usize) -> f64 {
         .sum()
 }
 
-/// Returns the integral of the product of two coarse splines, in fine units, over one period.
+/// Returns the integral of the product of coarse splines `j` and `k` over one period. Lengths are in fine cells.
 fn function_product(filter: SplineFilter, period: usize, j: usize, k: usize) -> f64 {
     let [j, k] = [j, k].map(|j| coarse_center(filter, j));
     let copy = |copy: i32| {
@@ -196,7 +198,8 @@ fn function_product(filter: SplineFilter, period: usize, j: usize, k: usize) -> 
     (-8..=8).map(copy).sum()
 }
 
-/// Returns the integral of the product of a coarse and a fine spline, in fine units, over one period.
+/// Returns the integral of the product of coarse spline `j` and fine spline `i` over one period. Lengths are in fine
+/// cells.
 fn mixed_product(filter: SplineFilter, period: usize, j: usize, i: usize) -> f64 {
     let j = coarse_center(filter, j);
     let copy = |copy: i32| {
@@ -209,7 +212,7 @@ fn mixed_product(filter: SplineFilter, period: usize, j: usize, i: usize) -> f64
     (-8..=8).map(copy).sum()
 }
 
-/// Returns the center of coarse spline `j`, in fine units.
+/// Returns the center of coarse spline `j`, in fine cells.
 pub(crate) fn coarse_center(filter: SplineFilter, j: usize) -> f64 {
     let (first, last) = spread(filter);
     2.0 * j as f64 + (first + last) as f64 / 2.0

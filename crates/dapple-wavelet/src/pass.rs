@@ -1,9 +1,8 @@
-//! Filters all lines of an array, several at a time in SIMD lanes and on all cores.
+//! Filters all lines of an array, several at a time in SIMD lanes, on all cores.
 //!
-//! Lines are contiguous in memory. The result is transposed, so that the direction along the lines becomes the
-//! direction across them. Two passes filter a raster along both axes, three passes a volume along its three axes, and
-//! restore the order of the axes. No pass accesses single values with the stride of a row, which would cost more than
-//! the filter.
+//! Lines are contiguous in memory. The result is transposed: its lines run across the original ones. Two passes filter
+//! a raster along both axes, three passes a volume along its three axes, and restore the order of the axes. No pass
+//! accesses single values with the stride of a row, which would cost more than the filter.
 
 use crate::recursion::{Lanes, LineFilter};
 use dapple_raster::simd::dispatch;
@@ -64,7 +63,7 @@ pub(crate) fn filter_lines_into(
     }
 }
 
-/// Filters up to `LANES` lines in parallel lanes.
+/// Filters up to `LANES` lines at a time, one in each lane, into `target`, where the lines are interleaved.
 #[inline(always)]
 fn filter_group<S: Simd>(
     simd: S,
@@ -79,8 +78,8 @@ fn filter_group<S: Simd>(
     }
 }
 
-/// Interleaves up to `LANES` lines. Square blocks of values are transposed in registers; remaining values are copied
-/// one by one.
+/// Interleaves up to `LANES` lines: converts them from line after line to value after value. Square blocks of values
+/// are transposed in registers, and the remaining values are copied one by one.
 #[inline(always)]
 fn interleave<S: Simd>(simd: S, lines: &[f32], target: &mut [[f64; LANES]]) {
     let len = target.len();
@@ -98,7 +97,7 @@ fn interleave<S: Simd>(simd: S, lines: &[f32], target: &mut [[f64; LANES]]) {
     }
 }
 
-/// Interleaves the first `LANES` values of `LANES` lines, whose starts are `len` values apart.
+/// Interleaves the first `LANES` values of `LANES` lines. Lines start `len` values apart.
 ///
 /// A perfect shuffle of all 64 values rotates the six bits of their indices by one; three shuffles exchange the three
 /// bits of the line index with the three bits of the position.

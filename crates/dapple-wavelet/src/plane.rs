@@ -72,7 +72,7 @@ impl SplineFilter {
         Ok(())
     }
 
-    /// Represents the same function with `fine_size` pixels (equations 8 and 13).
+    /// Doubles a raster: represents the same function with `fine_size` pixels (equations 8 and 13).
     ///
     /// # Errors
     ///
@@ -94,7 +94,7 @@ impl SplineFilter {
         Ok(fine)
     }
 
-    /// Doubles a raster like [`up`](Self::up), into an existing raster of the fine size.
+    /// Doubles a raster like [`up`](Self::up), into an existing raster. Its size is the fine size.
     ///
     /// # Errors
     ///

@@ -1,10 +1,10 @@
 //! Runs the halving filter and prefilters, which are a short sum followed by recursions, on several lines in SIMD
 //! lanes.
 //!
-//! A recursion depends on the values before the first one. The lines are therefore extended beyond their ends, so far
-//! that starting with zero influences a result by less than its last bit. This rule covers periodic and mirrored
-//! lines of any length. For a periodic line it equals, up to rounding, the usual start `s / (1 − pⁿ)` from one whole
-//! period `s`.
+//! A recursion depends on the values before the first one. The lines are therefore extended beyond their ends, far
+//! enough that starting with zero influences a result by less than its last bit. This rule covers periodic and
+//! mirrored lines of any length. For a periodic line it equals, up to rounding, the usual initial value `s / (1 −
+//! pⁿ)`, where `p` is the pole, `n` the length and `s` the result of one period that starts with zero.
 //!
 //! All arithmetic is `f64`, with the same operations in the same order for every lane. The bits of a line do not
 //! depend on the lines in other lanes.
@@ -13,7 +13,7 @@ use crate::ends::{Halving, Line};
 use crate::kernel::Kernel;
 use crate::{Border, SplineFilter, WaveletError};
 
-/// A filter from one line to another.
+/// A filter that maps a line to a line of the same or half the length.
 #[derive(Clone, Debug)]
 pub(crate) struct LineFilter {
     kernel: Kernel,
@@ -23,7 +23,8 @@ pub(crate) struct LineFilter {
     step: usize,
     /// Source index of the first tap of the first target value.
     start: i64,
-    /// Number of values by which the target is extended at each end.
+    /// Number of values by which the target is extended at each end, so that the recursions forget their initial
+    /// value.
     reach: usize,
 }
 
@@ -65,7 +66,7 @@ impl LineFilter {
         }
     }
 
-    /// Filters the lines that `load` writes into a slice, which is as long as the source.
+    /// Filters `L` lines. `load` writes their values into a slice that is as long as the source.
     #[inline(always)]
     pub(crate) fn run<'lanes, const L: usize>(
         &self,
@@ -107,7 +108,7 @@ impl LineFilter {
     }
 }
 
-/// Extends the line, whose first value is at index `before`, to both ends of the slice.
+/// Fills both ends of `values` with the extension of a line, whose first value is at index `before`.
 #[inline(always)]
 fn go_on<const L: usize>(line: &Line, values: &mut [[f64; L]], before: usize) {
     let after = before + line.len..values.len();
@@ -116,7 +117,8 @@ fn go_on<const L: usize>(line: &Line, values: &mut [[f64; L]], before: usize) {
     }
 }
 
-/// Computes each target value as a sum of symmetric `taps` times consecutive source values.
+/// Computes each target value as the sum of symmetric `taps` times consecutive source values, `step` source values
+/// apart.
 #[inline(always)]
 fn weigh<const L: usize>(taps: &[f64], source: &[[f64; L]], step: usize, target: &mut [[f64; L]]) {
     // The filter of the paper has eight taps, which then stay in registers.
@@ -158,7 +160,7 @@ fn recur<const L: usize, const P: usize>(poles: [f64; P], lines: &mut [[f64; L]]
     sweep(poles, lines.iter_mut().rev());
 }
 
-/// Adds to each value the pole times the previous value, for each pole in turn.
+/// Runs first-order recursions: for each pole in turn, adds to each value the pole times the previous result.
 #[inline(always)]
 fn sweep<'lines, const L: usize, const P: usize>(
     poles: [f64; P],

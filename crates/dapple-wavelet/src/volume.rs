@@ -35,7 +35,7 @@ impl SplineFilter {
         Ok(filter_lines(&z, &along_y))
     }
 
-    /// Doubles a volume, representing the same function with `fine_size` values.
+    /// Doubles a volume: represents the same function with `fine_size` values.
     ///
     /// # Errors
     ///

@@ -27,7 +27,7 @@ fn project(filter: SplineFilter, fine: &[f64], levels: u32) -> Vec<f64> {
         .expect("a line that can be halved")
 }
 
-/// Tolerance of 1e-12: a few dozen roundings of values of about 1.
+/// Checks that lines differ by less than 1e-12: a few dozen roundings of values of about 1.
 fn assert_near(line: &[f64], needed: &[f64], what: &str) {
     let distance = distance(line, needed);
     assert!(distance < 1e-12, "{what}: {distance} apart");
@@ -295,8 +295,8 @@ fn mirrored_levels_are_those_of_the_mirrored_line_where_its_mirrors_fit() {
     }
 }
 
-/// Returns the eight periods of the mirrored line, for up to three levels. `once` is 1 if its end values occur once,
-/// else 0.
+/// Returns eight periods of the mirrored line, enough for up to three levels. `once` is 1 if the mirror does not
+/// repeat its end values, and 0 if it does.
 fn mirrored_eight_times(line: &[f64], once: usize) -> Vec<f64> {
     let back = line[once..line.len() - once].iter().rev();
     let period: Vec<f64> = line.iter().chain(back).copied().collect();
@@ -335,7 +335,7 @@ fn down_stays_within_its_bound_and_comes_near_to_it() {
     }
 }
 
-/// Returns a line of 128 with an impulse.
+/// Returns a line of 128 coefficients that are 0 except for a 1 at `index`.
 fn impulse_at(index: usize) -> Vec<f64> {
     let mut line = vec![0.0; 128];
     line[index] = 1.0;

@@ -36,7 +36,7 @@ impl<const N: usize> Band<N> {
         }
     }
 
-    /// Converts the noise's tile coordinates to this band's.
+    /// Converts tile coordinates of the noise to tile coordinates of this band.
     #[inline(always)]
     pub(super) fn places(&self, periods: [Period; N], mut places: [Place; N]) -> [Place; N] {
         for (axis, place) in places.iter_mut().enumerate() {
@@ -45,7 +45,7 @@ impl<const N: usize> Band<N> {
         places
     }
 
-    /// Converts a tile coordinate along one axis, with the given period, to this band's.
+    /// Converts a tile coordinate of the noise along one axis, with the given period, to this band's.
     #[inline(always)]
     pub(super) fn place(&self, period: Period, place: Place, axis: usize) -> Place {
         // The first band is the noise itself.

@@ -40,7 +40,7 @@ fn transform(line: &[[f64; 2]], roots: &[[f64; 2]]) -> Vec<[f64; 2]> {
     (0..SIDE).map(at).collect()
 }
 
-/// Returns the power by the larger frequency of both axes, in cycles per tile.
+/// Returns the power for each frequency in cycles per tile, where the frequency is the larger one of both axes.
 fn power(seed: u64, roots: &[[f64; 2]]) -> Vec<f64> {
     let noise = WaveletNoise2::new(CELLS as u32, Seed(seed)).unwrap();
     let sample = |x: usize, y: usize| {

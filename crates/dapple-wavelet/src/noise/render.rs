@@ -1,4 +1,4 @@
-//! Renders noise windows, computing the terms that the pixels of a column or row share only once.
+//! Renders noise windows. Work that the pixels of a row or column share is done once.
 //!
 //! All pixels of a row have the same y. The three rows of coefficients around it are blended into one, so that each
 //! pixel needs three values instead of nine. The sums have the same order as for a single position.
@@ -29,16 +29,16 @@ pub(super) fn render<const N: usize>(
     Ok(())
 }
 
-/// A window of noise, with the data for its columns that all rows share.
+/// A window of noise, with the column data that all rows share.
 struct Picture<'a, const N: usize> {
     periods: [Period; 2],
     window: &'a Window,
     sheets: Vec<Sheet<'a, N>>,
-    /// Indices of blind columns, whose coordinate is not finite.
+    /// Indices of blind columns: columns whose coordinate is not finite.
     blind: Vec<usize>,
 }
 
-/// A band, with its data for a window.
+/// A band of the noise, with its column data for a window.
 struct Sheet<'a, const N: usize> {
     band: &'a Band<N>,
     tile: &'a Tile<2>,

@@ -1,27 +1,28 @@
 //! Computes the exact mean square of noise over all seeds, for tiles of any size, in order to normalize it.
 //!
-//! The noise is `(I − P) R`, where `R` is white and `P` is the projection along every axis. Its mean square, in a
-//! metric `M` that is a product of one metric per axis, is `tr((I − P)ᵀ M (I − P))` divided by the number of
-//! coefficients. This equals `Π whole − 2 Π cross + Π low` over the axes, with three sums per axis. A single impulse
-//! suffices to compute them, because shifting it by two cells gives the same sums and shifting it by one cell gives
-//! their mirror images.
+//! The noise is `(I − P) R`, where `R` is white noise and `P` is the projection along every axis. A mean square is a
+//! quadratic form with a matrix `M`, here a product of one matrix per axis. Its mean over all seeds is `tr((I − P)ᵀ M
+//! (I − P))` divided by the number of coefficients, where `tr` is the trace. This equals `Π whole − 2 Π cross + Π low`
+//! over the axes, with three traces per axis ([`LineSums`]). A single impulse suffices to compute them, because
+//! shifting it by two cells gives the same traces and shifting it by one cell gives their mirror images.
 
 use crate::kernel::gram;
 use crate::{Border, Degree, SplineFilter, WaveletError};
 
-/// The three sums along one axis, each divided by the number of coefficients.
+/// Traces along one axis, each divided by the number of coefficients: `P` is the projection of a line (halved and
+/// doubled again), and `M` the matrix of the mean square.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LineSums {
-    /// `tr M`.
+    /// `tr M`: mean square of white noise.
     whole: f64,
-    /// `tr M P`.
+    /// `tr M P`: mean product of white noise and its projection.
     cross: f64,
-    /// `tr Pᵀ M P`.
+    /// `tr Pᵀ M P`: mean square of the projection.
     low: f64,
 }
 
 impl LineSums {
-    /// Computes the sums for the values of a periodic spline with `length` coefficients, averaged over all positions.
+    /// Computes the traces for the mean square of a periodic spline with `length` coefficients, over all positions.
     pub(crate) fn of_values(length: usize) -> Result<Self, WaveletError> {
         let [impulse, low] = impulses(length)?;
         Ok(Self {
@@ -31,7 +32,7 @@ impl LineSums {
         })
     }
 
-    /// Computes the sums for the coefficients after doubling them `levels` times, averaged over all of them.
+    /// Computes the traces for the mean square of the coefficients, after doubling a line `levels` times.
     pub(crate) fn of_coefficients(length: usize, levels: u32) -> Result<Self, WaveletError> {
         let [mut impulse, mut low] = impulses(length)?;
         for _ in 0..levels {
@@ -51,7 +52,7 @@ impl LineSums {
         })
     }
 
-    /// Returns the factor that normalizes noise with these sums to a mean square of 1.
+    /// Returns the factor that normalizes noise with these traces to a mean square of 1.
     pub(crate) fn factor<const N: usize>(axes: [Self; N]) -> f64 {
         let product = |part: fn(&Self) -> f64| axes.iter().map(part).product::<f64>();
         let mean_square = product(|sums| sums.whole) - 2.0 * product(|sums| sums.cross)
@@ -60,14 +61,14 @@ impl LineSums {
     }
 }
 
-/// Returns an impulse and its projection.
+/// Returns a line with a single 1, and its projection.
 fn impulses(length: usize) -> Result<[Vec<f64>; 2], WaveletError> {
     let impulse: Vec<f64> = (0..length).map(|at| f64::from(u8::from(at == 0))).collect();
     let low = SplineFilter::default().project_line(&impulse, 1, Border::Periodic)?;
     Ok([impulse, low])
 }
 
-/// Returns the integral of the product of two periodic quadratic splines.
+/// Returns the integral of the product of two periodic quadratic splines, given their coefficients.
 fn inner(a: &[f64], b: &[f64]) -> f64 {
     // Integrals of products of a B-spline with copies 2, 1 and 0 cells away, all times their sum
     let overlaps = gram(Degree::Quadratic);

@@ -1,4 +1,4 @@
-//! Shared parts of the noise tests: an oracle, and scattered positions.
+//! Shared code of the noise tests: an oracle, and random positions.
 
 mod bits;
 mod statistics;
@@ -7,7 +7,7 @@ mod values;
 use super::WaveletNoise;
 use dapple_hash::{Seed, hash1, unit_f64};
 
-/// Returns the positions in a box with the given half width around the origin.
+/// Returns random positions in a box with the given half width around the origin.
 fn scattered<const N: usize>(count: i64, half_width: f64) -> impl Iterator<Item = [f64; N]> {
     (0..count).map(move |index| {
         core::array::from_fn(|axis| {
@@ -17,7 +17,8 @@ fn scattered<const N: usize>(count: i64, half_width: f64) -> impl Iterator<Item 
     })
 }
 
-/// Returns the positions in a box with the given half width around the origin; every fourth coordinate is an integer.
+/// Returns random positions in a box with the given half width around the origin. In each, one coordinate or none is
+/// an integer.
 fn positions<const N: usize>(count: i64, half_width: f64) -> impl Iterator<Item = [f64; N]> {
     scattered::<N>(count, half_width)
         .enumerate()
@@ -30,7 +31,7 @@ fn positions<const N: usize>(count: i64, half_width: f64) -> impl Iterator<Item 
         })
 }
 
-/// Returns the noise by its definition: the sum of the bands, each the sum of all coefficients times their B-splines.
+/// Returns the noise by its definition: the sum over the bands of all coefficients times their B-splines.
 fn oracle<const N: usize>(noise: &WaveletNoise<N>, position: [f64; N]) -> f64 {
     let bands = noise.bands.iter().map(|band| {
         let axes = 0..N;
@@ -40,7 +41,8 @@ fn oracle<const N: usize>(noise: &WaveletNoise<N>, position: [f64; N]) -> f64 {
     bands.sum()
 }
 
-/// Returns the sum over the last `axes` axes, for fixed cells along the others.
+/// Returns the sum of coefficients times B-spline weights at `position`, summed over the cells along the first `axes`
+/// axes. `cell` gives the cell along the remaining axes.
 fn spline<const N: usize>(
     noise: &WaveletNoise<N>,
     position: &[f64],
@@ -61,7 +63,7 @@ fn spline<const N: usize>(
     terms.sum()
 }
 
-/// Returns the quadratic B-spline centered on 0.
+/// Returns the value at `x` of the quadratic B-spline centered on 0.
 fn b_spline(x: f64) -> f64 {
     match x.abs() {
         x if x <= 0.5 => 0.75 - x * x,

@@ -2,8 +2,8 @@
 
 use super::place::Place;
 
-/// Coefficients with a margin of one cell on each side along each axis. Evaluating a position reads three cells per
-/// axis, so with the margin no index needs wrapping.
+/// Periodic coefficients with a margin of one cell on each side along each axis. Evaluating a position reads three
+/// cells per axis, so with the margin no index needs wrapping.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tile<const N: usize> {
     /// Number of cells along each axis, including the margins.
@@ -55,7 +55,7 @@ impl<const N: usize> Tile<N> {
         self.coefficients[axes.fold(0, |at, (cell, side)| at * side + cell + 1)]
     }
 
-    /// Returns three consecutive coefficients of a row, starting at a memory index.
+    /// Returns three consecutive coefficients of a row, starting at index `at`.
     #[inline(always)]
     fn three(&self, at: usize) -> [f32; 3] {
         let row = &self.coefficients[at..at + 3];
@@ -80,7 +80,8 @@ impl Tile<2> {
         (across(x.weights(), row), gradient)
     }
 
-    /// Blends the rows around `y` into `row`, which is as long as a row in memory.
+    /// Computes the weighted sum of the three rows of coefficients around `y` into `row`, which is as long as a row in
+    /// memory.
     pub(super) fn blend_row(&self, y: Place, row: &mut [f32]) {
         let rows = &self.coefficients[y.index() * self.sides[0]..][..3 * self.sides[0]];
         blend(y.weights(), rows, row);
@@ -141,7 +142,7 @@ impl Tile<3> {
         }
     }
 
-    /// Returns the rows around a position, each blended from three slices.
+    /// Returns three rows of three coefficients around a position, each the weighted sum of three slices.
     #[inline(always)]
     fn rows(&self, weights: [f32; 3], [x, y, z]: [Place; 3]) -> [[f32; 3]; 3] {
         let [width, height, _] = self.sides;
@@ -153,7 +154,7 @@ impl Tile<3> {
         ]
     }
 
-    /// Returns three coefficients of a row, blended from three slices.
+    /// Returns three coefficients of a row, starting at index `at`, as the weighted sum of three slices.
     #[inline(always)]
     fn pillar(&self, weights: [f32; 3], at: usize) -> [f32; 3] {
         let area = self.sides[0] * self.sides[1];
@@ -176,7 +177,7 @@ fn blend(weights: [f32; 3], three: &[f32], sum: &mut [f32]) {
     }
 }
 
-/// Returns the weighted sum of three row segments.
+/// Returns the weighted sum of three rows of three coefficients.
 #[inline(always)]
 fn down(weights: [f32; 3], [first, second, third]: [[f32; 3]; 3]) -> [f32; 3] {
     [
@@ -186,7 +187,7 @@ fn down(weights: [f32; 3], [first, second, third]: [[f32; 3]; 3]) -> [f32; 3] {
     ]
 }
 
-/// Returns the weighted sum of the three values in a row segment.
+/// Returns the weighted sum of a row of three coefficients.
 #[inline(always)]
 pub(super) fn across(weights: [f32; 3], row: [f32; 3]) -> f32 {
     (weights[0] * row[0] + weights[1] * row[1]) + weights[2] * row[2]

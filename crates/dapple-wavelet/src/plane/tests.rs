@@ -1,4 +1,4 @@
-//! Tests of rasters against lines.
+//! Tests of filters for rasters against filters for lines.
 
 use super::*;
 use crate::WaveletErrorKind;
@@ -13,7 +13,7 @@ fn noise_raster(size: [u32; 2]) -> Raster<f32> {
     Raster::from_vec(size, values.iter().map(|&value| value as f32).collect()).expect("a good size")
 }
 
-/// Halves or doubles rows, or columns, line by line, and rounds to `f32`.
+/// Applies `change` to each row (axis 0) or column (axis 1), and rounds to `f32`.
 fn along(raster: &Raster<f32>, axis: usize, change: impl Fn(&[f64]) -> Vec<f64>) -> Raster<f32> {
     let [width, height] = raster.size();
     let pixel = |line: u32, i: u32| {
@@ -180,7 +180,7 @@ fn rasters_stay_near_lines_without_roundings() {
     }
 }
 
-/// Projects rows, and then columns, entirely in `f64`.
+/// Projects rows and then columns, without rounding to `f32`.
 fn projected_in_f64(filter: SplineFilter, fine: &Raster<f32>, levels: u32) -> Vec<f64> {
     let project = |line: &[f64]| {
         let line = filter.project_line(line, levels, Border::Periodic);

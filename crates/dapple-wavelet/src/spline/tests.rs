@@ -3,7 +3,8 @@
 use super::*;
 use crate::oracle::{DEGREES, all_filters, spread};
 
-/// Returns the spline of degree `d` by the recursion of Cox and de Boor, starting with the box function.
+/// Returns the value at `x` of the B-spline of degree `d`, by the recursion of Cox and de Boor, starting with the box
+/// function.
 fn cox_de_boor(d: i64, x: f64) -> f64 {
     if d == 0 {
         return f64::from(u8::from((-0.5..0.5).contains(&x)));

@@ -1,4 +1,4 @@
-//! Tests of volumes against lines.
+//! Tests of filters for volumes against filters for lines.
 
 use super::*;
 use crate::Degree;
@@ -12,7 +12,7 @@ fn noise_volume(size: [u32; 3]) -> Vec<f32> {
     noise(count).iter().map(|&value| value as f32).collect()
 }
 
-/// Filters all lines along an axis, and rounds to `f32`.
+/// Applies `change` to each line along an axis, and rounds to `f32`. Returns the volume and its new size.
 fn along(
     volume: &[f32],
     size: [u32; 3],

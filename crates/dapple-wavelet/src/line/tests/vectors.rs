@@ -1,4 +1,4 @@
-//! Test vectors of the filters: exact fractions, and numbers of the research note.
+//! Test vectors of the filters: exact fractions, and reference numbers computed independently.
 
 use super::*;
 
@@ -22,7 +22,7 @@ fn impulse(len: usize) -> Vec<f64> {
     line
 }
 
-/// Returns a line of `len` with a unit step in its middle and one at the wrap.
+/// Returns a periodic line of `len` coefficients with a unit step in the middle and another at the wrap.
 fn step(len: usize) -> Vec<f64> {
     (0..len)
         .map(|i| f64::from(u8::from(i >= len / 2)))
@@ -131,7 +131,7 @@ fn vectors_of_a_cosine_are_exact() {
     );
 }
 
-/// Computes the cosine from its series, since the bits of the standard library differ between platforms.
+/// Computes the cosine from its Taylor series, since the bits of the standard library differ between platforms.
 fn series_of_cosine(x: f64) -> f64 {
     let mut term = 1.0;
     let mut sum = 0.0;

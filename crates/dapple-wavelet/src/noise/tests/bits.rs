@@ -73,7 +73,7 @@ fn render_slice_equals_sample_bit_for_bit() {
     }
 }
 
-/// Wide, narrow, distant and flipped windows, and one with columns and rows at infinity.
+/// Returns wide, narrow, distant and flipped windows, and one with columns and rows at infinity.
 fn windows() -> Vec<Window> {
     let window = |x, y, pixel, size| Window {
         origin: [x, y],

@@ -186,8 +186,7 @@ fn power_lies_between_a_quarter_and_half_a_cycle_per_cell() {
     );
 }
 
-/// Returns the power at each frequency of `N × N` real values, by the definition of the Fourier transform along rows
-/// and columns.
+/// Returns the power at each frequency of `N × N` real values, row by row, by the definition of the Fourier transform.
 fn power_spectrum<const N: usize>(values: &[f64]) -> Vec<f64> {
     let roots = roots_of_unity::<N>();
     let mut lines: Vec<[f64; 2]> = values.iter().map(|&value| [value, 0.0]).collect();
@@ -206,7 +205,8 @@ fn power_spectrum<const N: usize>(values: &[f64]) -> Vec<f64> {
     lines.iter().map(|[re, im]| re * re + im * im).collect()
 }
 
-/// Returns the powers of the root of unity, for powers of two from 4, by halving a right angle.
+/// Returns the `N` powers of the complex root of unity of order `N`, a power of two of at least 4, by repeatedly
+/// halving a right angle.
 fn roots_of_unity<const N: usize>() -> Vec<[f64; 2]> {
     let mut root: [f64; 2] = [0.0, 1.0];
     for _ in 2..N.trailing_zeros() {

@@ -68,7 +68,8 @@ fn gradient_equals_differences_of_the_oracle() {
     }
 }
 
-/// Returns the central differences, exact up to rounding if both positions are on one piece of the spline.
+/// Returns central differences along each axis. They are exact up to rounding if both positions are on one piece of
+/// the spline.
 fn differences<const N: usize>(position: [f64; N], value: impl Fn([f64; N]) -> f64) -> [f64; N] {
     let step = 1.0 / 1_048_576.0;
     core::array::from_fn(|axis| {
