@@ -1,8 +1,8 @@
 //! Bricks, tiles and planks in regular bonds, with joints, bevels and random numbers for each brick.
 //!
 //! A bond divides the plane into cells, one for each brick. The face of a brick is its cell minus half of the joint on
-//! every side, minus a random part if the edges vary. Everything is local: a position determines its brick, and the
-//! distance to the nearest border needs the bricks around the position alone.
+//! every side, and minus a random inset if the edges vary. Evaluation is local: a position determines its brick, and
+//! the distance to the nearest border needs only the bricks around the position.
 //!
 //! Positions are in units of the plane, y points down. Distances are Euclidean in the plane, so that joints are equally
 //! wide along both axes even if bricks are not square. Rounded corners follow the distance function of a rounded box.
@@ -117,7 +117,7 @@ pub struct Bricks {
     options: BrickOptions,
     /// Width of a brick and height of a course, in units of the plane.
     cell: [f64; 2],
-    /// Unit of the lengths among the options, in units of the plane.
+    /// Length of the shorter side of a brick in units of the plane, in which the options give lengths.
     unit: f64,
 }
 
@@ -135,13 +135,13 @@ struct Brick {
     id: [i64; 2],
     /// Whether the long axis is vertical.
     upright: bool,
-    /// Position along the long and across the face, from 0 to 1.
+    /// Position along and across the face, from 0 to 1.
     uv: [f64; 2],
-    /// Height of the position; negative values are clamped.
+    /// Height of the surface at the position; negative values are clamped.
     height: f64,
 }
 
-/// Counters of the hash of a brick: three random numbers, then the insets of its sides.
+/// First counter of a brick's hash for the insets of its sides. The counters below it are for three random numbers.
 const SIDES: u32 = 4;
 
 impl Bricks {
@@ -191,7 +191,8 @@ impl Bricks {
         }
     }
 
-    /// Returns the words of `Bricks` in the shaders of `dapple-wgsl`, in pairs.
+    /// Returns the bricks as a structure for shaders: the words of `Bricks` in the WGSL of `dapple-wgsl`, as pairs of
+    /// high and low words.
     #[must_use]
     pub fn shader_words(&self) -> [[u32; 2]; 16] {
         let options = self.options;
@@ -254,7 +255,8 @@ impl Bricks {
         random(CellHash::new(self.seed, id), index)
     }
 
-    /// Returns the distance from the side of a cell to the face of its brick, in units of the plane.
+    /// Returns the distance from the side of a cell to the face of its brick: half of a joint plus the random
+    /// displacement, in units of the plane.
     fn inset(&self, id: [i64; 2], side: u32) -> f64 {
         let BrickOptions { joint, jitter, .. } = self.options;
         let random = match jitter {
@@ -264,7 +266,8 @@ impl Bricks {
         self.unit * (0.5 * joint + 0.25 * (1.0 - joint) * jitter * random)
     }
 
-    /// Returns the rise from 0 at the border of a face to 1 past the bevel.
+    /// Returns the profile of a bevel at the given distance from the border of a face: 0 at the border, rising to 1 at
+    /// the end of the bevel.
     fn rise(&self, depth: f64) -> f64 {
         if depth <= 0.0 {
             return 0.0;
@@ -280,7 +283,7 @@ impl Bricks {
         wrapped_cell(id, self.options.period)
     }
 
-    /// Returns the shift of a course, in bricks.
+    /// Returns the shift of a course along x, in bricks.
     fn shift(&self, course: i64) -> f64 {
         match course.rem_euclid(2) {
             0 => 0.0,

@@ -124,7 +124,7 @@ impl GaborNoise {
         }
     }
 
-    /// Returns the factor that makes the variance 1.
+    /// Returns the factor that scales the sum of the waves to a variance of 1.
     #[doc(hidden)]
     #[must_use]
     pub fn scale(&self) -> f64 {
@@ -133,7 +133,7 @@ impl GaborNoise {
         1.0 / variance.sqrt()
     }
 
-    /// Returns the impulses of all cells of the period as words of a shader, 12 for each, row by row of cells.
+    /// Returns the impulses of all cells of a period as words for a shader, 12 words per impulse, row by row of cells.
     ///
     /// # Errors
     ///
@@ -160,7 +160,7 @@ impl GaborNoise {
         Ok(numbers.flat_map(lattice::shader_words).collect())
     }
 
-    /// Returns the impulses of a cell, relative to the corner of the cell.
+    /// Returns the impulses of a cell, with positions relative to the corner of the cell.
     fn impulses(&self, cell: [i64; 2]) -> impl Iterator<Item = Impulse> {
         let wrapped = wrapped_cell(cell, self.options.period);
         let hash = CellHash::new(self.seed, wrapped);
@@ -177,7 +177,7 @@ impl GaborNoise {
     }
 }
 
-/// A wave around a point.
+/// An impulse of the noise: a wave that fades out around a point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Impulse {
     position: [f64; 2],
@@ -188,7 +188,8 @@ pub(crate) struct Impulse {
 }
 
 impl Impulse {
-    /// Returns the weight at a position and the phase there in turns; `None` out of reach.
+    /// Returns the weight of the impulse at a position, and its phase there in turns; `None` if the position is out of
+    /// its reach.
     #[inline(always)]
     fn at(&self, position: [f64; 2]) -> Option<[f64; 2]> {
         let [x, y] = [
@@ -208,7 +209,7 @@ impl Impulse {
 pub struct GaborField {
     noise: GaborNoise,
     value: GaborValue,
-    /// Factor that makes the variance 1.
+    /// Factor that scales the sum of the waves to a variance of 1.
     scale: f64,
 }
 
@@ -308,7 +309,7 @@ mod tests {
         GaborNoise::new(Seed(7), options).unwrap()
     }
 
-    /// Computes a value from all impulses of five by five cells, with the cosine of libm.
+    /// Computes a value from all impulses of 5 × 5 cells, with the cosine of libm.
     fn oracle(field: &GaborField, [x, y]: [f64; 2]) -> f64 {
         let (mut cos, mut sin) = (0.0, 0.0);
         let cell = [x, y].map(|coordinate| coordinate.floor() as i64);

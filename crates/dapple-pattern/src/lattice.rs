@@ -4,10 +4,10 @@ use crate::PatternError;
 use dapple_hash::{CellHash, unit_f32};
 use dapple_raster::{RasterError, RasterViewMut, Window};
 
-/// Rows that one parallel task renders.
+/// Number of pixel rows in a band, the unit of parallel work.
 const ROWS: u32 = 16;
 
-/// Cells beyond this one are clamped, so that sums of cells do not overflow.
+/// Maximum magnitude of a cell's coordinate. Cells beyond it are clamped, so that sums do not overflow.
 const FARTHEST: i64 = 1 << 60;
 
 /// A coordinate in cells, split into the cell and the offset within it, from 0 to below 1. The offset is NaN if the
@@ -27,8 +27,8 @@ impl Split {
         .carried()
     }
 
-    /// Adds a distance of a few cells. The result depends on the offset alone, so equal offsets in two periods stay
-    /// equal.
+    /// Adds a distance of a few cells. The new offset depends only on the old offset, so equal offsets in two periods
+    /// stay equal.
     pub(crate) fn shifted(self, by: f64) -> Self {
         Self {
             offset: self.offset + by,
@@ -37,7 +37,7 @@ impl Split {
         .carried()
     }
 
-    /// Moves the whole part of the offset to the cell.
+    /// Moves the integer part of the offset to the cell.
     fn carried(self) -> Self {
         let whole = self.offset.floor();
         let offset = self.offset - whole;
@@ -83,7 +83,7 @@ pub(crate) fn length([x, y]: [f64; 2]) -> f64 {
     (x * x + y * y).sqrt()
 }
 
-/// Returns a smooth transition from 0 to 1.
+/// Returns the smoothstep `3t² − 2t³` of a number from 0 to 1.
 pub(crate) fn smoothstep(t: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
@@ -105,17 +105,17 @@ pub fn direction(degrees: f64) -> [f64; 2] {
     }
 }
 
-/// Returns the upper and the lower word of a number, as shaders take it.
+/// Returns the bits of a number as high and low word, the form in which shaders read it.
 pub(crate) fn shader_words(number: f64) -> [u32; 2] {
     seed_words(number.to_bits())
 }
 
-/// Returns the upper and the lower word of 64 bits.
+/// Returns the high and the low word of 64 bits.
 pub(crate) fn seed_words(bits: u64) -> [u32; 2] {
     [(bits >> 32) as u32, bits as u32]
 }
 
-/// Returns a period for a shader; 0 stands for none.
+/// Returns a period as shaders read it: 0 for an axis without a period.
 pub(crate) fn period_words(period: [Option<u32>; 2]) -> [u32; 2] {
     period.map(|cells| cells.unwrap_or(0))
 }

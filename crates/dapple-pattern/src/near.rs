@@ -1,36 +1,37 @@
-//! Fields whose value at a position depends on the items of the cells around it: stamps, or the impulses of noise.
+//! Fields whose value at a position depends on the items (stamps, or impulses of noise) in the cells around it.
 //!
-//! Positions and items are relative to the corner of the position's cell, so that they do not depend on how far the cell
-//! is from the origin. The items near a cell are listed once, and those near a block of pixels are selected from them.
+//! Positions and items are relative to the corner of the position's cell, so that precision does not depend on the
+//! distance of the cell from the origin. The items near a cell are listed once, and each block of pixels selects its
+//! items from that list.
 
 use dapple_raster::{RasterError, RasterViewMut, Window};
 
-/// Side of a block of pixels whose items are selected together.
+/// Width and height of a block of pixels that share one list of items.
 const BLOCK: usize = 16;
 
 /// Number of pixel rows in a band, the unit of parallel work.
 const BAND_ROWS: u32 = 64;
 
-/// A field over unit cells with items.
+/// A field whose value depends on items in unit cells.
 pub(crate) trait NearCells: Sync {
-    /// An item, such as a stamp.
+    /// Item type, such as a stamp.
     type Item: Copy;
 
-    /// Appends the items that may matter in a box of a cell, given by its center and half of its size. The box and the
-    /// items are relative to the corner of the cell. The order of items does not depend on the box.
+    /// Appends the items that may affect a box, given by its center and half of its size. The box and the items are
+    /// relative to the corner of `cell`. The order of items does not depend on the box.
     fn near(&self, cell: [i64; 2], center: [f64; 2], half: [f64; 2], near: &mut Vec<Self::Item>);
 
-    /// Returns whether an item may matter in a box.
+    /// Returns whether an item may affect a box, given by its center and half of its size.
     fn meets(item: &Self::Item, center: [f64; 2], half: [f64; 2]) -> bool;
 
-    /// Returns the value at a position, given the items near it, in order.
+    /// Returns the value at a position, given the items near it in the order of [`near`](Self::near).
     fn value_of(&self, near: &[Self::Item], position: [f64; 2]) -> f32;
 }
 
-/// A cell with the items near it.
+/// A cell, and the items near it.
 type Listed<T> = ([i64; 2], Vec<T>);
 
-/// Returns the value at a position; NaN at one that is not finite.
+/// Returns the value at a position; NaN if the position is not finite.
 pub(crate) fn value<F: NearCells>(field: &F, position: [f64; 2]) -> f32 {
     let [(column, x), (row, y)] = position.map(place);
     if !x.is_finite() || !y.is_finite() {
@@ -90,7 +91,7 @@ pub(crate) fn render<F: NearCells>(
     Ok(())
 }
 
-/// Renders rows of pixels. Columns and rows are given by their cells and offsets in the cell.
+/// Renders rows of pixels. A column or row is given by its cell and its offset in the cell.
 fn render_band<F: NearCells>(
     field: &F,
     columns: &[(i64, f64)],
@@ -122,7 +123,7 @@ fn render_band<F: NearCells>(
     }
 }
 
-/// Renders a block of pixels of one cell, given by its columns and rows, at the column and row `at`.
+/// Renders a block of pixels that are in one cell. `at` is the column and row of its first pixel in `out`.
 fn render_block<F: NearCells>(
     field: &F,
     near: &[F::Item],
@@ -147,7 +148,8 @@ fn place(coordinate: f64) -> (i64, f64) {
     (cell as i64, coordinate - cell)
 }
 
-/// Splits pixels into runs in the same cell, of at most `most` pixels, each with the index of its first pixel.
+/// Splits a line of pixels into runs of at most `most` pixels in the same cell. Each run comes with the index of its
+/// first pixel.
 fn runs(pixels: &[(i64, f64)], most: usize) -> impl Iterator<Item = (usize, &[(i64, f64)])> {
     let mut first = 0;
     let same = pixels.chunk_by(|a, b| a.0 == b.0);
@@ -159,7 +161,7 @@ fn runs(pixels: &[(i64, f64)], most: usize) -> impl Iterator<Item = (usize, &[(i
     })
 }
 
-/// Returns the center and half of the length of the range of offsets; not-a-numbers are left out.
+/// Returns the center and half of the length of the range of the pixels' offsets. NaN is ignored.
 fn extent(pixels: &[(i64, f64)]) -> (f64, f64) {
     let offsets = pixels.iter().map(|&(_, offset)| offset);
     let (low, high) = offsets.fold((1.0_f64, 0.0_f64), |(low, high), offset| {

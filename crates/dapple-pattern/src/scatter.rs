@@ -1,15 +1,16 @@
 //! Shapes stamped at the points of a jittered lattice: gravel, leaves, grass, rivets, scales, scratches.
 //!
 //! Each cell of the lattice has a few points, and each point a stamp: a shape with a height profile and random size,
-//! rotation and height. What covers a position is decided by the heights, by a random order or by the rows of the
-//! lattice. This is the "tile sampler" of texturing programs, and the texture bombing of R. S. Glanville, "Texture Bombing",
-//! GPU Gems, chapter 20, 2004, with exact periods.
+//! rotation and height. Where stamps overlap, the visible one is chosen by height, by a random order or by the rows of
+//! the lattice. This is the "tile sampler" of texturing programs, and the texture bombing of R. S. Glanville, "Texture
+//! Bombing", GPU Gems, chapter 20, 2004, with exact periods.
 //!
-//! A position depends on the stamps of the cells within reach alone. Stamps are placed relative to the cell of the
-//! position, so that a period is exact, and positions far from the origin have the same precision as near ones. They
-//! are visited row by row of cells, and then in the order of columns and indices; later stamps win ties.
+//! A position depends only on the stamps of the cells within reach. Stamps are placed relative to the cell of the
+//! position, so that a period is exact, and positions far from the origin have the same precision as near ones. Stamps
+//! are visited row by row of cells, then by column, then by index within the cell. Of stamps of equal rank, the last
+//! one visited is visible.
 //!
-//! Positions are in cells. Lengths are in widths of a cell.
+//! Positions are in cells. Lengths are in units of a cell's width.
 
 mod shader;
 mod shape;
@@ -155,7 +156,7 @@ impl Default for StampOptions {
 }
 
 impl StampOptions {
-    /// Refuses options out of range.
+    /// Checks that all options are in their ranges.
     fn check(&self) -> Result<(), PatternError> {
         check_period(self.period)?;
         for (range, what, value) in [
@@ -181,7 +182,7 @@ impl StampOptions {
         Ok(())
     }
 
-    /// Refuses a spacing at which a point would meet its copies, or too many other points.
+    /// Checks that the spacing is at most the period, and that few enough points are within it.
     fn check_spacing(&self) -> Result<(), PatternError> {
         for (period, length) in self.period.into_iter().zip([1.0, self.cell_height]) {
             let length = period.map_or(f64::INFINITY, |cells| f64::from(cells) * length);
@@ -199,7 +200,7 @@ impl StampOptions {
         )
     }
 
-    /// Returns how far a stamp reaches beyond the cell of its point, in cells along each axis.
+    /// Returns the maximum distance from the center of a stamp to a position that it covers, in cells along each axis.
     fn reach(&self) -> [f64; 2] {
         // Corners of the bounding box, whose half width is the half length times the aspect.
         let aspect = self.aspect[1];
@@ -290,7 +291,7 @@ impl Stamps {
         }
     }
 
-    /// Returns the points of a cell, relative to the corner of the cell.
+    /// Returns the points of a cell, with positions relative to the corner of the cell.
     fn points(&self, cell: [i64; 2]) -> impl Iterator<Item = Point> {
         let wrapped = wrapped_cell(cell, self.options.period);
         let shift = wrapped[1] as f64 * self.options.row_offset;
@@ -311,7 +312,7 @@ impl Stamps {
         })
     }
 
-    /// Draws the stamp of a point.
+    /// Draws the random properties of the stamp at a point.
     fn stamp(&self, point: &Point) -> Stamp {
         let draw = |number: u32| halves(point.hash.at(point.first + number));
         let between = |[from, to]: [f64; 2], part: f32| from + (to - from) * f64::from(part);
@@ -350,8 +351,8 @@ impl Stamps {
         }
     }
 
-    /// Sorts stamps that are listed in the order in which they are stamped: if the last one is visible, it becomes the
-    /// first.
+    /// Sorts stamps for the overlap rule. They must be in stamping order. If the rule makes the last stamp visible,
+    /// the visible stamp becomes the first element.
     fn arrange<T>(&self, near: &mut [T], stamp: impl Fn(&T) -> &Stamp) {
         match self.options.overlap {
             StampOverlap::Highest | StampOverlap::Add => {}
@@ -367,7 +368,8 @@ impl Stamps {
         }
     }
 
-    /// Returns the height of a stamp where its profile has the value `profile`.
+    /// Returns the height of a stamp at a position with the coordinate `u` along it, where its profile has the value
+    /// `profile`.
     fn height_of(&self, stamp: &Stamp, u: f32, profile: f32) -> f32 {
         let (lift, tilt) = (self.options.lift as f32, self.options.tilt as f32);
         let tilted = profile * (1.0 + tilt * u) / (1.0 + tilt.abs());
@@ -375,7 +377,7 @@ impl Stamps {
     }
 }
 
-/// Refuses a pair of numbers outside of `range`, or in descending order.
+/// Checks that both ends of a range of values are in `range`, and in ascending order.
 fn check_range(range: Range, what: &'static str, ends: [f64; 2]) -> Result<(), PatternError> {
     for end in ends {
         PatternError::check_in(range, what, end)?;
@@ -389,7 +391,7 @@ fn halves(bits: u64) -> [f32; 2] {
     [(bits >> 32) as u32, bits as u32].map(unit_f32)
 }
 
-/// Number of hashes that are reserved for a point: for its position, its stamp and its priority.
+/// Number of hash counters that are reserved for a point: for its position, its stamp and its priority.
 const DRAWS: u32 = 8;
 
 /// A point of a cell.
@@ -398,7 +400,7 @@ struct Point {
     position: [f64; 2],
     /// Hash of the cell.
     hash: CellHash,
-    /// Index of the first hash of the point.
+    /// First hash counter of the point.
     first: u32,
 }
 
@@ -407,15 +409,15 @@ struct Point {
 pub(crate) struct Stamp {
     /// Position of the center in cells.
     center: [f64; 2],
-    /// Gradient, per cell, of the coordinate u along the stamp. At the ends of the stamp, u is −1 and 1.
+    /// Gradient, per cell, of the coordinate u along the stamp. u is −1 and 1 at the ends of the stamp.
     u_axis: [f64; 2],
-    /// Gradient, per cell, of the coordinate v across the stamp. At the sides of the stamp, v is −1 and 1.
+    /// Gradient, per cell, of the coordinate v across the stamp. v is −1 and 1 at the sides of the stamp.
     v_axis: [f64; 2],
     outline: Outline,
     height: f32,
     /// Upper bound of the height, where the profile is 1.
     highest: f32,
-    /// Place in the random order, from 0 to below 1.
+    /// Rank in the random stamping order, from 0 to below 1.
     order: f32,
     randoms: [f32; 3],
     /// Rotation in turns.
@@ -423,7 +425,7 @@ pub(crate) struct Stamp {
 }
 
 impl Stamp {
-    /// Returns the coordinates along and across the stamp.
+    /// Returns the coordinates u and v of a position, along and across the stamp.
     #[inline(always)]
     fn local(&self, position: [f64; 2]) -> [f64; 2] {
         let [x, y] = [position[0] - self.center[0], position[1] - self.center[1]];
@@ -449,7 +451,7 @@ impl Stamp {
 #[derive(Clone, Copy)]
 struct Hit<'a> {
     stamp: &'a Stamp,
-    /// Coordinates along and across the stamp, from −1 to 1.
+    /// Coordinates u and v of the position, along and across the stamp, from −1 to 1.
     local: [f32; 2],
     height: f32,
     /// Distance from the outline, from 0 to 1.
@@ -468,8 +470,8 @@ pub struct StampField {
 }
 
 impl StampField {
-    /// Calls `found` for each stamp that may cover a position in a box of a cell, in the order in which they are
-    /// stamped. It gets the stamp, the offset of the stamp's cell in cells, and the index of the stamp in its cell.
+    /// Calls `found` for each stamp that may cover a position in a box of a cell, in stamping order. Its arguments are
+    /// the stamp, the offset of the stamp's cell from `cell`, and the index of the stamp in its cell.
     fn visit(
         &self,
         cell: [i64; 2],
@@ -512,7 +514,7 @@ impl StampField {
 impl NearCells for StampField {
     type Item = Stamp;
 
-    /// Appends the stamps in stamping order, or the topmost first if the order affects the value.
+    /// Appends the stamps in stamping order, or topmost first for overlap rules that depend on an order.
     fn near(&self, cell: [i64; 2], center: [f64; 2], half: [f64; 2], near: &mut Vec<Stamp>) {
         self.visit(cell, center, half, |stamp, _, _| near.push(stamp));
         self.stamps.arrange(near, |stamp| stamp);

@@ -1,12 +1,12 @@
 //! Signed distance fields of simple shapes, repeated on a lattice.
 //!
-//! The distances are exact and Euclidean. Polygons and stars are lists of corners, instead of folded angles, so that all
-//! values are made of sums, products and roots.
+//! The distances are exact and Euclidean. Polygons and stars are stored as lists of corners instead of folding angles,
+//! so that all values are computed from sums, products and roots.
 //!
 //! Reference: Inigo Quilez, "2D distance functions", <https://iquilezles.org/articles/distfunctions2d/>.
 //!
-//! With a lattice of copies, the distance is to the nearest copy. Its center need not be the nearest one: all copies
-//! are measured that can be nearest and whose bounding circle is nearer than the distance so far.
+//! With a lattice of copies, the distance is to the nearest copy, which is not always the copy with the nearest
+//! center. All copies are evaluated whose bounding circle is nearer than the smallest distance so far.
 //!
 //! Positions are in units of the plane, y points down.
 
@@ -174,10 +174,10 @@ enum Outline {
     },
 }
 
-/// Maximum ratio of the size to the distance of copies, which bounds the number of copies that can be nearest.
+/// Maximum ratio of the size to the distance between copies, which bounds the number of copies that can be nearest.
 const MAX_SIZE: f64 = 16.0;
 
-/// Half of the width of the heart of the distance function, `(1 + √2) / 4`, and the height of its middle.
+/// Half-width of the heart in [`heart_distance`], `(1 + √2) / 4`, and the height of its middle above its tip.
 const HEART: [f64; 2] = [0.603_553_390_593_273_8, 0.551_776_695_296_636_9];
 
 impl Shape {
@@ -236,8 +236,8 @@ impl Shape {
         }
     }
 
-    /// Returns the words of `Shape` in the shaders of `dapple-wgsl`, in pairs, where the first texel of the corners is
-    /// 0.
+    /// Returns the shape as a structure for shaders: the words of `Shape` in the WGSL of `dapple-wgsl`, as pairs of
+    /// high and low words. The index of the first texel of the corners is 0.
     #[doc(hidden)]
     #[must_use]
     pub fn shader_words(&self) -> [[u32; 2]; 18] {
@@ -280,7 +280,8 @@ impl Shape {
         std::array::from_fn(|_| words.next().unwrap_or_default())
     }
 
-    /// Returns the corners of a polygon or a star as words of a shader, four for each; empty for other shapes.
+    /// Returns the corners of a polygon or a star as words for a shader, four words per corner; empty for other
+    /// shapes.
     #[doc(hidden)]
     #[must_use]
     pub fn shader_corners(&self) -> Vec<u32> {
@@ -362,7 +363,7 @@ impl Shape {
         nearest
     }
 
-    /// Returns the signed distance to a copy with this offset from its center.
+    /// Returns the signed distance to the border of a copy, given the position's offset from the copy's center.
     fn copy_distance(&self, [x, y]: [f64; 2]) -> f64 {
         let [cos, sin] = self.direction;
         let at = [x * cos + y * sin, y * cos - x * sin];
@@ -375,7 +376,7 @@ impl Shape {
 }
 
 impl Outline {
-    /// Creates the outline, smaller by the radius of rounded corners.
+    /// Creates the outline, shrunk by the radius of rounded corners.
     fn new(options: &ShapeOptions) -> Self {
         let ShapeOptions { size, ratio, .. } = *options;
         let radius = rounding(options);
@@ -461,8 +462,8 @@ fn rounding(options: &ShapeOptions) -> f64 {
     }
 }
 
-/// Returns points about the origin at equal angles, clockwise from the top, at the distance that `distance` gives for
-/// each index.
+/// Returns `count` points around the origin at equal angles, clockwise from the top. `distance` gives each point's
+/// distance from the origin.
 fn corners(count: u32, distance: impl Fn(u32) -> f64) -> Vec<[f64; 2]> {
     let corner = |index: u32| {
         let [cos, sin] = direction(360.0 * f64::from(index) / f64::from(count));
@@ -496,7 +497,7 @@ fn polygon_distance(corners: &[[f64; 2]], at: [f64; 2]) -> f64 {
     if inside { -distance } else { distance }
 }
 
-/// Returns the signed distance to a disk without an equal disk, displaced to the right.
+/// Returns the signed distance to a crescent: a disk minus an equal disk that is displaced to the right.
 fn moon_distance(radius: f64, displacement: f64, [x, y]: [f64; 2]) -> f64 {
     let y = y.abs();
     // The circles meet at (a, ±b).

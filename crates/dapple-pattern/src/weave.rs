@@ -1,8 +1,8 @@
 //! Woven cloth: two sets of threads that pass over and under each other by a draft.
 //!
-//! Warp threads run along y, weft threads along x. A draft says at every crossing which of the two lies above. Between
-//! crossings a thread rises and sinks smoothly, and its cross-section is an ellipse, which is flattened for ribbons. The
-//! visible thread is the higher one.
+//! Warp threads run along y, weft threads along x. A draft says at every crossing which of the two is on top. Between
+//! crossings a thread rises and sinks smoothly, and its cross-section is an ellipse, which is flattened for ribbons.
+//! The visible thread is the higher one.
 //!
 //! Twill and satin are drafts of one kind: a warp thread lies over `over` crossings and under `under`, and each weft
 //! thread is shifted by `step` against the one before (Branko Grünbaum and Geoffrey Shephard, "Satins and Twills: An
@@ -140,12 +140,13 @@ pub struct WeaveField {
     value: WeaveValue,
 }
 
-/// A draft with its numbers.
+/// A draft with its parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Repeat {
     /// Groups of threads in a checkerboard.
     Checks { size: i64 },
-    /// Rows of `over` crossings above and the others below, each shifted by `step` against the one before.
+    /// Each weft thread has `over` crossings with the warp on top, then the others below, repeated after `threads`.
+    /// Each row is shifted by `step` relative to the previous one.
     Shifted { over: i64, threads: i64, step: i64 },
 }
 
@@ -210,7 +211,8 @@ impl Weave {
         }
     }
 
-    /// Returns the words of `Weave` in the shaders of `dapple-wgsl`, in pairs.
+    /// Returns the weave as a structure for shaders: the words of `Weave` in the WGSL of `dapple-wgsl`, as pairs of
+    /// high and low words.
     #[must_use]
     pub fn shader_words(&self) -> [[u32; 2]; 7] {
         // The numbers of a draft are at most 64.
@@ -266,7 +268,7 @@ impl Weave {
         CellHash::new(self.seed, [thread.axis as i64, thread.index])
     }
 
-    /// Returns the thread of one set at a position.
+    /// Returns the warp thread (axis 0) or weft thread (axis 1) at a position.
     fn thread(&self, axis: usize, place: [Split; 2]) -> Thread {
         let (own, along) = (place[axis], place[1 - axis]);
         let mut thread = Thread {
@@ -296,7 +298,7 @@ impl Weave {
         thread
     }
 
-    /// Returns 1 if a thread of the set `axis` lies above at a crossing, and 0 if it lies below.
+    /// Returns 1 if a thread of the set `axis` (0 for warp, 1 for weft) is on top at a crossing, and 0 if it is below.
     fn level(&self, axis: usize, thread: i64, crossing: i64) -> f64 {
         let mut at = [thread, crossing];
         if axis == 1 {
@@ -340,7 +342,7 @@ impl Repeat {
         })
     }
 
-    /// Returns whether the draft is the same after `period` threads along either axis.
+    /// Returns whether the draft repeats after `period` threads along either axis.
     fn holds_after(self, period: i64) -> bool {
         match self {
             Self::Checks { size } => period % (2 * size) == 0,
@@ -349,7 +351,7 @@ impl Repeat {
         }
     }
 
-    /// Returns whether the warp thread lies above the weft thread at a crossing.
+    /// Returns whether the warp thread is on top at a crossing.
     fn is_warp_above(self, [warp, weft]: [i64; 2]) -> bool {
         match self {
             Self::Checks { size } => (warp.div_euclid(size) + weft.div_euclid(size)) % 2 == 0,

@@ -92,7 +92,7 @@ impl Bond {
         Ok(())
     }
 
-    /// Returns the shorter side of the smallest brick, which is the unit of lengths, in units of the plane.
+    /// Returns the shorter side of the smallest brick, in units of the plane. The options give lengths in this unit.
     pub(super) fn shorter_side(self, [width, height]: [f64; 2]) -> f64 {
         match self {
             Self::Flemish => height.min(width * 2.0 / 3.0),

@@ -1,16 +1,17 @@
 //! Hexagons: the Voronoi cells of a lattice with every other course shifted by half.
 //!
 //! The cells are regular hexagons if courses are `√3 / 2` of the width apart. For other ratios they are longer along
-//! one axis, and joints stay equally wide. The face of a hexagon is a convex polygon; rounding its corners insets the
-//! polygon and dilates it again.
+//! one axis, and joints have the same width on all sides. The face of a hexagon is a convex polygon; rounding its
+//! corners insets the polygon and dilates it again.
 
 use super::{Brick, Bricks};
 use crate::lattice::{Split, length, shader_words};
 
-/// Maximum number of corners: four of a square, and one more for each side of a hexagon.
+/// Maximum number of corners of a clipped polygon: four of the initial square, and one more for each of the eight
+/// half-planes.
 const CORNERS: usize = 12;
 
-/// A half-plane: positions whose product with the unit vector `normal` is at most `distance`.
+/// A half-plane: positions whose dot product with the unit vector `normal` is at most `distance`.
 #[derive(Clone, Copy)]
 struct HalfPlane {
     normal: [f64; 2],
@@ -27,7 +28,7 @@ struct Cell {
 }
 
 impl Bricks {
-    /// Returns the hexagon at a position.
+    /// Returns the hexagon that contains a position.
     pub(super) fn hexagon(&self, place: [Split; 2]) -> Brick {
         let cell = self.nearest_center(place);
         let depth = self.hexagon_depth(cell);
@@ -40,7 +41,7 @@ impl Bricks {
         }
     }
 
-    /// Returns the signed distance to the nearest border of a hexagon.
+    /// Returns the signed distance to the nearest border of a hexagon: positive on faces, negative in joints.
     pub(super) fn hexagon_edge_distance(&self, place: [Split; 2]) -> f64 {
         let cell = self.nearest_center(place);
         let own = self.hexagon_depth(cell);
@@ -59,8 +60,8 @@ impl Bricks {
         depths.into_iter().fold(own, f64::max)
     }
 
-    /// Returns the neighbors of a hexagon in an even course: the steps in columns and courses, and in the plane. Six of
-    /// them share a side with it.
+    /// Returns the eight surrounding hexagons of a hexagon in an even course: offsets in columns and courses, and
+    /// vectors in the plane. Six of them share a side with it.
     fn neighbors(&self) -> [([i64; 2], [f64; 2]); 8] {
         let [width, height] = self.cell;
         [
@@ -129,7 +130,8 @@ impl Bricks {
         radius - distance(&corners[..count], cell.at)
     }
 
-    /// Returns the words of `HexagonSides` in the shaders of `dapple-wgsl`, in pairs.
+    /// Returns the hexagons as a structure for shaders: the words of `HexagonSides` in the WGSL of `dapple-wgsl`, as
+    /// pairs of high and low words.
     #[doc(hidden)]
     #[must_use]
     pub fn hexagon_words(&self) -> Vec<[u32; 2]> {
@@ -142,12 +144,12 @@ impl Bricks {
         numbers.into_iter().map(shader_words).collect()
     }
 
-    /// Returns half of the side of a square that contains the cell of a hexagon.
+    /// Returns half of the side of a square that contains a hexagon's cell, in units of the plane.
     fn half_side(&self) -> f64 {
         2.0 * (self.cell[0] + self.cell[1])
     }
 
-    /// Returns the half-planes whose intersection is the cell of a hexagon.
+    /// Returns the half-planes whose intersection is a hexagon's cell.
     fn sides(&self) -> [HalfPlane; 8] {
         self.neighbors().map(|(_, vector)| {
             let length = length(vector);
@@ -158,7 +160,7 @@ impl Bricks {
         })
     }
 
-    /// Returns half of the width and height of the cell of a hexagon, in units of the plane.
+    /// Returns half of the width and height of a hexagon's cell, in units of the plane.
     fn hexagon_half(&self) -> [f64; 2] {
         let [width, height] = self.cell;
         // The corners are the circumcenters of the triangles of the lattice.
@@ -177,8 +179,8 @@ impl HalfPlane {
     }
 }
 
-/// Returns the corners of the intersection of half-planes, in order, and their number. The intersection is within a
-/// square with this half side.
+/// Returns the corners of the intersection of half-planes, in order, and their number. The intersection must be inside
+/// a square with the given half side.
 fn polygon(sides: &[HalfPlane; 8], half_side: f64) -> ([[f64; 2]; CORNERS], usize) {
     let mut corners = [[0.0; 2]; CORNERS];
     let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];

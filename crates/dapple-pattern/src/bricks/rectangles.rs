@@ -18,7 +18,7 @@ struct Cell {
 }
 
 impl Bricks {
-    /// Returns the rectangular brick at a position.
+    /// Returns the rectangular brick that contains a position.
     pub(super) fn rectangle(&self, place: [Split; 2]) -> Brick {
         let cell = self.cell(place);
         let (depth, mut uv) = self.depth(&cell);
@@ -33,7 +33,8 @@ impl Bricks {
         }
     }
 
-    /// Returns the signed distance to the nearest border of a rectangular brick.
+    /// Returns the signed distance to the nearest border of a rectangular brick: positive on faces, negative in
+    /// joints.
     pub(super) fn rectangle_edge_distance(&self, place: [Split; 2]) -> f64 {
         let (own, _) = self.depth(&self.cell(place));
         if own >= 0.0 {
@@ -55,8 +56,8 @@ impl Bricks {
         nearest
     }
 
-    /// Returns the signed distance to the border of a brick's face, positive inside, and the position across the face
-    /// along both axes, from 0 to 1.
+    /// Returns the signed distance to the border of a brick's face, positive inside, and the position on the face
+    /// along x and y, from 0 to 1.
     fn depth(&self, cell: &Cell) -> (f64, [f64; 2]) {
         // Move the sides inward: left, right, top and bottom.
         let id = self.wrapped(cell.id);
@@ -131,7 +132,8 @@ impl Bricks {
         }
     }
 
-    /// Returns the cell of a brick of several squares. The position is in the square number `along` of the brick.
+    /// Returns the cell of a brick of several squares. The position is in square number `along` of the brick, counted
+    /// from its start.
     fn squares(&self, place: [Split; 2], upright: bool, along: i64) -> Cell {
         let (long, short) = (usize::from(upright), usize::from(!upright));
         let length = f64::from(self.options.length);
@@ -195,8 +197,8 @@ const AROUND: [[f64; 2]; 8] = [
     [1.0, 1.0],
 ];
 
-/// Returns the signed distance to the border of a rounded box, positive inside. `past` is how far the position is past
-/// the sides of the box along each axis.
+/// Returns the signed distance to the border of a rounded box, positive inside. `past` is the distance of the position
+/// beyond the sides of the box along each axis, negative inside.
 pub(super) fn rounded_corner(past: [f64; 2], radius: f64) -> f64 {
     let past = past.map(|past| past + radius);
     let outside = length(past.map(|past| past.max(0.0)));

@@ -1,7 +1,7 @@
 //! Roof tiles: courses that overlap the course below them.
 //!
-//! A tile reaches from far above its course to the lower border of the course, where its end may be round. Tiles of a
-//! course lie over those of the course below, which show between round ends and in the joints.
+//! A tile extends from far above its course to the lower border of the course, where its end may be round. The tiles
+//! of a course cover those of the course below, which remain visible between round ends and in the joints.
 
 use super::rectangles::rounded_corner;
 use super::{Bond, Brick, Bricks};
@@ -15,12 +15,12 @@ struct Tile {
     depth: f64,
     /// Position across the face, from 0 to 1.
     across: f64,
-    /// Position in the course from its upper border, in courses; negative above.
+    /// Position in the course from its upper border downward, in courses; negative above the border.
     down: f64,
 }
 
 impl Bricks {
-    /// Returns the visible roof tile at a position.
+    /// Returns the roof tile that is visible at a position.
     pub(super) fn roof_tile(&self, place: [Split; 2]) -> Brick {
         let tile = self.visible_tile(place);
         // Tiles lie on each other: a course rises by half a unit, which is the thickness of a tile.
@@ -33,7 +33,7 @@ impl Bricks {
         }
     }
 
-    /// Returns the signed distance to the border of the visible part of a roof tile.
+    /// Returns the signed distance to the border of the visible area of a roof tile, positive inside.
     pub(super) fn roof_edge_distance(&self, place: [Split; 2]) -> f64 {
         let nearest = |below: i64| {
             let columns = [-1, 0, 1].map(|column| self.tile(place, column, below).depth);
@@ -52,7 +52,8 @@ impl Bricks {
         }
     }
 
-    /// Returns the tile of the position's course, or the tile of the next course, which lies below it.
+    /// Returns the tile that is visible at a position: the tile of its course, or the tile of the next course below if
+    /// that tile is uncovered.
     fn visible_tile(&self, place: [Split; 2]) -> Tile {
         let own = self.tile(place, 0, 0);
         if own.depth >= 0.0 {
@@ -62,7 +63,7 @@ impl Bricks {
         if lower.depth >= 0.0 { lower } else { own }
     }
 
-    /// Returns a tile relative to the one at a position: `columns` to the right and `courses` below.
+    /// Returns the tile `columns` to the right of a position and `courses` below it.
     fn tile(&self, [x, y]: [Split; 2], columns: i64, courses: i64) -> Tile {
         let [width, height] = self.cell;
         let course = y.cell + courses;

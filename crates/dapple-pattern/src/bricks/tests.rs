@@ -7,7 +7,7 @@ use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::{Field as _, FieldExt as _, Named as _, Window};
 use proptest::prelude::*;
 
-/// A rectangular face: its brick, the first and the last coordinate along each axis, and its direction.
+/// A rectangular face: its brick, its extent along x and y, and whether its long axis is vertical.
 struct Face {
     id: [i64; 2],
     x: [f64; 2],
@@ -77,8 +77,9 @@ fn cells(bricks: &Bricks) -> Vec<Face> {
     faces
 }
 
-/// Returns the depth of a position in a face with rounded corners: the radius plus the distance to the nearest side of
-/// the face inset by the radius, or minus the distance to it.
+/// Returns the depth of a position in a face with rounded corners. The face is inset by the radius; inside, the depth
+/// is the radius plus the distance to the nearest inset side, and outside, the radius minus the distance to the inset
+/// face.
 fn depth(bricks: &Bricks, face: &Face, [x, y]: [f64; 2]) -> f64 {
     let inset = [0, 1, 2, 3].map(|side| bricks.inset(face.id, side));
     let (left, right) = (face.x[0] + inset[0], face.x[1] - inset[1]);
@@ -126,7 +127,7 @@ fn options() -> impl Strategy<Value = BrickOptions> {
     })
 }
 
-/// A sum of a few products of numbers around 1.
+/// Tolerance: sums of a few products of numbers of about 1.
 const ROUNDING: f64 = 1e-12;
 
 proptest! {
@@ -218,8 +219,8 @@ proptest! {
     }
 }
 
-/// Returns the depth of a position in the deepest of the hexagons around it. Corners are the intersections of all pairs
-/// of sides.
+/// Returns the depth of a position in the surrounding hexagon where it is largest. Corners are computed as
+/// intersections of all pairs of sides.
 fn polygons(bricks: &Bricks, at: [f64; 2]) -> f64 {
     let [w, h] = bricks.cell;
     let center = |[column, row]: [i64; 2]| {
@@ -301,7 +302,7 @@ fn sides(bricks: &Bricks, id: [i64; 2]) -> Vec<([f64; 2], f64)> {
     (0..).zip(steps).map(side).collect()
 }
 
-/// Returns the distance to the border of the uppermost roof tile at a position, and the tile; no tile in a joint.
+/// Returns the distance to the border of the uppermost roof tile at a position, and the tile's id; `None` in a joint.
 fn tiles(bricks: &Bricks, at: [f64; 2]) -> (f64, Option<[i64; 2]>) {
     let [w, h] = bricks.cell;
     let options = bricks.options;
@@ -346,7 +347,7 @@ fn tiles(bricks: &Bricks, at: [f64; 2]) -> (f64, Option<[i64; 2]>) {
     }
 }
 
-/// Every bond with a period of 8 bricks and 16 courses, of which a quarter unit of the plane holds one.
+/// Returns bricks of a bond with a period of 8 bricks and 16 courses, four units of the plane along each axis.
 fn periodic(bond: Bond) -> Bricks {
     let options = BrickOptions {
         frequency: [2.0, 4.0],

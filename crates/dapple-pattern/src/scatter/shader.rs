@@ -4,18 +4,18 @@ use super::{Stamp, StampValue, Stamps};
 use crate::PatternError;
 use crate::lattice::{period_words, shader_words, wrapped};
 
-/// Number of words of a stamp.
+/// Number of words per stamp.
 const STAMP: usize = 24;
 
-/// Maximum number of words of a table: the largest texture of data that every device supports.
+/// Maximum number of words of a table. Every device supports a data texture of this size.
 const MOST_WORDS: f64 = (1 << 25) as f64;
 
-/// The table of the stamps of a period.
+/// A table of the stamps of one period, for shaders.
 #[doc(hidden)]
 #[derive(Clone, Debug)]
 pub struct StampTable {
-    /// By cell, the index of the word of its first entry, and the index after the last entry of the last cell. Then the
-    /// entries. Then the stamps.
+    /// First, for each cell, the index of the word of its first entry, followed by the index after the last entry of
+    /// the last cell. Then the entries: one word per stamp that may cover a position in the cell. Then the stamps.
     pub words: Vec<u32>,
     /// Index of the first word of the stamps, a multiple of 4.
     pub first_stamp: usize,
@@ -89,7 +89,7 @@ fn check_words(count: f64) -> Result<(), PatternError> {
 }
 
 impl Stamp {
-    /// Returns the words of a stamp in shaders: numbers of 64 bits as two words, then numbers of 32 bits.
+    /// Returns a stamp as words for a shader: 64-bit numbers as high and low words, then 32-bit numbers.
     fn words(&self) -> [u32; STAMP] {
         let [a, b, c, d] = self.outline.random.map(f32::to_bits);
         let [random, random2, random3] = self.randoms.map(f32::to_bits);

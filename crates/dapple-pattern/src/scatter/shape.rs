@@ -44,7 +44,7 @@ pub(super) struct Outline {
 }
 
 impl StampShape {
-    /// Returns the distance from the outline, from 0 to 1 in the middle, and the height profile, from 0 to 1; `None`
+    /// Returns the distance from the outline, from 0 to 1 in the middle, and the height profile, from 0 to 1. `None`
     /// outside of the outline.
     pub(super) fn at(self, outline: &Outline, u: f32, v: f32) -> Option<(f32, f32)> {
         let square = u * u + v * v;
@@ -99,7 +99,7 @@ impl Outline {
         (1.0 - t * t).max(0.0).sqrt()
     }
 
-    /// Returns the distance from the outline of a slate, in half widths.
+    /// Returns the distance from the outline of a slate, relative to half of its width.
     fn slate(&self, u: f32, v: f32) -> f32 {
         // The round end is half of an ellipse, a third of the length.
         let round = ((u - 1.0 / 3.0) * 1.5).max(0.0);
@@ -107,7 +107,8 @@ impl Outline {
         end.min((1.0 + u) / self.aspect)
     }
 
-    /// Returns the distance from the center of a pebble relative to its outline.
+    /// Returns the distance from the center of a pebble, relative to the distance of its outline in the same
+    /// direction.
     fn pebble(&self, u: f32, v: f32, square: f32) -> f32 {
         let [cos, sin] = unit(u, v, square);
         // The outline is a sum of the harmonics 2, 3 and 5 with random phases.
@@ -156,7 +157,7 @@ impl Outline {
     }
 }
 
-/// Returns the cosine and the sine of the direction of a vector with this squared length.
+/// Returns the cosine and the sine of the direction of a vector, given its squared length.
 fn unit(x: f32, y: f32, square: f32) -> [f32; 2] {
     let length = square.sqrt();
     if length > 0.0 {

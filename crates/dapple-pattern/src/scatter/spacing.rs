@@ -1,17 +1,18 @@
-//! Leaves out points that are too close to others.
+//! Drops points that are closer to other points than the spacing.
 //!
 //! Every point has a random priority. A point is kept if no kept point with a higher priority is closer than the
 //! spacing: random sequential addition in the order of priorities (a Matérn process of type III), as in
-//! `dapple_points::EndlessPoissonDisk`. Whether a point is kept depends on the points around it that have a higher
-//! priority, and on those around them. These chains end after a few points and are followed completely.
+//! `dapple_points::EndlessPoissonDisk`. Whether a point is kept thus depends on the points around it that have a
+//! higher priority, which depend on the points around them. These chains end after a few points and are followed
+//! completely.
 
 use super::{Point, Stamps};
 use std::collections::BTreeMap;
 
-/// Decides which points are kept, and remembers the decisions.
+/// Decides which points are kept, and caches the decisions.
 pub(super) struct Spacing<'a> {
     stamps: &'a Stamps,
-    /// By cell: its points, each with the decision if it is known.
+    /// Points of each cell, each with the decision whether it is kept, if known.
     cells: BTreeMap<[i64; 2], Vec<(Point, Option<bool>)>>,
 }
 

@@ -22,7 +22,8 @@ fn stamps(options: StampOptions) -> Stamps {
     Stamps::new(Seed(7), options).unwrap()
 }
 
-/// Options of all kinds, with whose numbers positions in cells are computed without rounding.
+/// Returns stamps with all kinds of options. Their numbers are chosen so that positions in cells are computed without
+/// rounding.
 fn examples() -> Vec<Stamps> {
     let mut examples = Vec::new();
     for (index, &shape) in StampShape::ALL.iter().enumerate() {
@@ -57,7 +58,7 @@ fn examples() -> Vec<Stamps> {
     examples
 }
 
-/// Cells and indices of the points of the tile that the spacing keeps, by adding them one at a time.
+/// Returns the cells and indices of the points that the spacing keeps in a period, by adding points one at a time.
 fn kept_points(stamps: &Stamps) -> Vec<([i64; 2], usize)> {
     let period = i64::from(PERIOD);
     let cells = (0..period * period).map(|cell| [cell % period, cell / period]);
@@ -96,7 +97,7 @@ fn kept_points(stamps: &Stamps) -> Vec<([i64; 2], usize)> {
         .collect()
 }
 
-/// All stamps of the tile and its copies around it, in the order in which they are stamped.
+/// Returns all stamps of a period and its copies around it, in stamping order.
 fn all_stamps(stamps: &Stamps) -> Vec<Stamp> {
     let mut all = Vec::new();
     let kept = kept_points(stamps);
@@ -117,7 +118,7 @@ fn all_stamps(stamps: &Stamps) -> Vec<Stamp> {
     all
 }
 
-/// Computes a value from all stamps.
+/// Computes a value by brute force over all stamps.
 fn oracle(stamps: &Stamps, all: &[Stamp], value: StampValue, position: [f64; 2]) -> f32 {
     let mut hits = Vec::new();
     for stamp in all {
@@ -390,7 +391,7 @@ fn shapes_are_inside_of_their_box_and_their_profile_is_a_height() {
     }
 }
 
-/// Checks that changed options are refused for a number out of its range, which is called `expected`.
+/// Checks that changed options give the error for a number out of its range. `expected` is the name of the number.
 fn assert_refused(change: impl Fn(&mut StampOptions), expected: &str) {
     let mut options = tile();
     change(&mut options);

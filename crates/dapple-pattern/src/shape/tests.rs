@@ -1,4 +1,4 @@
-//! Compares shapes with distances to many points of their borders, from their definitions.
+//! Compares shapes with the distances to many points on their borders, which come from the definitions of the shapes.
 
 use super::{Shape, ShapeKind, ShapeOptions, ShapeValue, length};
 use crate::PatternErrorKind;

@@ -1,4 +1,4 @@
-//! Compares weaves with drafts written as grids, and with surfaces of all threads around a position.
+//! Compares weaves with drafts written as grids, and with the surfaces of all threads around a position.
 
 use super::{Draft, Weave, WeaveOptions, WeaveValue};
 use crate::PatternErrorKind;
@@ -6,7 +6,7 @@ use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::{Field as _, FieldExt as _, Named as _, Window};
 use proptest::prelude::*;
 
-/// A draft, its numbers over, under and step, and its grid.
+/// A draft, its parameters `over`, `under` and `step`, and its grid.
 type Grid = (Draft, [Option<u32>; 3], &'static [&'static str]);
 
 /// Drafts as in weavers' books: a column for each warp thread, a row for each weft thread, `#` where the warp lies above.
@@ -58,7 +58,7 @@ fn drafts_equal_those_of_weavers() {
     }
 }
 
-/// Returns the height and direction of the highest of all threads around a position, and how far it is above the next.
+/// Returns the height and direction of the highest thread around a position, and its height above the next highest.
 fn highest(weave: &Weave, grid: &[&str], at: [f64; 2]) -> (f64, usize, f64) {
     let options = weave.options;
     let side = grid.len() as i64;
