@@ -94,10 +94,10 @@ fn steps_to_seen(image: &Raster<LinearRgba>, wraps: bool) -> Vec<i32> {
     steps
 }
 
-/// The lower envelope of a row's parabolas. It lists the columns that are nearest to at least one pixel, from left to
-/// right.
+/// The lower envelope of a row's distance parabolas. It lists the columns that are nearest to at least one pixel, from
+/// left to right.
 struct Envelope {
-    /// A column, counted past the edges of a row that wraps, and the first pixel to which it is nearest.
+    /// A column (counted past the edges of a row that wraps), and the first pixel that is nearest to it.
     parts: Vec<(i64, i64)>,
     /// Width of the row if it wraps; `None` if it does not.
     period: Option<i64>,

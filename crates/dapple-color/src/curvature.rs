@@ -13,9 +13,9 @@
 //! the opposite sign, as is usual in curvature maps.
 //!
 //! Derivatives are central differences over a radius of whole pixels in each direction, and second derivatives are
-//! second differences over the same radius: weighted means of the derivative over it. Lengths are in units of the
-//! plane and curvature is in reciprocal units, so the result does not depend on the resolution if the radius is at
-//! least a pixel. Where a term is not finite, the curvature is 0.
+//! second differences over the same radius, which are weighted means of the second derivative. Lengths are in units of
+//! the plane and curvature is in reciprocal units, so the result does not depend on the resolution if the radius is at
+//! least a pixel. If an intermediate result is not finite, the curvature is 0.
 
 use crate::{ColorError, HeightPlane, plane};
 use dapple_raster::Raster;

@@ -248,11 +248,13 @@ impl Normal {
     }
 }
 
-/// Components below this come from 16-bit codes next to the middle. Such components are 2^-16 for a vector of unit
-/// length, and the next codes are three times as large. The length of a decoded vector is within a quarter of 1.
+/// Maximum component that comes from a 16-bit code next to the middle. Such a component is 2^-16 for a vector of unit
+/// length, and the component of the next code is three times as large. The length of a decoded vector is within a
+/// quarter of 1.
 const STEP_OF_16_BITS: f32 = 1.5 / (1 << 16) as f32;
 
-/// Range of 1/255 divided by the length of a vector of 8-bit codes, which is near 1.
+/// Range of a component that comes from an 8-bit code next to the middle: 1/255 divided by the length of a decoded
+/// vector, which is near 1.
 const STEPS_OF_8_BITS: core::ops::RangeInclusive<f32> = 0.9 / 255.0..=1.1 / 255.0;
 
 /// Returns whether a ratio is an odd number, up to the rounding of decoded codes to `f32` (1e-7 of 1/255, times 255).

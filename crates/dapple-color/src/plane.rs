@@ -116,8 +116,8 @@ pub fn continue_heights(heights: &mut Raster<f32>, sides: [Option<[i64; 2]>; 2])
     }
 }
 
-/// Returns the indices of a line of `length` outside `sides`, each with the sum that gives its height. Indices whose
-/// sum needs a height outside the line are omitted.
+/// Returns the indices of a line of `length` heights that are outside `sides`, each with the formula that continues
+/// the heights there. Indices whose formula needs a height outside the line are omitted.
 fn terms_outside([from, end]: [i64; 2], length: u32) -> Vec<(usize, Term)> {
     let is_outside = |at: &i64| !(from..end).contains(at);
     let term = |at: i64| Some((at as usize, Term::new(at, [from, end], length)?));
@@ -127,17 +127,17 @@ fn terms_outside([from, end]: [i64; 2], length: u32) -> Vec<(usize, Term)> {
         .collect()
 }
 
-/// A height beyond the end of a line, as a sum of heights inside it: the height at `at` times `sign`, plus the
-/// heights at both ends times their factors.
+/// Formula for a height beyond the end of a line: the height at `at` times `sign`, plus the heights at both ends times
+/// their factors.
 struct Term {
     at: usize,
     sign: f64,
-    /// Indices of the outermost heights, and their factors.
+    /// Indices of the heights at both ends, and their factors.
     ends: [(usize, f64); 2],
 }
 
 impl Term {
-    /// Returns the sum for an index; `None` if any of its heights is outside the line.
+    /// Returns the formula for an index; `None` if it needs a height outside the line.
     fn new(index: i64, [from, end]: [i64; 2], length: u32) -> Option<Self> {
         let last = end
             .checked_sub(from)?

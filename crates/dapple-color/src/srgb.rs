@@ -110,8 +110,8 @@ impl Curve {
     }
 }
 
-/// Returns the tables of the shaders of `dapple-wgsl` for 16 bits: for each code, the smallest linear value whose code
-/// is larger, and the linear value of each code.
+/// Returns two tables for the shaders of `dapple-wgsl`, for 16-bit codes: the smallest linear value whose code is
+/// larger, and the linear value of each code.
 #[doc(hidden)]
 #[must_use]
 pub fn srgb_shader_words() -> [Vec<u32>; 2] {

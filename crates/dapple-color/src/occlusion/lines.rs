@@ -17,11 +17,11 @@ pub(super) struct Heights {
     left: i32,
     /// Number of computed columns, rounded up to whole registers.
     span: usize,
-    /// Factors from the difference of two neighbors to a slope, along x and y.
+    /// Factors from the height difference of a pixel's two neighbors to a slope, along x and y.
     scale: [f32; 2],
 }
 
-/// The heights that a row of pixels is compared with.
+/// The heights that a row of pixels is compared with, as slices whose element `i` is for pixel `i`.
 pub(super) struct Lines<'a> {
     pub(super) here: &'a [f32],
     /// Lines of neighboring heights: left, right, above and below.
@@ -32,20 +32,20 @@ pub(super) struct Lines<'a> {
     pub(super) views: Vec<View<'a>>,
 }
 
-/// A ray for a row of pixels.
+/// A ray of every pixel in a row.
 pub(super) struct View<'a> {
     pub(super) direction: [f32; 2],
     pub(super) samples: Vec<Line<'a>>,
 }
 
-/// A sample of a ray for a row of pixels.
+/// A sample of a ray, for every pixel in a row. The height is interpolated from `near` (at `part` 0) to `far` (at 1).
 pub(super) struct Line<'a> {
     pub(super) near: &'a [f32],
     pub(super) far: &'a [f32],
     pub(super) part: f32,
     /// Factor from a height difference to a slope.
     pub(super) scale: f32,
-    /// Weight of a slope above that of the tangent plane.
+    /// Weight of a slope that exceeds the slope of the tangent plane, from 0 to 1.
     pub(super) weight: f32,
 }
 
@@ -87,7 +87,7 @@ impl Heights {
         })
     }
 
-    /// Returns the heights at an offset in columns and rows from a row of pixels.
+    /// Returns the heights at an offset, in columns and rows, from each pixel of a row.
     fn line(&self, row: u32, [x, y]: [i32; 2]) -> &[f32] {
         let row = i64::from(row) + i64::from(y);
         let row = plane::index(self.wrap_y, row, self.padded.height());

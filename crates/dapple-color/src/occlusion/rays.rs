@@ -11,7 +11,7 @@ use dapple_raster::glam::DVec2;
 /// Number of azimuths.
 const AZIMUTHS: usize = 16;
 
-/// Ray directions over the first half turn, a sixteenth of a turn apart. The other directions are their opposites.
+/// Ray directions over the first half turn, a sixteenth of a turn apart. The opposite directions complete the circle.
 const DIRECTIONS: [[f64; 2]; AZIMUTHS / 2] = {
     // Cosines of 1/16, 2/16 and 3/16 of a turn.
     const C: [f64; 3] = [
@@ -31,11 +31,11 @@ const DIRECTIONS: [[f64; 2]; AZIMUTHS / 2] = {
     ]
 };
 
-/// Approximate number of steps that double the distance, once steps are longer than a pixel.
+/// Approximate number of steps in which the distance doubles, once steps are longer than a pixel.
 const STEPS_TO_DOUBLE: u32 = 8;
 
-/// Resolution of positions across a ray, in steps per pixel. Rounding to it makes positions equal in all windows,
-/// whatever the rounding error of their extents.
+/// Resolution of positions across a ray, in fractions of a pixel. Rounding to it makes positions equal in all windows,
+/// despite the rounding error of their extents.
 const PARTS: f64 = (1 << 20) as f64;
 
 /// A ray: the samples in one azimuth.
@@ -119,7 +119,8 @@ fn samples(options: &OcclusionOptions, direction: DVec2, pixel: DVec2) -> Vec<Sa
     steps(last).into_iter().map(sample).collect()
 }
 
-/// Returns the weight of a height at a fraction of the radius, from 1 to 0.
+/// Returns the fading weight of a height at a distance of `part` · radius: 1 up to the fade, then falling to 0 at the
+/// radius.
 fn weight(part: f64, fade: f64) -> f32 {
     if part <= 1.0 - fade {
         1.0
@@ -128,7 +129,8 @@ fn weight(part: f64, fade: f64) -> f32 {
     }
 }
 
-/// Returns increasing step numbers up to and including `last`. They are one apart at first, and the gaps then grow.
+/// Returns the distances of a ray's samples, in pixels, increasing up to and including `last`. They are one pixel
+/// apart at first, and the gaps then grow.
 fn steps(last: u32) -> Vec<u32> {
     let mut steps = Vec::new();
     let mut step = 0;

@@ -78,7 +78,8 @@ fn slope<S: Simd>(simd: S, lines: &Lines<'_>, first: usize) -> [f32x16<S>; 2] {
     [is_finite.select(x, level), is_finite.select(y, level)]
 }
 
-/// Returns the maximum slopes to the samples of a ray, but at least the slopes of the tangent planes. NaN is ignored.
+/// Returns the slopes of the horizons: the maximum slope to the samples of a ray, but at least the slope of the
+/// tangent plane. NaN is ignored.
 #[inline(always)]
 fn horizons<S: Simd>(
     simd: S,
@@ -111,8 +112,8 @@ fn horizons<S: Simd>(
     horizons
 }
 
-/// Returns the amount of sky between the zenith and a horizon, in multiples of half the normal's z component. Terms
-/// that cancel between opposite azimuths are omitted.
+/// Returns the amount of sky between the zenith and a horizon, in multiples of half the normal's z component. Parts of
+/// the integral that cancel between opposite azimuths are omitted.
 #[inline(always)]
 fn arc<S: Simd>(simd: S, tangent: f32x16<S>, horizon: f32x16<S>) -> f32x16<S> {
     (tangent * horizon + 1.0) / (horizon * horizon + 1.0) + tangent * arctangent(simd, horizon)
