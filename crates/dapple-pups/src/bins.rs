@@ -1,12 +1,12 @@
 //! A grid of bins. Each bin lists the control points that can have a weight in it.
 //!
-//! Every bin lists the instances whose supports intersect it, in the order of summation. So the time to evaluate a
-//! position does not depend on the number of points. The grid covers the domain. On an axis that does not wrap, the
-//! border bins extend to the limits of the evaluated positions.
+//! Every bin lists the instances (control points and their periodic images) whose supports intersect it, in the order
+//! of summation. The time to evaluate a position therefore does not depend on the number of points. The grid covers
+//! the domain. On an axis that does not wrap, the border bins extend to the limits of the evaluated positions.
 //!
 //! With many points, evaluation is limited by memory latency, so the data is compact and local. A bin takes 16 bytes.
-//! Its numbers refer to records, which are sorted by strips of bins and by column. So the candidates of a position are
-//! near each other in memory, whatever the order of the points.
+//! It lists indices of records. A record holds the data of an instance, and records are sorted by strips of bins and
+//! by column. The candidates of a position are therefore near each other in memory, whatever the order of the points.
 
 use crate::net::{AxisBlock, BLOCK, Instance, Net};
 use dapple_raster::Groups;
@@ -19,14 +19,14 @@ const BINS_PER_INSTANCE: f64 = 3.0;
 /// Maximum number of bins along one axis.
 const BINS_LIMIT: f64 = 16_384.0;
 
-/// Height of a strip, in bins.
+/// Height of a strip of bins that share a base for their record indices, in bins.
 const STRIP: usize = 4;
 
-/// Number of candidates that are evaluated together.
+/// Number of candidates that are evaluated together, one per lane.
 pub(crate) const GROUP: usize = 8;
 
-/// Up to eight candidates, in order, as indices of their records relative to the strip's base. If they do not fit, the
-/// index of a list in [`Bins::crowded`].
+/// The candidates of a bin, in order. Elements are record indices relative to the strip's base. If the candidates do
+/// not fit, the bin holds the index of a list in [`Bins::crowded`] instead.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(16))]
 struct Bin([u16; GROUP]);
@@ -34,8 +34,9 @@ struct Bin([u16; GROUP]);
 impl Bin {
     /// Marks an unused slot.
     const NONE: u16 = u16::MAX;
-    /// First element of a bin whose candidates are listed in `crowded`: one has more axes than a block holds, there are
-    /// more than eight, or a record is too far from the base. The next two elements are the halves of the list's index.
+    /// First element of a bin that does not hold its candidates: there are more than eight, one has several blocks of
+    /// axes, or a record is too far from the base. The next two elements are the low and high half of an index into
+    /// [`Bins::crowded`].
     const ELSEWHERE: u16 = Self::NONE - 1;
 
     /// Packs candidates into a bin, with record indices relative to `base`. Returns `None` if they do not fit.
@@ -58,22 +59,22 @@ impl Bin {
     }
 }
 
-/// Flags a candidate with more axes than a block holds. Indices do not need this bit, since fewer than 2^30 instances
-/// fit into memory.
+/// Flag of a candidate with several blocks of axes. Record indices do not need this bit, since fewer than 2^30
+/// instances fit into memory.
 const LONG: u32 = 1 << 30;
 
-/// Marks the end of a crowded bin's candidates.
+/// Marks the end of a list in [`Bins::crowded`].
 const END: u32 = u32::MAX;
 
-/// Up to eight candidates, unpacked for evaluation.
+/// A group of up to eight candidates, unpacked for evaluation.
 pub(crate) struct Candidates {
-    /// The candidates' record indices; 0 in unused slots.
+    /// Record index of each candidate; 0 in unused slots.
     pub(crate) records: [u32; GROUP],
     /// 1 for a candidate, 0 for an unused slot.
     pub(crate) ones: [f32; GROUP],
-    /// Bit mask of the candidates with more axes than a block holds.
+    /// Bit mask of the candidates that have several blocks of axes.
     pub(crate) long: u32,
-    /// Index in `crowded` of the next candidates; `None` if there are no more.
+    /// Index in `crowded` at which the bin's candidates continue; `None` after the last group.
     pub(crate) next: Option<u32>,
 }
 
@@ -88,14 +89,14 @@ pub(crate) struct Bins {
     bins: Vec<Bin>,
     /// For each strip of bins, the record index that the strip's bins are relative to.
     bases: Vec<u32>,
-    /// Candidate lists of bins that cannot hold their candidates. Each list ends with [`END`].
+    /// Lists of candidates for bins that cannot hold them. Each list ends with [`END`].
     crowded: Vec<u32>,
-    /// First block of axes for each record.
+    /// First block of axes of each record.
     pub(crate) axes: Vec<AxisBlock>,
     pub(crate) centers: Vec<DVec2>,
-    /// Instance index for each record.
+    /// Instance index of each record.
     pub(crate) instances: Vec<u32>,
-    /// Control point index for each record.
+    /// Control point index of each record.
     pub(crate) points: Vec<u32>,
 }
 
@@ -134,7 +135,7 @@ impl Bins {
         self.per_unit
     }
 
-    /// Returns the records of all candidates of a bin, in order. Bins are counted row by row.
+    /// Returns the record indices of all candidates of a bin, in order of summation. Bins are counted row by row.
     pub(crate) fn candidates_in(&self, bin: usize) -> Vec<u32> {
         let mut records = Vec::new();
         let mut candidates = self.first_of_bin(bin / self.size[0], bin % self.size[0]);
@@ -148,14 +149,14 @@ impl Bins {
         }
     }
 
-    /// Returns the first candidates at a position, which must be in the range of [`Net::local`].
+    /// Returns the first group of candidates at a position, which must be in the range of [`Net::local`].
     #[inline(always)]
     pub(crate) fn first_candidates(&self, position: DVec2) -> Candidates {
         let row = self.bin(1, position.y);
         self.first_of_bin(row, self.bin(0, position.x))
     }
 
-    /// Returns the first candidates of a bin.
+    /// Returns the first group of candidates of a bin.
     #[inline(always)]
     fn first_of_bin(&self, row: usize, column: usize) -> Candidates {
         let Bin(places) = self.bins[row * self.size[0] + column];
@@ -179,7 +180,7 @@ impl Bins {
         }
     }
 
-    /// Returns the next candidates of a crowded bin, starting at index `start` of `crowded`.
+    /// Returns the group of candidates that starts at index `start` of `crowded`.
     pub(crate) fn next_candidates(&self, start: u32) -> Candidates {
         let mut candidates = Candidates {
             records: [0; GROUP],
@@ -203,7 +204,8 @@ impl Bins {
         candidates
     }
 
-    /// Returns the bin index of a coordinate along an axis. Coordinates outside of the grid belong to the border bins.
+    /// Returns the column (axis 0) or row (axis 1) of the bin that contains a coordinate. Coordinates outside of the
+    /// grid belong to the border bins.
     #[inline(always)]
     fn bin(&self, axis: usize, coordinate: f64) -> usize {
         // The conversion turns negative numbers into zero.
@@ -260,7 +262,7 @@ impl Bins {
         (sorted.starts, candidates)
     }
 
-    /// Packs the candidates into bins, and appends those that do not fit to `crowded`.
+    /// Packs the candidates of each bin, and appends the lists that do not fit to `crowded`.
     fn pack(&mut self, offsets: &[u32], candidates: &[u32]) {
         let of = |bin: usize| &candidates[offsets[bin] as usize..offsets[bin + 1] as usize];
         let n_bins = self.size[0] * self.size[1];
@@ -284,7 +286,7 @@ impl Bins {
     }
 
     /// Returns whether an instance's support may intersect a bin. It cannot if some axis has `u <= 0` at all four
-    /// corners.
+    /// corners of the bin; see [`Net`] for `u`.
     fn touches(&self, net: &Net, instance: &Instance, bin: [usize; 2]) -> bool {
         // Offsets of the bin's corners from the control point.
         let [x, y] = [0, 1].map(|axis| {

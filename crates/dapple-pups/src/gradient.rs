@@ -1,9 +1,9 @@
 //! Computes the gradient of a texture in closed form.
 //!
-//! With `W = Π A(u_r)`, the gradient of a weight is `∇W = Σ_r A'(u_r) ∇u_r Π_{s≠r} A(u_s)`. Here `∇u_r = −a_r` inside
-//! `[0, 1]`, and zero where the projection is clamped (`A'` is zero there anyway). With an orientation, `w' = w^e`, so
-//! `∇w' = e w^(e−1) ∇w + w' ln w ∇e`. For an axis that fades, `∇A^e = e A^(e−1) ∇A`. For equation 3,
-//! `∇T = Σ (T_i − T) ∇W_i / Σ W_i`.
+//! With `W = Π A(u_r)` over the axes `r`, the gradient of a weight is `∇W = Σ_r A'(u_r) ∇u_r Π_{s≠r} A(u_s)`. Here
+//! `∇u_r = −a_r` inside `[0, 1]`, and zero where the projection is clamped (`A'` is zero there anyway). With an
+//! orientation, `w' = w^e`, so `∇w' = e w^(e−1) ∇w + w' ln w ∇e`. For an axis that fades, `∇A^e = e A^(e−1) ∇A`. For
+//! equation 3, `∇T = Σ (T_i − T) ∇W_i / Σ W_i`.
 //!
 //! The gradient is computed in double precision, for one position at a time.
 
@@ -98,7 +98,7 @@ fn weight_and_gradient(net: &Net, instance: &Instance, position: DVec2) -> (f64,
     }
 }
 
-/// Returns an axial weight and its gradient.
+/// Returns the axial weight of an axis at an offset from the control point, and its gradient.
 fn axial(weight: AxialWeight, block: &AxisBlock, slot: usize, offset: DVec2) -> (f64, DVec2) {
     let axis = DVec2::new(f64::from(block.x[slot]), f64::from(block.y[slot]));
     let u = (1.0 - axis.dot(offset)).clamp(0.0, 1.0);
@@ -116,7 +116,7 @@ fn faded((value, slope): (f64, DVec2), exponent: f64) -> (f64, DVec2) {
     (faded, slope * (exponent * faded / value))
 }
 
-/// Applies equation 4 to a weight and its gradient.
+/// Applies an orientation (equation 4) to a weight and its gradient.
 fn shifted(weight: f64, gradient: DVec2, shift: DVec2, offset: DVec2) -> (f64, DVec2) {
     let distance = offset.length();
     // The weight is unchanged where it is zero, and at the control point, where the angle is undefined.

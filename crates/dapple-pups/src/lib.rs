@@ -2,9 +2,10 @@
 //! tileable, and can be edited point by point.
 //!
 //! Control points in the plane are connected by a graph. The edges at a control point are its axes. A position is
-//! projected onto each axis, every projection gives an axial weight, and the product of the axial weights is the weight
-//! of the control point. [`Pups`] is such a net. [`Texture`] interpolates values of the control points;
-//! [`Pups::strongest`] gives each position the label of its strongest control point.
+//! projected onto each axis, every projection gives an axial weight, and the product of the axial weights is the
+//! weight of the control point. A control point has a weight only in its support, a polygon around it. [`Pups`] is
+//! such a net. [`Texture`] interpolates values of the control points; [`Pups::strongest`] returns the control point
+//! with the largest weight, whose label a position gets.
 //!
 //! ```
 //! use dapple_pups::hash::Seed;

@@ -1,8 +1,8 @@
-//! Pixel coordinates along one axis: monotonic runs, and the coordinates inside an interval.
+//! Pixel coordinates along one axis: monotonic runs, and the pixels whose coordinates are in an interval.
 
 use core::ops::Range;
 
-/// Evenly spaced coordinates.
+/// Coordinates of consecutive pixels along one axis, usually evenly spaced.
 pub(crate) struct Line {
     first: f64,
     /// Number of coordinates per unit of length, negative if they descend; `None` if they are not evenly spaced.
@@ -31,8 +31,8 @@ impl Line {
         }
     }
 
-    /// Returns the indices of the coordinates in the interval from `min` to `max`. May include a neighbor on either
-    /// side.
+    /// Returns the indices of the pixels whose coordinates are in the interval from `min` to `max`. May include a
+    /// neighbor on either side.
     #[inline(always)]
     pub(crate) fn touched(&self, min: f64, max: f64) -> Range<usize> {
         let Some(per_unit) = self.per_unit else {
@@ -47,10 +47,10 @@ impl Line {
     }
 }
 
-/// Divides coordinates into maximal monotonic runs, which end where a period ends. A coordinate that is not finite
-/// forms a run of its own.
+/// Divides coordinates into maximal monotonic runs. A run ends at the end of a period, and a coordinate that is not
+/// finite forms a separate run.
 ///
-/// All runs ascend or all descend, whichever gives fewer runs.
+/// Either all runs ascend or all descend, whichever gives fewer runs.
 pub(crate) fn runs(coordinates: &[f64]) -> Vec<Range<usize>> {
     let ascending = stretches(coordinates, |last, next| next >= last);
     let descending = stretches(coordinates, |last, next| next <= last);
@@ -61,7 +61,7 @@ pub(crate) fn runs(coordinates: &[f64]) -> Vec<Range<usize>> {
     }
 }
 
-/// Divides coordinates into maximal runs in which `goes_on` holds between successive coordinates.
+/// Divides coordinates into maximal runs in which `goes_on(previous, next)` holds between successive coordinates.
 fn stretches(coordinates: &[f64], goes_on: impl Fn(f64, f64) -> bool) -> Vec<Range<usize>> {
     let mut stretches = Vec::new();
     let mut start = 0;

@@ -3,9 +3,10 @@
 //! Reference: Jack Caron and David Mould, "Partition of Unity Parametrics for Texture Synthesis", Graphics Interface
 //! 2013, section 2.
 //!
-//! An axis `v` of a control point `c`, scaled by `s`, projects a position `x` to `p = (x − c)·v / (s |v|²)`. Let
-//! `a = v / (s |v|²)`, and let `d` be `x − c` rounded to single precision. The evaluation needs `u = 1 − p`, computed
-//! as `(1 − a_y d_y) − a_x d_x`. Every code path of this crate uses this grouping, so that the bits agree.
+//! An axis `v` of a control point `c`, scaled by `s`, projects a position `x` to `p = (x − c)·v / (s |v|²)`, a
+//! fraction of the axis. Let `a = v / (s |v|²)`, and let `d` be `x − c` rounded to single precision. The evaluation
+//! needs `u = 1 − p`, computed as `(1 − a_y d_y) − a_x d_x`. Every code path of this crate uses this grouping, so that
+//! the bits agree.
 //!
 //! On a wrapped axis, the periodic images of a control point have weights, too. Each image whose support intersects the
 //! domain is an [`Instance`]. Positions are first wrapped into the domain, so a texture repeats exactly.
@@ -22,18 +23,19 @@ use std::sync::OnceLock;
 /// Number of points added to a net between two checks for cancellation.
 const POINTS: u32 = 1 << 13;
 
-/// Number of axes that are evaluated together.
+/// Number of axes in a block. The axes of a block are evaluated together.
 pub(crate) const BLOCK: usize = 8;
 
 /// Maximum distance of evaluated positions from the domain, in domain sizes, along an axis that does not wrap.
-/// Positions farther away are clamped. Beyond this distance, the texture is constant along every ray that single
-/// precision can distinguish.
+/// Positions farther away are clamped to it. Beyond this distance, the texture is constant in each direction, as far
+/// as single precision can tell.
 const FAR: f64 = 1_048_576.0;
 
-/// Maximum distance that a support extends from its control point, in periods.
+/// Maximum extent of a support from its control point along a wrapped axis, in periods.
 const IMAGES_LIMIT: f64 = 64.0;
 
-/// Eight axes, stored as registers. Unused slots are zero, which projects every position to 0 and gives the weight 1.
+/// Up to eight axes `a = v / (s |v|²)`, with one array per component. Unused slots are zero, which projects every
+/// position to 0 and gives the weight 1.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
 pub(crate) struct AxisBlock {
@@ -55,7 +57,7 @@ impl AxisBlock {
     }
 }
 
-/// Exponents of a block's axial weights. They are below 1 for fading axes, which come first in their block.
+/// Exponents of the axial weights of a block. They are below 1 for fading axes, which come first in their block.
 pub(crate) type Exponents = [f32; BLOCK];
 
 /// A control point or one of its periodic images; fills one cache line.
@@ -64,12 +66,12 @@ pub(crate) type Exponents = [f32; BLOCK];
 pub(crate) struct Instance {
     /// Position of the control point or image.
     pub(crate) center: DVec2,
-    /// Bounds of its support. A side is infinite where the support is unbounded.
+    /// Bounds of the support. A side is infinite where the support is unbounded.
     pub(crate) min: DVec2,
     pub(crate) max: DVec2,
     /// Index of the control point.
     pub(crate) point: u32,
-    /// Blocks of its axes: index of the first, and number.
+    /// Index of the first block of its axes in [`Net::blocks`], and number of blocks.
     first_block: u32,
     n_blocks: u32,
 }
@@ -77,9 +79,9 @@ pub(crate) struct Instance {
 /// The kind of graph that a net is built from.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum GraphKind {
-    /// The Delaunay graph of the points. No axes need to be added where a support is open.
+    /// The Delaunay graph of the points, which needs no additional axes.
     Delaunay,
-    /// Any graph.
+    /// Any graph. Delaunay axes are added to points whose support is open.
     Any,
 }
 
@@ -95,7 +97,7 @@ pub(crate) struct Net {
     blocks: Vec<AxisBlock>,
     /// Exponents of each block's axial weights; empty if no axis fades.
     exponents: Vec<Exponents>,
-    /// ε times each point's orientation in the plane; empty without orientations.
+    /// Strength ε times the orientation in the plane of each point; empty without orientations.
     pub(crate) shifts: Vec<[f32; 2]>,
     /// Bins for evaluating single positions, built on first use.
     bins: OnceLock<Bins>,
@@ -158,7 +160,7 @@ impl Net {
         })
     }
 
-    /// Adds the next point; `axes` are the vectors of its axes, in order.
+    /// Adds the next point to the net. `axes` are the vectors of its axes, in order.
     fn push(&mut self, point: PointIdx, center: DVec2, axes: &[DVec2]) -> Result<(), PupsError> {
         let first_block = self.blocks.len();
         self.push_axes(point, axes)?;
@@ -166,7 +168,7 @@ impl Net {
         Ok(())
     }
 
-    /// Returns the bins that list the control points for each part of the domain. Builds them on first use.
+    /// Returns the bins, which list the candidates for each part of the domain. Builds them on first use.
     #[inline]
     pub(crate) fn bins(&self) -> &Bins {
         self.bins.get_or_init(|| Bins::new(self))
@@ -187,8 +189,8 @@ impl Net {
         &self.exponents[instance.first_block as usize..][..instance.n_blocks as usize]
     }
 
-    /// Moves a coordinate into the range of the evaluation: wraps it into the domain if the axis wraps, else clamps it.
-    /// Returns NaN if it is not finite.
+    /// Moves a coordinate into the range of evaluated positions: wraps it into the domain if the axis wraps, otherwise
+    /// clamps it. Returns NaN if it is not finite.
     #[inline]
     pub(crate) fn local(&self, axis: usize, coordinate: f64) -> f64 {
         if !coordinate.is_finite() {
@@ -232,7 +234,7 @@ impl Net {
         Ok(())
     }
 
-    /// Adds blocks of scaled axes for the next point; one empty block if there are no axes.
+    /// Adds axes of the next point as blocks; one empty block if there are no axes.
     fn push_blocks(&mut self, point: PointIdx, axes: &[DVec2]) -> Result<(), PupsError> {
         // With this limit, products of axes and positions stay in the range of single precision.
         let limit = self.domain.size.max_element() * 1e-9;
@@ -293,7 +295,8 @@ impl Net {
         }
     }
 
-    /// Returns the offsets, in periods, at which a support intersects the domain.
+    /// Returns the periodic images of a point whose supports intersect the domain, as a range of offsets in periods
+    /// along an axis.
     fn image_range(
         &self,
         axis: usize,

@@ -31,7 +31,7 @@ pub struct PupsOptions {
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/axis-scale.md"))]
     pub axis_scale: f64,
-    /// Falloff of the weight along an axis. The default is equation 1.
+    /// Falloff of the weight along an axis. The default is the cubic of equation 1.
     pub weight: AxialWeight,
     /// Orientations, which shift weights by equation 4. The default is none.
     pub orientation: Option<Orientation>,
@@ -51,7 +51,7 @@ pub struct PupsOptions {
     pub fade: f64,
 }
 
-/// Value of [`fade`](PupsOptions::fade) for moving points, at which textures have no visible jumps.
+/// Value of [`fade`](PupsOptions::fade) for moving points, with which textures have no visible jumps.
 pub(crate) const MOVING_FADE: f64 = 0.25;
 
 /// Returns whether fading is disabled.
@@ -164,10 +164,11 @@ impl PupsOptions {
 }
 
 impl Orientation {
-    /// Maximum length of a shift. It ensures that no exponent of equation 4 divides by zero, even after rounding.
+    /// Maximum length of a shift (ε times an orientation). It ensures that no exponent of equation 4 divides by zero,
+    /// even after rounding.
     const LONGEST_SHIFT: f64 = 1.0 - 1e-6;
 
-    /// Returns ε times the orientation in the plane of control point `index`.
+    /// Returns the shift of control point `index`: the strength ε times its orientation in the plane.
     pub(crate) fn shift(&self, index: usize) -> [f32; 2] {
         let vector = self.vectors[if self.vectors.len() == 1 { 0 } else { index }];
         // Project the unit vector to the plane, and scale it by ε.

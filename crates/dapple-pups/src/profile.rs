@@ -4,28 +4,28 @@ use crate::net::BLOCK;
 use crate::weight::{AxialWeight, Lane};
 use fearless_simd::prelude::*;
 
-/// Incremental product of the axial weights of up to [`BLOCK`] axes.
+/// Incremental product of the axial weights of up to [`BLOCK`] axes, as two partial products `q` and `t`.
 ///
 /// An axis with `u = 1` does not change the bits of the result, so it may be included or left out. Axes are given as
 /// `−u`, in `[−1, 0]`, which saves one operation.
 pub(crate) trait Profile: Copy + Send + Sync {
-    /// Starts a product with the first axis.
+    /// Starts the partial products with the first axis.
     fn first<V: Lane>(self, minus_u: V) -> (V, V);
 
-    /// Multiplies by the weight of another axis.
+    /// Multiplies the partial products by another axis.
     fn step<V: Lane>(self, q: V, t: V, minus_u: V) -> (V, V);
 
-    /// Returns the product of `n` axial weights; `n` is at least 1.
+    /// Returns the product of `n` axial weights, at least one, from their partial products.
     fn finish<V: Lane>(self, q: V, t: V, n: usize) -> V;
 
-    /// Returns the axial weight of one axis.
+    /// Returns the axial weight of a single axis.
     #[inline(always)]
     fn single<V: Lane>(self, minus_u: V) -> V {
         let (q, t) = self.first(minus_u);
         self.finish(q, t, 1)
     }
 
-    /// Returns the product of a block's axial weights. Unused slots have the weight 1.
+    /// Returns the product of the axial weights of a block. Unused slots have the weight 1.
     #[inline(always)]
     fn product<V: Lane>(self, minus_u: [V; BLOCK]) -> V {
         let (mut q, mut t) = self.first(minus_u[0]);
@@ -36,8 +36,8 @@ pub(crate) trait Profile: Copy + Send + Sync {
     }
 }
 
-/// Computes `−u` from `a_x d_x` and `1 − a_y d_y`. It is −1 at and behind the control point, and zero (of either sign)
-/// at and beyond the end of the axis.
+/// Computes `−u` from `along = a_x d_x` and `rest = 1 − a_y d_y`, clamped to `[−1, 0]`. It is −1 at and behind the
+/// control point, and zero (of either sign) at and beyond the end of the axis.
 #[inline(always)]
 pub(crate) fn minus_u<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, along: V, rest: V) -> V {
     let unbounded = along - rest;
@@ -51,8 +51,8 @@ pub(crate) fn minus_u<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, along: V
     V::from_bits(unbounded.to_bits().max(zero).min(minus_one))
 }
 
-/// The cubic of equation 1, `u² (3 − 2u)`, computed as two products: `q = Π −u` and `t = Π (3/2 − u)`. An axis takes
-/// three operations. `W = q² · t · 2^n`, where the power of two is exact.
+/// The cubic of equation 1, `u² (3 − 2u)`, as two partial products: `q = Π −u` and `t = Π (3/2 − u)`. The weight of
+/// `n` axes is `q² · t · 2^n`, where the power of two is exact. An axis takes three operations.
 #[derive(Clone, Copy)]
 pub(crate) struct Cubic;
 
@@ -75,7 +75,7 @@ impl Profile for Cubic {
     }
 }
 
-/// Any axial weight, computed by its formula.
+/// Any axial weight, computed by its formula. Only the partial product `q` is used.
 impl Profile for AxialWeight {
     #[inline(always)]
     fn first<V: Lane>(self, minus_u: V) -> (V, V) {

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// Control points with their axes, which give every control point a weight at every position.
 ///
-/// Cheap to clone: clones share the net. [`texture`](Self::texture) interpolates values of the control points.
+/// Cheap to clone: clones share the net. [`texture`](Self::texture) interpolates values given at the control points.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/pups.md"))]
 ///
@@ -254,7 +254,7 @@ impl Pups {
         Ok(())
     }
 
-    /// Renders the label at every pixel center of a window. `labels` holds the label of each control point.
+    /// Renders the label at every pixel center of a window. `labels` has one label for each control point.
     ///
     /// # Errors
     ///
@@ -286,7 +286,8 @@ impl Pups {
         Ok(strongest.map(|point| labels[point.index()]))
     }
 
-    /// Moves a position into the range of the evaluation (see [`Net::local`]). Returns `None` if it is not finite.
+    /// Moves a position into the range of evaluated positions (see [`Net::local`]). Returns `None` if it is not
+    /// finite.
     #[inline]
     pub(crate) fn local(&self, position: DVec2) -> Option<DVec2> {
         // Most positions are inside of the domain and need no wrapping.
@@ -298,11 +299,12 @@ impl Pups {
     }
 }
 
-/// Smallest sum of weights for which values are interpolated. With orientations near full strength, the sum may
-/// underflow in single precision. Below this limit, only the value of the nearest control point is used.
+/// Minimum sum of weights for which values are interpolated. With orientations near full strength, the sum may
+/// underflow in single precision. Below this limit, the value of the nearest control point is used.
 pub(crate) const LEAST_TOTAL: f32 = 1e-30;
 
-/// Sink that tracks the largest weight and its control point, whose index is stored as the bits of an `f32`.
+/// Sink that tracks, for each pixel, the largest weight and its control point, whose index is stored as the bits of an
+/// `f32`.
 struct Strongest;
 
 impl Sink for Strongest {

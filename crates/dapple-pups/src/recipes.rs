@@ -11,8 +11,8 @@
 //! To add a recipe, write a file that implements [`PupsRecipe`] for its options, and add a line to the table of
 //! [`recipes!`](crate::recipes!).
 
-/// Implements the access of [`PupsRecipe`] to the fields `domain` and `net`. With `points`, the number of points follows
-/// from the field `spacing`.
+/// Implements the accessors of [`PupsRecipe`] for the fields `domain` and `net`. With `points`, also estimates the
+/// number of points from the field `spacing`.
 macro_rules! net_of {
     (points) => {
         fn expected_points(&self) -> f64 {
@@ -82,14 +82,14 @@ use std::sync::Arc;
 /// The common interface of the options of all textures. `Image` is the input of the texture: nothing, or a
 /// [`ReferenceImage`](crate::ReferenceImage).
 pub trait PupsRecipe<Image = ()>: Clone + Default {
-    /// Whether the texture's values are colors instead of numbers.
+    /// Whether the texture's values are colors rather than scalars.
     const IS_COLOR: bool = false;
 
-    /// Returns the domain of the control points. If the default domain does not wrap along an axis, the texture changes
-    /// along that axis and needs a domain that does not wrap there.
+    /// Returns the domain of the control points. If the default domain does not wrap along an axis, the texture
+    /// changes along that axis, and any other domain must not wrap there either.
     fn domain_mut(&mut self) -> &mut Domain;
 
-    /// Returns the options for the weights and the motion of the control points.
+    /// Returns the options for the weights and the motion of the control points, for changing them.
     fn net_mut(&mut self) -> &mut NetOptions;
 
     /// Estimates the number of control points without generating them. The estimate tends to be too large rather than
@@ -104,10 +104,10 @@ pub trait PupsRecipe<Image = ()>: Clone + Default {
     fn build(&self, image: &Image, seed: Seed) -> Result<PupsField, PupsError>;
 }
 
-/// A texture of numbers or colors in the plane.
+/// A texture of scalars or colors in the plane.
 #[derive(Clone)]
 pub enum PupsField {
-    /// One number at each position.
+    /// One scalar at each position.
     Numbers(Arc<dyn NetField>),
     /// One color at each position.
     Colors(Box<VectorTexture<3>>),
@@ -128,8 +128,8 @@ impl core::fmt::Debug for PupsField {
     }
 }
 
-/// Passes the table of all recipes to another macro. Each row has the recipe's name as data, its name in Rust, and its
-/// options type. Recipes that need an image are wrapped in `Referenced`, which the caller defines.
+/// Passes the table of all recipes to another macro. Each row has the recipe's serialized name, its name in Rust, and
+/// its options type. Recipes that need an image are wrapped in `Referenced`, which the caller defines.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! recipes {

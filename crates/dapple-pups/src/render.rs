@@ -1,8 +1,8 @@
 //! Renders weights, values and labels for all pixels of a window.
 //!
-//! The window is cut at the ends of periods, so that coordinates are monotonic within a piece, and then into bands of
-//! rows. For every band, the control points whose supports intersect it are visited in order. Each adds its weights to
-//! the pixels that its support can touch. Bands share only data that they read, so any number of threads can render
+//! The window is cut at the ends of periods, so that coordinates are monotonic within each piece, and then into bands
+//! of rows. For every band, the control points whose supports intersect it are visited in order. Each adds its weights
+//! to the pixels that its support can touch. Bands share only read-only data, so any number of threads can render
 //! them.
 
 use crate::line::{Line, runs};
@@ -27,7 +27,7 @@ const BAND_ROWS: usize = 64;
 
 /// Renders the rows of a window. With the feature `rayon`, bands are rendered in parallel.
 ///
-/// Each row holds [`Sink::per_pixel`] values per pixel.
+/// Each row has [`Sink::per_pixel`] values per pixel.
 pub(crate) fn render<K: Sink>(net: &Net, window: &Window, sink: &K, rows: &mut [&mut [K::Value]]) {
     let level = simd::level();
     // Compute the coordinates, and cut them where a period ends.
@@ -73,7 +73,7 @@ pub(crate) fn render<K: Sink>(net: &Net, window: &Window, sink: &K, rows: &mut [
 struct Lane {
     /// Range of the columns or rows in the window.
     range: Range<usize>,
-    /// Coordinates, padded with the last one for registers that extend beyond it.
+    /// Coordinates, padded with the last one so that whole registers can be read.
     padded: Vec<f64>,
     line: Line,
 }
@@ -99,7 +99,7 @@ struct Band<'a, 'rows, K: Sink> {
     net: &'a Net,
     sink: &'a K,
     columns: &'a [Lane],
-    /// Indices of the instances, in ascending order.
+    /// Indices of the instances whose supports intersect the band, in ascending order.
     members: Vec<u32>,
     ys: Lane,
     rows: &'a mut [&'rows mut [K::Value]],
@@ -128,7 +128,7 @@ impl<K: Sink> Band<'_, '_, K> {
         }
     }
 
-    /// Adds up the weights of all the band's instances.
+    /// Adds the weights of all the band's instances to `planes`.
     #[inline(always)]
     fn splat<S: Simd, P: Profile>(
         &self,
@@ -171,7 +171,7 @@ impl<K: Sink> Band<'_, '_, K> {
         }
     }
 
-    /// Converts the sums to pixel values.
+    /// Converts the sums of a run of columns to pixel values.
     #[inline(always)]
     fn resolve<S: Simd>(&mut self, simd: S, columns: &Lane, planes: &mut Planes<K>) {
         let Range { start, end } = columns.range;

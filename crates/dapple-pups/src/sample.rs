@@ -1,8 +1,8 @@
 //! Computes weights at a single position.
 //!
-//! Candidates are evaluated in groups of eight. Their axes are projected, eight axes of one candidate at a time. The
-//! registers are then transposed so that each holds one axis of all candidates, and the products of all candidates are
-//! computed in parallel.
+//! Candidates are evaluated in groups of eight. First, the axes of one candidate at a time are projected, eight axes
+//! per register. The registers are then transposed so that each holds one axis of all candidates, and the products of
+//! all candidates are computed in parallel.
 
 use crate::bins::{Bins, Candidates, GROUP};
 use crate::net::{AxisBlock, Exponents, Net};
@@ -15,13 +15,13 @@ use dapple_raster::simd::dispatch;
 use fearless_simd::{f32x4, f32x8, prelude::*};
 use glam::DVec2;
 
-/// Callback with the records and the weights of a group of candidates.
+/// Callback that receives the record indices and the weights of a group of candidates.
 type TakeGroup<'a> = dyn FnMut(&[u32; GROUP], &[f32; GROUP]) + 'a;
 
 impl Net {
-    /// Folds the weights of all candidates at a position: calls `take(state, record, weight)`, which returns the next
-    /// state, in the order of summation. The position must be in range; `record` is an index in the [`Bins`]. Some
-    /// weights are zero. Skipping them costs more than it saves, since they are unpredictable.
+    /// Folds over the weights of all candidates at a position, in the order of summation: calls `take(state, record,
+    /// weight)`, which returns the next state. The position must be in range; `record` is an index in the [`Bins`].
+    /// Zero weights are included, since unpredictable branches would cost more than skipping them saves.
     #[inline]
     pub(crate) fn fold_weights<A: Copy>(
         &self,
@@ -90,7 +90,7 @@ impl Net {
         }
     }
 
-    /// Computes the weights of a group of candidates. Unused lanes are zero.
+    /// Computes the weights of a group of candidates; 0 in unused lanes.
     #[inline(always)]
     fn weights_of<S: Simd, P: Profile>(
         &self,
@@ -134,7 +134,7 @@ impl Net {
     }
 }
 
-/// Computes `−u` along each axis of a block.
+/// Computes `−u` along each axis of a block, at an offset `[x, y]` from the control point.
 #[inline(always)]
 fn project<S: Simd>(simd: S, axes: &AxisBlock, [x, y]: [f32; 2]) -> f32x8<S> {
     // Group the terms as everywhere in this crate, (1 − a_y d_y) − a_x d_x, so that the bits agree.
@@ -142,7 +142,8 @@ fn project<S: Simd>(simd: S, axes: &AxisBlock, [x, y]: [f32; 2]) -> f32x8<S> {
     minus_u(simd, f32x8::from_slice(simd, &axes.x) * x, rest)
 }
 
-/// Multiplies the weight of a control point's first block of axes by the weights of its other blocks.
+/// Completes the weight of a control point with several blocks of axes: multiplies `weight`, the product of the first
+/// block, by the products of the other `blocks`.
 #[inline(always)]
 fn go_on<S: Simd, P: Profile>(
     simd: S,
@@ -163,7 +164,7 @@ fn go_on<S: Simd, P: Profile>(
     weight
 }
 
-/// Returns the product of the axial weights of a block of fading axes.
+/// Returns the product of the axial weights of a block, each raised to the exponent of its axis.
 #[inline(always)]
 fn faded<S: Simd, P: Profile>(
     simd: S,
@@ -199,7 +200,7 @@ fn transposed<S: Simd>(rows: [f32x8<S>; GROUP]) -> [f32x8<S>; GROUP] {
     from
 }
 
-/// Applies equation 4 to one weight.
+/// Shifts one weight by its orientation (equation 4).
 #[inline(always)]
 fn shifted<S: Simd>(simd: S, weight: f32, shift: [f32; 2], [x, y]: [f32; 2]) -> f32 {
     let (weight, x) = (f32x4::splat(simd, weight), f32x4::splat(simd, x));

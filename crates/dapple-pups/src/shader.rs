@@ -1,35 +1,35 @@
-//! Packs textures of control points into 32-bit words, which shaders read from a data texture.
+//! Packs textures of control points into 32-bit words for shaders, which read them from a data texture.
 
 use crate::{AxialWeight, Folding, LabelTexture, Layers, Octave, Pups, PupsError, Texture};
 
-/// A texture of numbers as data for shaders: a weighted sum of layers.
+/// A scalar texture as data for shaders: a weighted sum of layers.
 #[derive(Clone, Debug)]
 pub struct ShaderLayers {
     /// The layers, from the coarsest to the finest.
     pub layers: Vec<ShaderLayer>,
-    /// Maximum of the sum of the layers; larger sums are clamped. `None` if the texture is its only layer.
+    /// Maximum of the sum of the layers, to which larger sums are clamped. `None` for a texture without layers.
     pub maximum: Option<f32>,
 }
 
 /// A layer of a texture as data for shaders.
 #[derive(Clone, Debug)]
 pub struct ShaderLayer {
-    /// Words of the control points; see [`Pups::shader_words`].
+    /// Control points and values as words; see [`Pups::shader_words`].
     pub words: Vec<u32>,
-    /// Factor of positions.
+    /// Factor by which positions are multiplied.
     pub scale: f64,
-    /// Amplitude of the layer, whose values are clamped to 0 to 1.
+    /// Factor of the layer's values, which are first clamped to `[0, 1]`.
     pub amplitude: f32,
     /// Folding of the values.
     pub folding: Folding,
 }
 
 impl Pups {
-    /// Returns the control points and their values as words of the texture `data` of the shaders of `dapple-wgsl`.
+    /// Returns the control points and their values as words of the data texture for the shaders of `dapple-wgsl`.
     ///
-    /// `values` has a value for each control point. If `is_label` is set, a position has the value of its strongest point
-    /// instead of the weighted mean. The module `pups_2d` describes the order of the words. Numbers of 64 bits
-    /// have their upper word first.
+    /// `values` has a value for each control point. If `is_label` is set, a position has the value of its strongest
+    /// point instead of the weighted mean. The module `pups_2d` documents the order of the words. 64-bit numbers have
+    /// their high word first.
     ///
     /// # Errors
     ///
@@ -87,7 +87,7 @@ impl Pups {
         words
     }
 
-    /// Adds the words of a record.
+    /// Appends the words of a record: value, shift, center and axes of a control point or image.
     fn push_record(&self, record: usize, value: f32, words: &mut Vec<u32>) {
         let (net, bins) = (&*self.net, self.net.bins());
         let instance = &net.instances[bins.instances[record] as usize];
@@ -109,7 +109,7 @@ impl Pups {
     }
 }
 
-/// Returns two numbers of 64 bits as words.
+/// Returns two 64-bit numbers as words, each with its high word first.
 fn doubles(pair: [f64; 2]) -> impl Iterator<Item = u32> {
     let words = |number: f64| [(number.to_bits() >> 32) as u32, number.to_bits() as u32];
     pair.into_iter().flat_map(words)

@@ -1,4 +1,4 @@
-//! Sinks that accumulate the weights of a band, and the memory for their sums.
+//! Sinks, which accumulate the weights of a band of pixels, and the memory for their sums.
 
 use crate::splat::LANES;
 use core::marker::PhantomData;
@@ -6,20 +6,20 @@ use fearless_simd::prelude::*;
 
 /// Accumulates the weights of all control points in a band of pixels.
 ///
-/// Weights are added to planes of numbers that start at zero. After the weights of all control points have been added,
-/// the planes are converted to pixel values.
+/// A sink has [`PLANES`](Self::PLANES) sums per pixel, which start at zero. When the weights of all control points
+/// have been added, it converts the sums to pixel values.
 pub(crate) trait Sink: Sync {
     /// Type of a pixel's value.
     type Value: Copy + Send;
 
-    /// Number of sums for each pixel.
+    /// Number of sums per pixel.
     const PLANES: usize;
 
-    /// Returns the number of output values for each pixel.
+    /// Returns the number of output values per pixel.
     fn per_pixel(&self) -> usize;
 
-    /// Adds the weights of control point `point` in `N` rows of a tile. `sums` holds [`LANES`] numbers of every plane
-    /// for each row; the tile's numbers start at `lane`.
+    /// Adds the weights of control point `point` to `N` rows of a tile. For each row, `sums` has the sums of [`LANES`]
+    /// pixels, plane by plane. The tile starts at pixel `lane` of them.
     fn add<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
         &self,
         simd: S,
@@ -29,8 +29,8 @@ pub(crate) trait Sink: Sync {
         lane: usize,
     );
 
-    /// Computes the values of up to [`LANES`] pixels in a row from their numbers in every plane. `nearest(i)` returns
-    /// the control point nearest to pixel `i`, for pixels whose weights underflow.
+    /// Computes the values of up to [`LANES`] pixels of a row from their sums, given plane by plane. `nearest(i)`
+    /// returns the control point nearest to pixel `i`, for pixels whose weights underflow.
     fn resolve<S: Simd>(
         &self,
         simd: S,
@@ -43,13 +43,13 @@ pub(crate) trait Sink: Sync {
     fn leave_undefined(&self, values: &mut [Self::Value]);
 }
 
-/// The sums of a band.
+/// The sums of a band of pixels.
 ///
-/// They are stored in columns of [`LANES`] pixels: row by row, and plane by plane within a row, each on its own cache
-/// line. So the sums of a tile are contiguous.
+/// They are stored in columns of [`LANES`] pixels: row by row, and plane by plane within a row, each plane on a
+/// separate cache line. The sums of a tile are therefore contiguous.
 pub(crate) struct Planes<K> {
     numbers: Vec<f32>,
-    /// Offset of the first cache line in `numbers`.
+    /// Index in `numbers` of the first sum, which is aligned to a cache line.
     origin: usize,
     /// Number of pixel rows.
     height: usize,
@@ -68,7 +68,7 @@ impl<K> Default for Planes<K> {
 }
 
 impl<K: Sink> Planes<K> {
-    /// Returns the number of sums for a row of pixels.
+    /// Returns the number of stored sums for a row of pixels, including padding.
     pub(crate) fn per_row(width: usize) -> usize {
         width.next_multiple_of(LANES) * K::PLANES
     }

@@ -1,9 +1,9 @@
 //! Adds the weights of control points to a band of pixels.
 //!
 //! The pixels that a support can touch are processed in tiles as wide as a register, starting at the support's first
-//! row. For each tile, the axes that matter are selected, and their weights are multiplied in all rows of the tile at
-//! once. Columns of tiles are aligned with the registers of the whole band. Otherwise, sums would cross cache lines or
-//! overlap earlier stores, which costs more time than tighter tiles save.
+//! row. For each tile, the axes that affect it are selected, and their weights are multiplied in all rows of the tile
+//! at once. Columns of tiles are aligned with the registers of the whole band. Otherwise, sums would cross cache lines
+//! or overlap earlier stores, which costs more time than tighter tiles save.
 
 use crate::net::{AxisBlock, BLOCK, Exponents, Instance};
 use crate::power::powers;
@@ -25,24 +25,24 @@ const FEW_ROWS: usize = ROWS / 2;
 /// Maximum width of supports that use small tiles, in columns. Larger tiles would be mostly outside of such supports.
 const NARROW: u32 = 64;
 
-/// The pixels of a band, and the sink for their weights.
+/// The pixels of a band, and the sink that accumulates their weights.
 pub(crate) struct Splatter<'a, P, K> {
     pub(crate) profile: P,
     pub(crate) sink: &'a K,
-    /// Coordinates of the columns, padded with the last one for tiles that extend beyond it.
+    /// Coordinates of the columns, padded with the last one so that whole tiles can be read.
     pub(crate) xs: &'a [f64],
-    /// Coordinates of the rows, padded with the last one for tiles that extend beyond it.
+    /// Coordinates of the rows, padded with the last one so that whole tiles can be read.
     pub(crate) ys: &'a [f64],
 }
 
-/// An instance of a control point, with all data that its weights depend on.
+/// An instance (a control point or its periodic image), with all data that its weights depend on.
 #[derive(Clone, Copy)]
 pub(crate) struct Member<'a> {
     pub(crate) instance: &'a Instance,
     pub(crate) blocks: &'a [AxisBlock],
-    /// Exponents of the blocks; empty if no axis fades.
+    /// Exponents of the axes, block by block; empty if no axis fades.
     pub(crate) exponents: &'a [Exponents],
-    /// ε times the orientation in the plane, if there are orientations.
+    /// Shift: ε times the orientation in the plane; `None` without orientations.
     pub(crate) shift: Option<[f32; 2]>,
     pub(crate) footprint: Footprint,
 }
@@ -65,7 +65,7 @@ impl Footprint {
 }
 
 impl<P: Profile, K: Sink> Splatter<'_, P, K> {
-    /// Adds the weights of a control point to the planes; `tiles` is scratch memory.
+    /// Adds the weights of an instance to the planes; `tiles` is scratch memory.
     #[inline(always)]
     pub(crate) fn add<S: Simd>(
         &self,
@@ -82,7 +82,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         }
     }
 
-    /// Adds the weights in tiles as wide as a register and `N` rows high.
+    /// Adds the weights of an instance in tiles as wide as a register and `N` rows high.
     #[inline(always)]
     fn add_tiles<S: Simd, const N: usize>(
         &self,
@@ -111,7 +111,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         }
     }
 
-    /// Adds the weights in one tile.
+    /// Adds the weights of an instance in one tile.
     #[inline(always)]
     fn add_tile<S: Simd, const N: usize>(
         &self,
@@ -158,7 +158,8 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         self.sink.add(simd, point, &weights, sums, lane);
     }
 
-    /// Computes the products of a block's fading axial weights, in `N` rows.
+    /// Computes, for each pixel of `N` rows, the product of a block's axial weights raised to the exponents of fading
+    /// axes.
     #[inline(always)]
     fn faded<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
         &self,
@@ -189,7 +190,8 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         products
     }
 
-    /// Computes the products of a block's axial weights, in `N` rows. At least one axis must be `active`.
+    /// Computes, for each pixel of `N` rows, the product of the axial weights of a block's `active` axes, at least
+    /// one.
     #[inline(always)]
     fn products<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
         &self,

@@ -20,8 +20,8 @@ pub(crate) fn has_gap(axes: &[DVec2]) -> bool {
 /// Relative margin of the bounds of a support, so that rounding cannot produce a weight outside of them.
 const SLACK: f64 = 1e-5;
 
-/// Returns the bounds of a point's support, relative to the point, with a margin for rounding. A side is infinite where
-/// the support may be unbounded.
+/// Returns the bounds of a point's support, relative to the point, extended by a margin for rounding. A side is
+/// infinite where the support may be unbounded.
 pub(crate) fn padded_box(axes: &[DVec2], scale: f64) -> (DVec2, DVec2) {
     let (min, max) = support_box(axes, scale);
     let slack = (max - min) * SLACK;
@@ -34,8 +34,9 @@ fn support_box(axes: &[DVec2], scale: f64) -> (DVec2, DVec2) {
     walk_support(axes, scale).unwrap_or_else(|| clip_support(axes, scale))
 }
 
-/// Returns the bounds if every axis contributes an edge, as Delaunay axes do. Corners are the intersections of
-/// neighboring axes' borders. Returns `None` if an axis has no edge or the polygon is open.
+/// Returns the bounds of a support to which every axis contributes an edge, as Delaunay axes do. Corners are the
+/// intersections of the borders of neighboring axes. Returns `None` if an axis contributes no edge or the polygon is
+/// open.
 fn walk_support(axes: &[DVec2], scale: f64) -> Option<(DVec2, DVec2)> {
     if has_gap(axes) {
         return None;
@@ -104,7 +105,7 @@ fn clip_support(axes: &[DVec2], scale: f64) -> (DVec2, DVec2) {
     )
 }
 
-/// Returns the intersection of two axes' borders, at an axis scale of 1.
+/// Returns the intersection of the borders of two axes, relative to the point, at an axis scale of 1.
 fn corner(a: DVec2, b: DVec2) -> DVec2 {
     // Solve d·a = |a|² and d·b = |b|² by Cramer's rule.
     (b.perp() * a.length_squared() - a.perp() * b.length_squared()) / -a.perp_dot(b)
@@ -120,7 +121,7 @@ pub(crate) fn fading(axes: &[DVec2], fade: f64) -> Vec<f32> {
     axes.iter().zip(borders).map(exponent).collect()
 }
 
-/// Returns the border lengths of a cell if every axis has a border, as Delaunay axes do; otherwise `None`.
+/// Returns the border length of each axis if every axis has a border, as Delaunay axes do; otherwise `None`.
 fn walk_borders(axes: &[DVec2]) -> Option<Vec<f64>> {
     if has_gap(axes) {
         return None;
@@ -139,8 +140,8 @@ fn walk_borders(axes: &[DVec2]) -> Option<Vec<f64>> {
     (0..axes.len()).map(border).collect()
 }
 
-/// Returns the border lengths of any cell, each border clipped by all other axes. A length is infinite where the cell
-/// is open, and zero for an axis without a border.
+/// Returns the border length of each axis, clipped by all other axes. A length is infinite where the cell is open, and
+/// zero for an axis without a border.
 fn clip_borders(axes: &[DVec2]) -> Vec<f64> {
     let border = |(index, &axis): (usize, &DVec2)| {
         // The border is part of the bisector ½ v + t v⊥ of the axis v. Clip the interval of t by all other bisectors.

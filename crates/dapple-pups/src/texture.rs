@@ -54,7 +54,7 @@ impl Texture {
         &self.values.pups
     }
 
-    /// Returns the values of the control points.
+    /// Returns the value of each control point.
     #[must_use]
     pub fn values(&self) -> &[f32] {
         &self.values.by_point
@@ -98,7 +98,7 @@ impl<const N: usize> VectorTexture<N> {
         &self.values.pups
     }
 
-    /// Returns the vectors of the control points.
+    /// Returns the vector, such as a color, of each control point.
     #[must_use]
     pub fn values(&self) -> &[[f32; N]] {
         self.values.by_point.as_chunks().0
@@ -141,21 +141,21 @@ impl<const N: usize> VectorTexture<N> {
     }
 }
 
-/// The values of the control points of a net, with `width` numbers each.
+/// The values of the control points of a net, with `width` components each.
 ///
-/// The width is a field, not a type parameter, so that the code for values is compiled in this crate only, not in every
-/// crate that uses vectors.
+/// The width is a field, not a type parameter, so that the code is compiled in this crate only, not in every crate
+/// that uses vectors.
 #[derive(Clone, Debug)]
 struct Values {
     pups: Pups,
     width: usize,
     by_point: Vec<f32>,
-    /// Values in the order of the records in [`Bins`], computed on first use.
+    /// Values in the order of the [`Bins`]' records instead of the points, computed on first use.
     by_record: OnceLock<Vec<f32>>,
 }
 
 impl Values {
-    /// Checks the number of values, and that all numbers are finite.
+    /// Checks that every control point has a value, and that all components are finite.
     fn new(pups: Pups, width: usize, by_point: Vec<f32>) -> Result<Self, PupsError> {
         PupsError::check_count("values", by_point.len() / width, pups.n_points())?;
         if let Some(&number) = by_point.iter().find(|number| !number.is_finite()) {
@@ -235,13 +235,13 @@ impl Values {
     }
 }
 
-/// Sink that sums weights, and weights times `N` components of each value.
+/// Sink that sums the weights, and the products of the weights and `N` components of the values.
 pub(crate) struct Mean<'a, const N: usize> {
-    /// Components of all values, interleaved.
+    /// Components of all control points' values, interleaved.
     values: &'a [f32],
-    /// Number of components of a value.
+    /// Number of components of a value in `values`.
     width: usize,
-    /// Index of the first of the `N` components.
+    /// Index of the first of the `N` components that this sink sums.
     first: usize,
 }
 
@@ -331,7 +331,7 @@ impl<const N: usize> Sink for Mean<'_, N> {
     }
 }
 
-/// Adds a register to the numbers starting at index `at`.
+/// Adds a register to the elements of `sums` starting at index `at`.
 #[inline(always)]
 fn add<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, sums: &mut [f32], at: usize, summand: V) {
     let sums = &mut sums[at..at + V::LEN];

@@ -1,14 +1,15 @@
-//! Pixel tiles of a band relative to a control point, and the axes that affect each tile.
+//! Pixel tiles in the support of a control point, and the axes that affect each tile.
 //!
-//! An axis whose `u` is 1 in a whole tile is left out, which does not change a bit. A control point with an axis whose
+//! An axis whose `u` is 1 in a whole tile is skipped, which does not change a bit. A control point with an axis whose
 //! `u` is 0 in a whole tile has no weight there. Both tests use the same numbers as the pixels: `u` is computed by
 //! subtractions and products, whose rounding is monotonic, so its extremes are at the corners of the tile.
 //!
-//! Terms that depend only on columns or only on rows are computed once for all tiles. If there are many tiles, they are
-//! sorted by their number of axes. The processor can then predict the end of the loop over axes, which it cannot if the
-//! numbers alternate at random. If there are few tiles, all axes count as relevant, for the same reason.
+//! The parts of `u` that depend only on columns or only on rows are computed once for all tiles. If there are many
+//! tiles, they are sorted by their number of relevant axes. The processor can then predict the end of the loop over
+//! axes, which it cannot if the numbers alternate at random. If there are few tiles, all axes count as relevant, for
+//! the same reason.
 //!
-//! All of the evaluation processes registers by plain loops only. A closure in an iterator or in an array's `map` is
+//! The evaluation processes registers in plain loops only. A closure passed to an iterator or to an array's `map` is
 //! compiled for the baseline processor if it is not inlined, and then costs more than the work that it does.
 
 use crate::net::{AxisBlock, BLOCK};
@@ -16,7 +17,7 @@ use crate::splat::{LANES, ROWS};
 use fearless_simd::{f32x8, f64x4, prelude::*};
 use glam::DVec2;
 
-/// Maximum number of tiles for which sorting does not pay off.
+/// Maximum number of tiles that are not sorted.
 const FEW: usize = 8;
 
 /// The tiles that the support of a control point can touch.
@@ -24,15 +25,15 @@ const FEW: usize = 8;
 pub(crate) struct Tiles {
     columns: Vec<Column>,
     n_columns: usize,
-    /// Rows of tiles, with one element for each row and block of axes.
+    /// Rows of tiles, with one element for each row of tiles and block of axes.
     strips: Vec<Strip>,
     n_strips: usize,
     n_blocks: usize,
-    /// Bit mask of the axes of the first block.
+    /// Bit mask of the used slots in the first block of axes.
     axes: u32,
-    /// Tiles sorted by their number of axes. Each number of axes has a section large enough for all tiles.
+    /// Buckets of tiles, one for each number of relevant axes. Each bucket has space for all tiles.
     sorted: Vec<Tile>,
-    /// Number of tiles stored in each section.
+    /// Number of tiles in each bucket.
     lengths: [usize; STRETCHES],
 }
 
@@ -40,9 +41,9 @@ pub(crate) struct Tiles {
 #[derive(Clone, Copy, Default)]
 #[repr(align(64))]
 struct Column {
-    /// Offsets from the control point, one for each column of the tile.
+    /// x offset from the control point of each pixel column.
     x: [f32; LANES],
-    /// Minimum and maximum of `a_x d_x` over the columns, for every axis of the first block.
+    /// Minimum and maximum of `a_x d_x` over the pixel columns, for each axis of the first block.
     least: [f32; BLOCK],
     most: [f32; BLOCK],
 }
@@ -51,12 +52,12 @@ struct Column {
 #[derive(Clone, Copy, Default)]
 #[repr(align(64))]
 pub(crate) struct Strip {
-    /// `1 − a_y d_y`, for every axis and row.
+    /// `1 − a_y d_y` for each axis and pixel row.
     pub(crate) rest: [[f32; ROWS]; BLOCK],
-    /// Minimum and maximum of `rest` over the rows, for every axis.
+    /// Minimum and maximum of `rest` over the pixel rows, for each axis.
     least: [f32; BLOCK],
     most: [f32; BLOCK],
-    /// Offsets from the control point, one for each row.
+    /// y offset from the control point of each pixel row.
     pub(crate) y: [f32; ROWS],
 }
 
@@ -66,19 +67,20 @@ pub(crate) struct Tile {
     /// Column and row of the tile, counted in tiles.
     pub(crate) column: u32,
     pub(crate) strip: u32,
-    /// Bit mask of the first block's axes to multiply; either all relevant axes or none.
+    /// Bit mask of the first block's axes to multiply. If there are few tiles, it selects all axes or none.
     pub(crate) active: u32,
 }
 
-/// Number of sections: one for every number of axes, and one for tiles without a weight.
+/// Number of buckets: one for each number of relevant axes from 0 to [`BLOCK`], and one for tiles without a weight.
 const STRETCHES: usize = BLOCK + 2;
 
-/// Index of the section for tiles without a weight.
+/// Index of the bucket for tiles without a weight.
 const NOTHING: usize = BLOCK + 1;
 
 impl Tiles {
-    /// Computes the tiles of a control point, given its axes and center. `xs` are the column coordinates, starting at
-    /// the first tile, with `width` columns for each tile. `ys` are the row coordinates, with `H` rows for each tile.
+    /// Computes the tiles of a control point, given its blocks of axes and its center. `xs` are the coordinates of the
+    /// pixel columns, starting at the first tile, with `width` columns per tile. `ys` are the coordinates of the rows,
+    /// with `H` rows per tile.
     #[inline(always)]
     pub(crate) fn enter<S: Simd, const H: usize>(
         &mut self,
@@ -118,7 +120,7 @@ impl Tiles {
         self.n_columns * self.n_strips <= FEW
     }
 
-    /// Sorts the tiles by their number of relevant axes, if there are enough tiles.
+    /// Sorts the tiles into buckets by their number of relevant axes, if there are enough tiles.
     #[inline(always)]
     pub(crate) fn sort<S: Simd>(&mut self, simd: S) {
         if self.are_few() {
@@ -152,8 +154,9 @@ impl Tiles {
         }
     }
 
-    /// Returns the next tile with a weight, after sorting. The second argument is the iteration's state, initially
-    /// zero. If there are few tiles, it is a row and a column of tiles; otherwise, a section and an index in it.
+    /// Returns the next tile in which the control point has a weight; call [`sort`](Self::sort) first. The second
+    /// argument is the state of the iteration, initially zero: the row and column of the next tile if there are few
+    /// tiles, otherwise a bucket and an index in it.
     #[inline(always)]
     pub(crate) fn next<S: Simd>(&self, simd: S, [outer, inner]: &mut [usize; 2]) -> Option<Tile> {
         // A few tiles are tested when they are visited, row by row.
@@ -189,13 +192,13 @@ impl Tiles {
         None
     }
 
-    /// Returns the x offsets of a tile's columns from the control point.
+    /// Returns the x offsets of a tile's pixel columns from the control point.
     #[inline(always)]
     pub(crate) fn x(&self, tile: Tile) -> &[f32; LANES] {
         &self.columns[tile.column as usize].x
     }
 
-    /// Returns the row of tiles that contains a tile, with one strip for each block of axes.
+    /// Returns the row of tiles that contains a tile, as one strip for each block of axes.
     #[inline(always)]
     pub(crate) fn strips(&self, tile: Tile) -> &[Strip] {
         &self.strips[tile.strip as usize * self.n_blocks..][..self.n_blocks]
@@ -222,8 +225,8 @@ impl Column {
         left.max(right).store_slice(&mut self.most);
     }
 
-    /// Returns a bit mask of the first block's axes that are relevant in a tile of this column, and whether the control
-    /// point has a weight there. `rest` holds the [ends](Strip::ends) of the tile's row.
+    /// Returns a bit mask of the first block's axes that are relevant in a tile of this column, and whether the
+    /// control point has a weight there. `rest` is the result of [`ends`](Strip::ends) for the tile's row.
     #[inline(always)]
     fn active_axes<S: Simd>(&self, simd: S, rest: [f32x8<S>; 2]) -> (u32, bool) {
         // Bounds of u = (1 − a_y d_y) − a_x d_x in the tile.
@@ -265,7 +268,7 @@ impl Strip {
         }
     }
 
-    /// Returns the minimum and maximum of `1 − a_y d_y` for every axis.
+    /// Returns the minimum and maximum of `1 − a_y d_y` over the pixel rows, for each axis.
     #[inline(always)]
     fn ends<S: Simd>(&self, simd: S) -> [f32x8<S>; 2] {
         [

@@ -11,7 +11,7 @@
 //!   `u = 1 − 1/(2s)`, for an axis scale of `s`.
 //! * Their slope is zero at both ends. So clamping the projection causes no crease.
 //!
-//! The functions are generic over a single number or a register of numbers.
+//! The functions are generic over a scalar or a SIMD register.
 
 use core::ops::{Add, Mul, Sub};
 
@@ -63,7 +63,7 @@ impl AxialWeight {
         self.of_complement((1.0 - p).clamp(0.0, 1.0))
     }
 
-    /// Returns the weight at `u = 1 − p`, in `[0, 1]`.
+    /// Returns the weight at `u = 1 − p`, where `u` is in `[0, 1]`.
     #[inline(always)]
     pub(crate) fn of_complement<V: Lane>(self, u: V) -> V {
         match self {
@@ -111,7 +111,7 @@ impl AxialWeight {
     }
 }
 
-/// A number or a register of numbers, on which the formulas of this crate operate.
+/// A scalar or a SIMD register, on which the formulas of this crate operate.
 pub(crate) trait Lane:
     Copy
     + Add<Output = Self>

@@ -1,9 +1,9 @@
 //! Divides points into groups that are connected by the graph (figure 9b).
 //!
-//! The paper groups points "into clusters of three or four points" and does not say how. Here groups grow one after
-//! another. Each starts at the free point with the lowest number of free neighbors, and adds such points, so that few
-//! points remain isolated. Remaining points are merged with one or two groups around them, and the region is divided
-//! again by an exhaustive search.
+//! The paper groups points "into clusters of three or four points" and does not say how. Here groups grow
+//! sequentially. Each starts at the free point with the lowest number of free neighbors, and adds such points, so that
+//! few points become isolated. Points that remain are merged with one or two adjacent groups, and this region is
+//! divided again by an exhaustive search.
 
 mod divide;
 
@@ -21,9 +21,9 @@ pub(crate) const POINTS_PER_CELL: Range = range!(from 1 to 16);
 ///
 /// Every point is in one group, and every group is connected by edges of the graph. A group has between `sizes[0]` and
 /// `sizes[1]` points; each number is equally probable while enough free points are adjacent. A smaller group remains
-/// only if no division of it and two adjacent groups has valid sizes. This occurs where the number of points in a
-/// connected part of the graph is not a sum of valid sizes (such as 5 points in groups of three or four), or at a dead
-/// end of the graph.
+/// only if the group and two adjacent ones cannot be divided into groups of valid sizes. This occurs if the number of
+/// points in a connected component of the graph is not a sum of valid sizes (such as 5 points in groups of three or
+/// four), or at a dead end of the graph.
 ///
 /// # Errors
 ///
@@ -56,7 +56,7 @@ pub fn grouped_labels(graph: &Graph, sizes: [u32; 2], seed: Seed) -> Result<Vec<
     Ok(labels(&groups, neighbors.len()))
 }
 
-/// Returns each point's neighbors over edges in either direction, without the point itself.
+/// Returns the neighbors of each point over edges in either direction, without the point itself.
 fn neighbors(graph: &Graph) -> Vec<Vec<u32>> {
     let mut neighbors = vec![Vec::new(); graph.n_points()];
     // Record every edge at both of its ends.
@@ -75,7 +75,7 @@ fn neighbors(graph: &Graph) -> Vec<Vec<u32>> {
     neighbors
 }
 
-/// State of the growing groups. Free points are those without a group yet.
+/// State while groups grow. A point is free while it is not in a group.
 struct Growth<'a> {
     neighbors: &'a [Vec<u32>],
     /// Number of free neighbors of each free point; `None` for points in a group.
@@ -155,7 +155,7 @@ impl<'a> Growth<'a> {
     }
 }
 
-/// Divides each group that is too small again, together with one or two adjacent groups.
+/// Repairs groups that are too small: merges each with one or two adjacent groups, and divides this region again.
 fn mend(neighbors: &[Vec<u32>], groups: &mut Vec<Vec<u32>>, sizes: [u32; 2]) {
     // Index the group of each point.
     let mut group_of = vec![0; neighbors.len()];
@@ -193,7 +193,8 @@ fn mend(neighbors: &[Vec<u32>], groups: &mut Vec<Vec<u32>>, sizes: [u32; 2]) {
     }
 }
 
-/// Returns unions of the group `small` with one adjacent group, then with two.
+/// Returns candidate regions for repairing the group `small`, as lists of group indices: the group with one adjacent
+/// group, then with two.
 fn regions(
     neighbors: &[Vec<u32>],
     groups: &[Vec<u32>],
@@ -223,7 +224,7 @@ fn regions(
     regions
 }
 
-/// Converts groups to labels, in the order of each group's first point.
+/// Returns the label of each point. Groups are numbered in the order of their first points.
 fn labels(groups: &[Vec<u32>], n_points: usize) -> Vec<u32> {
     let mut order: Vec<&Vec<u32>> = groups.iter().filter(|group| !group.is_empty()).collect();
     order.sort_by_key(|group| group.iter().min());

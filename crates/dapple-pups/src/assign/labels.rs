@@ -6,7 +6,7 @@ use dapple_hash::{Seed, hash1};
 use dapple_points::PointSet;
 use dapple_raster::Varying;
 
-/// Returns a unique label for every point, which makes each point a cell of its own.
+/// Returns a unique label for every point, which makes each point a separate cell.
 #[must_use]
 pub fn own_labels(n_points: usize) -> Vec<u32> {
     (0..).take(n_points).collect()
@@ -31,7 +31,7 @@ pub fn random_labels(n_points: usize, n_labels: u32, seed: Seed) -> Result<Vec<u
 
 /// Returns binary labels: each point's label is 1 with the given probability at its position, else 0.
 ///
-/// This is the "logic that depends on spatial location" of figure 17. A probability of 0.5 gives the cow's labels.
+/// This is the "logic that depends on spatial location" of figure 17. A probability of 0.5 gives the labels of a cow.
 ///
 /// # Errors
 ///

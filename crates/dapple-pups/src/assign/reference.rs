@@ -1,7 +1,7 @@
 //! Computes labels from a reference image's intensities (figures 13 and 14).
 //!
 //! The paper takes "the intensity of the corresponding pixel": the pixel that contains the control point, without
-//! interpolation. The image covers the points' domain, with its first row along the smallest y.
+//! interpolation. The image covers the points' domain, with its first row at the smallest y.
 
 use super::values::random_value;
 use crate::PupsError;

@@ -1,5 +1,5 @@
-//! Exposes a texture's control points to editors: their positions, values and connections. Also converts a texture to
-//! individual control points, which give the same image.
+//! Exposes the control points of a texture to editors: positions, values and connections. Also converts a texture to
+//! an explicit list of control points that gives the same image.
 
 use super::Octave;
 use crate::{
@@ -14,7 +14,7 @@ use glam::{DVec2, DVec3};
 /// The control points of a texture or of one of its layers, with their values.
 #[derive(Clone, Debug)]
 pub struct ControlNet {
-    /// The points with their weights.
+    /// The control net: points, graph and weights.
     pub pups: Pups,
     /// Values, labels or colors of the points.
     pub values: NetValues,
@@ -24,28 +24,28 @@ pub struct ControlNet {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum NetValues {
-    /// One value for each point; the texture interpolates them.
+    /// One value for each point, which the texture interpolates.
     Numbers(Vec<f32>),
-    /// One label for each point; the texture has the value of the strongest point's label.
+    /// One label for each point. A position has the value of the label of its strongest point.
     Labels {
         /// Label of each point.
         labels: Vec<u32>,
         /// Value of each label.
         values: Vec<f32>,
     },
-    /// One color for each point; the texture interpolates them.
+    /// One color for each point, which the texture interpolates.
     Colors(Vec<[f32; 3]>),
 }
 
-/// A texture of numbers with accessible control points.
+/// A scalar texture with accessible control points.
 pub trait NetField: Field {
-    /// Returns the nets of the texture's layers, the coarsest first. A texture without layers has a single net.
+    /// Returns the nets of the texture's layers, coarsest first. A texture without layers has a single net.
     fn nets(&self) -> Vec<ControlNet>;
 
     /// Returns the texture as data for the shaders of `dapple-wgsl`.
     fn shader_layers(&self) -> ShaderLayers;
 
-    /// Converts the texture to individual control points; see [`PupsField::to_points`].
+    /// Converts the texture to an explicit list of control points; see [`PupsField::to_points`].
     fn to_points(&self, tile: Domain) -> Option<ControlPoints> {
         let _ = tile;
         None
@@ -85,7 +85,7 @@ impl ControlNet {
     }
 
     /// Returns the label of each point and the value of each label. `None` without labels, or if every point has a
-    /// label of its own.
+    /// separate label.
     #[must_use]
     pub fn shared_labels(&self) -> Option<(&[u32], &[f32])> {
         match &self.values {
@@ -137,7 +137,7 @@ impl ControlNet {
     }
 }
 
-/// Returns the options of a net whose points have their own orientations.
+/// Returns net options for points that have individual orientations: like `options`, but without orientations.
 fn net_options(options: &PupsOptions) -> NetOptions {
     let usual = NetOptions::default();
     NetOptions {
@@ -154,7 +154,7 @@ fn net_options(options: &PupsOptions) -> NetOptions {
 }
 
 impl PupsField {
-    /// Returns the texture's control points by layer, the coarsest layer first.
+    /// Returns the control nets of the texture's layers, coarsest first.
     #[must_use]
     pub fn nets(&self) -> Vec<ControlNet> {
         match self {
@@ -163,8 +163,8 @@ impl PupsField {
         }
     }
 
-    /// Converts the texture to individual control points on the domain `tile`, which give the same image, bit for bit.
-    /// Moving points retain their current positions.
+    /// Converts the texture to an explicit list of control points on the domain `tile`, which gives the same image,
+    /// bit for bit. Moving points retain their current positions.
     ///
     /// Returns `None` for a texture with several layers (octaves, turbulence, cellular noise) and for colors, which
     /// [`control_points`](crate::control_points) does not support.
@@ -248,7 +248,7 @@ impl NetField for LabelTexture {
 }
 
 impl NetField for Layers<Octave> {
-    /// Returns the nets of the octaves. Rescaled octaves share a single net.
+    /// Returns the nets of the octaves. Rescaled octaves share one net, which is returned once.
     fn nets(&self) -> Vec<ControlNet> {
         let octaves = self.layers().iter().filter(|octave| octave.scale() == 1.0);
         octaves.map(|octave| octave.texture().into()).collect()

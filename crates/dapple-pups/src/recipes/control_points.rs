@@ -1,4 +1,4 @@
-//! Builds textures from individual control points.
+//! Builds textures from an explicit list of control points.
 
 use crate::{
     LabelTexture, NetOptions, Orientation, Orientations, PupsError, PupsErrorKind, PupsField,
@@ -51,7 +51,7 @@ pub struct ControlPoints {
     pub margin: [f64; 2],
 }
 
-/// Valid width of the margin around the domain that may contain points.
+/// Valid width of the margin around the domain in which points are permitted.
 const MARGIN: Range = range!(at least 0);
 
 #[cfg(feature = "serde")]
@@ -149,7 +149,7 @@ impl Default for ControlPoints {
     }
 }
 
-/// Builds a texture from individual control points, either interpolated or as cells.
+/// Builds a texture from an explicit list of control points, either interpolated or as cells.
 ///
 /// # Errors
 ///
@@ -188,7 +188,7 @@ pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, 
 }
 
 impl ControlPoints {
-    /// Returns the points' positions, in order.
+    /// Returns the positions of the points, in order, with their domain.
     fn point_set(&self) -> Result<PointSet, PupsError> {
         let positions = self.points.iter().map(|point| DVec2::new(point.x, point.y));
         Ok(PointSet::new(self.points_domain()?, positions.collect())?)
@@ -208,7 +208,7 @@ impl ControlPoints {
         Ok(domain.grown(self.margin.into()))
     }
 
-    /// Returns the value of each point (for labeled points, the label's value).
+    /// Returns the value of each point: its individual value, or the value of its label.
     fn numbers(&self) -> Result<Vec<f32>, PupsError> {
         // A point has either its own value or its label's value.
         let number = |point: &ControlPoint| match (point.value, point.label) {

@@ -35,7 +35,7 @@ pub struct LabelTexture {
 }
 
 /// A texture that gives every position the vector, such as a color, of its strongest control point's label. It is a
-/// [`LabelTexture`] with `N` components.
+/// [`LabelTexture`] whose values have `N` components.
 #[derive(Clone, Debug)]
 pub struct VectorLabelTexture<const N: usize> {
     pups: Pups,
@@ -76,7 +76,7 @@ fn render_labels<T: Copy>(
 }
 
 impl LabelTexture {
-    /// Creates a texture of `values[label]`. `labels` holds the label of each control point.
+    /// Creates a texture from the label of each control point and the value of each label.
     ///
     /// # Errors
     ///
@@ -178,7 +178,7 @@ impl Field for LabelTexture {
 }
 
 impl<const N: usize> VectorLabelTexture<N> {
-    /// Creates a texture of `values[label]`. `labels` holds the label of each control point.
+    /// Creates a texture from the label of each control point and the vector of each label.
     ///
     /// # Errors
     ///

@@ -82,7 +82,7 @@ impl<F> Layers<F> {
     }
 }
 
-/// Returns a layer's value, clamped to `[0, 1]` because of rounding, times its amplitude.
+/// Returns the contribution of a layer: its value, clamped to `[0, 1]` because of rounding, times its amplitude.
 fn part(value: f32, amplitude: f32) -> f32 {
     value.clamp(0.0, 1.0) * amplitude
 }

@@ -101,8 +101,8 @@ impl NetOptions {
         self.of_delaunay(points, &graph, self.orientation(points, seed)?, seed)
     }
 
-    /// Builds the net of `graph`. If the points move, builds the net of the Delaunay triangulation of their positions
-    /// after motion instead. Orientations come from `seed.child("orientation", 0)`, orbits from
+    /// Builds the net of `graph`. If the points move, the graph is ignored, and the net is built from the Delaunay
+    /// triangulation of the positions after motion. Orientations come from `seed.child("orientation", 0)`, orbits from
     /// `seed.child("orbit", 0)`.
     ///
     /// # Errors
@@ -125,8 +125,8 @@ impl NetOptions {
         }
     }
 
-    /// Builds the net of the Delaunay graph of `points`, or of their positions after motion, with the given
-    /// orientations.
+    /// Builds the net of the Delaunay graph of `points` with the given orientations. If the points move, the graph of
+    /// their positions after motion is used.
     pub(crate) fn of_delaunay(
         &self,
         points: &PointSet,
@@ -140,7 +140,7 @@ impl NetOptions {
         }
     }
 
-    /// Places points with the given spacing in a domain, or takes equal points from the cache `parts`.
+    /// Generates points with the given spacing in a domain, or returns equal points from the cache `parts`.
     pub(crate) fn points(
         &self,
         spacing: &Spacing,
@@ -169,7 +169,7 @@ impl NetOptions {
         || self.cancel.is_cancelled()
     }
 
-    /// Returns the Delaunay graph of points, or takes an equal one from the cache `parts`.
+    /// Returns the Delaunay graph of `points`, reusing a graph of equal points from the cache `parts`.
     pub(crate) fn delaunay(&self, points: &PointSet) -> Result<Arc<Graph>, PupsError> {
         let triangulated = self.parts.get_or_make(
             |other: &Triangulated| is_same(&other.points, points),
@@ -183,7 +183,8 @@ impl NetOptions {
         Ok(triangulated.graph.clone())
     }
 
-    /// Builds the net of the Delaunay graph of points after motion, or takes an equal one from the cache `parts`.
+    /// Builds the net of points that do not move (or have been moved) and their Delaunay graph, reusing an equal net
+    /// from the cache `parts`.
     fn net(
         &self,
         points: &PointSet,
@@ -225,7 +226,7 @@ impl NetOptions {
         self.motion.map(moved).transpose()
     }
 
-    /// Returns the options of a net with the given orientations.
+    /// Returns the options of a control net with the given orientations.
     pub(crate) fn pups_options(&self, orientation: Option<Orientation>) -> PupsOptions {
         PupsOptions {
             axis_scale: self.axis_scale,
@@ -250,7 +251,7 @@ impl NetOptions {
     }
 }
 
-/// Cached points, with a text that identifies their inputs.
+/// Cached points, with a text that identifies the options and the seed that they were generated from.
 struct Scattered {
     text: String,
     points: Arc<PointSet>,
@@ -262,7 +263,7 @@ struct Triangulated {
     graph: Arc<Graph>,
 }
 
-/// Returns whether the coordinates of two point sets have the same bits.
+/// Returns whether two point sets are equal, bit for bit.
 fn is_same(a: &PointSet, b: &PointSet) -> bool {
     // Numbers that are equal may still differ in the sign of zero.
     let pairs = a.positions().iter().zip(b.positions());
@@ -272,7 +273,7 @@ fn is_same(a: &PointSet, b: &PointSet) -> bool {
             .all(|(a, b)| a.map(f64::to_bits) == b.map(f64::to_bits))
 }
 
-/// Returns whether nets of equal points have the same bits with both options. The sign of a zero matters only in
+/// Returns whether two options give nets with the same bits for equal points. The sign of a zero matters only in
 /// orientations.
 fn is_same_options(a: &PupsOptions, b: &PupsOptions) -> bool {
     a == b && orientation_bits(a).eq(orientation_bits(b))

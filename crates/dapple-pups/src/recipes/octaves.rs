@@ -239,8 +239,9 @@ impl PupsRecipe for TurbulenceOptions {
     }
 }
 
-/// Estimates the number of control points in layers whose point distances are divided by `factor` from layer to layer.
-/// Counts an invalid number of layers, which is an error when the layers are built, as 0.
+/// Estimates the total number of control points in a series of layers, in which point distances are divided by
+/// `factor` from layer to layer. Returns 0 for an invalid number of layers, which is an error when the layers are
+/// built.
 pub(super) fn expected_in_series(
     spacing: &Spacing,
     domain: Domain,

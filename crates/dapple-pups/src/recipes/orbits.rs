@@ -5,8 +5,8 @@
 //! control net topology." Points retain their values and labels while they move. [`PupsOptions::fade`] smooths the
 //! changes.
 //!
-//! A circle is centered at the position of its point in the texture without motion, so the distribution of distances
-//! does not change with time.
+//! A circle is centered at the position of its point in the texture without motion, so the distribution of point
+//! distances is the same at all times.
 //!
 //! [`PupsOptions::fade`]: crate::PupsOptions::fade
 
@@ -41,8 +41,8 @@ const RADIUS: Range = range!(above 0 to 1);
 const TIME: Range = range!(finite);
 
 impl Orbits {
-    /// Returns the points' positions at `time`, a fraction of the loop. Time 1 gives the same positions as 0. Along
-    /// axes of the domain that do not wrap, circles are limited by its border.
+    /// Returns the positions of the points at `time`, as a fraction of the loop. Time 1 gives the same positions as 0.
+    /// Along axes of the domain that do not wrap, circles are shrunk to fit within it.
     pub(crate) fn moved(
         self,
         points: &PointSet,
@@ -79,7 +79,8 @@ fn mean_distance(graph: &Graph, point: PointIdx) -> f64 {
     sum / axes.len().max(1) as f64
 }
 
-/// Returns a position on a circle whose radius is reduced if it would cross a border that does not wrap.
+/// Returns the position `center + circle · radius`. The radius is reduced if the circle would cross a border that does
+/// not wrap.
 fn within(points: &PointSet, center: DVec2, mut radius: f64, circle: DVec2) -> DVec2 {
     let domain = points.domain();
     let (first, last) = (domain.origin, domain.end());

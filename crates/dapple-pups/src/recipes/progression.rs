@@ -3,7 +3,7 @@
 //!
 //! The recipes are [`cow`] and [`space_giraffe`] with a spacing or a probability that depends on x. Their domain wraps
 //! from top to bottom only: on a torus, a progression from left to right would end in a step. The paper gives no
-//! numbers. Here distances change geometrically: by equal ratios over equal lengths, so that the relative change is
+//! numbers. Here distances change geometrically, by equal ratios over equal lengths, so that the relative change is
 //! uniform.
 
 use crate::{
@@ -134,7 +134,7 @@ pub fn giraffe_progression(
     space_giraffe(&options.giraffe(), seed)
 }
 
-/// Builds black and white cells, with the share of white increasing to the right (figure 17).
+/// Builds black and white cells. The fraction of white ones increases to the right (figure 17).
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/label-ramp.md"))]
 ///
@@ -179,7 +179,7 @@ impl ProgressionOptions {
     }
 }
 
-/// Returns the paper's square, which wraps from top to bottom only.
+/// Returns the paper's square domain, wrapped from top to bottom only.
 fn cylinder() -> Domain {
     Domain {
         wrap: [false, true],

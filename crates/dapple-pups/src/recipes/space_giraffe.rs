@@ -2,29 +2,29 @@
 //!
 //! The literal recipe: spot centers are a Poisson-disk set. The radius r of a spot is half the distance to the nearest
 //! other center. Around the center, at angular intervals of 2π/n with a random n from 10 to 20, are pairs of points at
-//! random radii from 0 to r: the inner point in the spot, the outer one in the background. Since radii at neighboring
-//! angles are independent, an inner point can be farther out than the outer points next to it. Some 70 centers give 95
-//! black pieces with 33 holes, and only 16 % of the image is black.
+//! random radii from 0 to r: the inner point belongs to the spot, the outer one to the background. Since radii at
+//! neighboring angles are independent, an inner point can be farther out than the outer points next to it. About 70
+//! centers give 95 black connected components with 33 holes, and only 16 % of the image is black.
 //!
 //! By default, radii are therefore drawn uniformly over the area of the disk, and each is replaced by a weighted mean
-//! of its neighbors along the angle. Then the pairs are scaled until the outermost point is at r. This gives one piece
-//! without holes around each center, and about a third of the image is black.
+//! of its neighbors along the angle. Then the pairs are scaled until the outermost point is at r. This gives one
+//! component without holes around each center, and about a third of the image is black.
 //!
 //! "A secondary objective was to prevent two cells from merging", which the literal recipe misses for about one pair of
 //! neighboring spots in 20 000. By default no two spots merge, for these reasons:
 //!
 //! * A control point has a weight only within its support, which is its Voronoi cell scaled around the point by twice
 //!   the axis scale.
-//! * Removing points makes Voronoi cells larger, never smaller. So the support of an inner point (or the center) *among
-//!   the points of its spot alone* contains its true support, whatever other points exist.
+//! * Removing points makes Voronoi cells larger, never smaller. The support that an inner point (or the center) has
+//!   *among the points of its spot alone* therefore contains its true support, whatever other points exist.
 //! * If all these polygons of a spot are in the Voronoi cell of its center among the centers, then the spot is, too.
 //!   Voronoi cells are disjoint, so no two spots touch.
-//! * Scaling the points of a spot around its center scales the polygons with them. So a spot that does not fit is
-//!   scaled down until it does.
+//! * Scaling the points of a spot around its center scales the polygons with them. A spot that does not fit is
+//!   therefore scaled down until it does.
 //! * Orientations and axial weights change weights within supports only, so they do not matter.
 //!
-//! If points move, the centers move, and spots are built around their new positions. At any time the spots are whole
-//! and separate; their sizes change as they pass each other.
+//! If points move, the centers move, and spots are built around their new positions. At any time each spot is
+//! connected, and no two spots touch; their sizes change as they pass each other.
 //!
 //! Choices that the paper leaves open: the first angle is random, and n is uniform. Radii differ by at least r/256 from
 //! 0, from r and from each other in a pair, so no two points coincide. Along axes that do not wrap, the domain of the
@@ -132,7 +132,7 @@ pub fn space_giraffe(options: &SpaceGiraffeOptions, seed: Seed) -> Result<LabelT
 }
 
 impl SpaceGiraffeOptions {
-    /// Places the centers and the point pairs. Returns the points and their labels.
+    /// Generates the spot centers and the point pairs. Returns the control points and their labels.
     fn control_points(&self, seed: Seed) -> Result<(PointSet, Vec<u32>), PupsError> {
         self.check()?;
         let seed_of_points = seed.child("points", 0);

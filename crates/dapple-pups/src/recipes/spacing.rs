@@ -85,8 +85,8 @@ impl Spacing {
         points.map_err(PupsError::of_part)
     }
 
-    /// Estimates the number of [`points`](Self::points) in the domain without generating them. The estimate tends to be
-    /// too large rather than too small, and may be infinite.
+    /// Estimates the number of [`points`](Self::points) in the domain without generating them. The estimate is more
+    /// likely too large than too small, and may be infinite.
     ///
     /// For distances that are constant or a ramp, the estimate is an upper bound. With many points, it is at most twice
     /// the number. Any other variation is sampled at a few thousand positions only. The estimate for an invalid spacing
@@ -154,13 +154,13 @@ impl Spacing {
     }
 }
 
-/// Estimated maximum number of points in an area equal to the squared smallest distance. Random maximal sets have 0.70.
+/// Estimated maximum number of points in an area equal to the squared minimum distance. Random maximal sets have 0.70.
 const POINTS_PER_SQUARE: f64 = 0.75;
 
-/// Number of cells along each axis of the domain in which a varying spacing is replaced by its minimum.
+/// Number of cells along each axis of the domain. In each cell, a varying spacing is replaced by its minimum.
 const PARTS: u32 = 64;
 
-/// Estimates the maximum number of points in a rectangle, including its borders.
+/// Estimates the maximum number of points in a rectangle, including its borders, with minimum distance `radius`.
 fn expected_in(size: DVec2, radius: f64) -> f64 {
     if radius > 0.0 {
         let sides = size / radius + 1.0;
@@ -170,7 +170,8 @@ fn expected_in(size: DVec2, radius: f64) -> f64 {
     }
 }
 
-/// Sums the estimates over a grid of cells in the domain. In each cell, the radius is the smallest at its corners.
+/// Sums estimates over a grid of cells in the domain. The radius of a cell is the smallest of the radii at its
+/// corners.
 fn expected_by_parts(domain: Domain, radius: &Varying) -> f64 {
     let part = domain.size / f64::from(PARTS);
     let at = |x: u32, y: u32| {
@@ -223,7 +224,7 @@ mod tests {
     use dapple_raster::{Ramp, Varying};
     use glam::DVec2;
 
-    /// Spacings that vary along the diagonal of a domain, and constant ones.
+    /// Returns spacings that vary along the diagonal of a domain, and constant ones.
     fn spacings(domain: Domain) -> Vec<Spacing> {
         let ramp = Ramp {
             from: domain.origin,

@@ -1,4 +1,4 @@
-//! Every bad input is refused with its limit.
+//! Tests that invalid input gives an error with the limit.
 
 use dapple_graph::delaunay;
 use dapple_hash::Seed;

@@ -1,4 +1,4 @@
-//! The same bits through every door, at every SIMD level, for any number of threads and in any window.
+//! Tests that all sampling methods, SIMD levels, numbers of threads and windows give equal bits.
 
 use super::sets::{Case, cases, values};
 use dapple_hash::Seed;
@@ -8,7 +8,7 @@ use dapple_raster::simd::for_every_level;
 use dapple_raster::{Field, FieldExt as _, Raster, Window};
 use glam::DVec2;
 
-/// A window that lies across the borders of the domain.
+/// Returns a window across the borders of the domain.
 fn window(case: &Case) -> Window {
     let Domain { origin, size, .. } = *case.points.domain();
     Window::new(origin - size * 0.3, size * 1.7, [53, 37]).unwrap()

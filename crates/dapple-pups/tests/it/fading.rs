@@ -1,4 +1,4 @@
-//! Axes that fade: textures of points that move have no jumps.
+//! Tests that fading axes remove the jumps in textures whose points move.
 
 use super::sets::values;
 use dapple_hash::Seed;
@@ -7,7 +7,7 @@ use dapple_pups::{Pups, PupsOptions};
 use dapple_raster::{Field, FieldExt as _, Raster, Window};
 use glam::DVec2;
 
-/// The texture after a part of a way that takes one point past several others.
+/// Renders the texture after one point has moved a fraction `part` of a path, on which it passes several other points.
 fn texture(points: &PointSet, part: f64, options: PupsOptions) -> Raster<f32> {
     let mut positions = points.positions().to_vec();
     positions[7] += DVec2::new(0.9, 0.37) * part;
@@ -18,7 +18,7 @@ fn texture(points: &PointSet, part: f64, options: PupsOptions) -> Raster<f32> {
     texture.to_raster(&window).unwrap()
 }
 
-/// The largest change of a pixel in one of `n_steps` steps of the way.
+/// Returns the maximum change of a pixel in one of `n_steps` steps along the path.
 fn largest_change(n_steps: u32, options: &PupsOptions) -> f32 {
     let points = poisson_disk(Domain::paper_torus(), 0.25, Seed(21)).unwrap();
     let at = |step: u32| {

@@ -1,4 +1,4 @@
-//! Gradients against differences of the oracle, and where they are continuous.
+//! Tests gradients against differences of the oracle, and their continuity.
 
 use super::oracle;
 use super::sets::{cases, positions, values};
@@ -58,7 +58,7 @@ fn gradients_vanish_at_control_points_up_to_axis_scale_1() {
     }
 }
 
-/// The largest change of the gradient over a step, along a line across many supports.
+/// Returns the maximum change of the gradient over a distance `step`, along a line across many supports.
 fn largest_jump(strength: f64, step: f64) -> f64 {
     let points = poisson_disk(Domain::paper_torus(), 0.3, Seed(1)).unwrap();
     let vectors = (0..points.len()).map(|index| {

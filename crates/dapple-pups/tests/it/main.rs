@@ -1,5 +1,5 @@
-//! The core against an oracle, and what the crate and its recipes promise, through its public doors: the kernels are
-//! compiled once, in the library.
+//! Tests of the public interface against an oracle, and of the documented properties of the crate and its recipes. The
+//! kernels are compiled once, in the library.
 
 mod bad_input;
 mod bits;

@@ -1,4 +1,5 @@
-//! Equations 1 to 4 word for word, in double precision, over all control points and many images of each.
+//! The oracle: equations 1 to 4 by their definitions, in double precision, over all control points and many images of
+//! each.
 
 use super::sets::{Case, cases, positions};
 use dapple_graph::Axis;
@@ -6,7 +7,7 @@ use dapple_pups::{AxialWeight, PupsOptions};
 use dapple_raster::FieldExt as _;
 use glam::{DVec2, DVec3};
 
-/// The weights of all images of all control points that are not zero: the point, and the weight.
+/// Returns the nonzero weights at a position, of all images of all control points, each with the index of its point.
 pub(super) fn weights(case: &Case, position: DVec2) -> Vec<(usize, f64)> {
     let domain = case.points.domain();
     let position = domain.wrap(position);
@@ -34,8 +35,8 @@ pub(super) fn weights(case: &Case, position: DVec2) -> Vec<(usize, f64)> {
     weights
 }
 
-/// The exponents of axes that fade: `min(1, border / (fade · edge))`, where the border is the side that is left of a very
-/// large square, cut by all axes at half their length.
+/// Returns the exponents of a point's axes, `min(1, border / (fade · edge))`. The border of an axis is a very long
+/// segment, clipped by all other axes at half their length.
 fn exponents(axes: &[Axis], fade: f64) -> Vec<f64> {
     let border = |axis: &Axis| {
         let (middle, along) = (axis.vector * 0.5, axis.vector.perp().normalize());
@@ -63,7 +64,7 @@ fn exponents(axes: &[Axis], fade: f64) -> Vec<f64> {
     axes.iter().map(exponent).collect()
 }
 
-/// Equation 3.
+/// Returns the value of the texture by equation 3.
 pub(super) fn texture(case: &Case, position: DVec2) -> f64 {
     let values = case.values();
     let weights = weights(case, position);
@@ -75,7 +76,7 @@ pub(super) fn texture(case: &Case, position: DVec2) -> f64 {
     sum / total
 }
 
-/// Equation 1 and its replacements, as functions of the projection.
+/// Returns the axial weight at the projection `p`, by equation 1 or its alternatives.
 fn axial_weight(weight: AxialWeight, p: f64) -> f64 {
     let cubic = (1.0 - p) * (1.0 - p) * (1.0 + 2.0 * p);
     match weight {
@@ -89,7 +90,7 @@ fn axial_weight(weight: AxialWeight, p: f64) -> f64 {
     }
 }
 
-/// Equation 4.
+/// Returns a weight shifted by the point's orientation, by equation 4.
 fn shifted(options: &PupsOptions, point: usize, weight: f64, offset: DVec2) -> f64 {
     let Some(orientation) = &options.orientation else {
         return weight;
@@ -106,10 +107,11 @@ fn shifted(options: &PupsOptions, point: usize, weight: f64, offset: DVec2) -> f
     }
 }
 
-/// How far a mean of values in `[0, 1]`, or a weight, may be from the equations.
+/// Returns the maximum error of a mean of values in `[0, 1]`, or of a weight.
 ///
-/// Offsets, projections and weights carry a few roundings of 6e-8 each, and powers are within some 4e-6 of their value.
-/// Where supports barely overlap, weights are squares of small numbers, whose errors grow as the numbers shrink.
+/// Offsets, projections and weights have a few roundings of 6e-8 each, and powers have a relative error of about 4e-6.
+/// Where supports barely overlap, weights are squares of small numbers, whose relative errors increase as the numbers
+/// decrease.
 fn tolerance(case: &Case) -> f64 {
     let power = if case.options.orientation.is_some() {
         1e-5

@@ -1,4 +1,4 @@
-//! What the theory promises of every net.
+//! Tests of properties that hold for every net.
 
 use super::sets::{cases, positions, values};
 use dapple_graph::{EdgeDirection, Graph, delaunay, gabriel, k_nearest, yao};

@@ -1,4 +1,4 @@
-//! What the recipes promise, each of them and all together.
+//! Tests of the documented properties of the recipes.
 
 mod assign;
 mod bad_input;

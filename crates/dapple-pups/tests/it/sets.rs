@@ -1,4 +1,4 @@
-//! Nets to test with.
+//! Control nets for the tests.
 
 use dapple_graph::{EdgeDirection, Graph, GraphError, delaunay, k_nearest, yao};
 use dapple_hash::{Seed, hash1, unit_f32, unit_f64};
@@ -6,7 +6,7 @@ use dapple_points::{Domain, PointIdx, PointSet, poisson_disk, white_noise};
 use dapple_pups::{AxialWeight, Orientation, Pups, PupsOptions, Texture};
 use glam::{DVec2, DVec3};
 
-/// A name, points, a graph over them, and options.
+/// A test case: a name, points, a graph over them, and options.
 pub(super) struct Case {
     pub(super) name: String,
     pub(super) points: PointSet,
@@ -30,13 +30,13 @@ impl Case {
     }
 }
 
-/// Numbers in `[0, 1)`.
+/// Returns random values in `[0, 1)`.
 pub(super) fn values(count: usize) -> Vec<f32> {
     let random = |index| unit_f32((hash1(Seed(11), [index], 0) >> 32) as u32);
     (0..).map(random).take(count).collect()
 }
 
-/// Positions around a domain, inside and out.
+/// Returns random positions in and around a domain.
 pub(super) fn positions(domain: &Domain, count: i64) -> impl Iterator<Item = DVec2> {
     let Domain { origin, size, .. } = *domain;
     (0..count).map(move |index| {
@@ -45,7 +45,7 @@ pub(super) fn positions(domain: &Domain, count: i64) -> impl Iterator<Item = DVe
     })
 }
 
-/// Random unit vectors, some along an axis of space.
+/// Returns random unit vectors, some of them along an axis.
 pub(super) fn orientations(count: usize) -> Vec<DVec3> {
     let random = |index: i64, lane| unit_f64(hash1(Seed(17), [index], lane)) * 2.0 - 1.0;
     let vector = |index: i64| match index % 5 {
@@ -56,7 +56,7 @@ pub(super) fn orientations(count: usize) -> Vec<DVec3> {
     (0..).map(vector).take(count).collect()
 }
 
-/// Domains of all kinds, from one point to many, with every option.
+/// Returns nets of one to many points on domains with every kind of wrapping, with every option, and on other graphs.
 pub(super) fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for wrap in [[true, true], [false, true], [true, false], [false, false]] {
@@ -91,7 +91,7 @@ pub(super) fn cases() -> Vec<Case> {
     cases
 }
 
-/// Graphs that close every support but are not the Delaunay graph.
+/// Returns nets of graphs that close every support but are not Delaunay graphs.
 fn other_graphs() -> Vec<Case> {
     let points = poisson_disk(Domain::paper_torus(), 0.3, Seed(2)).unwrap();
     let graphs = [
@@ -118,7 +118,7 @@ fn other_graphs() -> Vec<Case> {
     graphs.map(case).into()
 }
 
-/// A point with 41 axes, so that its axes fill six blocks.
+/// Returns a net with one point that has 40 axes, which fill five blocks.
 fn hub() -> Case {
     let rim = (0..40).map(|index| f64::from(index) * core::f64::consts::TAU / 40.0);
     let mut positions: Vec<DVec2> = rim

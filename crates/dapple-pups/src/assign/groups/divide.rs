@@ -1,6 +1,6 @@
-//! Divides up to 64 points into connected groups, by an exhaustive search with a limited number of trials.
+//! Divides up to 64 points into connected groups, by a backtracking search with a limited number of steps.
 
-/// Maximum number of groups that the search tries.
+/// Maximum number of steps of the search. Each step tries one candidate group.
 const TRIALS: u32 = 20_000;
 
 /// Divides points into connected groups of `sizes[0]` to `sizes[1]` points. Returns `None` if no division is found.
@@ -40,13 +40,14 @@ struct Search {
 }
 
 impl Search {
-    /// Returns whether the free points can be divided. If so, the groups are in `parts`.
+    /// Returns whether the points of the mask `free` can be divided. If so, the groups are appended to `parts`.
     fn divide(&mut self, free: u64) -> bool {
         // Some group contains the first free point.
         free == 0 || self.extend(1 << free.trailing_zeros(), 0, free)
     }
 
-    /// Returns whether a group that contains `part` and no point of `banned` leads to a division.
+    /// Returns whether the free points can be divided such that one group contains the points of `part` and none of
+    /// `banned`. All are masks.
     fn extend(&mut self, part: u64, mut banned: u64, free: u64) -> bool {
         if self.trials == 0 {
             return false;

@@ -1,4 +1,4 @@
-//! One spot of a giraffe: pairs of points around a center, and polygons that contain its cells.
+//! One spot of a giraffe: pairs of points around a center, and polygons that contain the supports of its points.
 //!
 //! Positions are relative to the center, in units of the domain.
 
@@ -9,11 +9,11 @@ use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_points::PointIdx;
 use glam::DVec2;
 
-/// Minimum distance of a point from the center, the rim and the other point of its pair, as a fraction of the spot's
-/// radius.
+/// Minimum distance of a point from the center, from the rim, and from the other point of its pair, as a fraction of
+/// the spot's radius.
 const GAP: f64 = 1.0 / 256.0;
 
-/// Fraction of the available space that a scaled spot fills, as a margin for rounding.
+/// Scale of a spot relative to the maximum scale that fits, as a margin for rounding.
 const SLACK: f64 = 1.0 - 1e-6;
 
 /// A giraffe's spot: the pairs of points around a center.
@@ -21,12 +21,12 @@ const SLACK: f64 = 1.0 - 1e-6;
 pub(super) struct Spot {
     /// Half the distance to the nearest other center.
     pub(super) radius: f64,
-    /// Inner and outer point of each pair.
+    /// Inner and outer point of each pair, relative to the center.
     pub(super) pairs: Vec<[DVec2; 2]>,
 }
 
 impl Spot {
-    /// Draws the random spot of a center, before it is fitted into the center's Voronoi cell.
+    /// Draws the pairs of points around a center at random. The spot is not yet fitted into the center's Voronoi cell.
     pub(super) fn random(
         radius: f64,
         options: &SpaceGiraffeOptions,
@@ -62,8 +62,8 @@ impl Spot {
         }
     }
 
-    /// Scales the spot down, if needed, until all its cells are inside the center's Voronoi cell. `axes` are the
-    /// center's Delaunay axes.
+    /// Scales the spot down, if needed, until the supports of its points are inside the center's Voronoi cell. `axes`
+    /// are the center's Delaunay axes.
     pub(super) fn fitted(mut self, axes: &[Axis], axis_scale: f64) -> Self {
         let room = self.room(axes, axis_scale);
         if room < 1.0 {
@@ -95,7 +95,7 @@ impl Spot {
             .fold(1.0, f64::min)
     }
 
-    /// Returns the corners of a point's support among the points of this spot.
+    /// Returns the corners of the polygon that would be a point's support if only the points of this spot existed.
     fn support(&self, point: DVec2, axis_scale: f64) -> Vec<DVec2> {
         // Outer points are on all sides, so the support ends long before this square.
         let far = self.radius * 1e12;
@@ -114,8 +114,8 @@ impl Spot {
     }
 }
 
-/// Converts two random numbers to the radii of a pair, as fractions of the spot's radius. The inner one is first. The
-/// radii have gaps to the center, to the rim and between them.
+/// Converts two random numbers from 0 to 1 to the inner and the outer radius of a pair, as fractions of the spot's
+/// radius. Both have a gap to the center, to the rim and to each other.
 fn sorted(parts: [f64; 2]) -> [f64; 2] {
     // Leave a gap to the center and to the rim.
     let [a, b] = parts.map(|part| GAP + (1.0 - 2.0 * GAP) * part);
@@ -155,7 +155,7 @@ fn filled(radii: &[[f64; 2]]) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Clips a convex polygon to `normal · position ≤ limit`.
+/// Clips a convex polygon to the half-plane `normal · position ≤ limit`.
 fn clipped(corners: &[DVec2], normal: DVec2, limit: f64) -> Vec<DVec2> {
     let mut kept = Vec::with_capacity(corners.len() + 1);
     for (index, &from) in corners.iter().enumerate() {

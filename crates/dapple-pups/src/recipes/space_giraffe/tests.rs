@@ -1,4 +1,4 @@
-//! Tests that spots stay separate.
+//! Tests that spots are connected and do not touch each other.
 
 use crate::*;
 use dapple_hash::Seed;
@@ -11,7 +11,7 @@ fn paper_window(size: u32) -> Window {
     Window::new(DVec2::NEG_ONE, DVec2::splat(2.0), [size; 2]).unwrap()
 }
 
-/// Returns the centers and, for each control point, the index of its spot's center.
+/// Returns the spot centers and, for each control point, the index of the center of its spot.
 fn owners(labels: &[u32], options: &SpaceGiraffeOptions, seed: Seed) -> (PointSet, Vec<usize>) {
     let (points, placed) = options.control_points(seed).unwrap();
     assert_eq!(
@@ -32,8 +32,8 @@ fn owners(labels: &[u32], options: &SpaceGiraffeOptions, seed: Seed) -> (PointSe
     (centers, owners)
 }
 
-/// Returns the index of the nearest center, and the difference of the distances to the second nearest and the nearest
-/// center.
+/// Returns the index of the center nearest to a position, and the difference of the distances to the second nearest
+/// and the nearest center.
 fn nearest(centers: &PointSet, position: DVec2) -> (usize, f64) {
     let mut best = (0, f64::INFINITY);
     let mut second = f64::INFINITY;
@@ -50,7 +50,7 @@ fn nearest(centers: &PointSet, position: DVec2) -> (usize, f64) {
     (best.0, second - best.1)
 }
 
-/// Counts the spot pixels in the Voronoi cell of another spot's center.
+/// Counts the pixels of spots that are in the Voronoi cell of another spot's center.
 fn strays(options: &SpaceGiraffeOptions, seed: Seed, window: &Window) -> usize {
     let texture = space_giraffe(options, seed).unwrap();
     let (centers, owners) = owners(texture.labels(), options, seed);

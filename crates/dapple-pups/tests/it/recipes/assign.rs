@@ -1,4 +1,4 @@
-//! Attributes: values, labels, orientations, groups.
+//! Tests of attributes: values, labels, orientations and groups.
 
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointIdx, PointSet, poisson_disk, white_noise};
@@ -122,7 +122,7 @@ fn orientations_point_where_they_are_told() {
     assert_eq!(field[3], points.positions()[3].extend(0.5));
 }
 
-/// The sizes of all groups, each of which is connected.
+/// Returns the sizes of all groups, and checks that each group is connected.
 fn group_sizes(graph: &Graph, labels: &[u32]) -> Vec<usize> {
     let n_groups = labels.iter().max().map_or(0, |&label| label + 1);
     let size_of = |label| {

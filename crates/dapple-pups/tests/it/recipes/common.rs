@@ -1,4 +1,5 @@
-//! What all recipes promise: they repeat, windows are crops, doors agree, threads do not matter.
+//! Tests of properties that all recipes share: they repeat, windows equal crops, sampling methods agree, and the
+//! number of threads does not matter.
 
 use dapple_hash::Seed;
 use dapple_pups::*;
@@ -6,12 +7,12 @@ use dapple_pups::{ReferenceImage, Texture};
 use dapple_raster::{Field, FieldExt as _, Raster, Window};
 use glam::DVec2;
 
-/// The window of `size` pixels over the paper's torus.
+/// Returns a window of `size` × `size` pixels over the paper's torus.
 pub(super) fn paper_window(size: u32) -> Window {
     Window::new(DVec2::NEG_ONE, DVec2::splat(2.0), [size; 2]).unwrap()
 }
 
-/// A number that any other bit changes.
+/// Returns a hash of all bits of a raster.
 pub(super) fn digest(raster: &Raster<f32>) -> u64 {
     raster
         .pixels()
@@ -21,7 +22,7 @@ pub(super) fn digest(raster: &Raster<f32>) -> u64 {
         })
 }
 
-/// A gray ramp from top to bottom and back.
+/// Returns a reference image with a gray ramp from top to bottom and back.
 pub(super) fn reference() -> ReferenceImage {
     let triangle = |row: u32| row.min(31 - row) as f32 / 15.0;
     ReferenceImage::new(Raster::from_fn([1, 32], |_, row| triangle(row)).unwrap()).unwrap()
@@ -32,7 +33,7 @@ fn last_iteration(seed: Seed) -> Texture {
     textures.unwrap().remove(3)
 }
 
-/// Every recipe on its default torus, as a field.
+/// Returns every recipe on its default domain, as a field with a name.
 fn recipes(seed: Seed) -> Vec<(&'static str, Box<dyn Field>)> {
     let rescaled = OctavesOptions {
         source: OctaveSource::Rescaled,

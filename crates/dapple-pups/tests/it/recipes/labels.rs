@@ -1,4 +1,4 @@
-//! Cells, cows, layers of cells, reference images, colors.
+//! Tests of cells, cows, layers of cells, reference images and colors.
 
 use super::common::paper_window;
 use dapple_hash::Seed;
@@ -87,7 +87,7 @@ fn cellular_noise_sums_four_layers() {
     assert_eq!(sum.sample(at), expected);
 }
 
-/// White in a disc of radius ½, gray around its border.
+/// Returns a reference image with a white disk of radius ½ and a gray transition at its border.
 fn disc() -> ReferenceImage {
     let image = Raster::from_window(&paper_window(64), |at| {
         (4.5 - 8.0 * at.length()).clamp(0.0, 1.0) as f32

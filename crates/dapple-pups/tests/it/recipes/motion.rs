@@ -1,4 +1,4 @@
-//! Recipes whose points move.
+//! Tests of recipes whose points move.
 
 use super::common::{paper_window, reference};
 use dapple_hash::Seed;
@@ -15,7 +15,7 @@ fn moving(time: f64) -> NetOptions {
     }
 }
 
-/// Every recipe at a time, in gray.
+/// Renders every recipe at a time, as a scalar image with a name.
 fn pictures(time: f64) -> Vec<(&'static str, Raster<f32>)> {
     let mut pictures = Vec::new();
     macro_rules! draw {
@@ -130,7 +130,7 @@ fn spots_that_move_stay_apart() {
     }
 }
 
-/// The connected parts of label 1 on the torus.
+/// Returns the number of connected components of label 1 on the torus.
 fn n_pieces(labels: &Raster<u32>) -> usize {
     let [width, height] = labels.size();
     let mut seen = vec![false; (width * height) as usize];

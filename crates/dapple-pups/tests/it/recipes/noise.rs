@@ -1,4 +1,4 @@
-//! Noise, its octaves, folding and turbulence.
+//! Tests of noise, octaves, folding and turbulence.
 
 use super::common::paper_window;
 use dapple_hash::Seed;

@@ -1,4 +1,4 @@
-//! What grows from left to right does, and from top to bottom it repeats.
+//! Tests that progressions increase from left to right, and repeat from top to bottom.
 
 use super::common::{digest, paper_window};
 use dapple_hash::Seed;
@@ -6,7 +6,7 @@ use dapple_pups::*;
 use dapple_raster::{Field, Raster, Window};
 use glam::DVec2;
 
-/// How often neighboring pixels of a column differ, in the four quarters from left to right.
+/// Returns the number of vertically adjacent pixels that differ, in each quarter of the raster from left to right.
 fn changes(raster: &Raster<f32>) -> [usize; 4] {
     let [width, height] = raster.size();
     let quarter = width as usize / 4;
