@@ -234,7 +234,7 @@ impl Net {
         Ok(())
     }
 
-    /// Adds axes of the next point as blocks; one empty block if there are no axes.
+    /// Adds the axes of the next point as blocks; one empty block if there are no axes.
     fn push_blocks(&mut self, point: PointIdx, axes: &[DVec2]) -> Result<(), PupsError> {
         // With this limit, products of axes and positions stay in the range of single precision.
         let limit = self.domain.size.max_element() * 1e-9;

@@ -19,9 +19,9 @@ use glam::DVec2;
 type TakeGroup<'a> = dyn FnMut(&[u32; GROUP], &[f32; GROUP]) + 'a;
 
 impl Net {
-    /// Folds over the weights of all candidates at a position, in the order of summation: calls `take(state, record,
-    /// weight)`, which returns the next state. The position must be in range; `record` is an index in the [`Bins`].
-    /// Zero weights are included, since unpredictable branches would cost more than skipping them saves.
+    /// Folds over the weights of all candidates at a position, in the order of summation.
+    /// `take(state, record, weight)` returns the next state. The position must be in range; `record` is an index in
+    /// the [`Bins`]. Zero weights are included, since unpredictable branches would cost more than skipping them saves.
     #[inline]
     pub(crate) fn fold_weights<A: Copy>(
         &self,

@@ -7,7 +7,7 @@ use crate::{AxialWeight, Folding, LabelTexture, Layers, Octave, Pups, PupsError,
 pub struct ShaderLayers {
     /// The layers, from the coarsest to the finest.
     pub layers: Vec<ShaderLayer>,
-    /// Maximum of the sum of the layers, to which larger sums are clamped. `None` for a texture without layers.
+    /// Upper clamp of the sum of the layers. `None` for a texture without layers.
     pub maximum: Option<f32>,
 }
 
@@ -16,7 +16,7 @@ pub struct ShaderLayers {
 pub struct ShaderLayer {
     /// Control points and values as words; see [`Pups::shader_words`].
     pub words: Vec<u32>,
-    /// Factor by which positions are multiplied.
+    /// Scale factor of positions.
     pub scale: f64,
     /// Factor of the layer's values, which are first clamped to `[0, 1]`.
     pub amplitude: f32,

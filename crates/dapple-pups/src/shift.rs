@@ -6,12 +6,12 @@ use fearless_simd::prelude::*;
 /// Added to squared distances to make them nonzero. It changes no distance above 1e-15.
 const LEAST_SQUARE: f32 = f32::MIN_POSITIVE;
 
-/// Applies equation 4. The weight becomes `w^(1 − K)` on the side that the orientation points to, and `w^(1 / (1 +
-/// K))` on the other, where `K` is ε times the cosine of the angle to the orientation.
+/// Applies equation 4. A weight becomes `w^(1 − K)` on the side that the orientation points to, and
+/// `w^(1 / (1 + K))` on the other, where `K` is ε times the cosine of the angle to the orientation.
 ///
 /// `shift` is ε times the orientation in the plane, `s`. `x` and `y` are the offsets `o` of the positions from the
-/// control point, one register for each row. With `n = s·o` and `d = |o|`, both exponents are `(d − max(n, 0)) / (d +
-/// min(n, 0))`. At the control point the angle is undefined; the weight there remains 1.
+/// control point, one register for each row. With `n = s·o` and `d = |o|`, both exponents are equal to
+/// `(d − max(n, 0)) / (d + min(n, 0))`. At the control point the angle is undefined; the weight there remains 1.
 #[inline(always)]
 pub(crate) fn shift_weights<S: Simd, V: SimdFloat<S, Element = f32>, const ROWS: usize>(
     simd: S,

@@ -7,6 +7,7 @@
 //! `b` is the autocorrelation of `h` at even distances. In both cases `b` is symmetric. Its inverse is a chain of
 //! first-order recursions, one pair for each pole inside the unit circle. The sum of `b` is 1, so the gain of the
 //! chain is the product of all `(1 − pole)²`.
+//!
 //! Reference: Michael Unser, Akram Aldroubi and Murray Eden, "B-Spline Signal Processing: Part I, Theory", IEEE
 //! Transactions on Signal Processing 41(2), 1993, for inverses by recursion.
 

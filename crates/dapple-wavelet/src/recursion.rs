@@ -3,8 +3,8 @@
 //!
 //! A recursion depends on the values before the first one. The lines are therefore extended beyond their ends, far
 //! enough that starting with zero influences a result by less than its last bit. This rule covers periodic and
-//! mirrored lines of any length. For a periodic line it equals, up to rounding, the usual initial value `s / (1 −
-//! pⁿ)`, where `p` is the pole, `n` the length and `s` the result of one period that starts with zero.
+//! mirrored lines of any length. For a periodic line it equals, up to rounding, the usual initial value
+//! `s / (1 − pⁿ)`, where `p` is the pole, `n` the length and `s` the result of one period that starts with zero.
 //!
 //! All arithmetic is `f64`, with the same operations in the same order for every lane. The bits of a line do not
 //! depend on the lines in other lanes.
@@ -23,8 +23,7 @@ pub(crate) struct LineFilter {
     step: usize,
     /// Source index of the first tap of the first target value.
     start: i64,
-    /// Number of values by which the target is extended at each end, so that the recursions forget their initial
-    /// value.
+    /// Length of the target's extension at each end, in values. There the recursions forget their initial value.
     reach: usize,
 }
 
@@ -66,7 +65,7 @@ impl LineFilter {
         }
     }
 
-    /// Filters `L` lines. `load` writes their values into a slice that is as long as the source.
+    /// Filters `L` lines. `load` writes their values into a slice of the source's length.
     #[inline(always)]
     pub(crate) fn run<'lanes, const L: usize>(
         &self,

@@ -4,9 +4,9 @@
 //! Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>). His octaves are scaled copies of
 //! one field, which is visible at the origin, the center of all the copies. Here each octave has its own seed by
 //! default; [`Octaves::paper`] gives the paper's sum.
+//!
 //! With a period, octave `i` repeats after `lacunarity^i` times as many cells of that octave. The sum therefore
 //! repeats with the period of the first octave, and no octave repeats more often.
-//! period of the first octave, and no octave repeats more often.
 
 use crate::cellular::{measure_range, render_windows};
 use crate::dispatch::DimensionDispatch as _;

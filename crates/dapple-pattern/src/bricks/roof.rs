@@ -1,7 +1,7 @@
 //! Roof tiles: courses that overlap the course below them.
 //!
-//! A tile extends from far above its course to the lower border of the course, where its end may be round. The tiles
-//! of a course cover those of the course below, which remain visible between round ends and in the joints.
+//! A tile extends from far above its course to the lower border of the course, where its end may be round. A course
+//! covers the tiles of the course below, which remain visible between round ends and in the joints.
 
 use super::rectangles::rounded_corner;
 use super::{Bond, Brick, Bricks};

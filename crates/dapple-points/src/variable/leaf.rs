@@ -25,7 +25,7 @@ const FEW_CELLS: f64 = 4.0;
 /// Maximum ratio of the largest to the smallest radius in a leaf with more cells.
 const MOST_RATIO: f64 = 1.5;
 
-/// Ratio by which the slope between lattice samples may exceed the maximum slope from sample to sample.
+/// Assumed maximum ratio of the slope between lattice samples to the maximum slope from sample to sample.
 const SLOPE_MARGIN: f64 = 1.5;
 
 /// Relative upper bound, with some slack, of the rounding error of the diagonal of a cell.

@@ -45,7 +45,7 @@ impl Octave {
         &self.texture
     }
 
-    /// Returns the factor by which positions are scaled: 1, or a power of two if octaves are rescaled.
+    /// Returns the scale factor of positions: 1, or a power of two if octaves are rescaled.
     #[must_use]
     pub fn scale(&self) -> f64 {
         self.scale

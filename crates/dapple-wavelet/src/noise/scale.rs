@@ -1,10 +1,10 @@
 //! Computes the exact mean square of noise over all seeds, for tiles of any size, in order to normalize it.
 //!
 //! The noise is `(I − P) R`, where `R` is white noise and `P` is the projection along every axis. A mean square is a
-//! quadratic form with a matrix `M`, here a product of one matrix per axis. Its mean over all seeds is `tr((I − P)ᵀ M
-//! (I − P))` divided by the number of coefficients, where `tr` is the trace. This equals `Π whole − 2 Π cross + Π low`
-//! over the axes, with three traces per axis ([`LineSums`]). A single impulse suffices to compute them, because
-//! shifting it by two cells gives the same traces and shifting it by one cell gives their mirror images.
+//! quadratic form with a matrix `M`, here a product of one matrix per axis. Its mean over all seeds is the trace
+//! `tr((I − P)ᵀ M (I − P))` divided by the number of coefficients. This equals `Π whole − 2 Π cross + Π low` over the
+//! axes, with three traces per axis ([`LineSums`]). A single impulse suffices to compute them, because shifting it by
+//! two cells gives the same traces and shifting it by one cell gives their mirror images.
 
 use crate::kernel::gram;
 use crate::{Border, Degree, SplineFilter, WaveletError};

@@ -80,8 +80,8 @@ impl Tile<2> {
         (across(x.weights(), row), gradient)
     }
 
-    /// Computes the weighted sum of the three rows of coefficients around `y` into `row`, which is as long as a row in
-    /// memory.
+    /// Computes the weighted sum of the three rows of coefficients around `y` into `row`, which has the length of a
+    /// stored row.
     pub(super) fn blend_row(&self, y: Place, row: &mut [f32]) {
         let rows = &self.coefficients[y.index() * self.sides[0]..][..3 * self.sides[0]];
         blend(y.weights(), rows, row);
