@@ -17,9 +17,9 @@ dapple_raster::error! {
         NoStops => "a color ramp needs at least one stop";
         /// A number is not finite.
         NotFinite {
-            /// The name of the number.
+            /// Name of the invalid number, as in the message.
             what: &'static str,
-            /// The number.
+            /// The invalid number.
             value: f64,
         } => "the {what} is {value}, but it must be finite";
         /// An extent is not above zero and finite.

@@ -96,7 +96,8 @@ impl Curve {
         code as u16
     }
 
-    /// Returns an approximate code of a number between the first threshold and 1: linear within each segment.
+    /// Returns the approximate code of a linear value between the first threshold and 1, interpolated linearly in the
+    /// guess table.
     ///
     /// The code is at least 1 and at most the maximum.
     #[inline]

@@ -20,7 +20,7 @@ pub(crate) struct Budget {
 }
 
 impl Budget {
-    /// Creates the budget for `n` points.
+    /// Creates the budget for all searches in a set of `n` points.
     pub(crate) fn new(n: usize) -> Self {
         Self {
             left: Self::limit(n),

@@ -1,9 +1,9 @@
 //! Delaunay graphs and Voronoi cells of points, on a plane or on a torus that tiles; Yao, Gabriel and nearest-neighbor
 //! graphs.
 //!
-//! A [`Graph`] holds a list of [`Axis`] values for each point of a set. An axis says which point it leads to, and by
-//! which vector. On a wrapping domain, the vector goes across the border where the edge does. An axis may lead to
-//! another image of the point itself, and several axes may lead to different images of the same point.
+//! A [`Graph`] holds a list of [`Axis`] values for each point of a set. An axis has a target point and the vector to
+//! it. On a wrapping domain, the vector crosses the border where the edge does. An axis may lead to another image of
+//! the point itself, and several axes may lead to different images of the same point.
 //!
 //! ```
 //! use dapple_graph::{PointIdx, Voronoi, delaunay, points::{Domain, hash::Seed, jittered_grid}, glam::DVec2};

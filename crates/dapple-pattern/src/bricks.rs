@@ -58,7 +58,7 @@ pub struct BrickOptions {
 }
 
 impl BrickOptions {
-    /// Valid range of a frequency.
+    /// Valid range of each component of [`frequency`](Self::frequency).
     pub const FREQUENCY: Range = range!(above 0 to 1e6);
     /// Valid range of [`offset`](Self::offset).
     pub const OFFSET: Range = range!(from 0 to 1);

@@ -35,8 +35,8 @@ dapple_raster::named! {
 pub struct GaborOptions {
     /// Period along each axis in cells; `None` for an axis without a period.
     pub period: [Option<u32>; 2],
-    /// Frequency of the waves in waves per cell, from 0 to 64; by default 2. The more, the closer are all waves to this
-    /// frequency and to their direction: the kernel has a radius of one cell.
+    /// Frequency of the waves in waves per cell, from 0 to 64; by default 2. The kernel has a radius of one cell, so
+    /// higher values give a narrower range of frequencies and directions.
     pub waves: f64,
     /// Number of impulses per cell, from 1 to 64; by default 8. Time is proportional to it. With 8 or more, values are
     /// nearly normally distributed.

@@ -90,14 +90,14 @@ pub struct StampOptions {
     pub period: [Option<u32>; 2],
     /// Height of a cell relative to its width, from 0.01 to 100; by default 1.
     pub cell_height: f64,
-    /// Mean number of stamps per cell, above 0 and at most 16; by default 1. The whole part is in every cell, and the
-    /// fraction is the chance of one more.
+    /// Mean number of stamps per cell, above 0 and at most 16; by default 1. Every cell has the integer part of this
+    /// number, and one more with the probability of the fraction.
     pub density: f64,
     /// Maximum offset of a point from the center of its cell, from 0 (a regular lattice) to 1 (anywhere in the cell);
     /// by default 1.
     pub jitter: f64,
-    /// Minimum distance between two points, from 0 to 4; by default 0. Of points that are closer, the ones with the lower
-    /// random priorities are left out, so that the density becomes lower.
+    /// Minimum distance between two points, from 0 to 4; by default 0. Of points that are closer, only the ones with
+    /// the highest random priority remain, which lowers the density.
     pub spacing: f64,
     /// Shift of each row of cells relative to the row above, in cells, from −1 to 1; by default 0.
     pub row_offset: f64,
@@ -114,8 +114,8 @@ pub struct StampOptions {
     pub height: [f64; 2],
     /// Width of the bevel of flat shapes relative to half of their width, from 0 to 1; by default 0.2.
     pub bevel: f64,
-    /// Fraction of a stamp's height, from 0 to 1, that is its random place in the order of stamps instead of its
-    /// profile; by default 0. Stamps that lie on others are then higher.
+    /// Fraction of a stamp's height that depends on its random rank in the stamping order instead of its profile, from
+    /// 0 to 1; by default 0. It makes stamps on top of others higher.
     pub lift: f64,
     /// Slope of the profile along a stamp, from −1 to 1; by default 0. At 1, the height rises from 0 at its start to the
     /// full profile at its end.

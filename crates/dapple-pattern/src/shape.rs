@@ -65,8 +65,8 @@ pub struct ShapeOptions {
     pub sides: u32,
     /// Proportion of the shape, above 0 to 1; by default ½. See [`ShapeKind`].
     pub ratio: f64,
-    /// Radius of rounded corners relative to the size, from 0 below 1; by default 0. The shape is shrunk and then
-    /// dilated by the radius, so that its width stays. Circles, capsules and rings have no corners.
+    /// Radius of rounded corners relative to the size, from 0 below 1; by default 0. The shape is shrunk by the radius
+    /// and then dilated by it, which preserves its width. Circles, capsules and rings have no corners.
     pub rounding: f64,
     /// Width of a shell around the border, relative to the size, from 0 to 1; by default 0, the whole shape.
     pub onion: f64,
@@ -92,7 +92,7 @@ impl ShapeOptions {
     pub const ONION: Range = range!(from 0 to 1);
     /// Valid range of [`edge`](Self::edge).
     pub const EDGE: Range = range!(from 0 to 2);
-    /// Valid range of a frequency.
+    /// Valid range of each component of [`frequency`](Self::frequency).
     pub const FREQUENCY: Range = range!(above 0 to 1e6);
 }
 

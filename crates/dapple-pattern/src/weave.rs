@@ -75,13 +75,13 @@ pub struct WeaveOptions {
     pub width: f64,
     /// Cross-section of threads, from 0 (flat ribbon) to 1 (ellipse); by default 1.
     pub roundness: f64,
-    /// Variation of the widths and positions of threads, from 0 to 1; by default 0. At 1, a thread has from half of the
-    /// width to the whole.
+    /// Variation of the widths and positions of threads, from 0 to 1; by default 0. At 1, widths vary from half of
+    /// `width` to all of it.
     pub jitter: f64,
 }
 
 impl WeaveOptions {
-    /// Valid range of a frequency.
+    /// Valid range of each component of [`frequency`](Self::frequency).
     pub const FREQUENCY: Range = range!(above 0 to 1e6);
     /// Valid range of [`over`](Self::over), [`under`](Self::under) and [`step`](Self::step).
     pub const CROSSINGS: Range = range!(from 1 to 32);

@@ -32,9 +32,9 @@ dapple_raster::error! {
         } => "about {needed:.0} points would be needed, but the limit is {limit}";
         /// A number is not above zero and finite, as required.
         NotPositive {
-            /// The name of the number.
+            /// Name of the invalid number, as in the message.
             what: &'static str,
-            /// The number.
+            /// The invalid number.
             value: f64,
         } => "{what} is {value}, but it must be above 0 and finite";
         /// A radius that varies in space is not above zero and finite somewhere.
@@ -80,9 +80,9 @@ dapple_raster::error! {
         } => "radius {level} is {radius}, but it must not be larger than the one before, {before}";
         /// A number is outside its range.
         OutOfRange {
-            /// The name of the number.
+            /// Name of the invalid number, as in the message.
             what: &'static str,
-            /// The number.
+            /// The invalid number.
             value: f64,
             /// Allowed minimum and maximum.
             range: [f64; 2],

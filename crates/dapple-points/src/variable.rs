@@ -255,7 +255,7 @@ fn colors_of(blocks: &[Block]) -> Vec<Vec<u32>> {
 /// Number of blocks between checks for cancellation; a block has a few hundred points.
 const BLOCKS: usize = 64;
 
-/// Processes the blocks of one color in parallel; all other blocks are read-only meanwhile.
+/// Calls `work` for each block of one color, in parallel, with all other blocks for reading.
 fn take_turns(
     blocks: &mut [Block],
     color: &[u32],

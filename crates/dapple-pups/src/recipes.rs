@@ -92,8 +92,8 @@ pub trait PupsRecipe<Image = ()>: Clone + Default {
     /// Returns the options for the weights and the motion of the control points, for changing them.
     fn net_mut(&mut self) -> &mut NetOptions;
 
-    /// Estimates the number of control points without generating them. The estimate tends to be too large rather than
-    /// too small, and may be infinite.
+    /// Estimates the number of control points without generating them. The estimate is more likely too large than too
+    /// small, and may be infinite.
     fn expected_points(&self) -> f64;
 
     /// Builds the texture. Random values are from 0 to 1.

@@ -1,4 +1,4 @@
-//! Shifts weights towards an orientation (equation 4).
+//! Shifts weights toward an orientation (equation 4).
 
 use crate::power::powers;
 use fearless_simd::prelude::*;

@@ -44,9 +44,9 @@ crate::error! {
         NoPeriod => "the field does not repeat along both axes, so that there is no tile of it";
         /// A number is not finite, or the size of a pixel is zero.
         NotFinite {
-            /// The name of the number.
+            /// Name of the invalid number, as in the message.
             what: &'static str,
-            /// The number.
+            /// The invalid number.
             value: f64,
         } => "the {what} is {value}, but it must be finite and a pixel's size must not be zero";
     }

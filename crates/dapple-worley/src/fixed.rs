@@ -61,7 +61,8 @@ const NEAR: f64 = (1_u64 << 30) as f64;
 /// 1.5 · 2^52. All `f64` within a quarter of it are integers, and their low bits hold the difference from this number.
 pub(crate) const WHOLE: f64 = (3_u64 << 51) as f64;
 
-/// Splits a coordinate without converting between integers and floating point, which takes longer than all else.
+/// Splits a coordinate without converting between integers and floating point, since conversions would dominate the
+/// time.
 #[inline]
 fn split_near(mut coordinate: f64) -> (i64, i32) {
     // Below zero, `split_far` rounds to the precision of numbers up to one.

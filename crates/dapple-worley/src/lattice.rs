@@ -157,7 +157,7 @@ impl Lattice {
         self.visit_words(cell, self.words(cell), each);
     }
 
-    /// Calls `each` with every point of a cell whose words are known.
+    /// Calls `each` with every point of a cell, given the cell's hash words.
     #[inline(always)]
     pub(crate) fn visit_words<const N: usize>(
         &self,

@@ -120,13 +120,13 @@ impl Metric {
         }
     }
 
-    /// Returns whether a key is a sum of terms that are each rounded at most once.
+    /// Returns whether a key is the sum of its terms, each of which is rounded at most once.
     #[inline(always)]
     pub(crate) fn is_exact_sum(self) -> bool {
         matches!(self, Self::Euclidean | Self::Manhattan)
     }
 
-    /// Returns whether terms are so slow to compute that SIMD gains nothing.
+    /// Returns whether key terms are so slow to compute that SIMD gains nothing.
     #[inline]
     pub(crate) fn is_slow(self) -> bool {
         matches!(self, Self::Minkowski(_))
@@ -153,7 +153,7 @@ impl Metric {
         }
     }
 
-    /// Returns the key of a vector.
+    /// Returns the key of a vector, the stand-in for its length.
     #[inline(always)]
     pub(crate) fn key<const N: usize>(self, differences: [f32; N]) -> f32 {
         let mut key = self.term(differences[N - 1]);
@@ -288,7 +288,7 @@ impl Measure for Exact {
     }
 }
 
-/// The Euclidean or the Manhattan metric, whose terms are added.
+/// The Euclidean or the Manhattan metric, whose key is the sum of its terms.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Additive(pub(crate) Metric);
 
@@ -304,7 +304,8 @@ impl Measure for Additive {
     }
 }
 
-/// The Euclidean metric as a compile-time constant, for loops so short that testing the metric takes time.
+/// The Euclidean metric as a compile-time constant, for loops so short that a branch on the metric would slow them
+/// down.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Squares;
 

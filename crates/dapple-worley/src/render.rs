@@ -87,7 +87,7 @@ pub(crate) enum Output<'a> {
 }
 
 impl Output<'_> {
-    /// Returns the largest n for which `F_n` is needed.
+    /// Returns the number of nearest points per pixel that the output needs.
     fn depth(&self) -> usize {
         match self {
             Self::Values(Values { tone, .. }, _) | Self::Gradients(tone, _) => tone.depth(),

@@ -89,9 +89,9 @@ impl Default for Scatter {
 }
 
 impl Scatter {
-    /// Default density, in points per cell. Worley found his program fastest at about 3, and so is this one. For the
-    /// same number of feature points in an image of F2 − F1, in 2-D and 3-D, a density of 1 takes 1.4 to 2 times as
-    /// long, 2 takes up to 1.3 times, and 4 to 8 take 0.9 to 1.4 times as long.
+    /// Default density, in points per cell. Worley's program was fastest at about 3, and this one is, too. Relative to
+    /// it, images of F2 − F1 with the same number of feature points take 1.4 to 2 times as long at a density of 1, up
+    /// to 1.3 times at 2, and 0.9 to 1.4 times at 4 to 8 (in 2-D and 3-D).
     pub const DENSITY: f64 = 3.0;
 
     /// Returns the mean number of feature points per cell, after clamping.

@@ -41,7 +41,7 @@ impl Tone {
         })
     }
 
-    /// Returns the largest n for which `F_n` is needed.
+    /// Returns the number of nearest points that the combination needs: the largest n of its `F_n`.
     pub(crate) fn depth(&self) -> usize {
         self.weights.depth()
     }

@@ -50,8 +50,9 @@ pub(super) struct Line<'a> {
 }
 
 impl Heights {
-    /// Extends the heights of a part of a raster of `whole` pixels. Only the pixels between its margins are computed;
-    /// the margins take less than half of each side.
+    /// Extends the heights of a part of a raster of `whole` pixels by columns on both sides, according to the wrap.
+    /// The part has `margin` columns and rows at each side that are read but not computed; they take less than half of
+    /// each side.
     ///
     /// # Errors
     ///

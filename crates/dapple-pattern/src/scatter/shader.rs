@@ -82,7 +82,7 @@ impl Stamps {
     }
 }
 
-/// Refuses tables that do not fit in a texture.
+/// Checks that a table of `count` words fits into a texture.
 fn check_words(count: f64) -> Result<(), PatternError> {
     let (what, range) = ("number of words of the stamps in a shader", "at most 2^25");
     PatternError::check(count <= MOST_WORDS, what, count, range)

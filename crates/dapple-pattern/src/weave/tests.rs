@@ -9,7 +9,8 @@ use proptest::prelude::*;
 /// A draft, its parameters `over`, `under` and `step`, and its grid.
 type Grid = (Draft, [Option<u32>; 3], &'static [&'static str]);
 
-/// Drafts as in weavers' books: a column for each warp thread, a row for each weft thread, `#` where the warp lies above.
+/// Drafts as in weavers' books: a column for each warp thread, a row for each weft thread, `#` where the warp is on
+/// top.
 const GRIDS: [Grid; 5] = [
     (Draft::Plain, [None; 3], &["#.", ".#"]),
     (Draft::Twill, [None; 3], &["##..", ".##.", "..##", "#..#"]),

@@ -29,8 +29,9 @@ pub(crate) const STEP: f32 = 1.0 / LATTICE as f32;
 /// Offset of an empty cell: far from every position, with a finite square.
 pub(crate) const FAR: f32 = 1e9;
 
-/// Minimum width and height of a cell relative to the reach, at which an offset of [`FAR`] is still out of reach. In a
-/// thinner domain, cells are assumed to be this wide, which adds less than 1e-16 to a squared distance of 1.
+/// Minimum width and height of a cell, relative to the reach of a point. With it, an offset of [`FAR`] cells is out of
+/// reach. In a thinner domain, cells are assumed to be this wide, which adds less than 1e-16 to a squared distance of
+/// 1.
 const THINNEST: f32 = 2.0 / FAR;
 
 /// Relative difference between the reach of a point and the radius. Rounding to `f32` may shorten a distance by 6 ·

@@ -17,7 +17,7 @@ use dapple_raster::{Ramp, Varying, parallel};
 use fearless_simd::Level;
 use glam::DVec2;
 
-/// Maximum relative amount by which an empty circle's radius may exceed the set's radius, as documented.
+/// Maximum relative excess of an empty circle's radius over the set's radius, as documented.
 const GAP_TOLERANCE: f64 = 1e-6;
 
 /// Domains with every kind of wrapping: square, thin, far from the origin; none narrower than two radii of 0.1.

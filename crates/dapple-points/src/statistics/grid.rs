@@ -4,7 +4,7 @@ use crate::{Domain, PointSet};
 use dapple_raster::Groups;
 use glam::DVec2;
 
-/// Mean number of points per cell: few enough to skip most distant points, enough to visit few empty cells.
+/// Mean number of points per cell. With more, searches would visit many distant points; with fewer, many empty cells.
 const POINTS_PER_CELL: f64 = 2.0;
 
 /// Upper bound on how far, as a fraction of a cell, rounding may move a point into a neighboring cell.

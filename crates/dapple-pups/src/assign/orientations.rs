@@ -51,7 +51,7 @@ pub fn outward_orientations(points: &PointSet, center: DVec2) -> Result<Vec<DVec
 }
 
 /// Returns unit vectors in the plane at an angle that depends on the position. Angles are in radians, from the x axis
-/// towards the y axis.
+/// toward the y axis.
 ///
 /// # Errors
 ///

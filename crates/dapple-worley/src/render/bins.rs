@@ -83,7 +83,8 @@ pub(super) struct Runs<'a, const TILES: usize> {
     pub(super) metric: Metric,
     /// Whether there are axes orthogonal to the image.
     pub(super) is_deep: bool,
-    /// Keys at or above this value may miss a nearer point.
+    /// Limit of reliable keys (see [`metric`](crate::metric)). A pixel whose key is at or above it may miss a nearer
+    /// point.
     pub(super) limit: f32,
     /// Index of the first point of each bin.
     pub(super) starts: &'a [u32],

@@ -28,7 +28,8 @@ pub(super) struct Rows<'a> {
     /// Index of the first register of the tile's columns, 0 or 1; 0 if both are rendered.
     pub(super) register: usize,
     pub(super) candidates: &'a [Candidate],
-    /// Keys at or above this value may miss a nearer point.
+    /// Limit of reliable keys (see [`metric`](crate::metric)). A pixel whose key is at or above it may miss a nearer
+    /// point.
     pub(super) limit: f32,
     pub(super) values: &'a Values,
 }

@@ -20,7 +20,7 @@ use core::ops::Range;
 use dapple_raster::simd::baseline;
 use fearless_simd::Level;
 
-/// An estimate of the distance to the nearest points. Few pixels exceed it.
+/// An estimate of the distance from a pixel to its nearest points, which few pixels exceed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Guess {
     /// The estimated distance, in cells.
@@ -56,7 +56,7 @@ impl Guess {
 /// The parameters for rendering a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plan {
-    /// The largest n for which `F_n` is needed.
+    /// Number of nearest points per pixel that the output needs.
     pub(super) depth: usize,
     pub(super) guess: Guess,
     pub(super) metric: Metric,
@@ -113,7 +113,8 @@ pub(super) struct Square {
     pub(super) cuboid: Cuboid,
     /// Whether the square is a single tile.
     pub(super) is_tile: bool,
-    /// Keys at or above this value may miss a nearer point.
+    /// Limit of reliable keys (see [`metric`](crate::metric)). A pixel whose key is at or above it may miss a nearer
+    /// point.
     pub(super) limit: f32,
     pub(super) plan: Plan,
 }

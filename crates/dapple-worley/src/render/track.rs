@@ -73,7 +73,8 @@ pub(super) struct TrackedRows<'a> {
     pub(super) low: [i32; MOST_AXES],
     pub(super) candidates: &'a [Candidate],
     pub(super) lookup: &'a Lookup,
-    /// Keys at or above this value may miss a nearer point.
+    /// Limit of reliable keys (see [`metric`](crate::metric)). A pixel whose key is at or above it may miss a nearer
+    /// point.
     pub(super) limit: f32,
 }
 
