@@ -48,7 +48,7 @@ dapple_raster::error! {
             /// The position before it.
             before: f32,
         } => "the stop at {position} follows the stop at {before}, but stops must be in order";
-        /// The callback of the caller asked to stop.
+        /// The operation was canceled by the caller's callback.
         Cancelled => "the callback asked to stop";
     }
     from {

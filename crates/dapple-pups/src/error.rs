@@ -41,7 +41,7 @@ dapple_raster::error! {
             /// The violated rule, as a sentence without a period.
             rule: &'static str,
         } => "{rule}";
-        /// Cancelled by the caller's callback.
+        /// The operation was canceled by the caller's callback.
         Cancelled => "the callback asked to stop";
     }
     from {

@@ -128,7 +128,7 @@ macro_rules! error_kind {
         pub enum $kind {
             $(#[doc = concat!("A number is outside of its ", stringify!($range), ".")]
             Range {
-                /// Name of the number.
+                /// Name of the number that is out of range.
                 what: &'static str,
                 /// Value of the number.
                 value: f64,

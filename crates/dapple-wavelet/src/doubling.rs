@@ -67,7 +67,8 @@ impl Doubling {
         fine
     }
 
-    /// Doubles columns, rounds to `f32`, then doubles rows with `along_rows`.
+    /// Doubles a raster along both axes: columns with this filter, whose results are rounded to `f32`, then rows with
+    /// `along_rows`.
     pub(crate) fn plane(&self, level: Level, along_rows: &Self, coarse: &[f32], fine: &mut [f32]) {
         let width = along_rows.coarse.len;
         let scratch = || vec![0.0; width + 2 * PAD];
@@ -76,7 +77,7 @@ impl Doubling {
         });
     }
 
-    /// Computes a fine row. `_simd` selects the SIMD level that the loops are compiled for.
+    /// Computes a row of the doubled raster. `_simd` selects the SIMD level that the loops are compiled for.
     #[inline(always)]
     fn row<S: Simd>(
         &self,

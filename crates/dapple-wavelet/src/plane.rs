@@ -94,7 +94,7 @@ impl SplineFilter {
         Ok(fine)
     }
 
-    /// Doubles a raster like [`up`](Self::up), into an existing raster. Its size is the fine size.
+    /// Doubles a raster like [`up`](Self::up), into the existing raster `fine`, whose size selects the result's size.
     ///
     /// # Errors
     ///

@@ -98,7 +98,7 @@ fn split_far(coordinate: f64) -> Option<(i64, i32)> {
     Some((floor + i64::from(carry), steps - (carry << STEP_BITS)))
 }
 
-/// Returns the first `N` components.
+/// Returns the components along the first `N` axes.
 #[inline(always)]
 pub(crate) fn first_axes<T: Copy, const N: usize>(parts: [T; MOST_AXES]) -> [T; N] {
     core::array::from_fn(|axis| parts[axis])

@@ -111,7 +111,7 @@ impl Picture<'_> {
         self.window.size[1].div_ceil(BAND_ROWS as u32) as usize
     }
 
-    /// Iterates over the bands of a view, each a list of its rows. Empty if there is no view.
+    /// Iterates over the bands of a view, as lists of rows. There are no bands if there is no view.
     pub(crate) fn bands<'v, T>(
         &self,
         view: Option<RasterViewMut<'v, T>>,

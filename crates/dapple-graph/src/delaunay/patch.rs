@@ -63,7 +63,8 @@ pub(super) struct Patch<'a> {
 }
 
 impl<'a> Patch<'a> {
-    /// Triangulates the images, of which `n_rows` have a row; `images` must contain all images in `cover`.
+    /// Triangulates the images, `n_rows` of which have a row in the graph. `images` must contain all images in
+    /// `cover`.
     pub(super) fn new(
         lattice: &'a Lattice,
         cover: Cover,

@@ -173,7 +173,7 @@ impl Bricks {
 }
 
 impl HalfPlane {
-    /// Returns the signed distance to the border, positive inside.
+    /// Returns the signed distance to the border line of the half-plane, positive inside.
     fn depth(&self, [x, y]: [f64; 2]) -> f64 {
         self.distance - (self.normal[0] * x + self.normal[1] * y)
     }

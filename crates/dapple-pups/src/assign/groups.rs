@@ -75,7 +75,7 @@ fn neighbors(graph: &Graph) -> Vec<Vec<u32>> {
     neighbors
 }
 
-/// State while groups grow. A point is free while it is not in a group.
+/// Groups under construction. A point is free until it is in a group.
 struct Growth<'a> {
     neighbors: &'a [Vec<u32>],
     /// Number of free neighbors of each free point; `None` for points in a group.

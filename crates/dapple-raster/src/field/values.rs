@@ -19,7 +19,7 @@ pub trait Change: Send + Sync {
     /// Returns the new value.
     fn change(&self, value: f32) -> f32;
 
-    /// Returns the map if it is linear.
+    /// Returns this function as a [`Linear`] map; `None` if it is another function.
     #[doc(hidden)]
     fn linear(&self) -> Option<&Linear> {
         None

@@ -54,8 +54,7 @@ impl Dominance {
         }
     }
 
-    /// Returns the maximum key for testing a point as a dominator. Compared with the point's key at the far corner of
-    /// the rectangle.
+    /// Returns the maximum key, at the far corner of the rectangle, of a point that is tested as a dominator.
     #[inline(always)]
     fn nearby(&self, metric: Metric, cuboid: &Cuboid) -> f32 {
         // The far corner is up to half of the diagonal farther away than the center.
@@ -345,7 +344,8 @@ impl FlatPoints {
         }
     }
 
-    /// Returns x, y, z and the accumulated other key terms of sixteen points, starting at index `start`.
+    /// Returns, for sixteen points starting at index `start`, x, y, z and the accumulated key terms along all other
+    /// axes.
     #[inline(always)]
     fn lanes<S: Simd>(&self, simd: S, start: usize) -> [f32x16<S>; 4] {
         let at = start..start + LANES;
