@@ -2,8 +2,8 @@
 //!
 //! A band is a block of rows of all maps. Normals, occlusion and curvature depend on the neighborhood of a pixel. They
 //! are computed from the heights of the band and of a margin around it, so that bands, regions and the whole map have
-//! the same bits. Nodes that depend on the whole tile are evaluated beforehand; without such nodes, the memory for a
-//! bake depends on its width alone.
+//! the same bits. Nodes that depend on the whole tile are evaluated beforehand. Without such nodes, the memory for a
+//! bake grows with the map's width only.
 //!
 //! The scheme is our own. `dapple-color` has the references for occlusion, curvature and normals.
 
@@ -119,18 +119,18 @@ pub struct Bake<'a> {
     plan: &'a Plan,
     whole: Whole,
     maps: Vec<MapKind>,
-    /// The samples of the tile, without those that repeat another one.
+    /// The samples of the tile; duplicates of other samples are left out.
     tile: TileSamples,
     /// The samples to bake. For samples on corners, the last column and row may be copies of the first ones.
     window: Window,
     /// Number of pixels per band, so that a band has as many samples as the options allow pixels.
     band_pixels: u32,
     supersample: Supersample,
-    /// The number of rows above and below a band that the neighborhoods of its nodes need.
+    /// Height of the margin above and below a band that the neighborhoods of the plan need, in rows of samples.
     margin: u32,
     next_row: u32,
     heights: Heights,
-    /// The heights around the first column, for its copy at the right side of the tile.
+    /// Heights around the first column of the tile, for the copy of this column at the right side.
     first_heights: Heights,
 }
 
@@ -278,7 +278,7 @@ impl Iterator for Bake<'_> {
 }
 
 impl Region {
-    /// Converts the region to a window within `whole`, the window of the tile.
+    /// Converts the region to a window. `whole` is the window of the tile. Fails if the region exceeds the tile.
     pub(crate) fn of(self, whole: &Window) -> Result<Window, RecipeError> {
         for axis in 0..2 {
             let end = u64::from(self.first[axis]) + u64::from(self.size[axis]);

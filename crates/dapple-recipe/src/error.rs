@@ -225,7 +225,7 @@ impl RecipeError {
         self
     }
 
-    /// Sets the valid word that is nearest to `written`, if one is similar enough.
+    /// Sets the suggestion: the word of `valid` that is nearest to `written`, if one is similar enough.
     pub(crate) fn meant<'a>(
         mut self,
         written: &str,
@@ -353,7 +353,7 @@ impl fmt::Display for RecipeErrorKind {
     }
 }
 
-/// Formats an error about a parameter.
+/// Formats an error of the kinds that name a parameter.
 fn of_parameter(kind: &RecipeErrorKind, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     match kind {
         RecipeErrorKind::UnknownParameter { name, option } => {

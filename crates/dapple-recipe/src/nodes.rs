@@ -130,7 +130,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// A node has a number at every position, or a color if [`build`](Self::build) returns a color step.
 pub(crate) trait NodeKind {
-    /// Returns the inputs of the node, in a fixed order.
+    /// Returns the inputs of the node, in the order of its options.
     fn inputs(&self) -> Vec<&Input> {
         Vec::new()
     }
@@ -160,8 +160,8 @@ pub(crate) trait NodeKind {
         &[]
     }
 
-    /// Returns a copy of the node with another value, one of [`outputs`](Self::outputs); `None` if there is none of
-    /// this name.
+    /// Returns a copy of the node that computes the output called `value`, one of [`outputs`](Self::outputs); `None` if
+    /// it has no such output.
     fn with_output(&self, _value: &str) -> Option<Box<dyn NodeKind>> {
         None
     }
@@ -171,7 +171,8 @@ pub(crate) trait NodeKind {
         false
     }
 
-    /// Estimates the work of building the node's step. The estimate is rather too high than too low.
+    /// Estimates the work of building the node's step. An estimate that is too high is preferred to one that is too
+    /// low.
     fn work(&self, _plan: &Builder<'_>) -> Result<Work, RecipeError> {
         Ok(Work::default())
     }
@@ -179,8 +180,8 @@ pub(crate) trait NodeKind {
     /// Builds the step of the node. The steps of its inputs must be in the plan already.
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError>;
 
-    /// Writes the node as an expression of WGSL, with the bits of the step. The plan of the recipe has been built, so
-    /// all options are valid. Refusals come before the node's inputs at the same position are read.
+    /// Writes the node as a WGSL expression, with the same bits as the step. The plan has validated all options.
+    /// Implementations must return refusals before they read inputs at the same position.
     fn shader(&self, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refusal> {
         Err(shader.no_shader())
     }

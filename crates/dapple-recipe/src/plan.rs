@@ -1,9 +1,9 @@
 //! Plans: recipes prepared for evaluation, with names resolved, seeds derived and fields built.
 //!
-//! Nodes become steps in topological order: the inputs of a step come before it. To evaluate a window or a list of
-//! positions, each step runs once for all of it. The value of a pixel depends on its position alone, except for two
-//! kinds of steps. A neighborhood depends on the pixels around it; its inputs are evaluated in a larger window. A global
-//! step depends on the whole tile; [`Plan::whole`] evaluates it beforehand, for all pixels of the tile.
+//! Nodes become steps in topological order: the inputs of a step come before it. A window or a list of positions is
+//! evaluated in a single pass over the steps. The value of a pixel depends on its position alone, except for two kinds
+//! of steps. A neighborhood depends on the pixels around it; its inputs are evaluated in a larger window. A global step
+//! depends on the whole tile; [`Plan::whole`] evaluates it beforehand, for all pixels of the tile.
 
 mod builder;
 mod cache;
@@ -128,12 +128,12 @@ pub struct Plan {
     material: Material,
     limits: PlanLimits,
     cache: Option<PlanCache>,
-    /// Parts of the steps, from which shaders are written.
+    /// Reusable parts of steps, such as control nets. Shaders are generated from them.
     parts: Parts,
     renderer: Option<Arc<dyn Renderer>>,
     watch: Watch,
     time: f64,
-    /// Names of the nodes that change with time, other than by their inputs.
+    /// Names of the nodes whose own values change with time. Nodes that change only because of an input are not listed.
     moving: Vec<String>,
     /// Each step's id in the cache; empty without a cache.
     ids: Arc<[StepId]>,
@@ -153,7 +153,7 @@ pub(crate) struct Channels {
 }
 
 impl Channels {
-    /// Returns all steps, in a fixed order.
+    /// Returns the indices of all steps, in the order of the fields.
     pub(crate) fn steps(&self) -> [usize; 8] {
         [
             self.height,
@@ -394,7 +394,7 @@ impl Plan {
         !self.moving.is_empty()
     }
 
-    /// Returns whether a node's own values are those of another time than 0.
+    /// Returns whether the plan's time is not 0 and the node itself changes with time.
     pub(crate) fn has_moved(&self, node: &str) -> bool {
         self.time != 0.0 && self.moving.iter().any(|moving| moving == node)
     }
@@ -464,7 +464,7 @@ impl Plan {
         self.names.keys().map(String::as_str)
     }
 
-    /// Returns whether a node has colors instead of numbers; false if there is no such node.
+    /// Returns whether a node's values are colors rather than scalars; false if there is no such node.
     #[must_use]
     pub fn is_color(&self, node: &str) -> bool {
         self.names
@@ -505,7 +505,7 @@ impl Plan {
     }
 
     /// Computes the values of the steps `wanted` at the pixels of a window, in the order of `wanted`. Runs on all cores
-    /// if the feature `rayon` is on, and nodes of the renderer run there. `known` holds the values of steps that the
+    /// if the feature `rayon` is on. Nodes that the renderer supports are passed to it. `known` holds values that the
     /// caller has computed already.
     pub(crate) fn values(
         &self,
@@ -534,7 +534,7 @@ impl Plan {
         }
     }
 
-    /// Computes the values of steps through the cache: reads stored values, and stores new ones.
+    /// Computes the values of steps; reads stored values from the cache, and stores new ones in it.
     fn values_with(
         &self,
         cache: &PlanCache,
@@ -581,8 +581,8 @@ impl Plan {
         Ok(values)
     }
 
-    /// Returns the steps that both `wanted` and the height depend on. Callers that store the values of these steps need
-    /// not evaluate their inputs again.
+    /// Returns the steps that both `wanted` and the height depend on. Callers store the values of these steps to avoid
+    /// computing them twice.
     pub(crate) fn shared_with_height(&self, wanted: &[usize]) -> Vec<usize> {
         let [of_height, wanted] =
             [&[self.channels.height][..], wanted].map(|steps| self.own_steps(steps));
@@ -598,13 +598,14 @@ impl Plan {
         self.wrap.map(|repeats| ends && !repeats)
     }
 
-    /// Returns the number of rows above and below a window of these pixels that the neighborhoods of the material need.
+    /// Returns the height of the margin above and below a window that the neighborhoods of the material need, in rows
+    /// of the window's pixel size.
     pub(crate) fn margin_rows(&self, window: &Window) -> Result<u32, RecipeError> {
         neighborhood::margin(&self.steps, window, &self.channels.steps()).map(|margin| margin[1])
     }
 
-    /// Returns the steps whose values neighborhoods read around a window, and the margin in which they need them. Callers
-    /// that store these values need not evaluate rows of the margin again.
+    /// Returns the steps whose values neighborhoods read around a window, and the margin in which they are needed.
+    /// Callers store these values to avoid computing the rows of the margin again.
     pub(crate) fn sources(
         &self,
         window: &Window,
@@ -644,9 +645,9 @@ pub(crate) const EXTENT: Range = range!(above 0 to 1e6);
 /// The allowed range of the relief. It is far larger than textures need, and small enough that slopes and their squares
 /// stay finite.
 pub(crate) const RELIEF: Range = range!(from -1e6 to 1e6);
-/// The allowed range of the factor of the emitted light.
+/// Allowed range of the emission strength.
 pub(crate) const EMISSION: Range = range!(from 0 to 1e6);
-/// The allowed range of the cut-off of the opacity and of the roughness of the clear coat.
+/// Allowed range of the opacity cutoff, and of the roughness of the clear coat.
 pub(crate) const UNIT: Range = range!(from 0 to 1);
 
 /// Adds the steps that the material reads, after the steps of all nodes.

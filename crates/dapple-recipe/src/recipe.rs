@@ -184,8 +184,7 @@ impl Material {
 }
 
 impl Recipe {
-    /// Creates a recipe with a single node, called `name`, as the material's height. It is for commands that render a
-    /// single field.
+    /// Creates a recipe whose height is a single node, called `name`. It is for commands that render one field.
     #[must_use]
     pub fn of_node(name: &str, node: Node, seed: Seed) -> Self {
         Self {

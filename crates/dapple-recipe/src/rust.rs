@@ -27,7 +27,7 @@ impl Recipe {
     }
 }
 
-/// The source of the program, up to the text of the recipe.
+/// Source of the generated program, up to the recipe's text.
 const PROGRAM: &str = "
 use dapple::image::{Depth, write_color_png, write_gray_png, write_normal_png};
 use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe, RecipeError};

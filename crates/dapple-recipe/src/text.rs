@@ -66,7 +66,8 @@ impl Recipe {
             .map_err(|Fault { error, refusal }| error.at(refusal.place_in_json(text)))
     }
 
-    /// Reads a recipe from a parsed text. Parameters that are not used are dropped if `drops_unused`, and errors otherwise.
+    /// Creates a recipe from parsed text. Unused parameters are dropped if `drops_unused`; otherwise, they are an
+    /// error.
     fn from_content(mut content: Content, drops_unused: bool) -> Result<Self, Fault> {
         check_version(&content)
             .map_err(|error| Fault::of(error, &[Part::Key("dapple".to_owned())]))?;
@@ -89,14 +90,14 @@ impl Recipe {
         Ok(recipe)
     }
 
-    /// Returns the recipe as a parsed text, with the values of parameters.
+    /// Serializes the recipe, with references to parameters replaced by values.
     fn without_parameters(&self) -> Result<Content, RecipeError> {
         let text = serde_json::to_string(data(self));
         let content = text.and_then(|text| serde_json::from_str(&text));
         content.map_err(|error| text_error(&error.to_string()))
     }
 
-    /// Returns the recipe as a parsed text.
+    /// Serializes the recipe, with its parameters.
     fn to_content(&self) -> Result<Content, RecipeError> {
         let mut content = self.without_parameters()?;
         self.parameters.restore(&mut content);
@@ -141,7 +142,7 @@ pub(crate) fn is_data(node: &Node) -> bool {
     serde_json::to_string_pretty(data(node)).is_ok()
 }
 
-/// Removes the byte order mark of a text. Fails if the text has more than [`MAX_TEXT`] bytes.
+/// Returns the text without its byte order mark. Fails if the text has more than [`MAX_TEXT`] bytes.
 fn decoded(text: &str) -> Result<&str, RecipeError> {
     if text.len() > MAX_TEXT {
         return Err(RecipeError::new(RecipeErrorKind::Count {
@@ -200,8 +201,8 @@ pub fn read_options<T: serde::de::DeserializeOwned>(value: &Value) -> Result<T, 
     T::deserialize(&content).map_err(|refusal| text_error(&refusal.message))
 }
 
-/// Returns an error if the recipe has another schema version. This is checked first, because other errors may follow
-/// from it.
+/// Returns an error if the recipe's schema version is not [`SCHEMA`]. This check comes first, because a wrong version
+/// causes other errors.
 fn check_version(content: &Content) -> Result<(), RecipeError> {
     let version = match content.get("dapple") {
         Some(Content::Signed(version)) => u32::try_from(*version),
@@ -230,7 +231,7 @@ fn text_error(message: &str) -> RecipeError {
     }
 }
 
-/// Rewrites a parser's message in the terms of TOML and JSON, without names of Rust types and of serde.
+/// Rewrites a parser's message with the words of TOML and JSON, without the names of Rust types and of serde.
 fn plain(message: &str) -> String {
     if let Some(name) = message.strip_prefix("missing field ") {
         return format!("{name} is missing");

@@ -1,4 +1,4 @@
-//! Stores the values of nodes at many positions.
+//! Values of nodes at many positions.
 
 use crate::{RecipeError, RecipeErrorKind};
 use dapple_color::LinearRgb;
@@ -65,7 +65,7 @@ impl Values {
         }
     }
 
-    /// Returns the values at a range of the positions.
+    /// Returns the values at a range of positions, given as indices.
     pub(crate) fn part(&self, range: Range<usize>) -> Self {
         match self {
             Self::Numbers(numbers) => Self::Numbers(numbers[range].to_vec()),
@@ -73,7 +73,7 @@ impl Values {
         }
     }
 
-    /// Concatenates the values at several ranges of the positions.
+    /// Returns the values at several ranges of positions, concatenated.
     pub(crate) fn parts(&self, ranges: impl Iterator<Item = Range<usize>>) -> Self {
         fn join<T: Copy>(values: &[T], ranges: impl Iterator<Item = Range<usize>>) -> Vec<T> {
             let mut joined = Vec::new();
@@ -88,7 +88,7 @@ impl Values {
         }
     }
 
-    /// Applies a filter to numbers, or to colors as arrays.
+    /// Applies a filter to the numbers, or to the colors as arrays of red, green and blue.
     pub(crate) fn filtered(
         &self,
         numbers: impl FnOnce(&[f32]) -> Vec<f32>,
@@ -103,7 +103,7 @@ impl Values {
         }
     }
 
-    /// Applies a function to the numbers, or separately to the three channels of the colors.
+    /// Applies a function to the numbers, or separately to each of the three color channels.
     pub(crate) fn each_channel(&self, change: impl Fn(&[f32]) -> Vec<f32>) -> Self {
         let colors = match self {
             Self::Numbers(numbers) => return Self::Numbers(change(numbers)),
@@ -177,7 +177,7 @@ impl Values {
         Raster::from_vec(size, self.clone().into_grays())
     }
 
-    /// Converts the inputs to maps of `size` columns and rows. All of them are in color if any input is.
+    /// Converts the inputs to images of `size` columns and rows. All images are in color if any input is.
     pub(crate) fn maps(inputs: &[&Self], size: [u32; 2]) -> Result<Vec<Map>, RasterError> {
         let as_colors = Self::has_colors(inputs);
         let map = |values: &&Self| {
@@ -191,7 +191,7 @@ impl Values {
         inputs.iter().map(map).collect()
     }
 
-    /// Converts the first map of a result to values. Fails if it is a map of normals, or if there is no map.
+    /// Returns the first image of a result as values. Fails if the list is empty or the image has normals.
     pub(crate) fn of_map(maps: Vec<Map>) -> Result<Self, RecipeError> {
         match maps.into_iter().next() {
             Some(Map::Value(raster)) => Ok(Self::Numbers(raster.into_pixels())),

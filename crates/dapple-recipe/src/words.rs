@@ -1,6 +1,6 @@
 //! Suggests valid words for misspelled ones.
 
-/// Minimum similarity of two words, from 0 to 1, at which one may be a misspelling of the other.
+/// Minimum similarity, from 0 to 1, at which a word is suggested for another one.
 const ALIKE: f64 = 0.6;
 
 /// Returns the valid words that are similar to a misspelled one, most similar first.

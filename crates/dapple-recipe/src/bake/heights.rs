@@ -1,4 +1,5 @@
-//! Computes the heights of a band with its margin, and the values that other maps share with the height.
+//! Computes the heights of a band and its margin, and the values of plan steps that both the height and other maps
+//! read.
 
 use super::maps::{NORMAL_HALO, beside_height, curvature_options, maps, occlusion_options};
 use super::supersample::Supersample;
@@ -17,28 +18,28 @@ const SHARED_PIXELS: usize = 1 << 23;
 /// Computes the heights of bands. Rows that two bands share are computed once.
 #[derive(Clone, Debug)]
 pub(super) struct Heights {
-    /// Whether any map needs heights.
+    /// Whether any baked map is the height or is computed from it.
     wanted: bool,
-    /// The largest halo of all maps, in columns and rows. The halo is how far a pixel's value depends on its neighbors,
-    /// in pixels.
+    /// Halo of the heights, in columns and rows of pixels: the maximum distance at which a map reads them around a
+    /// pixel.
     halo: [u32; 2],
     /// For each axis along which heights are extrapolated past the sides of the tile, the first pixel of the tile and
-    /// the pixel after its last one.
+    /// the pixel after its last one; `None` for other axes.
     sides: [Option<[i64; 2]>; 2],
-    /// The steps that both the height and other maps depend on.
+    /// Indices of the plan steps that both the height and other maps depend on.
     shared: Vec<usize>,
-    /// The lowest rows of the previous band, which the margin of the next band reuses.
+    /// The bottom rows of the previous band, with the steps that it computed, for the margin of the next band.
     last: Option<Rows>,
-    /// The steps that neighborhoods read, such as the input of a blur.
+    /// Indices of the plan steps whose values neighborhoods read, such as the input of a blur.
     sources: Vec<usize>,
-    /// How far beyond a band the sources are needed, in columns and rows of samples.
+    /// Margin around a band in which the values of `sources` are needed, in columns and rows of samples.
     reach: [u32; 2],
     supersample: Supersample,
-    /// The lowest rows of the sources of the previous band.
+    /// The bottom rows of the previous band, with the values of `sources`.
     last_sources: Option<Rows>,
 }
 
-/// The values of several steps at the pixels of a window.
+/// The values of several plan steps at the samples of a window, one entry of `values` per step.
 #[derive(Clone, Debug)]
 struct Rows {
     window: Window,
@@ -49,9 +50,9 @@ struct Rows {
 pub(super) struct Margined {
     pub(super) raster: Option<Raster<f32>>,
     pub(super) halo: [u32; 2],
-    /// The values of shared steps in the band and a margin.
+    /// The values of shared plan steps, with their window: the band and its margin.
     pub(super) shared: Box<Known>,
-    /// Samples of the pixels of maps that are not computed from the heights.
+    /// Supersampling of the maps that are not computed from the heights.
     pub(super) supersample: Supersample,
 }
 
@@ -163,8 +164,9 @@ impl Heights {
         })
     }
 
-    /// Computes the values that the neighborhoods of a band read, whose samples are `band`. Reuses rows that it shares with
-    /// the previous band. Returns nothing if they would take too much memory; neighborhoods then compute them themselves.
+    /// Computes the values that the neighborhoods of a band read. `band` is a window of samples. Reuses rows shared
+    /// with the previous band. Returns an empty list if the values would take too much memory; each neighborhood then
+    /// computes its inputs itself.
     fn sources(
         &mut self,
         plan: &Plan,
@@ -186,7 +188,7 @@ impl Heights {
 }
 
 impl Rows {
-    /// Creates an empty set of rows that starts at the top of `window`.
+    /// Creates a set without rows. Its window starts at the top of `window` and has the same width.
     fn none(window: &Window) -> Self {
         let [width, _] = window.size;
         Self {
@@ -198,21 +200,23 @@ impl Rows {
         }
     }
 
-    /// Returns the first rows of `window`, if `last` has them; otherwise none. `steps` are those of the values.
+    /// Returns the stored rows of `last` if they are the first rows of `window` and hold values of `steps`; otherwise
+    /// an empty set.
     fn from(last: Option<Self>, window: &Window, steps: &[usize]) -> Self {
         last.filter(|last| last.values.len() == steps.len())
             .and_then(|last| last.rows_from(window.first[1]))
             .unwrap_or_else(|| Self::none(window))
     }
 
-    /// Returns the rows that the band below `band` needs again with a margin; `None` without a margin.
+    /// Returns the rows that the next band, below `band`, reads again: `margin` rows above its top. `None` if there is
+    /// no margin.
     fn for_next(&self, band: &Window, margin: u32) -> Option<Self> {
         let next = band.first[1].saturating_add(band.size[1].into());
         let rows = (margin > 0).then(|| self.rows_from(next.saturating_sub(margin.into())));
         rows.flatten()
     }
 
-    /// Returns the rows starting at the row `first`; `None` if that row is not stored.
+    /// Returns the rows from `first` to the last one; `None` if row `first` is not stored.
     fn rows_from(&self, first: i64) -> Option<Self> {
         let [width, rows] = self.window.size;
         let above = u32::try_from(first.checked_sub(self.window.first[1])?).ok()?;
@@ -232,7 +236,7 @@ impl Rows {
         })
     }
 
-    /// Appends the remaining rows of the window, and computes their values.
+    /// Computes the values of `steps` in the remaining rows of the window, and appends them.
     fn complete(
         &mut self,
         plan: &Plan,

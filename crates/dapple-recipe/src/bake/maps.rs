@@ -110,7 +110,7 @@ impl MapKind {
 }
 
 impl Side {
-    /// Appends a raster at this side of another one. Both have the same width for `Below`, and the same height for
+    /// Appends a raster at this side of `other`. Both must have the same width for `Below`, and the same height for
     /// `Right`.
     fn join<T: Copy>(self, raster: Raster<T>, other: &Raster<T>) -> Result<Raster<T>, RasterError> {
         let [width, height] = raster.size();
@@ -154,7 +154,7 @@ impl MapRows {
         }
     }
 
-    /// Returns the mip levels of a whole map, as [`mip_levels`](dapple_color::TextureRaster::mip_levels).
+    /// Returns the mip levels of an entire map, as in [`mip_levels`](dapple_color::TextureRaster::mip_levels).
     ///
     /// # Errors
     ///
@@ -174,7 +174,7 @@ impl MapRows {
         }
     }
 
-    /// Appends `other`, a part of the same map, at `side`.
+    /// Appends `other`, a piece of the same map, at `side`.
     pub(super) fn joined(self, other: Self, side: Side) -> Result<Self, RecipeError> {
         Ok(match (self, other) {
             (Self::Gray(map), Self::Gray(other)) => Self::Gray(side.join(map, &other)?),
@@ -186,7 +186,7 @@ impl MapRows {
         })
     }
 
-    /// Extends `range`, a minimum and a maximum, to include the finite numbers of these rows.
+    /// Returns `range`, a minimum and a maximum, extended to include the finite values of these rows.
     #[must_use]
     pub fn range(&self, range: [f32; 2]) -> [f32; 2] {
         fn widened(range: [f32; 2], numbers: impl Iterator<Item = f32>) -> [f32; 2] {
@@ -217,8 +217,8 @@ impl MapRows {
 /// Halo of normals. A pixel's normal depends on one column and one row at each side.
 pub(super) const NORMAL_HALO: [u32; 2] = [1; 2];
 
-/// Returns the scale of a plan's heights. `extent` is the width and height of all pixels of the tile, in units of the
-/// plane. The wrap has no effect, because the margin covers all pixels that are read.
+/// Returns the scale of a plan's heights: its relief, and `extent`, the width and height of the tile's pixels in units
+/// of the plane. The axes are clamped; wrapping is not needed, because the margin covers all pixels that are read.
 fn height_plane(plan: &Plan, extent: DVec2) -> HeightPlane {
     HeightPlane {
         strength: plan.material().relief,
@@ -272,7 +272,7 @@ pub(super) fn curvature_options(
     })
 }
 
-/// Returns the steps of the maps that are not computed from the height, in the order of the maps.
+/// Returns the plan steps of the maps that are not computed from the height, in the order of `kinds`.
 pub(super) fn beside_height(plan: &Plan, kinds: &[MapKind]) -> Vec<usize> {
     let channels = plan.channels();
     let of_kind = |kind: &MapKind| match kind {
@@ -289,7 +289,7 @@ pub(super) fn beside_height(plan: &Plan, kinds: &[MapKind]) -> Vec<usize> {
     kinds.iter().flat_map(of_kind).collect()
 }
 
-/// Computes the maps of a band from its heights.
+/// Computes the maps of a band from its heights and the other steps of the plan.
 pub(super) fn maps(
     plan: &Plan,
     whole: &Whole,
@@ -357,14 +357,14 @@ fn pack(
     Ok(two.zip_map(blue, |&[red, green], &blue| [red, green, blue])?)
 }
 
-/// Computes those maps of a band that depend on the neighborhood of each pixel.
+/// Computes the maps of a band that depend on the neighborhood of each pixel, such as normals.
 struct Around<'a> {
     plan: &'a Plan,
     watch: &'a Watch,
     tile: &'a TileSamples,
     size: [u32; 2],
     heights: &'a Margined,
-    /// The occlusion; `None` if no map shows it.
+    /// Ambient occlusion, computed once for all maps that contain it; `None` if there is no such map.
     occlusion: Option<Raster<f32>>,
 }
 
@@ -383,7 +383,8 @@ impl Around<'_> {
         self.within([0; 2])
     }
 
-    /// Returns the heights with a margin of `margin` columns and rows at each side; at most the halo of all maps.
+    /// Returns the heights of the band with a margin of `margin` columns and rows at each side. `margin` is at most the
+    /// halo of all maps.
     fn within(&self, margin: [u32; 2]) -> Result<Raster<f32>, RecipeError> {
         let first = [0, 1].map(|axis| self.heights.halo[axis] - margin[axis]);
         let size = [0, 1].map(|axis| self.size[axis] + 2 * margin[axis]);

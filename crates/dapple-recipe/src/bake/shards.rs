@@ -133,7 +133,7 @@ impl Shards {
         (0..shards.len()).map_while(move |index| shards.get(index))
     }
 
-    /// Returns the shard at `place`, a column and row of the grid.
+    /// Returns the shard at `place`, a column and row of the grid of shards.
     fn at(&self, place: [u64; 2]) -> Region {
         // Positions within the map fit in 32 bits.
         let steps = self.steps();

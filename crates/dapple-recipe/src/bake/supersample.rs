@@ -1,7 +1,7 @@
 //! Supersampling: evaluates several samples per pixel along each axis, and averages them.
 //!
-//! The samples of a pixel are the centers of a grid of equal parts of it, a box filter. They are derived from the whole
-//! numbers of the pixel, so that windows are crops.
+//! The pixel is divided into a grid of equal cells, and the samples are the cell centers; their mean is a box filter.
+//! Sample positions are computed from integer pixel coordinates, so a window has the same bits as a crop.
 
 use crate::plan::TileSamples;
 use crate::{RecipeError, Values};
@@ -16,7 +16,8 @@ const SUPERSAMPLE: Range = range!(from 1 to 16);
 pub(super) struct Supersample(u32);
 
 impl Supersample {
-    /// Creates the number for maps of `size` columns and rows.
+    /// Creates a supersampling with `per_axis` samples along each axis, for maps of `size` columns and rows. Fails if
+    /// `per_axis` is out of range, or a side would have too many samples.
     pub(super) fn new(per_axis: u32, size: [u32; 2]) -> Result<Self, RecipeError> {
         RecipeError::check_in(
             SUPERSAMPLE,
@@ -40,12 +41,12 @@ impl Supersample {
         self.0
     }
 
-    /// Converts numbers of pixels along the axes to numbers of samples.
+    /// Converts a size in pixels to a size in samples.
     pub(super) fn samples(self, pixels: [u32; 2]) -> [u32; 2] {
         pixels.map(|pixels| pixels.saturating_mul(self.0))
     }
 
-    /// Returns the samples of the pixels of a window.
+    /// Returns the window of samples that covers a window of pixels.
     pub(super) fn window(self, window: &Window) -> Window {
         if self.0 == 1 {
             return *window;
@@ -60,7 +61,7 @@ impl Supersample {
         }
     }
 
-    /// Returns the samples of a tile.
+    /// Returns the samples of a tile, given its pixels.
     pub(super) fn tile(self, tile: &TileSamples) -> TileSamples {
         TileSamples {
             window: self.window(&tile.window),
@@ -68,7 +69,7 @@ impl Supersample {
         }
     }
 
-    /// Averages the samples of each pixel. `width` is the number of pixels in a row.
+    /// Returns the mean of the samples of each pixel. `width` is the number of pixels in a row.
     pub(super) fn average(self, values: Values, width: u32) -> Values {
         if self.0 == 1 {
             return values;
@@ -85,8 +86,8 @@ impl Supersample {
         }
     }
 
-    /// Averages the channels of samples, row by row. Sums are in double precision, so that the mean of equal numbers is
-    /// this number.
+    /// Returns the mean of each channel over the samples of a pixel, row by row. Sums are in double precision, so that
+    /// the mean of equal numbers is this number.
     fn means<T: Sync, const N: usize>(
         self,
         samples: &[T],

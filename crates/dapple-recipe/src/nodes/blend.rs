@@ -119,7 +119,8 @@ impl NodeKind for Blended {
 }
 
 impl Blended {
-    /// Writes the shares of the layers, by their weights, and their heights and the mask if the weighting needs them.
+    /// Writes WGSL for the blend weight of each layer, normalized to a sum of 1. Depending on the weighting, they are
+    /// computed from the layers' weights, their heights and the mask.
     fn shares_code(&self, shader: &mut NodeShader<'_, '_>) -> Result<Vec<String>, Refusal> {
         let weights = self.layers.iter().map(|layer| shader.number(&layer.weight));
         let weights = weights.collect::<Result<Vec<_>, _>>()?;
@@ -166,7 +167,7 @@ impl Blended {
     }
 }
 
-/// Writes the sum of weights up to each of them.
+/// Writes WGSL for the running sums of `weights`, and returns the name of each sum.
 fn sums_code(shader: &mut NodeShader<'_, '_>, weights: &[String]) -> Vec<String> {
     let mut sum = double_value(0.0);
     let mut sums = Vec::new();
@@ -177,7 +178,7 @@ fn sums_code(shader: &mut NodeShader<'_, '_>, weights: &[String]) -> Vec<String>
     sums
 }
 
-/// Writes weights divided by their sum.
+/// Writes WGSL for `weights` divided by their sum, and returns the names.
 fn normalized_code(shader: &mut NodeShader<'_, '_>, weights: &[String]) -> Vec<String> {
     let sum = sums_code(shader, weights).pop().unwrap_or_default();
     let shares = weights.iter();
@@ -185,7 +186,8 @@ fn normalized_code(shader: &mut NodeShader<'_, '_>, weights: &[String]) -> Vec<S
     shares.map(|share| shader.name("share", share)).collect()
 }
 
-/// Writes the shares of layers between thresholds of a mask.
+/// Writes WGSL for the blend weights of layers that a mask selects. Each layer covers an interval of mask values as
+/// long as its weight; `half_width` is half the width of the transition between layers.
 fn masked_code(
     shader: &mut NodeShader<'_, '_>,
     weights: &[String],
@@ -218,7 +220,7 @@ struct Layers {
 }
 
 impl Layers {
-    /// Blends `inputs`, which are images of `size` columns and rows.
+    /// Blends the layers. `inputs` are images of `size` columns and rows.
     fn blend(
         &self,
         inputs: &[&Values],

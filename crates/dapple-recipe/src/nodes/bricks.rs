@@ -119,7 +119,7 @@ impl NodeKind for BricksNode {
 }
 
 impl BricksNode {
-    /// Returns the options with a period.
+    /// Returns the pattern options with these periods, in bricks along each axis.
     fn options(&self, period: [Option<u32>; 2]) -> BrickOptions {
         BrickOptions {
             frequency: self.frequency.0,

@@ -1,4 +1,4 @@
-//! Corner tiles: pieces of several textures in random order.
+//! Corner tiles: tiles cut from several textures, placed in random order.
 
 use super::disturb::check_copies;
 use super::{NodeKind, NodeSeed};

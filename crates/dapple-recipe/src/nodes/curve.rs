@@ -2,8 +2,8 @@
 //!
 //! Monotone cubic Hermite splines of F. N. Fritsch and J. Butland, "A Method for Constructing Local Monotone Piecewise
 //! Cubic Interpolants", SIAM Journal on Scientific and Statistical Computing 5(2), 1984,
-//! <https://doi.org/10.1137/0905021>, with weights of both intervals' widths. The slope at an end
-//! is that of the line to the next point.
+//! <https://doi.org/10.1137/0905021>, with the variant that weights slopes by the widths of both intervals. The slope
+//! at an end point is the slope of the line to its neighbor.
 
 use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};
@@ -71,7 +71,7 @@ impl NodeKind for SplineCurve {
     }
 }
 
-/// Points of a spline with the slopes at them.
+/// Control points of a spline and the slope at each.
 struct Spline {
     points: Vec<[f64; 2]>,
     slopes: Vec<f64>,
@@ -119,8 +119,8 @@ impl Spline {
         Ok(Self { points, slopes })
     }
 
-    /// Returns the part that ends at a point: the first input and value, the width, the last value, and the slopes at
-    /// both ends times the width.
+    /// Returns the cubic between point `after - 1` and point `after`: x and y of the first point, the distance in x, y
+    /// of the second point, and the slopes at both points times that distance.
     fn part(&self, after: usize) -> [f64; 6] {
         let [[x0, y0], [x1, y1]] = [self.points[after - 1], self.points[after]];
         let width = x1 - x0;
@@ -128,7 +128,7 @@ impl Spline {
         [x0, y0, width, y1, from, to]
     }
 
-    /// Returns the value of the curve.
+    /// Returns the value of the curve at `x`. Beyond the first and last points, the curve is constant.
     fn at(&self, x: f64) -> f64 {
         let after = self.points.partition_point(|&[at, _]| at <= x);
         let Some(before) = after.checked_sub(1) else {

@@ -41,7 +41,7 @@ impl NodeKind for Distance {
     }
 }
 
-/// Returns a center; the middle of the tile unless one is given.
+/// Returns `center`; the middle of the tile if it is not set.
 pub(super) fn center(
     plan: &Builder<'_>,
     center: Option<[f64; 2]>,
@@ -53,7 +53,8 @@ pub(super) fn center(
     Ok(center)
 }
 
-/// Returns the vector to a position from the nearest copy of a center.
+/// Returns the offset of `position` from the nearest copy of `center`. Copies repeat along the axes on which the tile
+/// repeats.
 pub(super) fn offset(position: [f64; 2], center: [f64; 2], tile: &Domain) -> [f64; 2] {
     [0, 1].map(|axis| {
         let offset = position[axis] - center[axis];
@@ -65,7 +66,7 @@ pub(super) fn offset(position: [f64; 2], center: [f64; 2], tile: &Domain) -> [f6
     })
 }
 
-/// Writes the vector to the position from the nearest copy of a center, in numbers of 64 bits.
+/// Writes WGSL for the x and y of the offset from the nearest copy of a center to the position, as 64-bit floats.
 pub(super) fn offset_code(
     shader: &mut NodeShader<'_, '_>,
     center: Option<[f64; 2]>,

@@ -1,4 +1,4 @@
-//! Fills the tile with copies of a texture that differ inside.
+//! Fills the tile with copies of a texture whose interiors differ.
 
 use super::{NodeKind, NodeSeed, inputs};
 use crate::plan::{Builder, Step};

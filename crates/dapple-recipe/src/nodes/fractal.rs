@@ -85,7 +85,7 @@ impl NodeKind for FractalOf {
     }
 }
 
-/// Writes a fractal sum. `octave` writes the value of an octave at a position.
+/// Writes WGSL for a fractal sum. `octave` is a callback that writes the value of one octave, given its position.
 pub(crate) fn sum_code<'a, T>(
     shader: &mut NodeShader<'_, 'a>,
     shape: FractalShape,
@@ -103,7 +103,7 @@ pub(crate) fn sum_code<'a, T>(
     Ok(sum)
 }
 
-/// Writes the function of a fractal sum that is applied to the value of an octave.
+/// Writes WGSL for the shaping of an octave, such as the absolute value for turbulence.
 fn shaped_code(shape: FractalShape, value: String) -> Result<String, Refusal> {
     Ok(match shape {
         FractalShape::Sum => value,

@@ -89,7 +89,7 @@ impl NodeKind for GaborNode {
 }
 
 impl GaborNode {
-    /// Returns the options with a period.
+    /// Returns the noise options with these periods, in cells along each axis.
     fn options(&self, period: [Option<u32>; 2]) -> GaborOptions {
         GaborOptions {
             period,

@@ -82,7 +82,7 @@ impl NodeKind for HslChange {
     }
 }
 
-/// Writes the sRGB components of a color.
+/// Writes WGSL for the sRGB components of a color, each from 0 to 1.
 pub(super) fn components_code(
     shader: &mut NodeShader<'_, '_>,
     color: &Input,
@@ -95,7 +95,7 @@ pub(super) fn components_code(
     Ok(shader.name("rgb", components))
 }
 
-/// Adds turns to the hue, and multiplies the saturation and the lightness.
+/// Adds `change[0]` turns to the hue, and multiplies the saturation by `change[1]` and the lightness by `change[2]`.
 fn changed_color(color: LinearRgb, change: [f32; 3]) -> LinearRgb {
     if change == [0.0, 1.0, 1.0] {
         return color;
@@ -122,17 +122,17 @@ fn changed_color(color: LinearRgb, change: [f32; 3]) -> LinearRgb {
     LinearRgb::from_srgb([code(0.0), code(-1.0 / 3.0), code(-2.0 / 3.0)])
 }
 
-/// Returns the sRGB components of a color, from 0 to 1, in 16 bits.
+/// Returns the sRGB components of a color, from 0 to 1 and quantized to 16 bits.
 pub(super) fn encoded(color: LinearRgb) -> [f32; 3] {
     color.to_srgb::<u16>().map(|code| f32::from(code) / 65535.0)
 }
 
-/// Returns the smallest and the largest component.
+/// Returns the minimum and maximum of the components.
 pub(super) fn ends([r, g, b]: [f32; 3]) -> [f32; 2] {
     [r.min(g).min(b), r.max(g).max(b)]
 }
 
-/// Returns the hue in turns, from 0 to below 1; 0 for a gray.
+/// Returns the hue in turns, from 0 to below 1; 0 for grays.
 pub(super) fn hue([r, g, b]: [f32; 3]) -> f32 {
     let [low, high] = ends([r, g, b]);
     let chroma = high - low;

@@ -1,4 +1,4 @@
-//! Shows a sector of a node all around a center, as a kaleidoscope does.
+//! Kaleidoscope: repeats a sector of a node around a center, mirrored at its middle.
 
 use super::{NodeKind, distance, inputs};
 use crate::plan::{Builder, Step};
@@ -85,7 +85,7 @@ impl NodeKind for Kaleidoscope {
 }
 
 impl Kaleidoscope {
-    /// Returns the sine and the cosine of the direction of the middle of each sector.
+    /// Returns the sine and cosine of each sector's middle direction.
     fn middles(&self) -> Vec<(f64, f64)> {
         let sectors = f64::from(self.sectors);
         let angles = (0..self.sectors).map(|sector| TAU * f64::from(sector) / sectors);

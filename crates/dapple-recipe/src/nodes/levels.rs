@@ -91,7 +91,7 @@ impl NodeKind for Levels {
 }
 
 impl LevelsCurve {
-    /// Maps `t`, a fraction of the range `from`, to a fraction of the range `to`.
+    /// Maps `t`, a fraction of the range `from`, to a fraction of the range `to`, by this curve.
     fn at(self, t: f32) -> f32 {
         match self {
             Self::Unclamped => t,

@@ -140,7 +140,7 @@ impl NodeKind for FractalNode {
 }
 
 impl FractalNode {
-    /// Converts the node's options to those of PUPs noise.
+    /// Returns the node's options as options of PUPs noise.
     fn pups(&self, plan: &Builder<'_>) -> OctavesOptions {
         OctavesOptions {
             domain: plan.domain(),
@@ -156,8 +156,8 @@ impl FractalNode {
         }
     }
 
-    /// Returns the octave weights, scaled so that the sum has a standard deviation of 1/6. `variance` is that of the
-    /// noise of one octave.
+    /// Returns the octave weights, scaled so that the sum of octaves has a standard deviation of 1/6. `variance` is the
+    /// variance of a single octave.
     #[doc(hidden)]
     #[must_use]
     pub fn weights(&self, variance: f64) -> Vec<f32> {
@@ -172,7 +172,7 @@ impl FractalNode {
     }
 }
 
-/// Writes gradient noise at a position in cells.
+/// Writes WGSL for gradient noise at a position in cells.
 pub(crate) fn gradient_code(
     shader: &mut NodeShader<'_, '_>,
     noise: &GradientNoise2,
@@ -195,12 +195,12 @@ pub(crate) fn gradient_code(
     ))
 }
 
-/// Adds ½ to a value, and clamps the result to 0 to 1.
+/// Returns `0.5 + value`, clamped to 0 to 1.
 pub(super) fn about_half(value: f32) -> f32 {
     (0.5 + value).clamp(0.0, 1.0)
 }
 
-/// Writes [`about_half`].
+/// Writes WGSL for [`about_half`].
 pub(super) fn about_half_code(value: &str) -> String {
     format!("number_clamp(number_add(0.5, {value}, zero), 0.0, 1.0, zero)")
 }

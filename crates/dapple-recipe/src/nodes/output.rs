@@ -1,4 +1,5 @@
-//! Further values of nodes that compute several, such as the height and the random number of a brick.
+//! Secondary outputs of nodes that compute several values, such as the random number of a brick in addition to its
+//! height.
 
 use super::{KINDS, NEW_NODES, Node, NodeKind, inputs};
 use crate::plan::{Builder, Step, Work};
@@ -53,7 +54,7 @@ impl NodeKind for Output {
 }
 
 impl Output {
-    /// Returns a copy of the node with this output's value.
+    /// Returns a copy of the node whose value is this output.
     fn node(&self, node: &Node) -> Result<Box<dyn NodeKind>, RecipeError> {
         let kind = node.kind();
         kind.with_output(&self.value).ok_or_else(|| {

@@ -42,7 +42,7 @@ pub(crate) trait Texture {
         None
     }
 
-    /// Returns whether the texture has colors instead of numbers.
+    /// Returns whether the texture's values are colors rather than scalars.
     fn is_color(&self) -> bool;
 
     /// Returns the estimated number of control points of the texture on a tile.
@@ -90,7 +90,7 @@ impl<T: PupsRecipe<ReferenceImage>> Texture for Referenced<T> {
     }
 }
 
-/// Completes a texture's options with a plan's tile, reusable parts, progress callback and, if the points move, time.
+/// Returns a texture's options with the plan's tile, reusable parts, progress callback and, if the points move, time.
 fn now<T: PupsRecipe<Image>, Image>(options: &T, plan: &Builder<'_>) -> T {
     let mut options = placed(options, plan.domain());
     let net = options.net_mut();
@@ -114,7 +114,7 @@ fn placed<T: PupsRecipe<Image>, Image>(options: &T, tile: Domain) -> T {
     options
 }
 
-/// Returns an error if the options set a domain.
+/// Returns an error if the options set a domain, which is always the recipe's tile.
 fn check_domain<T: PupsRecipe<Image>, Image>(options: &T) -> Result<(), RecipeError> {
     if options.clone().domain_mut() == T::default().domain_mut() {
         return Ok(());
@@ -161,7 +161,7 @@ macro_rules! node {
 dapple_pups::recipes!(node);
 
 impl PupsNode {
-    /// Returns whether the texture has colors instead of numbers.
+    /// Returns whether the texture's values are colors rather than scalars.
     #[must_use]
     pub fn is_color(&self) -> bool {
         self.texture().is_color()
@@ -272,7 +272,7 @@ impl NodeKind for PupsNode {
     }
 }
 
-/// Writes a texture, and adds its control points to the data of the shader.
+/// Writes WGSL for a PUPs texture, and adds its control points to the shader's `data` texture.
 pub(crate) fn code(
     shader: &mut NodeShader<'_, '_>,
     texture: &ShaderLayers,

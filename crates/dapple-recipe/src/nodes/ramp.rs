@@ -105,7 +105,7 @@ impl Ramped {
 }
 
 impl Ramped {
-    /// Writes the function of the ramp, after its name: a color for each interval of the stops.
+    /// Writes the body of the WGSL function that evaluates the ramp, with a branch for each interval between stops.
     fn body(&self, ramp: &ColorRamp) -> String {
         let stops = ramp.stops();
         let mut text = "(value: f32, zero: u32) -> vec4<f32> {\n".to_owned();
@@ -136,7 +136,8 @@ impl Ramped {
         )
     }
 
-    /// Writes the statements that return the color after the stop `from`, or that set the arguments of `oklab_mix`.
+    /// Writes the WGSL statements for the interval after the stop `from`: they return a color, or set the arguments of
+    /// `oklab_mix`.
     fn mixture(&self, ramp: &ColorRamp, from: usize) -> String {
         let [before, after] = [from, from + 1].map(|stop| ramp.stops()[stop]);
         let [start, end] = [before.color, after.color].map(color_literal);

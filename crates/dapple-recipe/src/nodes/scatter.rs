@@ -130,7 +130,7 @@ impl NodeKind for ScatterNode {
 }
 
 impl ScatterNode {
-    /// Returns the options with a period.
+    /// Returns the scatter options with these periods, in cells along each axis.
     fn options(&self, period: [Option<u32>; 2]) -> StampOptions {
         let frequency = self.frequency.0;
         StampOptions {

@@ -52,7 +52,7 @@ impl NodeKind for Select {
     }
 }
 
-/// Returns, for each number, the value of the input that it chooses.
+/// Returns, for each number of `by`, the value of the input that it selects.
 fn selected(by: &[f32], inputs: &[&Values]) -> Values {
     let last = inputs.len() - 1;
     // Numbers below 0 and not-a-numbers become 0.

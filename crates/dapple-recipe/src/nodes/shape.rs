@@ -107,7 +107,7 @@ impl NodeKind for ShapeNode {
 }
 
 impl ShapeNode {
-    /// Returns the options with the frequency of copies.
+    /// Returns the shape options with this frequency of copies, per unit along each axis.
     fn options(&self, frequency: [Option<f64>; 2]) -> ShapeOptions {
         ShapeOptions {
             kind: self.kind,

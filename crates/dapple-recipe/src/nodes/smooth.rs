@@ -78,7 +78,7 @@ impl NodeKind for SmoothMaximum {
     }
 }
 
-/// Returns the difference between the minimum and the smooth minimum of two numbers.
+/// Returns the fillet: the amount by which the smooth minimum of `a` and `b` is below the minimum.
 fn fillet(a: f32, b: f32, radius: f32) -> f32 {
     let overlap = radius - (a - b).abs();
     if overlap > 0.0 {
@@ -88,8 +88,9 @@ fn fillet(a: f32, b: f32, radius: f32) -> f32 {
     }
 }
 
-/// Writes the smooth minimum or maximum of the inputs, pairwise, from the first to the last. The operations are those of
-/// the module `Number`: the selection, and the one that adds or subtracts the fillet.
+/// Writes WGSL for the smooth minimum or maximum of the inputs, combined pairwise from the first to the last. The
+/// operations are functions of the module `Number`: `number_min` or `number_max`, and the one that subtracts or adds
+/// the fillet.
 fn fold(
     shader: &mut NodeShader<'_, '_>,
     inputs: &[Input],

@@ -126,13 +126,13 @@ impl NodeKind for SynthNode {
 }
 
 impl SynthNode {
-    /// Returns the image file in which neighborhoods are compared.
+    /// Returns the name of the image file in which neighborhoods are compared.
     fn example(&self) -> &str {
         self.example.as_ref().unwrap_or(&self.file)
     }
 }
 
-/// A synthesized texture with the inputs that determine it, for reuse.
+/// A synthesized texture and the inputs that determine it, stored for reuse.
 struct Grown {
     example: Picture,
     edges: Edges,

@@ -62,7 +62,8 @@ impl NodeKind for Threshold {
     }
 }
 
-/// Returns 0 to 1 for a difference from the threshold.
+/// Returns a smooth step from 0 to 1 as `difference`, a value minus the threshold, passes through 0. `width` is the
+/// width of the transition.
 fn transition(difference: f32, width: f32) -> f32 {
     if difference.is_nan() {
         return difference;

@@ -79,7 +79,8 @@ impl NodeKind for Transform {
     }
 }
 
-/// Returns whether a texture with the period `extent` along the axes of `wrap` has this period after the map, too.
+/// Returns whether a texture that has the period `extent` along the axes of `wrap` keeps this period when positions are
+/// transformed by `map`.
 fn repeats(map: &LinearMap, extent: [f64; 2], wrap: [bool; 2]) -> bool {
     (0..2).filter(|&axis| wrap[axis]).all(|axis| {
         // A step of one period must lead to a position at which the input has the same value.

@@ -99,7 +99,7 @@ impl NodeKind for Wave {
 }
 
 impl Waveform {
-    /// Returns the value of the wave, from 0 to 1, at a phase of `t` periods.
+    /// Returns the wave's value, from 0 to 1, at `t` periods.
     fn at(self, t: f64) -> f64 {
         let t = t - t.floor();
         match self {

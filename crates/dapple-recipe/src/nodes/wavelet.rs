@@ -55,7 +55,7 @@ impl NodeKind for WaveletNode {
     }
 }
 
-/// Writes wavelet noise, and adds its tile to the data of the shader.
+/// Writes WGSL for the node's noise, and adds its tile of coefficients to the shader's `data` texture.
 pub(super) fn code(
     shader: &mut NodeShader<'_, '_>,
     seed: Seed,
@@ -66,7 +66,7 @@ pub(super) fn code(
     noise_code(shader, &noise, frequency)
 }
 
-/// Writes wavelet noise at the position times a frequency.
+/// Writes WGSL for wavelet noise at the position times a frequency.
 pub(crate) fn noise_code(
     shader: &mut NodeShader<'_, '_>,
     noise: &WaveletNoise2,

@@ -99,7 +99,7 @@ impl NodeKind for WeaveNode {
 }
 
 impl WeaveNode {
-    /// Returns the options with a period.
+    /// Returns the pattern options with these periods, in threads along each axis.
     fn options(&self, period: [Option<u32>; 2]) -> WeaveOptions {
         WeaveOptions {
             frequency: self.frequency.0,

@@ -142,7 +142,7 @@ impl NodeKind for WorleyNode {
 }
 
 impl WorleyNode {
-    /// Sets the node's metric and scatter on a cellular basis.
+    /// Returns the cellular basis with the node's metric and scatter.
     fn basis<const N: usize>(&self, worley: Worley<N>) -> Result<Worley<N>, RecipeError>
     where
         Dimensions: Space<N>,
@@ -157,7 +157,7 @@ impl WorleyNode {
             .with_scatter(self.scatter)?)
     }
 
-    /// Builds the field of the node's value from a cellular basis in the plane.
+    /// Builds the field of the node's value from a 2-D cellular basis.
     fn plane_field(&self, worley: Worley2) -> Result<Arc<dyn Field>, RecipeError> {
         let worley = self.basis(worley)?;
         let combination = match self.value {
@@ -197,8 +197,8 @@ impl WorleyNode {
         Ok(Arc::new(solid.slice(place)))
     }
 
-    /// Writes the node's value from a cellular basis in the plane, or in four dimensions at the time 0. `z` is the
-    /// position of the slice along the third axis.
+    /// Writes WGSL for the node's value from a 2-D cellular basis, or from a 4-D basis at time 0. `z` is the position
+    /// of the slice along the third axis, in cells.
     fn code<const N: usize>(
         &self,
         shader: &mut NodeShader<'_, '_>,
@@ -251,7 +251,7 @@ impl WorleyNode {
         }))
     }
 
-    /// Writes a combination of distances.
+    /// Writes WGSL for a combination of distances.
     pub(crate) fn cellular_code<const N: usize>(
         &self,
         shader: &mut NodeShader<'_, '_>,
@@ -267,7 +267,7 @@ impl WorleyNode {
         Ok(Code::number(value))
     }
 
-    /// Writes the random number of the nearest feature point.
+    /// Writes WGSL for the random number of the nearest feature point.
     pub(crate) fn cell_value_code<const N: usize>(
         &self,
         shader: &mut NodeShader<'_, '_>,
@@ -281,7 +281,7 @@ impl WorleyNode {
         Ok(Code::number(format!("cell_value({features}[0].id)")))
     }
 
-    /// Writes the distance to the nearest edge of a cell in the plane.
+    /// Writes WGSL for the distance to the nearest cell border, in 2-D.
     pub(crate) fn edge_distance_code<const N: usize>(
         &self,
         shader: &mut NodeShader<'_, '_>,
@@ -296,7 +296,9 @@ impl WorleyNode {
         Ok(Code::number(value))
     }
 
-    /// Writes the parameters of a basis, and the place at the position times the node's frequency times `ratio`.
+    /// Writes WGSL for the lookup of feature points: returns the name of the constant with the basis's parameters, and
+    /// the name of the position in cells. The position is scaled by the node's frequency and by `ratio`, the relative
+    /// frequency of an octave.
     fn placed<const N: usize>(
         &self,
         shader: &mut NodeShader<'_, '_>,
@@ -360,7 +362,8 @@ impl WorleyNode {
 
 const PLACE: Range = range!(finite);
 
-/// Writes the cell of a coordinate, and the fraction in units of 2^-21 cells.
+/// Returns the cell of a coordinate, and the fraction within the cell as a literal, rounded down to a multiple of 2^-21
+/// cells.
 fn split(coordinate: f64) -> Result<(i32, String), Refusal> {
     const STEPS: f64 = (1 << 21) as f64;
     let steps = ((coordinate - coordinate.floor()) * STEPS).floor();
@@ -377,7 +380,8 @@ fn split(coordinate: f64) -> Result<(i32, String), Refusal> {
     ))
 }
 
-/// Writes the sum of a number and of weighted distances.
+/// Writes WGSL for `shift` plus a weighted sum of the distances F1 to F4. `features` is the name of the array of
+/// feature points.
 fn weighted(features: &str, weights: [f32; 4], shift: f32) -> String {
     let mut sum = literal(shift);
     for (index, &weight) in weights.iter().enumerate() {

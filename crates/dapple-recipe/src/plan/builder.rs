@@ -31,7 +31,7 @@ pub(crate) struct Builder<'a> {
     pub(super) parts: Parts,
     /// Whether the current node has read the time.
     asks_time: Cell<bool>,
-    /// Names of the nodes that have read the time.
+    /// Names of the nodes that have read the time, and so change during an animation.
     pub(super) moving: Vec<String>,
     pub(super) steps: Vec<Step>,
     /// The id of each step; empty without a cache.
@@ -148,13 +148,14 @@ impl<'a> Builder<'a> {
         self.watch
     }
 
-    /// Uses the parts of a plan again, such as its nets of control points.
+    /// Reuses the parts of an existing plan, such as its nets of control points.
     pub(crate) fn with_parts_of(mut self, plan: &Plan) -> Self {
         self.parts = plan.parts.clone();
         self
     }
 
-    /// Returns reusable parts of steps, from this plan and, if there is a cache, from earlier plans.
+    /// Returns reusable parts of steps, such as control nets, from this plan and, if there is a cache, from earlier
+    /// plans.
     pub(crate) fn parts(&self) -> &Parts {
         &self.parts
     }
@@ -165,7 +166,7 @@ impl<'a> Builder<'a> {
         self.time
     }
 
-    /// Returns, for each axis, how the tile continues past its sides.
+    /// Returns, for each axis, whether the tile is repeated or clamped past its sides.
     pub(crate) fn wrap(&self) -> [Wrap; 2] {
         wrap(self.recipe.wrap)
     }
@@ -235,7 +236,7 @@ impl<'a> Builder<'a> {
         Ok(Some((name, node)))
     }
 
-    /// Builds as if the node called `name` were the current one, with its seed.
+    /// Calls `build` with the node called `name` as the current node, so that its seed is used.
     pub(crate) fn as_node<T>(&mut self, name: &'a str, build: impl FnOnce(&mut Self) -> T) -> T {
         let own = core::mem::replace(&mut self.node, name);
         let built = build(self);
@@ -243,13 +244,14 @@ impl<'a> Builder<'a> {
         built
     }
 
-    /// Returns the step of an input that is a number or a color.
+    /// Returns a step for an input that is a number or a color. A node as input is an error.
     pub(crate) fn constant(&mut self, input: &Input) -> Result<Step, RecipeError> {
         let index = self.any(input)?;
         Ok(self.local(vec![index], |inputs| Ok(inputs[0].clone())))
     }
 
-    /// Returns the index of an input's step, which may have numbers or colors. Adds a step if the input is a constant.
+    /// Returns the index of an input's step, whose values are scalars or colors. Adds a step if the input is a
+    /// constant.
     pub(crate) fn any(&mut self, input: &Input) -> Result<usize, RecipeError> {
         let step = match input {
             Input::Number(number) => {
@@ -268,7 +270,7 @@ impl<'a> Builder<'a> {
         Ok(self.steps.len() - 1)
     }
 
-    /// Returns the index of an input's step, which must have numbers.
+    /// Returns the index of an input's step. Fails if its values are colors.
     pub(crate) fn number(&mut self, input: &Input) -> Result<usize, RecipeError> {
         let step = self.any(input)?;
         if self.is_color(step) {
@@ -277,12 +279,13 @@ impl<'a> Builder<'a> {
         Ok(step)
     }
 
-    /// Returns whether a step has colors.
+    /// Returns whether a step's values are colors.
     pub(crate) fn is_color(&self, step: usize) -> bool {
         self.steps[step].is_color()
     }
 
-    /// Builds a step that combines the values of the inputs at each position. It has colors if any input has colors.
+    /// Adds a step that combines the values of the inputs at each position. Its values are colors if any input's values
+    /// are colors.
     pub(crate) fn local(
         &self,
         inputs: Vec<usize>,
@@ -350,8 +353,8 @@ impl<'a> Builder<'a> {
         step
     }
 
-    /// Returns a radius, or by default a fraction of the tile's shorter side. Fails unless it is above 0 and at most the
-    /// longer side of the tile.
+    /// Returns `radius`, by default `part` times the tile's shorter side. Fails unless it is above 0 and at most the
+    /// tile's longer side.
     pub(crate) fn radius(&self, radius: Option<f64>, part: f64) -> Result<f64, RecipeError> {
         let extent = DVec2::from(self.recipe.extent);
         let radius = radius.unwrap_or(part * extent.min_element());
@@ -439,7 +442,7 @@ pub(super) fn wrap(repeats: [bool; 2]) -> [Wrap; 2] {
     repeats.map(|repeats| if repeats { Wrap::Repeat } else { Wrap::Clamp })
 }
 
-/// Returns an error if there is no input.
+/// Returns `inputs`; an error if the list is empty.
 pub(crate) fn at_least_one<T>(inputs: Vec<T>) -> Result<Vec<T>, RecipeError> {
     if inputs.is_empty() {
         let (what, count, needed) = ("inputs", 0, "at least 1");

@@ -89,8 +89,8 @@ impl PlanCache {
         self.lock().bytes
     }
 
-    /// Returns whether the values of `steps` steps at a window take at most half of the cache. Larger ones would evict
-    /// most of the others.
+    /// Returns whether the values of `steps` steps in a window fit in half of the cache. Larger ones would evict most
+    /// of the other values.
     pub(super) fn has_room(&self, steps: usize, window: &Window) -> bool {
         let bytes = steps
             .saturating_mul(window.n_pixels())

@@ -10,7 +10,7 @@ use dapple_raster::{Raster, RasterViewMut, Texel, Window, parallel};
 use glam::DVec2;
 use std::sync::Arc;
 
-/// The positions of an evaluation, and the area that each one represents.
+/// Positions at which steps are evaluated, and the area that each position represents.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Places<'a> {
     pub(super) at: At<'a>,
@@ -19,7 +19,7 @@ pub(super) struct Places<'a> {
     pub(super) area: DVec2,
 }
 
-/// Positions, in order.
+/// The positions, in order of evaluation.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum At<'a> {
     Window(&'a Window),
@@ -73,7 +73,8 @@ impl<'a> Places<'a> {
     }
 }
 
-/// Values that were computed beforehand, with their step and a window that contains the evaluated one.
+/// Values that are already computed, each with its step's index and the window that they cover. The window contains the
+/// evaluated one.
 pub(crate) type Known = [(usize, (Window, Arc<Values>))];
 
 /// Computes the values of the steps `wanted` at `places`, in the order of `wanted`.
@@ -123,7 +124,7 @@ fn last_uses(steps: &[Step], order: &[usize], wanted: &[usize]) -> Vec<usize> {
     last_use
 }
 
-/// Maximum and minimum number of pixels that a thread evaluates at a time.
+/// Maximum and minimum number of pixels in a chunk, which one thread evaluates at a time.
 const CHUNK_PIXELS: [u32; 2] = [1 << 16, 1 << 11];
 
 /// Number of positions that are evaluated at a time. Their values fit in the processor's cache.
@@ -194,7 +195,7 @@ pub(super) fn chunks(
     Ok(join(chunks.into_iter().collect::<Result<_, _>>()?))
 }
 
-/// Minimum number of values that a parallel task joins; fewer are joined on the current thread.
+/// Minimum number of values per parallel task when chunks are joined; shorter lists are joined on the current thread.
 const JOINED_VALUES: usize = 1 << 14;
 
 /// Concatenates the values of all chunks, separately for each step.
@@ -263,7 +264,7 @@ fn step(
     }
 }
 
-/// Computes the values of a step that evaluates its input at other positions.
+/// Computes the values of a step that evaluates its input at transformed positions.
 fn moved(
     steps: &[Step],
     whole: Option<&Whole>,
@@ -307,7 +308,7 @@ fn moved(
     }
 }
 
-/// Evaluates a step at positions after a linear map.
+/// Evaluates a step at positions transformed by a linear map.
 fn mapped(
     steps: &[Step],
     whole: Option<&Whole>,
@@ -352,7 +353,7 @@ fn at_positions(
     Ok(join(chunks?).swap_remove(0))
 }
 
-/// Displaces `positions` by `amount` times the vectors (x, y).
+/// Returns `positions` displaced by `amount` times the vectors (x, y).
 fn shifted(mut positions: Vec<DVec2>, x: &Values, y: &Values, amount: f64) -> Vec<DVec2> {
     let shifts = x.numbers().iter().zip(y.numbers());
     for (position, (&x, &y)) in positions.iter_mut().zip(shifts) {

@@ -131,7 +131,7 @@ fn in_window(steps: &[Step], window: &Window, step: usize) -> Result<Values, Rec
         .unwrap_or(Values::Numbers(Vec::new())))
 }
 
-/// Converts the error of a node to the error type of fields.
+/// Converts the error of a node to a [`RasterError`], the error type of fields.
 fn refused(error: &RecipeError) -> RasterError {
     let (what, value, range) = match error.kind() {
         RecipeErrorKind::Raster(error) => return error.clone(),

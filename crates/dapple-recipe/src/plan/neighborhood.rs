@@ -30,8 +30,8 @@ pub(crate) struct Neighborhood {
     pub(crate) color: bool,
     /// The name of the node, for error messages.
     pub(crate) node: String,
-    /// For each axis, the length of the tile in units of the plane if the inputs are heights that end at its sides.
-    /// Heights are then extrapolated past the sides; other values are as the inputs have them there.
+    /// For each axis, the length of the tile in units of the plane if the inputs are heights that must be extrapolated
+    /// past the tile's sides; `None` if the inputs' values past the sides are used unchanged.
     pub(crate) ends: [Option<f64>; 2],
     pub(crate) limits: PlanLimits,
     pub(crate) halo: Box<HaloFunction>,
@@ -42,18 +42,18 @@ pub(crate) struct Neighborhood {
 type HaloFunction = dyn Fn(DVec2) -> [u32; 2] + Send + Sync;
 type NeighborhoodFunction = dyn Fn(&Surroundings<'_>) -> Result<Values, RecipeError> + Send + Sync;
 
-/// The arguments of a step that depends on the neighborhood of each pixel.
+/// Arguments of a neighborhood step's function.
 pub(crate) struct Surroundings<'a> {
     /// The values of the inputs in the window and its halo, row by row.
     pub(crate) inputs: &'a [Arc<Values>],
-    /// The pixels of the window and its halo.
+    /// The pixels to compute, and the halo around them that the inputs cover.
     pub(crate) part: Part,
     /// Reports progress to the caller's callback.
     pub(crate) watch: &'a Watch,
 }
 
 impl Surroundings<'_> {
-    /// Computes numbers from each channel of an input: from its numbers, or from red, green and blue.
+    /// Applies `change` to each channel of an input: to its numbers, or separately to red, green and blue.
     pub(crate) fn each_channel(&self, input: usize, change: impl Fn(&[f32]) -> Vec<f32>) -> Values {
         self.inputs[input].each_channel(change)
     }
@@ -65,7 +65,7 @@ impl Surroundings<'_> {
 }
 
 impl Neighborhood {
-    /// Computes the values in `window`, from inputs in windows that contain the window and its halo.
+    /// Computes the values in `window`. The inputs' windows contain `window` and its halo.
     fn at(
         &self,
         window: &Window,
@@ -87,8 +87,8 @@ impl Neighborhood {
         })
     }
 
-    /// Returns the first pixel of the tile and the pixel after its last one along an axis at whose ends heights are
-    /// extrapolated; `None` for other axes.
+    /// Returns the range of the tile's pixels along an axis on which heights are extrapolated: the first pixel, and the
+    /// pixel after the last one. `None` for other axes.
     fn sides(&self, window: &Window, axis: usize) -> Option<[i64; 2]> {
         let length = self.ends[axis]?;
         let (origin, pixel) = (window.origin[axis], window.pixel[axis]);
@@ -100,7 +100,8 @@ impl Neighborhood {
             .then(|| [first as i64, (last as i64).saturating_add(1)])
     }
 
-    /// Returns the inputs in `around` with extrapolated heights; `None` if all of it is inside the tile.
+    /// Returns the inputs in `around`, with heights extrapolated past the sides of the tile; `None` if `around` is
+    /// inside the tile.
     fn continued(
         &self,
         made_in: &Window,
@@ -125,7 +126,7 @@ impl Neighborhood {
         Ok(Some(cropped(&continued, made_in, around)))
     }
 
-    /// Returns the margin around `window` in which the inputs are needed, if the step itself is needed with `margin`.
+    /// Returns the margin around `window` in which the inputs are needed if the step's values are needed in `margin`.
     fn margin_of_inputs(&self, window: &Window, margin: [u32; 2]) -> [u32; 2] {
         let halo = (self.halo)(pixel(window));
         [0, 1].map(|axis| {
@@ -180,7 +181,7 @@ pub(crate) fn with_margin(window: &Window, margin: [u32; 2]) -> Window {
     }
 }
 
-/// Returns the values in `part`, given those in `window`, which contains it.
+/// Crops values from `window` to `part`, which it contains.
 pub(super) fn cropped(values: &Arc<Values>, window: &Window, part: &Window) -> Arc<Values> {
     if (window.first, window.size) == (part.first, part.size) {
         return values.clone();
@@ -194,13 +195,14 @@ pub(super) fn cropped(values: &Arc<Values>, window: &Window, part: &Window) -> A
     Arc::new(values.parts(rows))
 }
 
-/// A step's margin and its place in the order of evaluation.
+/// A step's position in the order of evaluation, as a sort key. Its last element is the margin around the window in
+/// which the step is computed.
 ///
-/// Steps are evaluated by level, which is the largest number of neighborhoods on a path of inputs. At each level,
-/// neighborhoods come first, and then the other steps from the largest margin to the smallest.
+/// The first element is the step's level: the maximum number of neighborhoods on a path of inputs to it. At each level,
+/// neighborhoods come first, and then the other steps, largest margin first.
 type Stage = (u32, bool, Reverse<[u32; 2]>);
 
-/// Returns whether `window` contains `part`, which has the same grid.
+/// Returns whether `window` contains `part`. Both windows have the same pixel grid.
 fn contains(window: &Window, part: &Window) -> bool {
     (0..2).all(|axis| {
         let end = |window: &Window| window.first[axis].saturating_add(i64::from(window.size[axis]));
@@ -208,8 +210,8 @@ fn contains(window: &Window, part: &Window) -> bool {
     })
 }
 
-/// Returns the stage of each step that `wanted` need in `window`, and `None` for the others. The inputs of steps that are
-/// known in all of the needed window are not needed.
+/// For each step, returns its stage if `wanted` need it in `window`; otherwise `None`. The inputs of a step whose
+/// values are known in all of the needed window are not needed.
 fn stages(
     steps: &[Step],
     window: &Window,
@@ -266,7 +268,7 @@ fn stages(
 }
 
 impl Neighborhood {
-    /// Checks the sum of halos and the number of pixels of the inputs against the limits.
+    /// Checks limits: `halos`, the sum of the halos of nested neighborhoods, and the number of pixels of `inputs`.
     fn check(&self, halos: u64, inputs: &Window) -> Result<(), RecipeError> {
         let [width, height] = inputs.size.map(u64::from);
         for (what, value, limit) in [
@@ -289,8 +291,8 @@ impl Neighborhood {
     }
 }
 
-/// Returns the largest margin around a window of these pixels that the neighborhoods of `wanted` need. Fails if halos are
-/// above the limits.
+/// Returns the margin that the neighborhoods of `wanted` need around a window with pixels of this size: the largest one
+/// of all steps. Fails if the sum of halos exceeds the limit.
 pub(super) fn margin(
     steps: &[Step],
     window: &Window,
@@ -307,8 +309,8 @@ pub(super) fn margin(
     }))
 }
 
-/// Returns the steps whose values neighborhoods read around a window of these pixels and that depend on no neighborhood
-/// themselves, with the largest margin in which they are needed.
+/// Returns the indices of the steps that neighborhoods read and that do not depend on a neighborhood themselves. Also
+/// returns the largest margin around the window in which these steps are needed.
 pub(super) fn sources(
     steps: &[Step],
     window: &Window,
@@ -415,8 +417,8 @@ pub(super) fn window(
     Ok(values.into_iter().map(Arc::unwrap_or_clone).collect())
 }
 
-/// Returns for each step whether its values in the whole window are stored: those of the wanted steps, of neighborhoods
-/// and their inputs, and of steps that other stages read.
+/// For each step, returns whether its values in the whole window must be stored: wanted steps, neighborhoods and their
+/// inputs, and steps that a later stage reads.
 fn kept(steps: &[Step], stages: &[Option<Stage>], wanted: &[usize]) -> Vec<bool> {
     let mut is_kept = vec![false; steps.len()];
     for &index in wanted {

@@ -49,7 +49,7 @@ fn check_names(recipe: &Recipe) -> Result<(), RecipeError> {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum State {
     New,
-    /// The node is on the current path of the search.
+    /// The node is on the current path of the depth-first search, so reaching it again is a cycle.
     Open,
     Done,
 }
@@ -99,7 +99,7 @@ impl<'a> Order<'a> {
             .ok_or_else(|| unknown(self.recipe, name))
     }
 
-    /// Returns the error for a cycle, which was found because the node at `index` is on the current path already.
+    /// Returns the error for a cycle. The node at `index` was reached again while it was on the search path.
     fn cycle(&self, index: usize) -> RecipeError {
         let start = self
             .path

@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// A plan [with a renderer](Plan::with_renderer) passes nodes to it in bakes and in images of nodes, and computes the
 /// other nodes itself.
 pub trait Renderer: fmt::Debug + Send + Sync {
-    /// Returns the nodes whose values `node` is computed from, which the plan computes; `None` if the renderer does not
+    /// Returns the names of the nodes that the plan must compute as inputs for `node`; `None` if the renderer does not
     /// compute `node`.
     fn inputs(&self, node: &str) -> Option<Vec<String>>;
 
@@ -75,7 +75,7 @@ impl Plan {
         self
     }
 
-    /// Computes the values of steps, and passes nodes to the renderer.
+    /// Computes the values of steps. Nodes that the renderer supports are passed to it.
     pub(super) fn values_by(
         &self,
         renderer: &dyn Renderer,
@@ -119,7 +119,7 @@ impl Plan {
         })
     }
 
-    /// Returns the name of a step's node, and the steps of its inputs, if the renderer computes it.
+    /// Returns the node name of a step and the steps of its inputs; `None` if the renderer does not compute this node.
     fn rendered(&self, renderer: &dyn Renderer, step: usize) -> Option<(&str, Vec<usize>)> {
         let node = self.name_of(step)?;
         let inputs = renderer.inputs(node)?;
@@ -132,7 +132,8 @@ impl Plan {
         named.map(|(name, _)| name.as_str())
     }
 
-    /// Returns the steps that the plan computes itself for `wanted`: inputs of the renderer in the place of its nodes.
+    /// Returns the steps that the plan computes itself to get `wanted`. A node that the renderer computes is replaced
+    /// by its inputs.
     pub(super) fn own_steps(&self, wanted: &[usize]) -> Vec<usize> {
         let own = |&step: &usize| {
             let rendered = self.rendered(self.renderer.as_deref()?, step);

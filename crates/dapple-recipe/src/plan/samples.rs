@@ -18,7 +18,7 @@ named! {
     }
 }
 
-/// The sample positions of the tile, without those that repeat another one.
+/// The sample positions of the tile; samples that duplicate another one are left out.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TileSamples {
     /// The samples as a window. For corners along an axis that repeats, it lacks the last sample, which equals the
@@ -29,8 +29,8 @@ pub(crate) struct TileSamples {
 }
 
 impl Plan {
-    /// Returns the samples of a map of `size` columns and rows, without those that repeat another one. The map may have
-    /// more pixels than a raster can hold.
+    /// Returns the samples of a map of `size` columns and rows; samples that duplicate another one are left out. The
+    /// map may have more pixels than a raster can hold.
     ///
     /// # Errors
     ///

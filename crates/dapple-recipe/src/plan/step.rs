@@ -10,7 +10,7 @@ use glam::DVec2;
 use std::fmt;
 use std::sync::Arc;
 
-/// A source of values. Inputs are stored as indices of earlier steps.
+/// A plan step: a source of values. Its inputs are indices of earlier steps.
 pub(crate) enum Step {
     Number(f32),
     Color(LinearRgb),
@@ -23,7 +23,7 @@ pub(crate) enum Step {
     Global(Global),
 }
 
-/// A step that evaluates its input at other positions than its own.
+/// A step that evaluates its input at transformed positions.
 pub(crate) struct Moved {
     pub(crate) input: usize,
     pub(crate) color: bool,
@@ -77,18 +77,19 @@ impl LinearMap {
         [0, 1].map(|axis| rotated[axis] * self.frequency[axis])
     }
 
-    /// Maps a position.
+    /// Maps a position: rotation, scale and offset.
     pub(crate) fn position(&self, position: [f64; 2]) -> [f64; 2] {
         let scaled = self.vector(position);
         [0, 1].map(|axis| scaled[axis] + self.offset[axis])
     }
 
-    /// Returns whether the map only scales.
+    /// Returns whether the map has neither a rotation nor an offset.
     pub(crate) fn is_scale(&self) -> bool {
         self.direction == [1.0, 0.0] && self.offset == [0.0; 2]
     }
 
-    /// Maps the width and height of the area around a position. The area of a pixel changes only by the scale.
+    /// Returns the width and height of a pixel after the map. `[width, height]` is the pixel's size before. Only the
+    /// scale changes the pixel's area.
     pub(crate) fn area(&self, [width, height]: [f64; 2]) -> [f64; 2] {
         let [cos, sin] = self.direction;
         let side = |a: f64, b: f64| (a * cos * (a * cos) + b * sin * (b * sin)).sqrt();
@@ -106,18 +107,18 @@ pub(crate) struct Local {
 
 type LocalFunction = dyn Fn(&[&Values]) -> Result<Values, RecipeError> + Send + Sync;
 
-/// A step that computes each value from all values of the inputs, over the whole tile.
+/// A step that computes its values from the inputs' values over the whole tile.
 pub(crate) struct Global {
     pub(crate) inputs: Vec<usize>,
     pub(crate) color: bool,
-    /// For each axis, how many copies of the inputs' images fit in the tile.
+    /// Number of copies of the inputs' images that fit in the tile, along each axis.
     pub(crate) copies: [u32; 2],
     pub(crate) apply: Box<GlobalFunction>,
 }
 
 type GlobalFunction = dyn Fn(&Tile<'_>) -> Result<Values, RecipeError> + Send + Sync;
 
-/// The arguments of a step that depends on the whole tile.
+/// Arguments of a global step's function.
 pub(crate) struct Tile<'a> {
     pub(crate) inputs: &'a [&'a Values],
     /// Columns and rows of the inputs.
@@ -139,7 +140,7 @@ pub(crate) struct StretchedImage {
 }
 
 impl Moved {
-    /// Returns the steps that are evaluated at the positions of this step.
+    /// Returns the inputs that are evaluated at the positions of this step itself, such as the displacements of a warp.
     fn at_same_positions(&self) -> Vec<usize> {
         match self.positions {
             Positions::Displaced { by, .. } | Positions::Given { by, .. } => by.to_vec(),
@@ -147,7 +148,7 @@ impl Moved {
         }
     }
 
-    /// Returns how often the input is evaluated for a position.
+    /// Returns the number of times that the input is evaluated per position.
     pub(super) fn times(&self) -> usize {
         match &self.positions {
             Positions::Octaves { octaves, .. } => octaves.len(),
@@ -157,12 +158,12 @@ impl Moved {
 }
 
 impl Tile<'_> {
-    /// Returns a function that tells whether the caller's callback asks to stop.
+    /// Returns a function that returns whether the caller's callback asks to stop.
     pub(crate) fn is_cancelled(&self) -> impl Fn() -> bool + Sync {
         || self.watch.is_cancelled()
     }
 
-    /// Converts the inputs to maps. All of them are in color if any input is.
+    /// Converts the inputs to images of the tile. All images are in color if any input is.
     pub(crate) fn maps(&self) -> Result<Vec<Map>, RecipeError> {
         Ok(Values::maps(self.inputs, self.input_size)?)
     }
@@ -191,12 +192,12 @@ impl Step {
         Self::Field(Arc::new(field))
     }
 
-    /// Marks the step as having colors, regardless of its inputs.
+    /// Marks the step's values as colors, regardless of its inputs.
     pub(crate) fn with_colors(self) -> Self {
         self.with_color(true)
     }
 
-    /// Marks the step as having numbers, regardless of its inputs.
+    /// Marks the step's values as scalars, regardless of its inputs.
     pub(crate) fn with_numbers(self) -> Self {
         self.with_color(false)
     }
@@ -211,7 +212,7 @@ impl Step {
         self
     }
 
-    /// Returns whether the step has colors instead of numbers.
+    /// Returns whether the step's values are colors rather than scalars.
     pub(crate) fn is_color(&self) -> bool {
         match self {
             Self::Number(_) | Self::Field(_) => false,
@@ -224,13 +225,13 @@ impl Step {
         }
     }
 
-    /// Returns whether there is no use in storing the values of the step: computing a constant is as fast as copying it,
-    /// and the image of a step that depends on the whole tile is stored already.
+    /// Returns whether storing the values of the step has no benefit: a constant is as fast to compute as to copy, and
+    /// the image of a global step is stored already.
     pub(super) fn is_ready(&self) -> bool {
         matches!(self, Self::Number(_) | Self::Color(_) | Self::Global(_))
     }
 
-    /// Returns the inputs that are evaluated at pixels of the same grid as the step.
+    /// Returns the inputs that are evaluated on the same pixel grid as the step.
     pub(super) fn inputs_at_pixels(&self) -> Vec<usize> {
         match self {
             Self::Moved(moved) => moved.at_same_positions(),
@@ -255,7 +256,7 @@ impl Step {
     }
 }
 
-/// Returns the steps to evaluate at the positions of `wanted`, in order.
+/// Returns the indices of the steps that must be evaluated at the same positions as `wanted`, in order.
 ///
 /// Four kinds of inputs are excluded: the inputs of moved steps, which are evaluated at other positions; the inputs of
 /// neighborhoods, which are evaluated in a larger window; the inputs of steps that depend on the whole tile, which are
@@ -272,8 +273,8 @@ pub(super) fn needed(
     })
 }
 
-/// Returns the steps whose values are read from images of the whole tile, in order: steps that depend on the whole
-/// tile, and neighborhoods at positions that are not pixels, which are those below a moved step.
+/// Returns the steps that need an image of the whole tile, in order: global steps, and neighborhoods that a moved step
+/// reads at positions other than pixel centers.
 pub(super) fn needed_wholes(steps: &[Step], wanted: &[usize]) -> Vec<usize> {
     let mut at_pixels = vec![false; steps.len()];
     let mut at_positions = vec![false; steps.len()];
@@ -311,15 +312,16 @@ pub(super) fn needed_wholes(steps: &[Step], wanted: &[usize]) -> Vec<usize> {
     wholes
 }
 
-/// Returns whether a step depends on an image, which ends at the sides of the tile: on an image file, on a step that
-/// depends on the whole tile, or on a neighborhood that is read between pixels.
+/// Returns whether a step depends on an image, whose pixels end at the sides of the tile. Images are image files,
+/// global steps, and neighborhoods that are read between pixels.
 pub(super) fn reads_images(steps: &[Step], step: usize) -> bool {
     let mut ancestors = reached(steps, &[step], |index| steps[index].inputs()).into_iter();
     ancestors.any(|index| matches!(steps[index], Step::Image(_)))
         || !needed_wholes(steps, &[step]).is_empty()
 }
 
-/// Returns the steps reachable from `wanted` by `leads_to`, in order. Each step leads to earlier steps only.
+/// Returns the steps reachable from `wanted`, in order. `leads_to` returns the edges of a step, which point to earlier
+/// steps only.
 fn reached(steps: &[Step], wanted: &[usize], leads_to: impl Fn(usize) -> Vec<usize>) -> Vec<usize> {
     let mut reached = vec![false; steps.len()];
     wanted.iter().for_each(|&index| reached[index] = true);
@@ -333,7 +335,7 @@ fn reached(steps: &[Step], wanted: &[usize], leads_to: impl Fn(usize) -> Vec<usi
     (0..steps.len()).filter(|&index| reached[index]).collect()
 }
 
-/// Returns the steps that both `wanted` and the steps `of_height` depend on, except steps that are cheap to recompute.
+/// Returns the steps that both `wanted` and `of_height` depend on, except steps that are cheap to recompute.
 pub(super) fn shared(steps: &[Step], of_height: &[usize], wanted: &[usize]) -> Vec<usize> {
     let of_height = needed(steps, of_height, |_| false);
     let is_shared =

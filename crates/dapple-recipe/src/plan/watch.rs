@@ -8,13 +8,13 @@ use dapple_points::Cancel;
 use dapple_synth::Progress;
 use std::sync::Arc;
 
-/// An optional progress callback with the progress that is reported to it. Clones share both.
+/// An optional progress callback, together with the reported progress. Clones share both.
 #[derive(Clone, Default)]
 pub(crate) struct Watch(Option<Arc<Heard>>);
 
 type Callback = dyn Fn(Progress) -> ControlFlow<()> + Send + Sync;
 
-/// A progress callback and the progress of one piece of work.
+/// A progress callback and the progress of one task, such as a bake.
 struct Heard {
     callback: Arc<Callback>,
     pass: AtomicUsize,
@@ -24,21 +24,21 @@ struct Heard {
     is_over: AtomicBool,
 }
 
-/// The passes of the work, in order.
+/// The passes of a task, in order.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Pass {
     /// Builds the nodes.
     Nodes,
     /// Evaluates the nodes that depend on the whole tile.
     Whole,
-    /// Computes the rows of maps; a row counts as a site.
+    /// Computes the rows of maps; each row counts as one site.
     Rows,
 }
 
-/// The number of passes.
+/// Number of passes.
 const N_PASSES: usize = 3;
 
-/// Number of sites that a node counts as in progress reports.
+/// Number of sites that each node counts as in progress reports.
 pub(crate) const OF_NODE: usize = 1000;
 
 impl Watch {
@@ -61,13 +61,13 @@ impl Watch {
         })))
     }
 
-    /// Creates a watch with the same callback and separate progress, for other work that may run at the same time.
+    /// Creates a watch with the same callback and separate progress, for another task that may run at the same time.
     pub(crate) fn again(&self) -> Self {
         let heard = self.0.as_ref();
         heard.map_or_else(Self::default, |heard| Self::of(heard.callback.clone()))
     }
 
-    /// Begins a pass of `n_sites` sites.
+    /// Begins a pass over `n_sites` sites.
     pub(crate) fn begin(&self, pass: Pass, n_sites: usize) {
         if let Some(heard) = &self.0 {
             heard.pass.store(pass as usize, Relaxed);
@@ -76,19 +76,19 @@ impl Watch {
         }
     }
 
-    /// Sets the number of sites that are done.
+    /// Sets the number of completed sites.
     pub(crate) fn reach(&self, done: usize) {
         if let Some(heard) = &self.0 {
             heard.done.store(done, Relaxed);
         }
     }
 
-    /// Returns the number of sites that are done.
+    /// Returns the number of completed sites.
     pub(crate) fn done(&self) -> usize {
         self.0.as_ref().map_or(0, |heard| heard.done.load(Relaxed))
     }
 
-    /// Calls the callback, and returns whether it asks to stop or has asked before.
+    /// Calls the callback. Returns whether it asks to stop now, or did so before.
     pub(crate) fn is_cancelled(&self) -> bool {
         let Some(heard) = &self.0 else {
             return false;
@@ -109,7 +109,7 @@ impl Watch {
         is_cancelled
     }
 
-    /// Calls the callback, and fails if it asks to stop or has asked before.
+    /// Calls the callback. Fails if it asks to stop now, or did so before.
     pub(crate) fn check(&self) -> Result<(), RecipeError> {
         match self.is_cancelled() {
             true => Err(cancelled()),
@@ -128,8 +128,7 @@ impl Watch {
         }
     }
 
-    /// Returns the reason why work ended, which is [`Cancelled`](RecipeErrorKind::Cancelled) if the callback asked to
-    /// stop, and otherwise `error`.
+    /// Returns [`Cancelled`](RecipeErrorKind::Cancelled) if the callback asked to stop; otherwise `error`.
     pub(crate) fn reason(&self, error: RecipeError) -> RecipeError {
         let is_over = |heard: &Arc<Heard>| heard.is_over.load(Relaxed);
         match self.0.as_ref().is_some_and(is_over) {

@@ -10,8 +10,8 @@ use dapple_raster::{Raster, Window, Wrap};
 use glam::DVec2;
 use std::sync::Arc;
 
-/// The values of all steps that depend on the whole tile, at one size. Each such step has one image, and so does a
-/// neighborhood that is read between pixels.
+/// Images of the values of all steps that depend on the whole tile, at one size. A neighborhood that is read between
+/// pixels also has an image.
 #[derive(Clone, Debug, Default)]
 pub struct Whole {
     /// The tile as a window; `None` if no step depends on the whole tile.
@@ -72,7 +72,7 @@ impl Plan {
         self.whole_of(tile, &self.channels().steps(), self.watch())
     }
 
-    /// Evaluates the steps that depend on the whole tile and that `wanted` need.
+    /// Evaluates those steps that `wanted` need and that depend on the whole tile.
     fn whole_of(
         &self,
         tile: &TileSamples,
@@ -113,7 +113,8 @@ impl Plan {
         Ok(whole)
     }
 
-    /// Renders a node at the pixels of the tile, or of a region of it. The node need not contribute to the material.
+    /// Renders a node at the pixels of the tile, or of a region of it. The node may be one that the material does not
+    /// use.
     ///
     /// # Errors
     ///
@@ -140,7 +141,7 @@ impl Plan {
         )
     }
 
-    /// Returns the image of a step, from the cache if it is stored there.
+    /// Returns the image of a step's values; from the cache if it is stored there.
     fn known_picture(
         &self,
         whole: &Whole,
@@ -169,7 +170,7 @@ impl Plan {
         Values::clone(&values).picture(window.size)
     }
 
-    /// Computes the values of a step that depends on the whole tile.
+    /// Computes the image of a step that depends on the whole tile.
     fn picture(
         &self,
         whole: &Whole,
@@ -199,8 +200,8 @@ impl Values {
 }
 
 impl Global {
-    /// Returns the window at which the inputs are evaluated: the tile, or one of the copies in it if the step repeats
-    /// its inputs.
+    /// Returns the window in which the inputs are evaluated: the tile, or a single copy if the step repeats its inputs
+    /// in the tile.
     fn window_of_inputs(&self, window: &Window) -> Result<Window, RecipeError> {
         let mut size = window.size;
         for (side, copies) in size.iter_mut().zip(self.copies) {
@@ -221,7 +222,7 @@ impl Global {
 }
 
 impl Whole {
-    /// Returns the values of a step at `places`. Pixels of the tile have exact values; other positions are
+    /// Returns the values of a step at `places`, from its image. Values at pixel centers are exact; other positions are
     /// interpolated.
     pub(super) fn at(&self, index: usize, places: Places<'_>) -> Result<Values, RecipeError> {
         let (Some(tile), Some(Some(picture))) = (self.window, self.pictures.get(index)) else {
@@ -249,7 +250,7 @@ impl Whole {
         }
     }
 
-    /// Returns the pixels of `window`, which may extend past the tile.
+    /// Returns the pixels of `window` from an image of the tile. The window may extend past the tile.
     fn pixels<T: Copy>(&self, raster: &Raster<T>, window: &Window) -> Vec<T> {
         let mut pixels = Vec::with_capacity(window.n_pixels());
         for row in 0..window.size[1] {

@@ -1,7 +1,7 @@
 //! Estimates the work for a recipe, and checks it against limits before any work is done.
 //!
 //! A few lines of a recipe can demand any number of control points, wavelet noise of any size, and nested warps and
-//! fractal sums. Each level of them evaluates all its inputs once more.
+//! fractal sums. Each nested warp or octave evaluates all of its inputs once more.
 
 use super::step::{Global, Step, needed};
 use crate::{RecipeError, RecipeErrorKind};
@@ -23,8 +23,8 @@ use crate::{RecipeError, RecipeErrorKind};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlanLimits {
-    /// Maximum total number of control points in all nodes; 2^22 by default, which take about 2 GiB. The number is
-    /// estimated, and the estimate is rather too high than too low.
+    /// Maximum total number of control points in all nodes; 2^22 by default, which take about 2 GiB. The number is an
+    /// estimate, usually above the actual number.
     pub control_points: u64,
     /// Maximum total number of cells in the tiles of wavelet noise; 2^24 by default, such as one tile of 4096 × 4096
     /// cells.
@@ -123,16 +123,16 @@ impl<'a> WorkSum<'a> {
     }
 }
 
-/// For each step, counts of the values computed per pixel.
+/// Number of values computed per pixel, for each step.
 struct Values {
-    /// For each step, the number of values recomputed for it, in addition to its own value.
+    /// For each step, the number of values of other steps that are recomputed for it.
     under: Vec<f64>,
-    /// For each step, the depth of nested moved steps that ends at it; 0 unless the step is one.
+    /// For each step, the number of nested moved steps, including the step itself; 0 if it is not a moved step.
     warps: Vec<u64>,
 }
 
-/// Returns an error if the steps compute too many values per pixel or nest warps too deeply. It comes with the index of
-/// the step at which the limit is exceeded.
+/// Checks the number of values per pixel and the nesting depth of warps against the limits. An error comes with the
+/// index of the step that exceeds the limit.
 pub(super) fn check_steps(steps: &[Step], limits: &PlanLimits) -> Result<(), (usize, RecipeError)> {
     let what = "values for each pixel";
     let last = steps.len().saturating_sub(1);
@@ -158,7 +158,7 @@ pub(super) fn check_steps(steps: &[Step], limits: &PlanLimits) -> Result<(), (us
 }
 
 impl Values {
-    /// Adds a step, after its inputs.
+    /// Adds the counts of a step. Its inputs must have been added before.
     fn add(&mut self, before: &[Step], step: &Step) {
         // Find the steps that are evaluated separately for this one.
         let apart = match step {

@@ -28,7 +28,7 @@ pub(super) fn reference(schema: &Value) -> String {
     page
 }
 
-/// Writes sections of the reference, and looks up the types of a schema by name.
+/// Writes the sections of the reference. Looks up the types of the schema by name.
 struct Reference<'a> {
     types: &'a Value,
 }
@@ -84,7 +84,7 @@ impl Reference<'_> {
         }
     }
 
-    /// Returns the type that a schema refers to; the schema itself if it is not a reference.
+    /// Returns the type that a schema refers to, through all references; the schema itself if it is not a reference.
     fn followed<'b>(&'b self, schema: &'b Value) -> &'b Value {
         name_of(schema).map_or(schema, |name| self.followed(&self.types[name]))
     }
@@ -97,7 +97,7 @@ impl Reference<'_> {
         })
     }
 
-    /// Describes how a value is written.
+    /// Returns the description of a value's syntax.
     fn form(&self, schema: &Value) -> String {
         if let Some(name) = name_of(schema) {
             if let Some((_, link)) = SECTIONS.iter().find(|(section, _)| *section == name) {
@@ -126,7 +126,7 @@ impl Reference<'_> {
         self.form_of_type(schema)
     }
 
-    /// Describes a value by its JSON type.
+    /// Returns the description of a value's syntax, by its JSON type.
     fn form_of_type(&self, schema: &Value) -> String {
         let range = range(schema);
         match kind(schema) {
@@ -152,7 +152,7 @@ impl Reference<'_> {
         }
     }
 
-    /// Describes a table by its options.
+    /// Returns the description of a table's syntax: its options.
     fn form_of_table(&self, schema: &Value) -> String {
         let inner = self.written(schema);
         let inner = inner.map(|(name, inner)| format!("{name} = {}", self.form(inner)));
@@ -175,7 +175,7 @@ const FORMS: [&str; 7] = [
     "AxialWeight",
 ];
 
-/// The types that have a section before "Forms", with links to it.
+/// Types with a section before "Forms", each with the link to that section.
 const SECTIONS: [(&str, &str); 3] = [
     ("Material", "[the material](#the-material)"),
     ("Node", "[node](#nodes)"),
@@ -216,7 +216,7 @@ fn text(schema: &Value) -> String {
     text.replace('|', "\\|")
 }
 
-/// Returns a default in TOML syntax.
+/// Formats a default value in TOML syntax.
 fn in_toml(value: &Value) -> String {
     match value {
         Value::Array(all) => {

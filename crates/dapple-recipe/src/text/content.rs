@@ -1,4 +1,4 @@
-//! A parsed TOML or JSON text.
+//! Parsed TOML or JSON text.
 //!
 //! Recipes are deserialized from it, so that the deserializers of their many types are compiled once and not once per
 //! format.
@@ -136,7 +136,8 @@ impl Content {
             })
     }
 
-    /// Replaces the value at a path. Adds the last key of the path if it is missing, and nothing else.
+    /// Replaces the value at a path. If the last key of the path is missing, it is added; if any other part is missing,
+    /// nothing changes.
     pub(super) fn put(&mut self, path: &[Part], new: Self) {
         match (self, path) {
             (value, []) => *value = new,
@@ -234,7 +235,7 @@ impl<'de> Deserializer<'de> for &'de Content {
         }
     }
 
-    /// Reads a struct from a table. Lists are refused here, so that no type needs a deserializer for them.
+    /// Deserializes a struct from a table. Lists are refused, so that types need no deserializer for them.
     fn deserialize_struct<V: Visitor<'de>>(
         self,
         _: &'static str,

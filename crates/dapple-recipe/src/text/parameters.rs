@@ -1,7 +1,7 @@
 //! Named parameters: values that several options share, written in an option as `"$name"`.
 //!
-//! They are substituted in the parsed text, before nodes are read from it. A recipe remembers which options refer to a
-//! parameter, so that it is written with its parameters again.
+//! They are substituted in the parsed text, before nodes are read from it. A recipe records which options refer to a
+//! parameter, so that these references are restored when it is written.
 
 use super::content::Content;
 use super::refusal::{Part, Refusal};
@@ -12,7 +12,7 @@ use serde::de::Error as _;
 /// The key of the table of parameters.
 pub(super) const KEY: &str = "parameters";
 
-/// The keys of a recipe whose values are texts, in which no parameter is substituted.
+/// Top-level keys of a recipe whose values are plain text, in which parameters are not substituted.
 const TEXTS: [&str; 5] = ["dapple", "name", "about", "tags", KEY];
 
 /// The named parameters of a recipe, in the order of its text.
@@ -51,7 +51,7 @@ pub struct Parameter {
     value: Content,
     range: Option<[f64; 2]>,
     doc: String,
-    /// Whether the text has a table with the value, and not the value alone.
+    /// Whether the parameter is written as a table with the key `value`, not as a bare value.
     is_table: bool,
 }
 
@@ -61,11 +61,11 @@ struct Use {
     /// The path of the option, outermost part first.
     path: Vec<Part>,
     name: String,
-    /// The value with which the option is written; `None` if the option is left out.
+    /// The option's serialized value when it was read, to detect changes; `None` if serialization omits the option.
     written: Option<Content>,
 }
 
-/// An error in the parameters of a text. The refusal has its position.
+/// An error in the parameters of a recipe. `refusal` has the path of the erroneous value.
 pub(super) struct Fault {
     pub(super) error: RecipeError,
     pub(super) refusal: Refusal,
@@ -76,7 +76,7 @@ impl Fault {
         Self::of(RecipeError::new(kind), path)
     }
 
-    /// Creates the fault of an error at a path.
+    /// Creates a fault from an error and the path of the erroneous value.
     pub(super) fn of(error: RecipeError, path: &[Part]) -> Self {
         let parts = path.iter().rev().cloned();
         let refusal = parts.fold(Refusal::custom(""), Refusal::inside);
@@ -85,13 +85,13 @@ impl Fault {
 }
 
 impl Parameter {
-    /// Returns the value: a number, a text, a truth value, or a list of these.
+    /// Returns the value: a number, a string, a boolean, or a list of these.
     #[must_use]
     pub fn value(&self) -> serde_json::Value {
         serde_json::to_value(&self.value).unwrap_or_default()
     }
 
-    /// Returns the smallest and the largest allowed number, if the recipe has them.
+    /// Returns the minimum and maximum allowed number, if the recipe sets a range.
     #[must_use]
     pub fn range(&self) -> Option<[f64; 2]> {
         self.range
@@ -178,7 +178,7 @@ impl Parameter {
         }
     }
 
-    /// Returns the parameter as written in a text.
+    /// Returns the parameter in the form in which it was written in the recipe.
     fn written(&self) -> Content {
         if !self.is_table {
             return self.value.clone();
@@ -215,7 +215,7 @@ impl Parameters {
             .map(|(name, parameter)| (name.as_str(), parameter))
     }
 
-    /// Takes the parameters out of a parsed text, and replaces all references to them by their values.
+    /// Removes the parameters from a parsed recipe, and replaces all references to them with their values.
     pub(super) fn substitute(content: &mut Content) -> Result<Self, Fault> {
         let mut parameters = Self::default();
         let Content::Table(table) = content else {
@@ -273,7 +273,7 @@ impl Parameters {
         Ok(())
     }
 
-    /// Returns the error for a reference to a parameter that there is not.
+    /// Returns the error for a reference to an undefined parameter.
     fn unknown(&self, name: &str, path: &[Part]) -> Fault {
         let fault = Fault::new(
             RecipeErrorKind::UnknownParameter {
@@ -311,7 +311,8 @@ impl Parameters {
             .retain(|name, _| uses.iter().any(|used| used.name == *name));
     }
 
-    /// Returns the fault of a refused value. If the value is a parameter, the error names the parameter and the option.
+    /// Returns the fault for a value that was refused. If the value comes from a parameter, the error names the
+    /// parameter and the option.
     pub(super) fn blame(&self, refusal: Refusal, error: RecipeError) -> Fault {
         let path = refusal.path();
         let Some(used) = self.uses.iter().find(|used| path.starts_with(&used.path)) else {
@@ -325,7 +326,7 @@ impl Parameters {
         Fault::new(kind, &used.path)
     }
 
-    /// Records with which values the options are written that refer to parameters. `written` is the whole recipe.
+    /// Records the serialized values of all options that refer to parameters. `written` is the whole recipe.
     pub(super) fn record(&mut self, written: &Content) {
         for used in &mut self.uses {
             let last = used.path.last_mut();
@@ -339,8 +340,8 @@ impl Parameters {
         }
     }
 
-    /// Puts the references and the table of parameters into a recipe that is written. An option that has changed since it
-    /// was read keeps its value.
+    /// Puts the references and the table of parameters back into a serialized recipe. An option that has changed since
+    /// it was read is written as a plain value.
     pub(super) fn restore(&self, written: &mut Content) {
         let mut named: Vec<_> = Vec::new();
         for used in &self.uses {

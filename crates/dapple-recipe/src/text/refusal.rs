@@ -17,7 +17,7 @@ pub(super) struct Refusal {
     is_key: bool,
 }
 
-/// A part of a path: from a table or list to a value in it.
+/// A part of a path: a key of a table or an index of a list.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Part {
     Key(String),
@@ -84,7 +84,7 @@ impl Refusal {
         Some(span.start)
     }
 
-    /// Returns the position in JSON text at which the parser has read the erroneous key or value.
+    /// Returns the position in JSON text just after the erroneous key or value.
     pub(super) fn place_in_json(&self, text: &str) -> Option<Place> {
         // Parse again up to the erroneous value. The error that ends this pass has the position.
         let mut reader = serde_json::Deserializer::from_str(text);
@@ -100,7 +100,7 @@ impl Refusal {
     }
 }
 
-/// A pass over JSON that follows a path, and returns an error at its end.
+/// A deserializer that follows a path through JSON, and returns an error at its end, to get the position.
 #[derive(Clone, Copy)]
 struct Walk<'a> {
     parts: &'a [Part],
@@ -108,7 +108,8 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Returns the rest of the path if its first part leads to the current value; otherwise `None`.
+    /// Returns the walk with the rest of the path if the first part of the path leads to the current value; otherwise
+    /// `None`.
     fn step(self, leads_there: impl FnOnce(&Part) -> bool) -> Option<Self> {
         let (next, parts) = self.parts.split_last()?;
         leads_there(next).then_some(Self { parts, ..self })

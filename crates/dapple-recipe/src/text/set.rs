@@ -8,7 +8,7 @@ use serde::Deserialize as _;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
-/// The values of a recipe that can be set and are not nodes.
+/// Top-level keys of a recipe that `set` accepts.
 const TOP: [&str; 6] = ["name", "about", "seed", "extent", "wrap", "material"];
 
 impl Recipe {
@@ -87,8 +87,8 @@ impl Recipe {
 }
 
 impl Recipe {
-    /// Returns the name of the parameter that a path names, as `NAME` or `parameters.NAME`; `None` if it names another
-    /// value.
+    /// Returns the name of the parameter that `path` refers to, as `NAME` or `parameters.NAME`; `None` if it does not
+    /// refer to a parameter.
     fn parameter<'a>(&self, path: &'a str) -> Result<Option<&'a str>, RecipeError> {
         let named = path
             .strip_prefix(KEY)

@@ -1,4 +1,4 @@
-//! Tests of bakes: bands, regions, threads and the surroundings of pixels.
+//! Tests of bakes: bands, regions, threads and neighborhoods of pixels.
 
 use dapple_color::{ColorRamp, LinearRgb, RampSpace};
 use dapple_raster::FieldExt;
@@ -72,7 +72,7 @@ pub(crate) fn plan(text: &str) -> Plan {
     Plan::new(&recipe, &Images::new(), 0.0).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Bakes all maps; each is returned as the bits of its numbers, row by row.
+/// Returns all baked maps, each as the bits of its numbers, row by row.
 pub(crate) fn bake(plan: &Plan, options: &BakeOptions) -> Vec<Vec<u32>> {
     let mut maps = vec![Vec::new(); options.maps.len()];
     for band in Bake::new(plan, options).unwrap() {
@@ -114,7 +114,8 @@ pub(crate) fn options(size: [u32; 2]) -> BakeOptions {
     }
 }
 
-/// Returns a part of a map with the given number of channels.
+/// Returns a region of a map. `map` holds all numbers of the pixels; `[width, height]` is the size of the map in
+/// pixels.
 pub(crate) fn crop(map: &[u32], [width, height]: [u32; 2], region: Region) -> Vec<u32> {
     let numbers = map.len() / (width * height) as usize;
     let row = |row: u32| {
@@ -126,7 +127,7 @@ pub(crate) fn crop(map: &[u32], [width, height]: [u32; 2], region: Region) -> Ve
         .collect()
 }
 
-/// Compares a region of a bake with a crop of the whole, and a bake in bands with the whole.
+/// Checks that a region of a bake equals a crop of the whole map, and that a bake in bands equals it, too.
 pub(crate) fn assert_parts_have_the_bits_of_the_whole(plan: &Plan, size: [u32; 2], region: Region) {
     let whole = bake(plan, &options(size));
     let part = BakeOptions {

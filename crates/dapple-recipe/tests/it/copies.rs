@@ -8,7 +8,7 @@ use dapple_recipe::{
 };
 use dapple_tile::{CornerTiles, Disturbance, Map, MatchBorders};
 
-/// Two textures that repeat, and a color that follows one of them.
+/// Two repeating textures, `a` and `b`, and a color ramp `c` of `b`.
 const TEXTURES: &str = "\
 dapple = 1
 extent = [4.0, 4.0]
@@ -17,7 +17,7 @@ nodes.b = { worley = { value = \"f2_minus_f1\", frequency = 2.0, seed = 2 } }
 nodes.c = { ramp = { input = \"b\", colors = [\"#000000\", \"#ffffff\"] } }
 ";
 
-/// Renders a node `x` as the albedo; numbers become grays.
+/// Renders a node as the albedo. `node` is its TOML. Numbers become grays.
 fn albedo(node: &str, size: [u32; 2]) -> Result<Raster<LinearRgb>, RecipeError> {
     let text = format!("{TEXTURES}nodes.x = {node}\n[material]\nalbedo = \"x\"\n");
     let recipe = Recipe::from_toml(&text)?;
@@ -52,7 +52,7 @@ fn color(maps: Vec<Map>) -> Raster<LinearRgb> {
     }
 }
 
-/// Returns the seed of the node `x`.
+/// Returns the seed that the node `x` of [`TEXTURES`] has.
 fn seed() -> dapple_hash::Seed {
     let text = format!("{TEXTURES}[material]\n");
     Recipe::from_toml(&text).unwrap().seed.child("x", 0)

@@ -1,4 +1,4 @@
-//! Tests of bakes with samples on corners, as terrains have them.
+//! Tests of bakes with samples on corners, as terrain heights need them.
 
 use crate::bakes::{ALL_NODES, bake, crop, options, plan};
 use dapple_raster::FieldExt as _;
@@ -12,7 +12,7 @@ fn corners(size: [u32; 2]) -> BakeOptions {
     }
 }
 
-/// Periodic cells over 4 × 3 units, along the axes that repeat.
+/// Returns a plan of cells on a tile of 4 × 3 units that repeats along the axes of `wrap`.
 fn cells(wrap: [bool; 2]) -> Plan {
     plan(&format!(
         "dapple = 1\nextent = [4.0, 3.0]\nwrap = {wrap:?}\nnodes.cells.worley.frequency = 2.0\n\

@@ -7,7 +7,8 @@ use dapple_pattern::{GaborNoise, GaborOptions, GaborValue};
 use dapple_raster::FieldExt as _;
 use dapple_recipe::{Images, Plan, Recipe, RecipeErrorKind};
 
-/// Returns the number of a node at the position (x, 0.5), where the node `x` has the value x.
+/// Returns the value of a node at the position (x, 0.5). `node` is its TOML. Its inputs may be the node `x`, whose
+/// value is x.
 fn number(node: &str, x: f64) -> f32 {
     let text = format!(
         "dapple = 1\nwrap = [false, false]\n[nodes]\nx = {{ coordinate = {{ along = [1, 0] }} }}\nb = {{ {node} }}\n[material]\n"
@@ -15,7 +16,8 @@ fn number(node: &str, x: f64) -> f32 {
     plan(&text).field("b").unwrap().sample([x, 0.5])
 }
 
-/// Returns the color of a node at the position (x, 0.5).
+/// Returns the color of a node at the position (x, 0.5). `node` is its TOML. Its inputs may be the node `x`, whose
+/// value is x.
 fn color(node: &str, x: f64) -> LinearRgb {
     let text = format!(
         "dapple = 1\nwrap = [false, false]\n[nodes]\nx = {{ coordinate = {{ along = [1, 0] }} }}\nb = {{ {node} }}\n[material]\n"
@@ -23,7 +25,7 @@ fn color(node: &str, x: f64) -> LinearRgb {
     plan(&text).colors("b").unwrap().sample([x, 0.5]).unwrap()
 }
 
-/// Returns a color by its hexadecimal sRGB codes.
+/// Returns the color of sRGB codes.
 fn hex(codes: [u8; 3]) -> LinearRgb {
     LinearRgb::from_srgb(codes)
 }

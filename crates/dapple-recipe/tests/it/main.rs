@@ -1,4 +1,4 @@
-//! Tests of recipes through their public interface: nodes and readers are compiled once, in the library.
+//! Tests of recipes through the public interface. Unit tests would compile the nodes and readers a second time.
 
 mod bakes;
 mod copies;

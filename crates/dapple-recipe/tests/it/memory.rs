@@ -1,4 +1,4 @@
-//! Plans that reuse values from a memory.
+//! Tests of plans that reuse values from a cache.
 
 use dapple_recipe::{
     Bake, BakeOptions, Images, MapKind, MapRows, Plan, PlanCache, PlanLimits, Recipe,
@@ -19,7 +19,7 @@ fn with(recipe: &Recipe, time: f64, memory: &PlanCache) -> Plan {
     Plan::new_with_cache(recipe, &Images::new(), time, &PlanLimits::default(), memory).unwrap()
 }
 
-/// The recipe, with a different number in one of its nodes each time.
+/// Returns the recipe, followed by variants that each change one number.
 fn changed(text: &str) -> Vec<Recipe> {
     let changes = [
         ("seed = ", "seed = 1"),
@@ -40,7 +40,7 @@ fn changed(text: &str) -> Vec<Recipe> {
     recipes
 }
 
-/// Built-in recipes with all kinds of nodes: those with a kind that no earlier recipe has.
+/// Returns names of built-in recipes that together have all kinds of nodes: each has a kind that the earlier ones lack.
 fn names_with_all_kinds() -> impl Iterator<Item = &'static str> {
     let mut kinds = BTreeSet::new();
     Recipe::builtin_names().filter(move |name| {

@@ -117,7 +117,8 @@ fn a_node_that_sees_the_whole_tile_is_averaged_where_it_is_repeated() {
     }
 }
 
-/// Returns the values of the node at 500 positions, and of its input at the expected positions.
+/// Returns pairs of values at 500 positions: the value of the node `b`, and the value of its input `a` at the position
+/// that `expected` returns.
 fn moved(head: &str, b: &str, expected: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<[f32; 2]> {
     let plan = plan_of(head, b);
     let [a, b] = ["a", "b"].map(|node| plan.field(node).unwrap());
@@ -132,8 +133,8 @@ fn moved(head: &str, b: &str, expected: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<[f
         .collect()
 }
 
-/// Checks that values are equal where positions are computed in another way: the noise changes by less than 50 per
-/// unit, and positions are rounded to 2^-50.
+/// Checks that the values of each pair differ by less than 1e-6. The noise changes by less than 50 per unit, and
+/// positions are rounded to 2^-50.
 fn assert_near(values: &[[f32; 2]]) {
     for [found, expected] in values {
         assert!((found - expected).abs() < 1e-6, "{found}, {expected}");

@@ -1,5 +1,5 @@
 //! Tests of nodes that depend on the neighborhood of a pixel: windows, threads, nesting and limits. Each kind is also
-//! compared with a naive formula.
+//! compared with a naive implementation.
 
 mod blur;
 mod extremes;
@@ -17,7 +17,7 @@ use dapple_recipe::{
 };
 use std::sync::Arc;
 
-/// Returns the numbers of a node at all pixels of the tile.
+/// Returns the values of a node at all pixels of the tile.
 fn numbers(plan: &Plan, node: &str, size: [u32; 2]) -> Raster<f32> {
     match plan.node_picture(node, size, None).unwrap() {
         Picture::Numbers(raster) => Arc::unwrap_or_clone(raster),
@@ -31,14 +31,14 @@ fn with_image(text: &str, image: Raster<f32>) -> Plan {
     Plan::new(&Recipe::from_toml(text).unwrap(), &images, 0.0).unwrap()
 }
 
-/// Returns a number from 0 to 1 that follows no pattern.
+/// Returns a pseudorandom number from 0 to 1.
 fn random(x: u32, y: u32) -> f32 {
     let bits = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77);
     let bits = (bits ^ bits >> 15).wrapping_mul(0xC2B2_AE3D);
     (bits >> 16) as f32 / 65_535.0
 }
 
-/// Checks that all numbers differ by at most `tolerance`.
+/// Checks that each pixel of `found` differs from `right(x, y)` by at most `tolerance`.
 fn assert_near(found: &Raster<f32>, right: impl Fn(i64, i64) -> f64, tolerance: f64) {
     let [width, height] = found.size().map(i64::from);
     for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
@@ -50,7 +50,7 @@ fn assert_near(found: &Raster<f32>, right: impl Fn(i64, i64) -> f64, tolerance: 
     }
 }
 
-/// A material with nested neighborhoods of cells and of an image, on pixels that are not square.
+/// A material with nested neighborhoods of cells and of an image. Its pixels are not square.
 const NESTED: &str = r##"
 dapple = 1
 seed = 3

@@ -1,4 +1,4 @@
-//! Named parameters of recipes.
+//! Tests of the named parameters of recipes.
 
 use dapple_recipe::{Input, Recipe, RecipeError, RecipeErrorKind};
 
@@ -47,7 +47,7 @@ roughness = "$low"
 relief = "$low"
 "##;
 
-/// Replaces the parameters in a text by hand.
+/// Replaces the parameter references in a recipe's text with their values, by string replacement.
 fn substituted(text: &str) -> String {
     let start = text.find("[parameters]").expect("there are some");
     let end = text.find("[nodes.cells").expect("it is next");

@@ -1,4 +1,4 @@
-//! Tests of pattern nodes, and of further values of nodes.
+//! Tests of pattern nodes, and of secondary outputs of nodes.
 
 use dapple_recipe::raster::{Field as _, Named as _, Raster};
 use dapple_recipe::{

@@ -1,4 +1,5 @@
-//! Tests of pictures in recipes: images and grown textures in bakes of other sizes, and heights past open sides.
+//! Tests of images in recipes: image files and synthesized textures baked at other sizes, and heights past sides that
+//! do not repeat.
 
 use dapple_color::{LinearRgb, Normal};
 use dapple_hash::{CellHash, Seed, unit_f64};
@@ -22,7 +23,7 @@ fn checker(size: [u32; 2]) -> Raster<f32> {
     Raster::from_fn(size, |x, y| ((x + y) % 2) as f32).unwrap()
 }
 
-/// The rows of one map.
+/// Bakes one map, in several bands, and returns all of its rows.
 fn baked(plan: &Plan, map: MapKind, size: [u32; 2], region: Option<Region>) -> MapRows {
     let options = BakeOptions {
         size,
@@ -36,7 +37,7 @@ fn baked(plan: &Plan, map: MapKind, size: [u32; 2], region: Option<Region>) -> M
     maps.swap_remove(0).1
 }
 
-/// The numbers of a gray map.
+/// Returns the height map.
 fn height(plan: &Plan, size: [u32; 2]) -> Raster<f32> {
     match baked(plan, MapKind::Height, size, None) {
         MapRows::Gray(raster) => raster,
@@ -44,7 +45,7 @@ fn height(plan: &Plan, size: [u32; 2]) -> Raster<f32> {
     }
 }
 
-/// The mean of the pixels under each pixel of a smaller size, from their overlaps.
+/// Returns the image scaled down to `size` columns and rows. Each pixel is a mean weighted by overlap.
 fn box_average(picture: &Raster<f32>, size: [u32; 2]) -> Raster<f32> {
     let overlaps = |at: u32, to: u32, from: u32| {
         let step = f64::from(from) / f64::from(to);
@@ -88,7 +89,7 @@ file = "a.png"
 height = "a"
 "#;
 
-/// The image under a warp that moves it by less than a pixel.
+/// A recipe that warps an image by less than a pixel.
 const WARPED: &str = r#"
 dapple = 1
 [nodes]

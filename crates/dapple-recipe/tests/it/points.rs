@@ -7,7 +7,7 @@ use dapple_recipe::{
 };
 use std::sync::Arc;
 
-/// A recipe whose only node is a texture of control points.
+/// Returns a recipe whose only node is `t`, a `pups` texture. `pups` is the TOML of its options.
 fn recipe(pups: &str, wrap: [bool; 2]) -> Recipe {
     let text = format!(
         "dapple = 1\nseed = 5\nextent = [3.0, 2.0]\nwrap = [{}, {}]\n[nodes.t.pups]\n{pups}\n[material]\nheight = \"t\"\n",
@@ -26,7 +26,7 @@ fn nets(recipe: &Recipe) -> ControlNets {
     nets.unwrap().expect("a node of control points")
 }
 
-/// Returns the bits of the heights.
+/// Returns the bits of the recipe's heights.
 fn bits(recipe: &Recipe) -> Vec<u32> {
     let plan = Plan::new(recipe, &images(), 0.0).unwrap();
     let window = plan.window([48, 32]).unwrap();

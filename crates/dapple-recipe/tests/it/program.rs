@@ -1,8 +1,8 @@
-//! Tests of the Rust program that a recipe prints.
+//! Tests of the Rust program that is exported from a recipe.
 
 use dapple_recipe::Recipe;
 
-/// Returns the recipe that a program contains as text.
+/// Returns the recipe that an exported program contains as text.
 fn held(code: &str) -> Recipe {
     let (_, text) = code.split_once("const RECIPE: &str = r").unwrap();
     let marks = &text[..text.find('"').unwrap()];

@@ -1,4 +1,4 @@
-//! The callback for the progress of plans and bakes, which can stop them.
+//! Tests of the progress callback of plans and bakes, which can stop them.
 
 use core::ops::ControlFlow;
 use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -9,8 +9,8 @@ use dapple_recipe::{
 };
 use std::sync::{Arc, Mutex};
 
-/// A recipe with a node of each kind that takes long: control points, a texture grown from an image, copies, borders and
-/// maps of the whole tile, and a warp.
+/// A recipe with each kind of slow node: control points, a synthesized texture, copies, borders, global nodes and a
+/// warp.
 const RECIPE: &str = "\
 dapple = 1
 extent = [4.0, 4.0]
@@ -37,7 +37,7 @@ fn recipe() -> (Recipe, Images) {
     (Recipe::from_toml(RECIPE).unwrap(), images)
 }
 
-/// Plans and bakes with a callback.
+/// Returns the maps of the recipe, planned and baked with a progress callback.
 fn made(
     memory: Option<&PlanCache>,
     progress: impl Fn(Progress) -> ControlFlow<()> + Send + Sync + 'static,
@@ -59,7 +59,8 @@ fn made(
     Bake::new(&plan, &options)?.whole_maps()
 }
 
-/// What is made with a callback that stops the work at a call, and the number of calls.
+/// Returns the result of a bake that is stopped when the callback has been called `last` times, and the number of
+/// calls.
 fn stopped_at(
     last: usize,
     memory: Option<&PlanCache>,

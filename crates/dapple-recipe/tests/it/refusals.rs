@@ -233,7 +233,8 @@ fn nodes_that_draw_by_one_name_see_the_same_points() {
     assert_ne!(at("a"), at("c"), "by their own names");
 }
 
-/// Returns the item that exceeds the limits in a recipe with these nodes, and its node.
+/// Returns the counted item that exceeds its limit in a recipe with these nodes, and the name of the node that the
+/// error reports.
 fn too_much(nodes: &str, limits: &PlanLimits) -> (&'static str, Option<String>) {
     let text = format!("dapple = 1\n{nodes}\n[material]\n");
     let recipe = Recipe::from_toml(&text).unwrap_or_else(|error| panic!("{nodes}: {error}"));

@@ -1,24 +1,24 @@
-//! Tests the schema against the reader, with a validator for the keywords that the schema uses.
+//! Tests of the schema against the parser, with a validator for the keywords that the schema uses.
 
 use dapple_recipe::{Images, KINDS, Plan, PupsNode, Recipe};
 use serde_json::{Map, Value};
 
 const README: &str = include_str!("../../README.md");
 
-/// The pattern of a color.
+/// Pattern of colors in the schema.
 const HEX: &str = "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$";
 
-/// The reason why a value does not fit a schema.
+/// The reason why a value does not match a schema.
 type Misfit = String;
 
-/// Checks a recipe in TOML.
+/// Validates a recipe in TOML against the schema.
 fn validate(text: &str) -> Result<(), Misfit> {
     let value: Value = toml::from_str(text).unwrap_or_else(|error| panic!("{text}: {error}"));
     let root = Recipe::text_schema();
     fits(&root, &root, &value)
 }
 
-/// Checks whether a value fits a schema, which is a part of the root schema.
+/// Validates a value against a schema. `root` is the whole schema, which holds the referenced types.
 fn fits(root: &Value, schema: &Value, value: &Value) -> Result<(), Misfit> {
     let schema = match schema {
         Value::Bool(true) => return Ok(()),
@@ -148,7 +148,7 @@ fn is_of(rule: &Value, value: &Value) -> bool {
     }
 }
 
-/// Returns the patterns of the schema.
+/// Returns whether a text matches a pattern. Only the patterns that the schema uses are supported.
 fn matches(pattern: &str, text: &str) -> bool {
     let is_hex = |text: &str| {
         let digits = text.strip_prefix('#').unwrap_or_default();
@@ -211,7 +211,7 @@ fn examples_of_the_readme_fit_the_schema() {
     assert_eq!(count, KINDS.len(), "an example of each kind");
 }
 
-/// Returns whether a recipe with these lines is refused: by the reader or the plan, and by the schema.
+/// Returns whether a recipe with these lines is refused, as two booleans: by the parser or plan, and by the schema.
 fn refused(lines: &str) -> [bool; 2] {
     let text = format!("dapple = 1\n{lines}\n");
     let text = if lines.contains("material") {
@@ -315,7 +315,7 @@ fn nets_out_of_range_are_refused_by_the_reader_and_the_schema() {
     }
 }
 
-/// Checks that the reader and the schema accept the first recipe and refuse the second.
+/// Checks that the parser and the schema both accept the recipe `right` and refuse the recipe `wrong`.
 fn assert_range(right: &str, wrong: &str) {
     assert_eq!(
         refused(right),

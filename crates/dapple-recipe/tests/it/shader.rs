@@ -1,4 +1,4 @@
-//! Materials as shaders: what they contain. `dapple-wgsl-tests` runs them.
+//! Tests of the WGSL generated for materials. `dapple-wgsl-tests` runs the shaders.
 
 use dapple_recipe::{Images, MaterialShader, Plan, Recipe, RecipeErrorKind, ShaderOptions};
 

@@ -1,11 +1,11 @@
-//! Bakes with several samples per pixel.
+//! Tests of bakes with several samples per pixel.
 
 use crate::bakes::{ALL_NODES, bake, crop, options, plan};
 use dapple_recipe::{
     Bake, BakeMemory, BakeOptions, Images, MapKind, Plan, Recipe, RecipeErrorKind, Region, Samples,
 };
 
-/// A neighborhood, heights that are not linear, and colors, on a tile that repeats along one axis.
+/// A recipe with a neighborhood, heights that are not linear, and colors, on a tile that repeats along one axis.
 const BLURRED: &str = r##"
 dapple = 1
 extent = [2.0, 1.5]
@@ -37,7 +37,8 @@ fn numbers(bits: &[u32]) -> Vec<f32> {
     bits.iter().copied().map(f32::from_bits).collect()
 }
 
-/// Averages blocks of `per_axis` × `per_axis` pixels with `N` channels, in the order of rows.
+/// Returns the means of blocks of `per_axis` × `per_axis` samples, row by row. `[width, height]` is the size of the
+/// result in pixels.
 fn means(
     samples: &[f32],
     [width, height]: [usize; 2],

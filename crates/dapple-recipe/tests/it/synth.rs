@@ -11,7 +11,7 @@ use dapple_recipe::{
 use dapple_synth::{Edges, Endless, EndlessOptions, Exemplar};
 use std::sync::Arc;
 
-/// Stones of 6 pixels in courses, and their heights.
+/// Returns images of stones in courses, and of their heights. Stones are 6 pixels high.
 fn images() -> Images {
     let stone = |x: u32, y: u32| {
         ![x + 3 * (y / 6 % 2), y]
@@ -39,7 +39,7 @@ fn images() -> Images {
     ])
 }
 
-/// A recipe whose color and height are grown together.
+/// A recipe whose color and height are synthesized together.
 const RECIPE: &str = "\
 dapple = 1
 seed = 5
@@ -55,7 +55,7 @@ fn plan(text: &str) -> Result<Plan, RecipeError> {
     Plan::new(&Recipe::from_toml(text)?, &images(), 0.0)
 }
 
-/// The color and the height of a bake.
+/// Returns the baked albedo and height.
 fn bake(plan: &Plan, options: BakeOptions) -> (Vec<LinearRgb>, Vec<f32>) {
     let options = BakeOptions {
         maps: vec![MapKind::Albedo, MapKind::Height],

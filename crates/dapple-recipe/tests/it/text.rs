@@ -1,4 +1,4 @@
-//! Recipes read from text and written to it, and errors with their place.
+//! Tests of reading and writing recipes as text, and of errors with positions.
 
 use dapple_recipe::{MAX_TEXT, Place, Recipe, RecipeError, RecipeErrorKind};
 

@@ -1,12 +1,12 @@
-//! Tests of `blur` against sums of two dimensions in double precision.
+//! Tests of `blur` against sums over both axes in double precision.
 
 use super::{assert_near, numbers, with_image};
 use crate::bakes::plan;
 use dapple_raster::{Raster, Wrap};
 use dapple_recipe::Picture;
 
-/// Returns the blurred value of a pixel, with the products of weights of both axes. `per_unit` is the number of pixels
-/// per unit along each axis.
+/// Returns the blurred value of a pixel: a sum over both axes, weighted by the product of the axes' weights. `per_unit`
+/// is the number of pixels per unit along each axis.
 pub(super) fn naive(
     values: &Raster<f32>,
     [x, y]: [i64; 2],

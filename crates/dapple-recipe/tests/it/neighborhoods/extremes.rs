@@ -5,7 +5,7 @@ use dapple_raster::{Raster, Wrap};
 
 const REPEAT: [Wrap; 2] = [Wrap::Repeat; 2];
 
-/// A picture on a tile of 2 × 1 units with pixels that are not square: 1/20 × 1/25 of a unit.
+/// An image of a tile of 2 × 1 units. Its pixels are not square: 1/20 × 1/25 of a unit.
 fn picture() -> Raster<f32> {
     let number = |x: u32, y: u32| (x * x * 31 + y * 17 + x * y * 5) % 97;
     Raster::from_fn([40, 25], |x, y| number(x, y) as f32 / 96.0 - 0.3).unwrap()
@@ -19,7 +19,7 @@ fn of_picture(image: Raster<f32>, node: &str) -> Raster<f32> {
     numbers(&with_image(&text, image), "b", size)
 }
 
-/// Returns the offsets in pixels within a radius, with their lengths.
+/// Returns the offsets within a radius, in pixels, each with its length in units.
 fn disk(radius: f64) -> Vec<(i64, i64, f64)> {
     let offsets = (-40..=40).flat_map(|x| (-25..=25).map(move |y| (x, y)));
     let with_length = offsets.map(|(x, y)| {

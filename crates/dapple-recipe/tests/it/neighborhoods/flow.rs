@@ -3,7 +3,7 @@
 use super::{assert_near, numbers, random, with_image};
 use dapple_raster::{Raster, Wrap};
 
-/// A picture of 32 × 24 numbers.
+/// An image of 32 × 24 random numbers.
 fn picture() -> Raster<f32> {
     Raster::from_fn([32, 24], random).unwrap()
 }

@@ -21,7 +21,7 @@ fn equalized_numbers_cover_each_share_of_the_tile() {
     assert!(pairs.is_sorted_by(|a, b| a.0 <= b.0), "the order stays");
 }
 
-/// Returns the regions of a mask by a search from each pixel.
+/// Returns the region id of each pixel of a mask, by a separate search from each pixel.
 fn searched(mask: &Raster<f32>, wrap: [bool; 2]) -> Vec<u32> {
     let size = mask.size().map(i64::from);
     let index = |[x, y]: [i64; 2]| (y * size[0] + x) as usize;
