@@ -86,10 +86,10 @@ pub(crate) struct OutputArgs {
 /// The output files of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Targets {
-    /// The path `NAME.EXTENSION`, which may not be written itself. The sidecar has the same path with the extension
-    /// `.json`.
+    /// The path `NAME.EXTENSION`. A run with several output files may not write this file itself. The sidecar has the
+    /// same path with the extension `.json`.
     pub(crate) main: Target,
-    /// The file for each part, in the order of the parts.
+    /// The file of each part, such as a map, in the order in which the parts were given.
     pub(crate) files: Vec<Target>,
 }
 
@@ -135,7 +135,7 @@ dapple::raster::named! {
 }
 
 impl Axes {
-    /// Creates a parser of one or both axes, for options where `none` has no meaning.
+    /// Creates a parser that accepts one or both axes, for options where `none` has no meaning.
     pub(crate) fn some() -> NamedValueParser<Self> {
         NamedValueParser::some(&[Self::X, Self::Y, Self::Both])
     }
@@ -148,14 +148,14 @@ impl Axes {
         ]
     }
 
-    /// Returns, for each axis, `wrapped` if the image repeats along it, and otherwise `cut`.
+    /// Returns, for each axis, `wrapped` if the image repeats along it; otherwise `cut`.
     pub(crate) fn choose<T: Copy>(self, wrapped: T, cut: T) -> [T; 2] {
         self.flags().map(|wraps| if wraps { wrapped } else { cut })
     }
 }
 
 impl ImageArgs {
-    /// Returns the file extension for images that the command names itself.
+    /// Returns the file extension for images whose names the command chooses, from `--format`; `png` by default.
     pub(crate) fn ending(&self) -> &'static str {
         self.format.map_or("png", Format::ending)
     }
@@ -216,8 +216,8 @@ impl OutputArgs {
         Ok(Targets { main, files })
     }
 
-    /// Returns the output path if it means a directory, otherwise `None`. An existing directory and a path with a
-    /// trailing slash mean a directory, and so does, if `n_files` is above 1, a path without an extension.
+    /// Returns the output path if it means a directory; otherwise `None`. An existing directory or a trailing slash
+    /// means a directory. If `n_files` is above 1, so does a path without an extension.
     pub(crate) fn folder(&self, n_files: usize) -> Option<&Path> {
         let output = self.output.as_deref()?;
         let ends_with_slash = output
@@ -245,7 +245,7 @@ pub(crate) fn seed(text: &str) -> Result<u64, String> {
         })
 }
 
-/// Parses a file name without a directory.
+/// Parses a file name, which must not contain a directory.
 fn plain_name(text: &str) -> Result<String, String> {
     if text.is_empty() || text.starts_with('.') || text.contains(['/', '\\']) {
         return Err("it becomes part of file names, without a slash or a leading dot".to_owned());

@@ -11,8 +11,8 @@ use clap::parser::ValueSource;
 use clap::{ArgMatches, Command, FromArgMatches};
 use std::ffi::{OsStr, OsString};
 
-/// Option names that users know from other programs, as the subcommands where they try them, the name, and the option
-/// to use instead.
+/// Option names from other programs that users try here. Each entry has the subcommands, the name, and the text of the
+/// suggested replacement.
 const ELSEWHERE: [(&[&str], &str, &str); 9] = [
     (
         &["worley", "noise", "wavelet"],
@@ -77,7 +77,7 @@ pub(crate) fn parse() -> (Cli, Vec<GivenOption>) {
     parsed.unwrap_or_else(|error| advised(error.format(&mut command), &words).exit())
 }
 
-/// Lists the subcommand's options that were given on the command line.
+/// Returns the subcommand's options that were given on the command line.
 fn given(command: &Command, matches: &ArgMatches) -> Vec<GivenOption> {
     let subcommand = matches.subcommand();
     let Some((command, matches)) =
@@ -123,7 +123,7 @@ fn normalized(typed: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     words
 }
 
-/// Spells the name of an option in lower case, with dashes. Leaves a value after `=` unchanged.
+/// Converts the name of an option to lower case with dashes. The value after `=` is unchanged.
 fn option(text: &str) -> String {
     match text.split_once('=') {
         Some((name, value)) => format!("{}={value}", with_dashes(name)),
@@ -138,13 +138,13 @@ fn is_negative(text: &str) -> bool {
     digits.starts_with(|digit: char| digit.is_ascii_digit())
 }
 
-/// Returns whether `word` is a long option that is not joined to its value.
+/// Returns whether `word` is a long option without `=`, so that the next word may be its value.
 fn takes_more(word: &OsString) -> bool {
     let word = word.to_string_lossy();
     word.starts_with("--") && word.len() > 2 && !word.contains('=')
 }
 
-/// Adds a suggestion to the error about an option name that belongs to another program.
+/// Adds a suggestion to the error for an unknown option if the option's name is from another program.
 fn advised(mut error: clap::Error, words: &[OsString]) -> clap::Error {
     let unknown = match error.get(ContextKind::InvalidArg) {
         Some(ContextValue::String(option)) if error.kind() == ErrorKind::UnknownArgument => option,

@@ -29,11 +29,12 @@ pub(crate) const MOST_PIXELS: u64 = 1 << 30;
 pub(crate) struct MapFile {
     pub(crate) image: Image,
     pub(crate) output: OutputIdx,
-    /// The file for a sheet of 2 × 2 copies of the image; `None` if not requested.
+    /// The file of a sheet of 2 × 2 copies of the image; `None` if no sheet is requested.
     pub(crate) sheet: Option<OutputIdx>,
 }
 
-/// Returns the name, seed and scale of a recipe, for programs that read its maps. One unit of the plane is one meter.
+/// Returns the recipe's name, seed and scale for the sidecar, for programs that read the maps. One unit of the plane is
+/// one meter.
 pub(crate) fn report(recipe: &Recipe) -> Value {
     json!({
         "name": recipe.name,
@@ -155,7 +156,7 @@ pub(crate) fn write(
     finish(job, rows, files, size)
 }
 
-/// Finishes the files of images, and records their properties.
+/// Finishes the image files, and records their properties in the job.
 fn finish(job: &mut Job<'_>, rows: Vec<Rows>, files: &[MapFile], size: [u32; 2]) -> Result<()> {
     for (rows, file) in rows.into_iter().zip(files) {
         rows.map.finish()?;
@@ -170,7 +171,7 @@ fn finish(job: &mut Job<'_>, rows: Vec<Rows>, files: &[MapFile], size: [u32; 2])
     Ok(())
 }
 
-/// Writes images that are grids of bakes of the same size.
+/// Writes images that are grids of equally large bakes, row of bakes by row of bakes.
 pub(crate) struct GridWriter {
     rows: Vec<Rows>,
     /// Width and height of the images, in pixels.
@@ -252,7 +253,7 @@ pub(crate) fn encode(
     finished.map(|file| Ok(file?.into_inner())).collect()
 }
 
-/// Passes each band of a bake to all files, in parallel.
+/// Passes each band of a bake to the writers of all files, in parallel.
 fn draw(
     bake: Bake<'_>,
     rows: &mut [Rows],
@@ -340,18 +341,18 @@ struct Writer {
     rows: RowWriter<BufWriter<Sink>>,
 }
 
-/// The writers of an image and of its sheet of 2 × 2 copies, with statistics of the written numbers.
+/// The writers of an image and of its sheet of 2 × 2 copies, with statistics of the written values.
 struct Rows {
     layers: Layers,
     map: Writer,
     sheet: Option<Writer>,
-    /// Whether to record the range of the numbers.
+    /// Whether to record the range of the values.
     is_noted: bool,
-    /// Minimum and maximum of the numbers written so far.
+    /// Minimum and maximum of the values written so far.
     range: [f32; 2],
-    /// Number of pixels written so far that have a number clipped by the format.
+    /// Number of pixels written so far with a value that the format clips.
     n_clipped: u64,
-    /// Whether the format clips numbers to 0 to 1.
+    /// Whether the format clips values to 0 to 1.
     clips: bool,
 }
 

@@ -61,7 +61,7 @@ mod tests {
     use clap::Command;
     use clap::error::ErrorKind;
 
-    /// Returns the command line with the options of all subcommands, which are defined when they are needed.
+    /// Returns the command line, with all subcommands and their options built.
     fn command() -> Command {
         let mut command = super::command();
         command.build();

@@ -30,7 +30,7 @@ dapple::raster::named! {
 }
 
 impl Format {
-    /// Chooses the format for a target, which is the requested one or else that of the file extension.
+    /// Returns the format for a target: the requested one, or else the one of the file extension.
     ///
     /// # Errors
     ///
@@ -64,7 +64,7 @@ impl Format {
         Err(error.hint(format!("let it end in .{}", format.ending())))
     }
 
-    /// Returns the encoding of numbers in this format.
+    /// Returns how values are encoded in this format.
     pub(crate) fn encoding(self) -> Encoding {
         match self {
             Self::Png8 => Encoding::Png(Depth::Eight),
@@ -130,7 +130,7 @@ pub(crate) fn ramped(map: Map, ramp: Option<&RampArg>) -> Map {
     }
 }
 
-/// Creates a node that colors an input of a recipe by a ramp.
+/// Creates a recipe node that colors an input by a ramp.
 pub(crate) fn ramped_recipe(ramp: &RampArg, input: &Input) -> Node {
     Node::Ramp(Ramped {
         input: input.clone(),
@@ -182,7 +182,7 @@ pub(crate) fn encode(map: &Map, format: Format) -> Result<Vec<u8>> {
     Ok(sink.into_inner())
 }
 
-/// The alpha of an image, and how it relates to the colors.
+/// The alpha of an image, and whether the colors are multiplied by it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cover<'a> {
     alpha: &'a Raster<f32>,
@@ -192,7 +192,7 @@ pub(crate) struct Cover<'a> {
 }
 
 impl<'a> Cover<'a> {
-    /// Describes the alpha of an image. Returns `None` if the image has no alpha.
+    /// Creates a cover from an image's alpha. Returns `None` if the image has no alpha.
     pub(crate) fn of(
         alpha: Option<&'a Raster<f32>>,
         is_associated: bool,
@@ -206,7 +206,8 @@ impl<'a> Cover<'a> {
         })
     }
 
-    /// Describes the alpha of straight colors, which are not multiplied by it.
+    /// Creates a cover for straight colors, which are not multiplied by alpha. `clear` selects the colors of pixels
+    /// with alpha 0.
     pub(crate) fn straight(alpha: &'a Raster<f32>, clear: Clear) -> Self {
         Self {
             alpha,
@@ -219,7 +220,7 @@ impl<'a> Cover<'a> {
 /// How the colors of pixels with alpha 0 are written to PNG.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Clear {
-    /// Write the color unchanged.
+    /// The colors are written unchanged.
     Keep,
     /// The color is copied from the nearest visible pixel, so that mip levels have no dark rims. `wraps` are the axes
     /// along which the image wraps.
@@ -227,7 +228,7 @@ pub(crate) enum Clear {
 }
 
 impl Clear {
-    /// Bleed colors in an image that is not known to wrap.
+    /// Bleeds colors without wrapping, for an image that is not known to repeat.
     pub(crate) const NOT_WRAPPED: Self = Self::Bleed { wraps: [false; 2] };
 }
 
@@ -292,7 +293,7 @@ pub(crate) fn content(map: &Map) -> Content {
     }
 }
 
-/// Counts the pixels that have a component below 0 or above 1 by more than half a 16-bit code.
+/// Returns the number of pixels with a component below 0 or above 1 by more than half a 16-bit code.
 pub(crate) fn n_clipped<T: Sync, const N: usize>(
     raster: &Raster<T>,
     parts: impl Fn(&T) -> [f32; N],
@@ -305,7 +306,7 @@ pub(crate) fn n_clipped<T: Sync, const N: usize>(
         .count() as u64
 }
 
-/// Counts the pixels of a map that integer formats clip. Normals are never clipped.
+/// Returns the number of pixels of a map that integer formats clip. Normals are never clipped.
 pub(crate) fn n_clipped_of(map: &Map) -> u64 {
     match map {
         Map::Value(raster) => n_clipped(raster, |number| [*number]),

@@ -77,10 +77,10 @@ pub(crate) trait Hint {
     /// The type of the result.
     type Hinted;
 
-    /// Adds a hint, which is an imperative sentence without a period.
+    /// Adds a hint: an imperative sentence without a period.
     fn hint(self, hint: impl Into<String>) -> Self::Hinted;
 
-    /// Marks an error as wrong usage, because a library has rejected the value of an option.
+    /// Marks an error as incorrect usage: a library has rejected the value of an option.
     fn wrong_value(self) -> Self::Hinted;
 }
 
@@ -140,7 +140,7 @@ pub(crate) fn report(error: &Error, options: &[GivenOption]) -> Exit {
     exit
 }
 
-/// Returns the name of the quantity that a library reports as out of range.
+/// Returns the name of the quantity that a library reports as out of range; `None` for other errors.
 fn refused_number(error: &Error) -> Option<&'static str> {
     use PointsErrorKind::{NotDescending, NotPositive, OutOfRange, PeriodTooShort, Radius};
     error.chain().find_map(|cause| {
@@ -180,7 +180,7 @@ pub(crate) fn cause<T: std::error::Error + 'static>(error: &Error) -> Option<&T>
     })
 }
 
-/// Options whose number has another name in the errors of libraries, as pairs of both names.
+/// Quantities with another name in error messages of libraries, as pairs of the option's name and the library's name.
 const OTHER_NAMES: [(&str, &str); 5] = [
     ("persistence", "gain"),
     ("radii", "radius"),
@@ -189,8 +189,8 @@ const OTHER_NAMES: [(&str, &str); 5] = [
     ("width", "width of the cuts"),
 ];
 
-/// Returns the option that sets the quantity `what`, as typed; `None` unless exactly one given option matches. `what`
-/// is a library's name for the quantity.
+/// Returns the option that sets the quantity `what`, as the user typed it; `None` unless exactly one given option
+/// matches. `what` is a library's name for the quantity.
 ///
 /// Options are matched by name only. Their values are not compared, since equal values would match unrelated options.
 fn option_of(what: &str, options: &[GivenOption]) -> Option<String> {
@@ -220,7 +220,7 @@ fn exit(error: &Error) -> Exit {
         .unwrap_or(Exit::Failed)
 }
 
-/// Formats an error as text, with the option, the message, the causes that add information, and the hint.
+/// Formats an error: the option, the message, the causes that add information, and the hint.
 fn text(error: &Error, option: Option<&str>) -> String {
     let mut said = error.to_string();
     let option = option.map_or(String::new(), |option| format!("{option}: "));
@@ -243,8 +243,8 @@ fn text(error: &Error, option: Option<&str>) -> String {
     text
 }
 
-/// Escapes a text for a terminal. Control characters, which names of files and texts of recipes may contain, are
-/// written as `\u{1b}`, and so are characters that change the direction of writing. Line feeds and tabs remain.
+/// Escapes text for output to a terminal. Control characters, which file names and recipes may contain, are written as
+/// `\u{1b}`. So are characters that change the writing direction. Line feeds and tabs are unchanged.
 pub(crate) fn printable(text: &str) -> Cow<'_, str> {
     let turns = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     let is_odd = |c: char| (c.is_control() && c != '\n' && c != '\t') || turns(c);

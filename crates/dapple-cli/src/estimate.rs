@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 /// Minimum number of pixels for which the estimate is printed, which is 8192 × 8192.
 const TOLD_PIXELS: u64 = 1 << 26;
-/// Columns and rows of the small bake whose time is measured.
+/// Columns and rows of the small bake that measures the time per pixel.
 const PROBE: [u32; 2] = [256; 2];
 
 /// Prints an estimate of the work for a large bake.
@@ -42,7 +42,7 @@ pub(crate) fn print_estimate(
     Ok(())
 }
 
-/// Measures the time per pixel, in seconds, with a small bake of the whole tile.
+/// Returns the time per pixel, in seconds, measured with a small bake of the whole tile.
 #[expect(
     clippy::disallowed_methods,
     reason = "the time is told to the user, and no value depends on it"
@@ -60,7 +60,7 @@ fn probe(plan: &Plan, options: &BakeOptions) -> Result<f64> {
     Ok(start.elapsed().as_secs_f64() / n_pixels(PROBE) as f64)
 }
 
-/// Formats the estimated work as text. `pace` is in seconds per pixel.
+/// Formats the estimate as text. `pace` is in seconds per pixel.
 fn work([width, height]: [u32; 2], images: &[Image], pace: f64) -> String {
     let pixels = n_pixels([width, height]);
     let bytes = images.iter().map(n_bytes);
@@ -78,7 +78,7 @@ fn n_pixels(size: [u32; 2]) -> u64 {
     u64::from(size[0]) * u64::from(size[1])
 }
 
-/// Bytes per pixel of an image, without compression.
+/// Returns the size of an image without compression, in bytes per pixel.
 fn n_bytes(image: &Image) -> u64 {
     image.layers.n_channels() * image.format.depth().0
 }

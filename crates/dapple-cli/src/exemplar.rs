@@ -1,4 +1,4 @@
-//! Converts maps to exemplars for a synthesis.
+//! Converts maps to exemplars for texture synthesis.
 
 use dapple::synth::{Edges, Exemplar, SynthError};
 use dapple::tile::Map;

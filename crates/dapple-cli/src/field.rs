@@ -86,7 +86,7 @@ impl std::str::FromStr for RangeArg {
 pub(crate) struct Field {
     /// The name of the subcommand.
     pub(crate) command: &'static str,
-    /// The node of the field.
+    /// The recipe node of the field.
     pub(crate) node: Node,
     /// Whether the field has colors.
     pub(crate) is_color: bool,
@@ -194,14 +194,14 @@ impl FieldArgs {
     }
 }
 
-/// Converts an error about the recipe to an error about an option. The message lacks the node, which users of the
-/// subcommand do not see.
+/// Converts an error about the recipe to an error about an option. The node's name is removed from the message, because
+/// users of the subcommand never see the node.
 pub(crate) fn refused(error: RecipeError) -> Error {
     let message = error.kind().to_string();
     Error::new(error).context(message).wrong_value()
 }
 
-/// The sidecar content: the options and the recipe.
+/// Content of the sidecar: the options and the recipe.
 #[derive(Serialize)]
 struct FieldSidecar<'a, T> {
     #[serde(flatten)]
@@ -210,7 +210,7 @@ struct FieldSidecar<'a, T> {
     recipe: &'a Recipe,
 }
 
-/// Builds the recipe that renders a field. It has the field's node, mapped to the range and colored by the ramp.
+/// Builds the recipe that renders a field: its node, mapped to the range and colored by the ramp.
 fn recipe(field: &Field, args: &FieldArgs, image: &ImageArgs, format: Format) -> Result<Recipe> {
     let mut recipe = Recipe::of_node(field.command, field.node.clone(), Seed(args.seed));
     recipe.extent = field.extent;

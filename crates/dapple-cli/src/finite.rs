@@ -12,7 +12,7 @@ pub(crate) struct Faults(Vec<ExrPlane>);
 
 impl Faults {
     /// Replaces all NaN and infinite values in `planes`. For [`NonFinite::Error`], returns the original planes that
-    /// have such values, so that [`check`](Self::check) can report them; otherwise returns no planes.
+    /// have such values, so that [`check`](Self::check) can report them; otherwise returns an empty list.
     pub(crate) fn replace(planes: &mut [ExrPlane], how: NonFinite) -> Self {
         let mut faults = Vec::new();
         for plane in planes {
@@ -31,7 +31,7 @@ impl Faults {
         Self(faults)
     }
 
-    /// Crops the faults to a region of the image.
+    /// Crops the planes to a region of the image.
     pub(crate) fn crop(&self, first: [u32; 2], size: [u32; 2]) -> Result<Self> {
         let planes = self.0.iter().map(|plane| {
             let values = plane.values.crop(first, size)?;
@@ -72,8 +72,8 @@ fn finite_or_zero(&value: &f32) -> f32 {
     if value.is_finite() { value } else { 0.0 }
 }
 
-/// Fills holes of NaN and infinite values from their borders inward, ring by ring. A pixel gets the mean of those of
-/// its eight neighbors that are finite or already filled. Without any finite value, all values become 0.
+/// Fills holes of NaN and infinite values from their borders inward, ring by ring. Each pixel gets the mean of those of
+/// its eight neighbors that are finite or already filled. If no value is finite, all become 0.
 fn filled(values: &Raster<f32>) -> Raster<f32> {
     let [width, height] = values.size().map(|side| side as usize);
     let mut pixels: Vec<f32> = values.pixels().to_vec();

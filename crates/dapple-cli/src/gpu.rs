@@ -21,7 +21,7 @@ pub(crate) fn check() -> Result<()> {
     }
 }
 
-/// Returns the plan with its nodes on the GPU, with the same bits.
+/// Returns a plan that computes its nodes on the GPU, with the same bits.
 ///
 /// # Errors
 ///
@@ -37,7 +37,7 @@ pub(crate) fn on_gpu(recipe: &Recipe, plan: &Plan) -> Result<Plan> {
     Ok(on_gpu.plan().clone())
 }
 
-/// Returns the plan; [`check`] has refused it.
+/// Returns the plan unchanged. It is never called, because [`check`] has refused the option.
 #[cfg(not(feature = "gpu"))]
 pub(crate) fn on_gpu(_: &Recipe, plan: &Plan) -> Result<Plan> {
     check().map(|()| plan.clone())

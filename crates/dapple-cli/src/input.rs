@@ -151,7 +151,7 @@ impl Loaded {
         Ok(())
     }
 
-    /// Returns an image with the properties of this one, but with another map, such as one of its channels, and without
+    /// Returns an image with another map, such as one of the channels, and with the properties of this image. It has no
     /// alpha.
     pub(crate) fn with_map(&self, map: Map) -> Self {
         Self {
@@ -254,7 +254,7 @@ fn region_of(bytes: &[u8], Region { first, size }: Region) -> Result<Image, Imag
     }
 }
 
-/// Returns the maximum number of pixels that an image exceeds, if this is the cause of the error.
+/// Returns the maximum number of pixels if the error is that an image exceeds it; otherwise `None`.
 pub(crate) fn exceeded_limit(error: &Error) -> Option<u64> {
     match cause::<ImageError>(error)?.kind() {
         ImageErrorKind::TooManyPixels { limit, .. } => Some(*limit),
@@ -375,8 +375,8 @@ pub(crate) fn map_with_faults(
     Ok(loaded)
 }
 
-/// Reads an image, selects the layer of an OpenEXR file, and replaces NaN and infinite values. The last value is true
-/// if only the region was read, as in [`image_or_region`].
+/// Reads an image, selects the layer of an OpenEXR file, and replaces NaN and infinite values. Returns the image, the
+/// replaced values, and whether only the region was read.
 fn picture(path: &Path, region: Option<Region>, read: &ReadArgs) -> Result<(Image, Faults, bool)> {
     let (mut image, is_part) = image_or_region(path, region)?;
     let mut faults = Faults::default();
@@ -492,7 +492,8 @@ fn of_image(
     Ok(loaded)
 }
 
-/// Returns the gray values of an image with alpha, from 0 to 1 and without sRGB decoding; `None` for an image in color.
+/// Returns the gray values of a gray image with alpha, from 0 to 1 and without sRGB decoding; `None` for an image in
+/// color.
 fn values_beside_alpha(image: &Image, pixels: &Raster<LinearRgba>) -> Option<Raster<f32>> {
     let png = match image {
         Image::Png(png) => png,
@@ -520,7 +521,7 @@ fn opaque(image: &Image, kind: Kind) -> Result<Map> {
     }
 }
 
-/// Combines a map of an image with the image's properties, cropped to a region if one is given.
+/// Returns a map with the properties of the image it was read from, cropped to a region if one is given.
 fn part(
     path: &Path,
     image: &Image,
@@ -618,7 +619,7 @@ pub(crate) fn divided(&color: &LinearRgb, &alpha: &f32) -> LinearRgb {
     }
 }
 
-/// Adds a hint to frequent errors.
+/// Adds a hint to common errors.
 fn advise(error: ImageError) -> Error {
     let hint = match error.kind() {
         ImageErrorKind::UnknownFormat => {
@@ -656,7 +657,7 @@ mod tests {
     use dapple::tile::Map;
     use std::path::Path;
 
-    /// Returns the bytes of a PNG image of one color, with a `cICP` chunk for Display P3.
+    /// Returns the bytes of a PNG image of one color. Its `cICP` chunk declares Display P3.
     fn display_p3(color: [u8; 3]) -> Vec<u8> {
         let raster = Raster::filled([4, 4], color).unwrap();
         let mut bytes = encode_png(raster.view(), Transfer::Data).unwrap();

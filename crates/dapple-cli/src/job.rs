@@ -27,7 +27,7 @@ pub(crate) struct Context {
     pub(crate) threads: u16,
     /// The command line.
     pub(crate) arguments: Vec<String>,
-    /// The options that were given, for error messages.
+    /// The options that were given on the command line, for error messages.
     pub(crate) options: Vec<GivenOption>,
 }
 
@@ -62,17 +62,17 @@ struct FileRecord {
     format: Option<Format>,
     #[serde(skip_serializing_if = "Option::is_none")]
     size: Option<[u32; 2]>,
-    /// Minimum and maximum of the numbers, before they are clamped and rounded for the file.
+    /// Minimum and maximum of the values, before they are clamped and rounded for the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     range: Option<[f32; 2]>,
-    /// Number of pixels that have a number clipped by the format.
+    /// Number of pixels with a value that the format clips.
     #[serde(skip_serializing_if = "is_zero")]
     clipped: u64,
     bytes: u64,
     sha256: String,
 }
 
-/// Returns whether no pixel was clipped, in which case the count is left out.
+/// Returns whether the count is zero; serde then omits it.
 fn is_zero(count: &u64) -> bool {
     *count == 0
 }
@@ -100,7 +100,7 @@ struct RawSize {
     bpp: u32,
 }
 
-/// Minimum fraction of clipped pixels that is reported.
+/// Minimum fraction of clipped pixels at which a note is printed.
 const CLIPPED_MIN: f64 = 0.01;
 
 impl FileRecord {
@@ -111,7 +111,7 @@ impl FileRecord {
         (share >= CLIPPED_MIN).then_some(share)
     }
 
-    /// Returns the size for the sidecar; `None` unless the file has raw heights.
+    /// Returns the size for the sidecar if the file has raw heights; otherwise `None`.
     fn raw_size(&self) -> Option<RawSize> {
         let [width, height] = self.size.filter(|_| self.format == Some(Format::R16))?;
         Some(RawSize {
@@ -123,7 +123,7 @@ impl FileRecord {
 }
 
 impl<'a> Job<'a> {
-    /// Begins a run.
+    /// Starts a run of the subcommand `command`.
     pub(crate) fn new(context: &'a Context, command: &'static str, args: &'a OutputArgs) -> Self {
         Self {
             context,
@@ -232,7 +232,7 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// Records how many pixels of an image are clipped by its format.
+    /// Records the number of pixels of an image that its format clips.
     pub(crate) fn note_clipped(&mut self, output: OutputIdx, n_pixels: u64) {
         for (_, record) in self.files.iter_mut().filter(|(at, _)| *at == output) {
             record.clipped = n_pixels;
@@ -244,7 +244,7 @@ impl<'a> Job<'a> {
         self.args
     }
 
-    /// Announces work on standard error, unless the command is quiet.
+    /// Prints a note that work begins to standard error, unless the command is quiet.
     pub(crate) fn note_work(&self, text: &str) {
         if !self.context.quiet {
             eprintln_if_possible(text);
@@ -345,7 +345,7 @@ impl<'a> Job<'a> {
         say(text)
     }
 
-    /// Writes the sidecar, renames all files to their final paths, and reports them.
+    /// Writes the sidecar, renames all files to their final paths, and prints a message for each.
     ///
     /// # Errors
     ///
@@ -403,7 +403,7 @@ impl<'a> Job<'a> {
         self.outputs.claim(target)
     }
 
-    /// Returns the default path of the sidecar, which is that of the output with the extension `.json`.
+    /// Returns the default path of the sidecar: the output's path with the extension `.json`.
     fn beside(&self, main: &Target) -> Result<Target> {
         let Some(path) = main.path() else {
             return Err(

@@ -1,4 +1,4 @@
-//! Assigns maps to the channels of an image, which has one map or several packed ones.
+//! Assigns maps to the channels of an image: one map, or several packed ones.
 
 use crate::encode::Format;
 use crate::encode::n_clipped;
@@ -67,7 +67,7 @@ impl Layers {
         }
     }
 
-    /// Returns the maps that the channels need.
+    /// Returns the kinds of the maps that the channels read.
     pub(crate) fn kinds(&self) -> Vec<MapKind> {
         match self {
             Self::Map(kind) => vec![*kind],
@@ -142,7 +142,7 @@ impl Channel {
         }
     }
 
-    /// Returns the channel's value for `number`, a number of its map; `None` for a constant channel.
+    /// Returns the channel's value. `number` is the value of its map; it is ignored by a constant channel.
     fn value(self, number: Option<f32>) -> f32 {
         match self {
             Self::Of(_) => number.unwrap_or_default(),
@@ -195,7 +195,7 @@ impl LayerRows<'_> {
         }
     }
 
-    /// Extends `range`, a minimum and a maximum, to include the finite numbers of these rows.
+    /// Returns `range`, a minimum and a maximum, extended to include the finite values of these rows.
     pub(crate) fn range(&self, range: [f32; 2]) -> [f32; 2] {
         match self {
             Self::Map(rows) => rows.range(range),
@@ -204,7 +204,7 @@ impl LayerRows<'_> {
         }
     }
 
-    /// Counts the pixels that have a number below 0 or above 1, which integer formats clip.
+    /// Returns the number of pixels with a value below 0 or above 1, which integer formats clip.
     pub(crate) fn n_clipped(&self) -> u64 {
         match self {
             Self::Map(rows) => match rows.as_ref() {
@@ -219,14 +219,15 @@ impl LayerRows<'_> {
         }
     }
 
-    /// Returns the rows twice, side by side.
+    /// Returns rows that contain these rows twice, side by side.
     pub(crate) fn beside_themselves(&self) -> Result<LayerRows<'static>> {
         Self::side_by_side(&[self, self])
     }
 
-    /// Joins rows of the same content and height from left to right. There must be at least one part.
+    /// Joins rows of the same content type and height from left to right. There must be at least one element in
+    /// `parts`.
     pub(crate) fn side_by_side(parts: &[&LayerRows<'_>]) -> Result<LayerRows<'static>> {
-        /// Joins the rasters that the parts have as the given variant.
+        /// Joins the rasters of all elements, which must be of the given variant.
         macro_rules! joined {
             ($variant:path) => {
                 beside(parts.iter().filter_map(|part| match part.map()? {
@@ -289,7 +290,7 @@ fn four(pixel: &LinearRgba) -> [f32; 4] {
     [r, g, b, pixel.alpha]
 }
 
-/// Extends `range`, a minimum and a maximum, to include the finite numbers.
+/// Returns `range`, a minimum and a maximum, extended to include the finite values of `numbers`.
 fn widened(range: [f32; 2], numbers: impl Iterator<Item = f32>) -> [f32; 2] {
     let numbers = numbers.filter(|number| number.is_finite());
     numbers.fold(range, |[min, max], number| {

@@ -1,7 +1,8 @@
-//! Options of subcommands that come from a node of recipes. The node's schema gives their names, help texts, types, ranges
-//! and defaults, so a new option of a node needs no line here.
+//! Builds options of subcommands from a recipe node. The node's schema provides their names, help texts, types, ranges
+//! and defaults, so a new option of a node needs no code here.
 //!
-//! A table of [`Flag`]s lists what differs: other names, values inside of tables, and options without a flag.
+//! A table of [`Flag`]s lists the exceptions: flags with other names, values in nested tables, and options without a
+//! flag.
 
 use crate::args::numbers_of;
 use crate::error::{Hint, usage};
@@ -27,7 +28,8 @@ pub(crate) trait NodeFlags: Send + Sync + 'static {
     /// Heading of the flags in the help; `None` for the flags of the subcommand itself.
     const HEADING: Option<&'static str> = Some("Texture");
 
-    /// Flags that differ from the schema. An option at the top of the node without an entry has a flag of its name.
+    /// Flags that differ from the schema. Each other option at the top level of the node has a flag with the option's
+    /// name.
     const FLAGS: &'static [Flag];
 
     /// Returns the options that have flags.
@@ -46,29 +48,29 @@ pub(crate) struct Flag {
     default: FlagDefault,
     /// Help text instead of the schema's description.
     help: Option<&'static str>,
-    /// Whether the flag takes the numbers of an option that may be a name or a list of numbers.
+    /// Whether the flag accepts a list of numbers, for an option that may also be a name.
     is_list: bool,
     /// Flags that must not be given together with this one.
     conflicts: &'static [&'static str],
-    /// Flag that must be given, too.
+    /// Flag that must be given together with this one.
     requires: Option<&'static str>,
-    /// Another flag, and its values with which this flag has an effect.
+    /// Another flag and the values of it for which this flag has an effect; `None` if the flag always has an effect.
     only_with: Option<(&'static str, &'static [&'static str])>,
 }
 
-/// Value of an option whose flag is not given.
+/// Default of a flag that is not given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FlagDefault {
-    /// Default of the schema.
+    /// The schema's default.
     Schema,
-    /// No value.
+    /// No value: the option is left out.
     None,
-    /// Value of the subcommand, which differs from the node's.
+    /// A default of the subcommand, which differs from the node's.
     Value(&'static str),
 }
 
 impl Flag {
-    /// Creates an entry for an option without a flag.
+    /// Creates an entry for an option that has no flag.
     pub(crate) const fn none(path: &'static str) -> Self {
         Self {
             path,
@@ -106,7 +108,7 @@ impl Flag {
         }
     }
 
-    /// Lets the option have no value unless the flag is given.
+    /// Removes the default: without the flag, the option is left out.
     pub(crate) const fn without_default(self) -> Self {
         Self {
             default: FlagDefault::None,
@@ -114,7 +116,7 @@ impl Flag {
         }
     }
 
-    /// Lets the flag take a list of numbers.
+    /// Makes the flag accept a list of numbers.
     pub(crate) const fn of_numbers(self) -> Self {
         Self {
             is_list: true,
@@ -127,8 +129,8 @@ impl Flag {
         Self { conflicts, ..self }
     }
 
-    /// Sets another flag, and its values with which this flag has an effect. The flag has no value unless it is given,
-    /// and its help begins with these values.
+    /// Sets another flag and the values of it for which this flag has an effect. The flag has no default then, and its
+    /// help text begins with these values.
     pub(crate) const fn only_with(
         self,
         flag: &'static str,
@@ -156,19 +158,19 @@ pub(crate) struct NodeArgs<K> {
     kind: PhantomData<K>,
 }
 
-/// A value of an option.
+/// Value of an option, given or by default.
 #[derive(Clone, Debug)]
 pub(crate) struct NodeValue {
     pub(crate) path: String,
     /// Name of the flag, without dashes.
     pub(crate) flag: String,
     pub(crate) value: Value,
-    /// Whether the value replaces the node's default.
+    /// Whether the value replaces the node's default, because it was given or the subcommand has another default.
     is_set: bool,
 }
 
 impl<K: NodeFlags> NodeArgs<K> {
-    /// Returns whether the flag of this name was given.
+    /// Returns whether the flag called `flag` was given.
     pub(crate) fn is_given(&self, flag: &str) -> bool {
         self.given().any(|value| value.flag == flag)
     }
@@ -210,8 +212,8 @@ impl<K: NodeFlags> NodeArgs<K> {
         Ok(default.map(serde_json::from_value).transpose()?)
     }
 
-    /// Returns the options that are given as a type of the library. `chosen` are pairs of a flag and a name, which
-    /// replaces the flag's value.
+    /// Deserializes the given options to a type of the library. `chosen` are pairs of a flag and a name that replaces
+    /// the flag's value.
     ///
     /// # Errors
     ///
@@ -231,8 +233,8 @@ impl<K: NodeFlags> NodeArgs<K> {
         Ok(serde_json::from_value(table)?)
     }
 
-    /// Refuses flags that have no effect. `chosen` are pairs of a flag that others depend on and its value; `what` names
-    /// the operation.
+    /// Refuses flags that have no effect. `chosen` are pairs of a flag that others depend on and its value. `what`
+    /// names the operation in the error message.
     ///
     /// # Errors
     ///
@@ -270,7 +272,7 @@ impl NodeValue {
     }
 }
 
-/// Sets a value inside of a table. Missing tables on the path are created.
+/// Sets a value in a nested table, whose path is separated by `/`. Missing tables on the path are created.
 fn set(table: &mut Value, path: &str, value: Value) {
     let Some((first, rest)) = path.split_once('/') else {
         table[path] = value;
@@ -331,31 +333,31 @@ impl<K: NodeFlags> FromArgMatches for NodeArgs<K> {
     }
 }
 
-/// The schema of recipes.
+/// Returns the schema of recipes.
 pub(crate) fn schema() -> &'static Value {
     static SCHEMA: OnceLock<Value> = OnceLock::new();
     SCHEMA.get_or_init(Recipe::schema)
 }
 
-/// An option of a node with a flag.
+/// An option of a node that has a flag.
 pub(crate) struct NodeOption {
     path: String,
     /// Name of the flag, without dashes.
     pub(crate) flag: String,
     schema: &'static Value,
     pub(crate) help: String,
-    /// Default of the schema; null for an option without a default.
+    /// The schema's default; null if the option has none.
     default: Value,
-    /// Entry of the table; empty for an option without one.
+    /// The option's entry in the table of flags; an empty entry if it has none.
     entry: Flag,
-    /// Whether a list may have any length.
+    /// Whether the flag accepts lists of any length.
     any_length: bool,
-    /// Whether the flag chooses among tables, whose options have separate flags.
+    /// Whether the flag selects one of several tables, whose options have separate flags.
     is_choice: bool,
 }
 
-/// Returns the options of a kind of node that have flags: first the entries of the table in its order, then the other
-/// options at the top of the node.
+/// Returns the options of a kind of node that have flags: first the entries of the table in its order, then the
+/// remaining options at the top level of the node.
 fn options(kind: &str, flags: &'static [Flag]) -> Vec<NodeOption> {
     let kinds = variants(&schema()["$defs"]["Node"]);
     let mut kinds = kinds.filter_map(|variant| variant["properties"].get(kind));
@@ -380,13 +382,13 @@ fn options(kind: &str, flags: &'static [Flag]) -> Vec<NodeOption> {
     of_table.chain(others).collect()
 }
 
-/// Returns the description of a value.
+/// Returns the description in a schema, or in the schema it refers to.
 fn description(schema: &'static Value) -> Option<&'static str> {
     let own = schema["description"].as_str();
     own.or_else(|| followed(schema)["description"].as_str())
 }
 
-/// Returns the schema that a reference leads to, or of the value of an option that may be null.
+/// Returns the schema that a reference leads to. For an option that may be null, returns the schema of its other type.
 pub(crate) fn followed(value: &'static Value) -> &'static Value {
     if let Some(path) = value["$ref"].as_str() {
         let found = schema().pointer(path.trim_start_matches('#'));
@@ -399,7 +401,7 @@ pub(crate) fn followed(value: &'static Value) -> &'static Value {
     }
 }
 
-/// Returns the variants of a value with several forms.
+/// Returns the schemas of the alternative forms of a value.
 pub(crate) fn variants(value: &'static Value) -> impl Iterator<Item = &'static Value> {
     let lists = ["oneOf", "anyOf"]
         .into_iter()
@@ -407,7 +409,7 @@ pub(crate) fn variants(value: &'static Value) -> impl Iterator<Item = &'static V
     lists.flatten()
 }
 
-/// Returns the table with an entry called `name`: the value itself, or one of its variants.
+/// Returns the schema of the table that has an entry called `name`: the value itself, or one of its alternative forms.
 fn table_of(value: &'static Value, name: &str) -> &'static Value {
     let value = followed(value);
     let mut tables = std::iter::once(value).chain(variants(value).map(followed));
@@ -416,7 +418,7 @@ fn table_of(value: &'static Value, name: &str) -> &'static Value {
 }
 
 impl NodeOption {
-    /// Creates an option at the top of a table.
+    /// Creates an option for an entry at the top level of a table.
     pub(crate) fn plain(name: &str, schema: &'static Value, entry: Flag) -> Self {
         Self {
             path: name.to_owned(),
@@ -430,20 +432,20 @@ impl NodeOption {
         }
     }
 
-    /// Lets the flag take lists of any length if `other`, which shares it, takes lists of another length.
+    /// Makes the flag accept lists of any length if `other`, an option with the same flag, has lists of another length.
     pub(crate) fn widen(&mut self, other: &Self) {
         if self.parser().list_length() != other.parser().list_length() {
             self.any_length = true;
         }
     }
 
-    /// Returns whether the flag takes values that a command line can express.
+    /// Returns whether the option's values can be typed on a command line.
     pub(crate) fn is_simple(&self) -> bool {
         let schema = followed(self.schema);
         schema["type"] != "array" || schema["items"]["type"] != "array"
     }
 
-    /// Creates the option of an entry; `None` if the entry has no flag.
+    /// Creates the option for an entry of the table of flags; `None` if the entry has no flag.
     fn new(node: &'static Value, entry: &'static Flag) -> Option<Self> {
         let flag = entry.name?.to_owned();
         let (mut schema, mut default, mut help) = (node, &Value::Null, None);
@@ -471,7 +473,8 @@ impl NodeOption {
         })
     }
 
-    /// Returns the value of a choice as the node takes it: a table for a name that stands for one.
+    /// Returns the JSON that the node expects for a chosen value. A name that stands for a table becomes a table with
+    /// one empty entry.
     fn tagged(&self, value: Value) -> Value {
         let table = value.as_str().map(|name| table_of(self.schema, name));
         match (table, value) {
@@ -484,7 +487,7 @@ impl NodeOption {
         }
     }
 
-    /// Returns the default as it is typed, or a description of it.
+    /// Returns the default as text for the help, as a user would type it; `None` if it has no simple form.
     fn default_text(&self) -> Option<String> {
         match (self.entry.default, &self.default) {
             (FlagDefault::Value(default), _) => Some(default.to_owned()),
@@ -496,8 +499,8 @@ impl NodeOption {
         }
     }
 
-    /// Returns the help text, with the values of another flag that the flag is for, and with a default that depends on
-    /// them.
+    /// Returns the help text. If the flag has an effect only for some values of another flag, the text lists these
+    /// values and the default for them.
     fn help(&self, default: Option<&str>) -> String {
         let help = self.help.trim_end_matches('.').replace('`', "");
         let Some((_, values)) = self.entry.only_with else {
@@ -510,7 +513,7 @@ impl NodeOption {
         format!("{}: {help}{default}", values.join(", "))
     }
 
-    /// Defines the flag.
+    /// Returns the clap definition of the flag.
     fn arg(&self, heading: Option<&'static str>) -> Arg {
         let parser = self.parser();
         let mut arg = Arg::new(self.flag.clone())
@@ -535,7 +538,7 @@ impl NodeOption {
         arg.conflicts_with_all(entry.conflicts)
     }
 
-    /// Returns the parser of the option's value.
+    /// Returns the parser for the option's values, as its schema describes them.
     fn parser(&self) -> ValueParser {
         let schema = followed(self.schema);
         if self.entry.is_list {
@@ -560,13 +563,14 @@ impl NodeOption {
     }
 }
 
-/// Returns the number of items of a list; `None` for a list of any length.
+/// Returns the number of items of a list, from its schema; `None` if it may have any length.
 fn length(list: &Value) -> Option<usize> {
     let count = list["minItems"].as_u64()?;
     (list["maxItems"].as_u64() == Some(count)).then_some(count as usize)
 }
 
-/// Returns the names that a value may have, with their help texts. `with_tables` includes the names of tables.
+/// Returns the names that a value may have, each with its help text. `with_tables` includes names that stand for a
+/// table.
 fn names(value: &'static Value, with_tables: bool) -> Vec<(&'static str, String)> {
     let named = |variant: &'static Value| {
         let about = variant["description"].as_str().unwrap_or_default();
@@ -584,15 +588,15 @@ fn names(value: &'static Value, with_tables: bool) -> Vec<(&'static str, String)
     variants(value).filter_map(named).chain(listed).collect()
 }
 
-/// Parses a value by its schema.
+/// How a value is parsed, derived from its schema.
 #[derive(Clone, Debug)]
 enum ValueParser {
-    /// A name, with its help text.
+    /// One of several names, each with its help text.
     Name(Vec<(&'static str, String)>),
-    /// A whole number in a range.
+    /// An integer from a minimum to a maximum.
     Integer(i64, i64),
     Number,
-    /// Numbers with commas between them: as many as given, or any number of them.
+    /// Comma-separated numbers: a fixed count, or any count if `None`.
     Numbers(Option<usize>),
     WholeNumbers(Option<usize>),
 }
@@ -610,7 +614,7 @@ impl ValueParser {
         matches!(self, Self::Numbers(_) | Self::WholeNumbers(_))
     }
 
-    /// Returns the number of numbers in a list; `None` for any number of them, and for other values.
+    /// Returns the required length of a list of numbers; `None` if any length is allowed, and for other values.
     fn list_length(&self) -> Option<usize> {
         match self {
             Self::Numbers(count) | Self::WholeNumbers(count) => *count,

@@ -124,8 +124,8 @@ impl Target {
         }
     }
 
-    /// Returns the rank of the file in the order of renaming. Images and other files come first, then material
-    /// libraries, then documents that name them, and last the sidecar with the checksums.
+    /// Returns the rank of the file in the order of renaming: images and other files, then material libraries, then
+    /// documents that reference them, and last the sidecar with the checksums.
     fn turn(&self) -> u8 {
         match self.ending().as_str() {
             "mtl" => 1,
@@ -416,7 +416,7 @@ fn missing_folders(folder: &Path) -> Result<Vec<&Path>> {
     Ok(missing)
 }
 
-/// Returns the final destination of a target, resolved when it is claimed.
+/// Returns the final destination of a target. It is determined once, when the target is claimed.
 fn place(target: &Target) -> Result<Place> {
     let Target::Path(path) = target else {
         return Ok(Place::Stdout);

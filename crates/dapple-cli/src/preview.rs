@@ -12,7 +12,7 @@ use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe};
 
 /// Side of the preview, in pixels.
 const SIDE: u32 = 512;
-/// Pixels along the longer side of the baked maps.
+/// Longer side of the baked maps, in pixels.
 const TILE: u32 = 512;
 
 /// The maps of a preview. The last four are optional.
@@ -29,7 +29,7 @@ const MAPS: [MapKind; 7] = [
 /// The color behind transparent parts of a material.
 const BEHIND: LinearRgb = LinearRgb::gray(0.25);
 
-/// Major and minor radius of the torus: those of the ring and of its tube.
+/// Radii of the torus: from its center to the middle of the tube, and of the tube.
 const RING: [f64; 2] = [0.9, 0.4];
 
 dapple::raster::named! {
@@ -49,12 +49,12 @@ dapple::raster::named! {
 struct Maps {
     normal: Raster<Vec3>,
     albedo: Raster<LinearRgb>,
-    /// Occlusion, roughness and metallic, packed.
+    /// Occlusion, roughness and metalness, packed in x, y and z.
     orm: Raster<Vec3>,
     emission: Option<Raster<LinearRgb>>,
     emission_strength: f32,
     opacity: Option<Raster<f32>>,
-    /// Opacity below which a pixel is transparent; `None` to blend.
+    /// Opacity below which a pixel is not drawn; `None` for alpha blending.
     opacity_cutoff: Option<f32>,
     specular: Option<Raster<f32>>,
     clearcoat: Option<Raster<f32>>,
@@ -209,7 +209,8 @@ impl Maps {
     }
 }
 
-/// Mixes a material with the gray of [`BEHIND`], as if a wall was right behind a transparent surface.
+/// Returns a material blended with the gray of [`BEHIND`] by its opacity, as if a gray wall was directly behind the
+/// surface.
 fn see_through(material: Material, opacity: f32) -> Material {
     if opacity >= 1.0 {
         return material;
@@ -229,7 +230,7 @@ fn see_through(material: Material, opacity: f32) -> Material {
     }
 }
 
-/// Returns the directions in which the maps' right and up point at a surface point.
+/// Returns the unit vectors in which the maps' right and up directions point at a surface point.
 fn directions(surface: &Surface) -> [DVec3; 2] {
     let at = surface.position;
     let outward = DVec2::new(at.x, at.z).length();

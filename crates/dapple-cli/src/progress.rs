@@ -1,4 +1,4 @@
-//! Displays progress on standard error, as a bar on a terminal and as lines elsewhere, for work that takes a while.
+//! Displays the progress of long work on standard error: a bar on a terminal, lines elsewhere.
 
 #![expect(
     clippy::disallowed_methods,
@@ -49,9 +49,9 @@ pub(crate) struct Progress {
     bar: ProgressBar,
     label: &'static str,
     style: Style,
-    /// The time at which to print the next line; `None` if no lines are printed.
+    /// Time of the next progress line; `None` if no lines are printed.
     next_line: Option<Mutex<Instant>>,
-    /// Set to true to request that the work stops.
+    /// Flag that requests a stop when it becomes true.
     #[cfg(feature = "studio")]
     stop: Option<Arc<AtomicBool>>,
 }
@@ -96,7 +96,7 @@ impl Progress {
         Ok(())
     }
 
-    /// Returns a progress callback that stops the work if a stop was requested.
+    /// Returns a progress callback for libraries. It stops the work if a stop was requested.
     pub(crate) fn listener(
         &self,
     ) -> impl Fn(dapple::synth::Progress) -> ControlFlow<()> + Send + Sync + 'static {
@@ -111,7 +111,7 @@ impl Progress {
         }
     }
 
-    /// Sets the amount of work done.
+    /// Sets the number of completed steps.
     pub(crate) fn set(&self, done: u64) {
         if done > 0 && done == self.bar.position() {
             return;
@@ -129,7 +129,7 @@ impl Progress {
         eprintln_if_possible(&line(self.label, done, length, is_json));
     }
 
-    /// Adds to the amount of work done.
+    /// Adds to the number of completed steps.
     pub(crate) fn add(&self, more: u64) {
         self.set(self.bar.position() + more);
     }

@@ -37,7 +37,7 @@ impl ShaderLanguage {
         }
     }
 
-    /// Translates functions without bindings and entry points from WGSL.
+    /// Translates functions without bindings and entry points from WGSL to this language.
     ///
     /// # Errors
     ///
@@ -54,8 +54,8 @@ impl ShaderLanguage {
         }
     }
 
-    /// Translates the material of a recipe. For Godot, this is a whole shader of surfaces, whose texture coordinates cover
-    /// the tile once.
+    /// Translates the material of a recipe. For Godot, the result is an entire surface shader, whose texture
+    /// coordinates from 0 to 1 cover the tile once.
     ///
     /// # Errors
     ///
@@ -78,13 +78,15 @@ mod translation {
     use naga::back::{glsl, hlsl};
     use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
-    /// An entry point, which GLSL needs, and its text there.
+    /// An entry point, which the translation to GLSL requires, as WGSL and as the start of its GLSL. It is removed from
+    /// the result.
     const ENTRY: [&str; 2] = [
         "\n@compute @workgroup_size(1) fn entry() {}\n",
         "void main() {",
     ];
 
-    /// Lines of GLSL that belong to a whole shader: the version, precisions, and the size of a workgroup.
+    /// Prefixes of the lines of GLSL that only an entire shader needs, and that are removed: the version, precisions,
+    /// and the workgroup size.
     const HEAD: [&str; 3] = ["#version ", "precision ", "layout(local_size_x"];
 
     pub(super) fn glsl(wgsl: &str) -> Result<String> {
@@ -117,7 +119,7 @@ mod translation {
         Ok(text)
     }
 
-    /// Vectors, and the conditions of their components.
+    /// Vector types, each with its boolean vector type and the names of its components.
     const VECTORS: [[&str; 3]; 3] = [
         ["vec2", "bvec2", "xy"],
         ["vec3", "bvec3", "xyz"],
@@ -171,7 +173,7 @@ mod translation {
         Ok(text)
     }
 
-    /// Replaces the function `mix` by `mixed`.
+    /// Replaces calls of `mix` with calls of `mixed`, which also accepts integer vectors.
     fn with_mixed(line: &str) -> String {
         let mut text = String::new();
         let mut rest = line;

@@ -1,4 +1,4 @@
-//! Manages the list of a recipe's shards, with its description, its files, and its identity.
+//! Manages the list of a recipe's shards: its file, the names of the shards' files, and its checksum.
 //!
 //! The files of a list are in a directory whose name has the first digits of the list's checksum. The checksum covers
 //! the version of dapple, the recipe as it is baked, the content of its images, and the sizes. A file with the name of
@@ -16,9 +16,9 @@ use std::path::{Path, PathBuf};
 
 /// The file name of a list.
 const FILE: &str = "shards.json";
-/// Maximum number of files in a list, which is shards times maps times frames.
+/// Maximum number of files in a list: shards times maps times frames.
 const FILES_MAX: u64 = 1 << 20;
-/// Number of digits of the checksum in the name of the directory.
+/// Number of digits of the checksum in the directory's name.
 const DIGITS: usize = 12;
 
 /// A list of the shards of a recipe, as stored in `shards.json`.
@@ -30,11 +30,11 @@ pub(crate) struct List {
     recipe: String,
     /// The name of the recipe.
     pub(crate) name: String,
-    /// The checksum of all data that the bits of a shard depend on.
+    /// Checksum of all inputs that determine the bits of the shards.
     sha256: String,
     /// Columns and rows of the maps.
     pub(crate) size: [u32; 2],
-    /// The positions of the samples.
+    /// Sample positions: pixel centers or corners.
     #[serde(default, skip_serializing_if = "is_default")]
     samples: Samples,
     /// Columns and rows of a shard.
@@ -49,22 +49,22 @@ pub(crate) struct List {
     pub(crate) frames: Option<u32>,
 }
 
-/// A shard of a list, which a process bakes.
+/// A shard of a list, which is baked as a unit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Task {
     /// The frame of the loop.
     pub(crate) frame: Option<Frame>,
-    /// The shard, as given on the command line.
+    /// The shard's position and size, as for `--shard`.
     pub(crate) shard: Shard,
-    /// The region of the shard.
+    /// The shard's region of the map, in pixels.
     pub(crate) region: Region,
 }
 
-/// The options for creating a list.
+/// The requested properties of a new list.
 pub(crate) struct Wanted<'a> {
     pub(crate) size: Size,
     pub(crate) samples: SamplesArgs,
-    /// The option for several samples per pixel; `None` for one.
+    /// The command-line option for several samples per pixel; `None` for one sample.
     pub(crate) supersample: Option<String>,
     pub(crate) shard: Size,
     pub(crate) overlap: u32,
@@ -174,7 +174,7 @@ impl List {
         ))
     }
 
-    /// Writes the list to a directory. With `may_replace`, it replaces a list of other shards.
+    /// Writes the list to a directory. A list of other shards is replaced only if `may_replace` is true.
     ///
     /// # Errors
     ///
@@ -307,7 +307,7 @@ impl List {
     }
 }
 
-/// Returns whether a value has its default, and so is left out of the list.
+/// Returns whether a value is its type's default; serde then omits it from the list.
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }

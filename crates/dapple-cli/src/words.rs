@@ -17,8 +17,8 @@ pub(crate) fn with_dashes(word: &str) -> String {
     word.trim().to_lowercase().replace('_', "-")
 }
 
-/// Returns the error message for an unknown word. It suggests the most similar name, or else lists all names followed
-/// by `more`.
+/// Returns the error message for an unknown word of the given kind. It suggests the most similar name, or else lists
+/// all names, followed by `more`.
 pub(crate) fn unknown(kind: &str, word: &str, names: &[&str], more: &str) -> String {
     slip(kind, word, names.iter().copied()).unwrap_or_else(|| {
         format!(
@@ -28,7 +28,7 @@ pub(crate) fn unknown(kind: &str, word: &str, names: &[&str], more: &str) -> Str
     })
 }
 
-/// Returns the error message for a misspelled name; `None` if no name is similar to the word.
+/// Returns the error message for a misspelled name, with a suggestion; `None` if no name is similar to the word.
 pub(crate) fn slip<'a>(
     kind: &str,
     word: &str,
@@ -62,7 +62,7 @@ impl<T: Named> NamedValueParser<T> {
         Self(values.iter().map(named).collect())
     }
 
-    /// Converts the parsed values to another type.
+    /// Returns a parser that converts the parsed values with `change`.
     pub(crate) fn map<U>(self, change: fn(T) -> U) -> NamedValueParser<U> {
         let changed = |(name, value)| (name, change(value));
         NamedValueParser(self.0.into_iter().map(changed).collect())
@@ -80,7 +80,7 @@ impl<T> NamedValueParser<T> {
         )
     }
 
-    /// Creates a parser that accepts no value, to which [`or`](Self::or) adds values.
+    /// Creates a parser without values. [`or`](Self::or) adds values to it.
     pub(crate) fn none() -> Self {
         Self(Vec::new())
     }

@@ -1,4 +1,4 @@
-//! Defines the option that keeps alpha, drops it, or composites the image over a color.
+//! Defines the values of `--alpha`, which keeps alpha, drops it, or composites the image over a color.
 
 use super::ramp::color;
 use dapple::recipe::ImageAlpha;

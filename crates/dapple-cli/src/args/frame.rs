@@ -7,7 +7,7 @@ use std::str::FromStr;
 /// A frame of a looping animation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Frame {
-    /// The number of the frame, counted from 1.
+    /// Number of the frame in the loop, starting at 1.
     number: u32,
     /// The number of frames in the loop.
     count: u32,

@@ -10,7 +10,7 @@ use std::str::FromStr;
 /// A map of a material, given as `NAME=FILE`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct MapArg {
-    /// The name, of letters, digits and `_`; `normal` means normals.
+    /// Name of the map, of letters, digits and `_`. The name `normal` makes it a normal map.
     pub(crate) name: String,
     pub(crate) path: PathBuf,
 }
@@ -36,7 +36,7 @@ impl FromStr for MapArg {
 }
 
 impl MapArg {
-    /// Returns the kind as which the map is read: normals by their name.
+    /// Returns how the image must be read: as normals if its name is that of a normal map, otherwise by its channels.
     pub(crate) fn kind(&self) -> Kind {
         match MapKind::from_name(&with_underscores(&self.name)) {
             Some(MapKind::Normal) => Kind::Normals,

@@ -3,15 +3,15 @@
 use serde::{Serialize, Serializer};
 use std::str::FromStr;
 
-/// `N` numbers, separated by commas.
+/// `N` comma-separated numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Numbers<T, const N: usize>(pub(crate) [T; N]);
 
-/// Parses comma-separated numbers: `count` of them, or any number.
+/// Parses comma-separated numbers. `count` is the required number of them; any number is accepted if it is `None`.
 ///
 /// # Errors
 ///
-/// If a part is not a number, or their count is another.
+/// If an item is not a number, or the list has another length than `count`.
 pub(crate) fn numbers_of<T: FromStr>(text: &str, count: Option<usize>) -> Result<Vec<T>, String> {
     let numbers: Result<Vec<T>, _> = text.split(',').map(|part| part.trim().parse()).collect();
     match (numbers, count) {

@@ -1,4 +1,4 @@
-//! Defines the options that select a part of photographs: a rectangle, or a quadrilateral that is rectified.
+//! Defines the options that select a region of photographs: a rectangle, or a quadrilateral that is rectified.
 
 use super::{Numbers, Region};
 use crate::error::Hint;

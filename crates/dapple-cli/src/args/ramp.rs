@@ -9,7 +9,7 @@ use std::str::FromStr;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RampArg {
     text: String,
-    /// The colors from low to high; at least one.
+    /// The colors of the ramp from low to high, at least one.
     pub(crate) colors: Vec<LinearRgb>,
     /// The ramp, with the colors evenly spaced and interpolated in Oklab.
     pub(crate) ramp: ColorRamp,

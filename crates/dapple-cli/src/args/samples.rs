@@ -20,8 +20,8 @@ pub(crate) struct SamplesArgs {
 }
 
 impl SamplesArgs {
-    /// Returns the number of sample spacings from one side of the tile to the other, along each axis: the number of
-    /// samples for pixel centers, and one less for corners.
+    /// Returns the number of sample spacings from one side of the tile to the other, along each axis. It equals the
+    /// number of samples for pixel centers, and is one less for corners.
     ///
     /// # Errors
     ///

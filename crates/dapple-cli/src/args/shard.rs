@@ -16,12 +16,12 @@ pub(crate) struct Shard {
     pub(crate) place: [u32; 2],
     /// Columns and rows of a shard, in pixels.
     pub(crate) size: Size,
-    /// How many columns and rows neighboring shards share.
+    /// Overlap: number of columns and rows that neighboring shards share.
     pub(crate) overlap: u32,
 }
 
 impl Shard {
-    /// Returns the shard's region in a map of the size `picture`, cropped at the border.
+    /// Returns the shard's region in a map with the size `picture`, cropped at the border.
     ///
     /// # Errors
     ///

@@ -53,7 +53,8 @@ impl FromStr for Extent {
 }
 
 impl Size {
-    /// Returns a note if an image of the size `from` is stretched when it is resampled to this size.
+    /// Returns a note for the user if resampling an image of the size `from` to this size changes its aspect ratio;
+    /// otherwise `None`.
     pub(crate) fn stretch_note(self, from: [u32; 2]) -> Option<String> {
         let [width, height] = from;
         let is_stretched =

@@ -171,10 +171,10 @@ pub(crate) struct Args {
     files: OutputArgs,
 }
 
-/// The hint of errors about an output that must be a directory.
+/// Hint for errors about an output that must be a directory.
 const FOLDER_HINT: &str = "let -o end with a slash, as in -o out/";
 
-/// A recipe to bake, with its options, the directory of its images and, for a shard, its list.
+/// One bake: a recipe with its options, the directory of its images and, for a shard, the list of shards.
 struct Work {
     /// The options, with a single seed.
     args: Args,
@@ -222,8 +222,8 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(batch.exit())
 }
 
-/// Reads all recipes, with each seed and each preset, and checks that all files can be claimed, before the work begins.
-/// Returns them with the titles for messages.
+/// Reads all recipes, with each seed and each preset, and checks that all output files can be claimed, before the work
+/// begins. Returns each bake with its title for messages.
 fn works(
     names: &[String],
     by_preset: &[Args],
@@ -263,7 +263,7 @@ fn works(
     Ok(works)
 }
 
-/// Refuses recipes whose files would have the same names.
+/// Refuses recipes whose output files would have the same names.
 fn check_names(works: &[(String, Work)]) -> Result<()> {
     for (index, (name, work)) in works.iter().enumerate() {
         let is_same = |(_, other): &(String, Work)| {
@@ -319,9 +319,9 @@ pub(super) fn presets() -> impl Iterator<Item = (&'static str, &'static str)> {
         .map(|preset| (preset.name, preset.about()))
 }
 
-/// Images and values that the frames of a looping animation share.
+/// Images and node values that the frames of a looping animation share.
 struct Made {
-    /// The recipe's images; `None` until a frame needs them.
+    /// The recipe's images; `None` until the first frame needs them.
     images: Option<Images>,
     /// The cache of node values; `None` for a single frame.
     cache: Option<PlanCache>,
@@ -331,7 +331,8 @@ struct Made {
 const MEMORY: usize = 1 << 28;
 
 impl Work {
-    /// Reads a recipe and applies the options. `seed` is the label of the seed if there are several.
+    /// Reads the recipe called `name` and applies the options to it. `seed` is the seed's label in file names, if there
+    /// are several seeds.
     fn read(name: &str, mut args: Args, files: OutputArgs, seed: Option<&str>) -> Result<Self> {
         let (mut recipe, folder) = read_recipe(name)?;
         args.change(&mut recipe)?;
@@ -362,7 +363,7 @@ impl Work {
         })
     }
 
-    /// Prepares a recipe from memory with the options of each preset. `folder` is that of its images.
+    /// Prepares one bake of `recipe` for each preset. `folder` is the directory of the recipe's images.
     fn of_presets(args: &Args, recipe: &Recipe, folder: &Path) -> Result<Vec<Self>> {
         let work = |args: Args| {
             let mut recipe = recipe.clone();
@@ -388,7 +389,7 @@ impl Work {
         self.bake_with(made, context, progress)
     }
 
-    /// Bakes like [`bake`](Self::bake), with the given images and values.
+    /// Bakes all frames or a single image, like [`bake`](Self::bake), with images and node values in `made`.
     fn bake_with(
         &self,
         mut made: Made,
@@ -443,7 +444,7 @@ impl Work {
         self.finish(args, job, &claimed, images, time)
     }
 
-    /// Returns the recipe's images, which are read for the first frame.
+    /// Returns the recipe's images. They are read on the first call and stored in `images`.
     fn images<'a>(&self, images: &'a mut Option<Images>) -> Result<&'a Images> {
         Ok(match images {
             Some(images) => images,
@@ -473,7 +474,8 @@ impl Work {
         }
     }
 
-    /// Writes what goes with an image, finishes its files, and returns its lit preview if the options need one.
+    /// Writes the files that accompany an image, such as its document, and finishes all files. Returns the lit preview
+    /// if the options need one.
     fn finish(
         &self,
         args: &Args,
@@ -502,7 +504,7 @@ impl Work {
     }
 }
 
-/// The sidecar content: the options, and the recipe that was baked with them.
+/// Content of the sidecar: the options, and the recipe as it was baked.
 #[derive(Serialize)]
 struct BakeSidecar<'a> {
     #[serde(flatten)]
@@ -571,7 +573,7 @@ impl Args {
         self.files.force
     }
 
-    /// Returns a copy of the options with another size, and with or without `--force`.
+    /// Returns a copy of the options with another size. `may_replace` sets `--force`.
     pub(super) fn at(&self, size: Size, may_replace: bool) -> Self {
         let mut args = self.clone();
         args.material.size = size;
@@ -590,7 +592,8 @@ impl Args {
         })
     }
 
-    /// Returns the note about images of data, once for a loop.
+    /// Returns the note that lists images to import without sRGB decoding. For a loop, it is returned for the first
+    /// frame only.
     fn import_note(&self, material: &Material) -> Option<String> {
         if self.document().is_some() || !self.is_first_frame() {
             return None;
@@ -609,8 +612,8 @@ impl Args {
         self.frames.or(self.flipbook.map(of_grid))
     }
 
-    /// Returns copies of the options with a single preset each, with a directory in the output for each; a single copy
-    /// unless there are several presets. Only the first copy adds to the contact sheet.
+    /// Returns copies of the options, one for each preset, each with a directory named after the preset. Returns a
+    /// single unchanged copy if there is at most one preset. Only the first copy adds to the contact sheet.
     ///
     /// # Errors
     ///
@@ -643,7 +646,8 @@ impl Args {
         Ok(presets.into_iter().enumerate().map(of_preset).collect())
     }
 
-    /// Returns the output options for `n_recipes` recipes. Several recipes, and several frames, need a directory.
+    /// Returns the output options for `n_recipes` recipes. If there are several recipes or frames, the output must be a
+    /// directory.
     fn files_for(&self, n_recipes: usize) -> Result<OutputArgs> {
         let mut files = self.files.clone();
         // Another run may finish a shard first, with the same bytes, which this run may then replace.
@@ -711,7 +715,7 @@ impl Args {
         })
     }
 
-    /// Applies the options of the command line to the recipe.
+    /// Applies options such as `--seed`, `--relief` and `--set` to the recipe.
     fn change(&self, recipe: &mut Recipe) -> Result<()> {
         let preset = self.preset().map(|preset| preset.normal_y);
         self.material.change(recipe, preset)

@@ -193,7 +193,7 @@ fn tile(args: &Args, reader: &mut Reader<'_>) -> Result<Option<Raster<f32>>> {
     Ok(Some(ranks.with_context(|| input::name(path))?))
 }
 
-/// Adds a hint to frequent errors.
+/// Adds a hint to common errors.
 fn advise(error: TileError) -> Error {
     let hint = match error.kind() {
         TileErrorKind::Raster(_) => "--size WxH repeats what is smaller and cuts what is larger",

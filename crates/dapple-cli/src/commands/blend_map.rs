@@ -62,7 +62,7 @@ pub(crate) struct Args {
     output: ImageArgs,
 }
 
-/// The options of the node `blend_map` of recipes.
+/// Marker for the flags that come from the recipe node `blend_map`.
 #[derive(Clone, Debug)]
 struct MapFlags;
 

@@ -134,7 +134,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Returns the names of the maps, with the height last. Fails unless all tiles have the same maps.
+/// Returns the names of the maps, with the height last if there is one. Fails unless all tiles have the same maps.
 fn names(args: &Args) -> Result<Vec<&str>> {
     let of = |tile: &LayerArg| -> Vec<String> {
         let height = tile.has_height().then_some(HEIGHT);
@@ -165,7 +165,8 @@ fn names(args: &Args) -> Result<Vec<&str>> {
     Ok(first.map_names().into_iter().chain(height).collect())
 }
 
-/// Claims an output for each map of each tile in `sets`. A whole map is a set of one tile with an empty name.
+/// Claims an output for each map of each tile of `sets`, the names of the tiles. A map of copies counts as one tile
+/// with an empty name.
 fn claim(
     args: &Args,
     sets: &[String],
@@ -189,8 +190,8 @@ fn claim(
     job.claim_images(&targets, args.image.format)
 }
 
-/// Reads the maps of all tiles, with the height and then the alpha last. Also returns the form of the alpha, and
-/// whether any image has more than 8 bits per channel.
+/// Reads the maps of all tiles: for each tile, the maps, its height, and last its alpha. Also returns how the alpha is
+/// stored, and whether any image has more than 8 bits per channel.
 fn read(args: &Args) -> Result<(Vec<Vec<Map>>, AlphaForm, bool)> {
     let mut reader = Reader::new(
         None,
@@ -210,7 +211,7 @@ fn read(args: &Args) -> Result<(Vec<Vec<Map>>, AlphaForm, bool)> {
     Ok((maps.collect(), form, is_deep))
 }
 
-/// Adds a hint to frequent errors.
+/// Adds a hint to common errors.
 fn advise(error: TileError) -> Error {
     let hint = match error.kind() {
         TileErrorKind::Margin { .. } => {

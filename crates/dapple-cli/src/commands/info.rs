@@ -213,7 +213,8 @@ fn image_findings(path: &Path, args: &Args) -> Result<Findings> {
     })
 }
 
-/// Describes an image that has too many pixels by its header alone. Returns `error` if that is not its cause.
+/// Describes an image that has too many pixels, from its header alone. Returns `error` unless the number of pixels
+/// caused it.
 fn header_findings(path: &Path, error: Error) -> Result<Findings> {
     let Some(limit) = input::exceeded_limit(&error) else {
         return Err(error);

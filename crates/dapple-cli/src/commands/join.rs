@@ -1,4 +1,4 @@
-//! `dapple join`: joins shards to whole images.
+//! `dapple join`: joins shards to entire images.
 
 use crate::args::{Frame, OutputArgs, Targets};
 use crate::encode::Format;
@@ -32,7 +32,7 @@ of a picture that is 200000 pixels wide, shards of 2048 x 256 take an eighth of 
 
 /// Number of image rows that are joined at a time.
 const BAND: u32 = 64;
-/// Maximum number of missing files that a message names.
+/// Maximum number of missing files that an error message lists.
 const NAMED: usize = 5;
 
 /// Join the shards of a picture to one file for each map.
@@ -165,7 +165,7 @@ impl Args {
         Ok(all)
     }
 
-    /// Returns the file format for a map. Fails if shards cannot be joined to that format.
+    /// Returns the file format for a map. Fails if the format cannot be written row by row from shards.
     fn format_of(&self, kind: MapKind, target: &Target) -> Result<Format> {
         let asked = match target {
             Target::Stdout => self.format.or(Some(Format::Exr)),
@@ -184,7 +184,7 @@ impl Args {
 }
 
 impl Joined {
-    /// Writes the image from its shards, one row of shards after another.
+    /// Writes the image from its shards, one row of the grid of shards at a time.
     fn write(
         &self,
         folder: &Path,
@@ -240,7 +240,7 @@ impl Joined {
         Ok(image)
     }
 
-    /// Joins rows of the map from the shards of one row of the grid.
+    /// Returns the image rows `rows`, joined from the shards of one row of the grid.
     fn band(&self, shards: &[ExrImage], list: &List, rows: Range<u32>) -> Result<MapRows> {
         let size = [list.size[0], rows.end - rows.start];
         let plane = |name: &str| -> Result<Vec<f32>> {
@@ -274,8 +274,8 @@ fn finish(writer: RowWriter<BufWriter<Sink>>) -> Result<()> {
     Ok(writer.finish()?.flush()?)
 }
 
-/// Returns the content type of a joined image. Normals are stored in shards as numbers from 0 to 1, and encoded to the
-/// same codes as normals.
+/// Returns the content type of a joined image. Shards store normals as numbers from 0 to 1, which are encoded to the
+/// same codes as the normals.
 fn content(kind: MapKind) -> Content {
     match kind.content() {
         Content::Normal => Content::Packed,

@@ -64,7 +64,7 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// The options of the node `noise` of recipes.
+/// Marker for the flags that come from the recipe node `noise`.
 #[derive(Clone, Debug)]
 struct NoiseFlags;
 
@@ -119,8 +119,8 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     draw(&field, &args.field, &args.image, args, context)
 }
 
-/// Returns the number, starting at 1, of the first octave whose cells are not larger than a pixel; `None` if all cells
-/// are larger. `cells` is the number of cells of the first octave across `pixels`.
+/// Returns the number, starting at 1, of the first octave whose cells are at most one pixel wide; `None` if all cells
+/// are wider. `cells` is the number of cells of the first octave across `pixels`.
 fn first_below_a_pixel(cells: f64, octaves: u32, pixels: u32) -> Option<u32> {
     let mut cells_of_octave = cells;
     for octave in 1..=octaves {

@@ -187,7 +187,8 @@ fn maps_of(estimate: Estimate) -> Vec<Map> {
     ]
 }
 
-/// Converts a tile to an image of a recipe. Methods that solve for the tile may exceed the range of its values.
+/// Converts a tile to an image for the recipe, clamped to the range of its values. Methods that solve a linear system
+/// may exceed that range.
 fn picture(tile: Map) -> Picture {
     let unit = |values: Raster<f32>| values.map(|value| value.clamp(0.0, 1.0));
     match tile {

@@ -168,8 +168,8 @@ fn csv(scattered: &Scattered) -> String {
     text
 }
 
-/// Formats the points as JSON, with the seed, the domain, the radius, and the number of points up to and including each
-/// level.
+/// Formats the points as JSON. Contains the seed, the domain, the radius, and for each level the number of points up to
+/// and including it.
 fn json_text(args: &Args, scattered: &Scattered) -> Result<String> {
     let set: &PointSet = &scattered.points;
     let domain = set.domain();

@@ -231,7 +231,7 @@ impl Args {
         Ok(PupsNode::from_json(&data)?)
     }
 
-    /// Reads the reference image, if the texture needs one.
+    /// Reads the guiding image, if the texture needs one.
     fn images(&self, node: &PupsNode) -> Result<Images> {
         let Some(name) = node.image_file() else {
             return Ok(Images::new());
@@ -245,8 +245,8 @@ impl Args {
     }
 }
 
-/// Sets the option called `name` of a texture, given by `--flag`. Options of several textures that share a flag have
-/// several names.
+/// Sets the option called `name` of a texture. `flag` is the flag that the user typed. An option that shares its flag
+/// has another name in some textures.
 ///
 /// # Errors
 ///
@@ -264,7 +264,8 @@ fn put(data: &mut Value, kind: Kind, flag: &str, name: &str, value: Value) -> Re
     }
 }
 
-/// Returns the JSON pointer to the option called `name` in a texture's options; `None` if the texture lacks the option.
+/// Returns the JSON pointer to the option called `name` in `data`, a texture's options; `None` if the texture lacks the
+/// option.
 fn path(data: &Value, kind: Kind, name: &str) -> Option<String> {
     let kind = kind.in_recipes();
     let parts = ["", "/options", "/net", "/options/net"];

@@ -171,7 +171,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     put_text(job, &recipe.name, ending, &text, args)
 }
 
-/// Writes a shader, and next to it the words of its texture.
+/// Writes a shader. If it reads a `data` texture, writes its words to a file next to it, with the extension `bin`.
 fn put_shader(
     args: &Args,
     context: &Context,
@@ -201,7 +201,8 @@ fn put_shader(
 }
 
 impl Args {
-    /// Returns the requested format, or JSON if the output has its extension; `None` otherwise.
+    /// Returns the format of the recipe text: the requested one, or JSON if the output has its extension; otherwise
+    /// `None`.
     fn format(&self) -> Option<Text> {
         let is_json = self.files.output.as_deref().is_some_and(is_json);
         self.to
@@ -209,8 +210,8 @@ impl Args {
     }
 }
 
-/// Prints the names of the built-in recipes by family, with a sentence about each. With a word, only those whose name,
-/// sentence or tags contain it.
+/// Lists the built-in recipes by family, each with its description. If `word` is given, lists only recipes whose name,
+/// description or tags contain it.
 fn list(word: Option<&str>) -> Result<Exit> {
     let mut families: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for name in Recipe::builtin_names() {

@@ -170,7 +170,7 @@ fn check(plan: &Plan, args: &Args, region: Option<Region>, maps: &[MapKind]) -> 
     Ok(())
 }
 
-/// Writes a shell command for each shard. `options` are passed to every bake.
+/// Writes a shell command for each shard. `options` are the arguments of every bake.
 fn lines(args: &Args, options: &[String], list: &List, out: &mut impl Write) -> Result<()> {
     let output = text_of_path(&args.output)?;
     for Task { frame, shard, .. } in list.tasks()? {
@@ -203,13 +203,13 @@ struct Document<'a> {
     shards: Entries<'a>,
 }
 
-/// The shards of a list. They are generated during serialization, so that even a long list takes no memory.
+/// The shards of a list, as a sequence that is generated during serialization. A long list needs no memory.
 struct Entries<'a> {
     list: &'a List,
     maps: &'a [MapKind],
 }
 
-/// A shard in the document.
+/// A shard in the JSON document.
 #[derive(Serialize)]
 struct Entry {
     index: u64,
@@ -248,7 +248,7 @@ fn text_of_path(path: &Path) -> Result<&str> {
     })
 }
 
-/// Quotes a word for a POSIX shell, if necessary.
+/// Quotes a word for a POSIX shell if it has special characters.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-./,:=+@%".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {

@@ -34,7 +34,7 @@ images are read from the recipe's folder, and recipes are written only when they
 A forwarded port (ssh, containers) needs no option: open the printed address with that port. Give
 --public-url where a proxy has a name of its own. Keep the address to yourself: it opens the page.";
 
-/// The warning for a program that was built without the page of the editor.
+/// Warning for a program that was built without the editor's page.
 const NO_PAGE: &str = "warning: this program was built without the page: `cargo xtask studio` in the repository of dapple builds \
     both, with Node";
 
@@ -144,8 +144,8 @@ fn advise(error: StudioError) -> Error {
     }
 }
 
-/// Returns the name by which the page opens a recipe, and the recipe's directory. Built-in recipes have an empty
-/// directory.
+/// Returns the name by which the page opens a recipe, and the recipe's directory. The directory of a built-in recipe is
+/// empty.
 fn place(name: &str) -> Result<(Option<String>, PathBuf)> {
     let path = Path::new(name);
     let builtin = with_dashes(name);
@@ -168,7 +168,7 @@ fn place(name: &str) -> Result<(Option<String>, PathBuf)> {
     Ok((file, path.parent().unwrap_or(Path::new("")).to_owned()))
 }
 
-/// The studio's host, which reads images and bakes files as the other subcommands do.
+/// The studio's host: it reads images and bakes files with the code of the other subcommands.
 struct Bakes {
     context: Context,
     finite: FiniteArgs,
@@ -208,7 +208,7 @@ impl Host for Bakes {
 }
 
 impl Bakes {
-    /// Bakes a recipe to a temporary directory with the code of `dapple bake`, and returns the files.
+    /// Bakes a recipe to a temporary directory with the code of `dapple bake`, and returns the files' contents.
     #[expect(
         clippy::disallowed_methods,
         reason = "what a bake has written is read for the page"
@@ -241,8 +241,8 @@ impl Bakes {
     }
 }
 
-/// Converts an export to options of `dapple bake`. Each option is one word, `--NAME=VALUE`, so that its value cannot be
-/// parsed as another option.
+/// Converts an export to arguments of `dapple bake`. Each is a single word, `--NAME=VALUE`, so that a value cannot be
+/// parsed as an option.
 fn words(export: &Export) -> Vec<String> {
     let mut words = Vec::new();
     let mut add = |name: &str, value: Option<String>| {

@@ -215,7 +215,7 @@ fn shown(progress: &Progress) -> impl FnMut(Steps) -> ControlFlow<()> + '_ {
 /// The length of the progress bar, in steps.
 const STEPS: u32 = 1000;
 
-/// Adds a hint to frequent errors.
+/// Adds a hint to common errors.
 fn advise(error: SynthError) -> Error {
     let hint = match error.kind() {
         SynthErrorKind::Exemplar { .. } => {

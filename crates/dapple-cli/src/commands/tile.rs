@@ -107,7 +107,7 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// An input image with its name and the outputs for its tile and for the sheet.
+/// An input image with its name, and the outputs for its tile and for a sheet of copies.
 struct Source {
     name: String,
     loaded: Loaded,
@@ -269,8 +269,7 @@ fn map_of(stem: &str) -> &str {
     stem.rsplit_once('_').map_or(stem, |(_, map)| map)
 }
 
-/// Computes the seam reports if they are needed, and prints them if requested. Returns them as JSON, and whether all
-/// tiles pass.
+/// Computes the seam reports if they are requested, and prints them. Returns them as JSON, and whether all tiles pass.
 fn reports(
     args: &Args,
     sources: &[Source],
@@ -314,7 +313,7 @@ fn reports(
     Ok((Value::Array(all), passes))
 }
 
-/// Returns the next step for a tile that does not pass.
+/// Returns a suggestion for a tile that does not pass, such as another method.
 fn next_step(made: &Candidate, is_auto: bool) -> &'static str {
     match &made.how {
         _ if is_auto => {
@@ -338,7 +337,7 @@ fn twice<T: Copy + Send + Sync>(raster: &Raster<T>) -> Result<Raster<T>> {
     Ok(repeat(raster, size)?)
 }
 
-/// Adds a hint to errors about sizes that a method does not allow.
+/// Adds a hint to errors about sizes that the method does not allow.
 fn advise(error: TileError) -> Error {
     let hint = match error.kind() {
         TileErrorKind::Margin { .. } => "take a smaller --margin",

@@ -61,7 +61,7 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// The options of the node `wavelet` of recipes.
+/// Marker for the flags that come from the recipe node `wavelet`.
 #[derive(Clone, Debug)]
 struct WaveletFlags;
 
@@ -115,7 +115,8 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 /// Minimum number of cells along an axis on which the noise repeats.
 const FEWEST_CELLS: f64 = 4.0;
 
-/// Checks that the noise can repeat with these numbers of cells along the sides. The hint lists numbers that can.
+/// Checks that the noise can repeat with these numbers of cells along the sides. The hint lists nearby numbers that
+/// can.
 fn check_cells(cells: [f64; 2], repeats: [bool; 2], size: Size) -> Result<()> {
     let holds =
         |axis: usize| !repeats[axis] || (cells[axis] >= FEWEST_CELLS && cells[axis] % 2.0 == 0.0);
@@ -130,7 +131,7 @@ fn check_cells(cells: [f64; 2], repeats: [bool; 2], size: Size) -> Result<()> {
     Err(usage(message).hint(other_cells(cells, size)))
 }
 
-/// Returns a hint with the nearest numbers of cells that can repeat.
+/// Returns a hint with the nearest numbers of cells with which the noise can repeat.
 fn other_cells(cells: [f64; 2], size: Size) -> String {
     // Multiples of `step` along the shorter side give whole even numbers along both sides.
     let [width, height] = size.0;

@@ -106,7 +106,7 @@ fn put_package(args: &Args, context: &Context, folder: &Path) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Returns the declaration of the parameters of a module; empty if it has none.
+/// Returns the WGSL constant with the parameters of a module; empty if the module has no parameters.
 fn constant(module: Module, seed: Seed, args: &Args) -> Result<String> {
     Ok(match module {
         Module::GradientNoise2d => noise("NOISE_2D", GradientNoise2::new(seed), args)?,

@@ -63,7 +63,7 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// The options of the node `worley` of recipes.
+/// Marker for the flags that come from the recipe node `worley`.
 #[derive(Clone, Debug)]
 struct WorleyFlags;
 
@@ -133,8 +133,8 @@ impl Args {
         Ok(WorleyNode { motion, ..node })
     }
 
-    /// Returns the values that are drawn as black and white. They are measured on a texture with the same options that
-    /// covers a large number of cells.
+    /// Returns the values that become black and white. They are measured on a texture with the same options and a large
+    /// number of cells.
     fn range(&self, node: &WorleyNode) -> Result<[f32; 2]> {
         /// Number of positions at which values are measured.
         const N: u32 = 20_000;

@@ -58,8 +58,8 @@ fn is_device(_: &fs::Metadata) -> bool {
     false
 }
 
-/// Checks that a path named by an input file, instead of by the command line, is a regular file. A pipe or a device
-/// could block the command forever.
+/// Checks that a path is a regular file. The path is named by an input file rather than on the command line, so a pipe
+/// or a device could block the command forever.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! Reads meshes, and formats notes about parts of a model that are not used.
+//! Reads meshes, and formats notes about the parts of a model that are not used.
 
 use super::NAMES_MAX;
 use super::files::{check_file, name};
@@ -43,7 +43,8 @@ pub(crate) fn not_used(path: &Path, model: &Model) -> Option<String> {
     (!parts.is_empty()).then(|| format!("{}: not used: {parts}", name(path)))
 }
 
-/// Returns a note on the unit squares of texture coordinates, if there are several and they share one texture.
+/// Returns a note on the unit squares of texture coordinates if there are several and they share one texture; otherwise
+/// `None`.
 pub(crate) fn unit_squares(model: &Model) -> Option<String> {
     let squares = model.unit_squares();
     if squares.len() < 2 || !model.tiles.is_empty() {

@@ -25,7 +25,7 @@ pub(crate) enum Content {
 #[derive(Debug)]
 pub(crate) struct Numbers {
     pub(crate) content: Content,
-    /// Whether only the region was read.
+    /// Whether only the requested region was read.
     pub(crate) is_part: bool,
 }
 

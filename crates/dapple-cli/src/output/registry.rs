@@ -19,7 +19,7 @@ static PATHS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 /// The locked registry.
 pub(super) type Held = MutexGuard<'static, Vec<PathBuf>>;
 
-/// Locks the registry.
+/// Locks the registry. Other threads wait until the guard is dropped.
 pub(super) fn hold() -> Held {
     // The list of paths is consistent even if a thread panicked while it held the lock.
     PATHS.lock().unwrap_or_else(PoisonError::into_inner)
@@ -38,7 +38,7 @@ pub(super) fn forget(held: &mut Held, path: &Path) {
     held.retain(|other| other != path);
 }
 
-/// Removes all registered files and directories, and exits the process.
+/// Removes all registered files and directories, then exits the process.
 pub(crate) fn exit_without_rubbish(exit: Exit) -> ! {
     let held = hold();
     for path in held.iter().rev() {

@@ -1,5 +1,5 @@
-//! Stores the bytes of an output until its run is done, in a temporary file in the final file's directory or, for
-//! streams, in memory.
+//! Stores the bytes of an output until its run is done: in a temporary file next to the final file or, for streams, in
+//! memory.
 
 use super::registry::{self, Held};
 use dapple::image::AtomicFile;
@@ -26,7 +26,7 @@ impl Temporary {
         Ok(Self(file))
     }
 
-    /// Returns the open file.
+    /// Returns the open temporary file.
     pub(super) fn file(&self) -> &File {
         self.0.file()
     }
@@ -42,13 +42,13 @@ impl Temporary {
         self.0.rename(path, force)
     }
 
-    /// Removes the file.
+    /// Deletes the temporary file.
     pub(super) fn remove(self, held: &mut Held) {
         registry::forget(held, self.0.temporary_path());
     }
 }
 
-/// The bytes for a stream, such as standard output, until the run is done.
+/// In-memory buffer for the bytes of a stream, such as standard output, until the run is done.
 #[derive(Clone, Debug)]
 pub(super) struct Spool(Arc<Mutex<SpooledTempFile>>);
 
@@ -72,7 +72,7 @@ impl Spool {
     }
 }
 
-/// The destination that the bytes of an output are written to during the run.
+/// Where the bytes of an output are written during the run.
 #[derive(Debug)]
 pub(crate) enum Sink {
     /// A temporary file.

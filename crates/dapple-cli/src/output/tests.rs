@@ -1,4 +1,4 @@
-//! Output files appear complete, all at once, and never replace existing files without `--force`.
+//! Tests that output files appear complete and all at once, and never replace existing files without `--force`.
 
 use super::{OutputIdx, Outputs, Target};
 use std::fs;

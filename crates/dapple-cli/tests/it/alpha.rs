@@ -1,4 +1,4 @@
-//! The handling of partly transparent images.
+//! Tests of partly transparent images.
 
 use crate::support::{Folder, assert_done, assert_refused, stdout};
 use dapple::color::{LinearRgb, LinearRgba};
@@ -6,7 +6,7 @@ use dapple::image::{Depth, Image, Limits, read_image, write_color_alpha_png, wri
 use dapple::raster::Raster;
 use std::fs;
 
-/// Writes an image of 48 × 48 pixels.
+/// Writes an image of 48 × 48 pixels. `pixel` maps a pseudorandom number to the pixel's color and alpha.
 fn write(folder: &Folder, name: &str, pixel: impl Fn(f32) -> LinearRgba) {
     let pixels = Raster::from_fn([48; 2], |x, y| {
         pixel((7 * x + 3 * y * y + x * y) as f32 % 40.0 / 100.0 + 0.3)
@@ -14,7 +14,7 @@ fn write(folder: &Folder, name: &str, pixel: impl Fn(f32) -> LinearRgba) {
     write_color_alpha_png(folder.path(name), &pixels.unwrap(), Depth::Sixteen).unwrap();
 }
 
-/// Creates a folder with an image whose alpha is its gray.
+/// Creates a folder with an image whose alpha equals its gray value.
 fn folder(name: &str) -> Folder {
     let folder = Folder::with_inputs(name);
     write(&folder, "leaf.png", |value| LinearRgba {

@@ -1,4 +1,4 @@
-//! Tests of baking recipes and single fields: files, crops, threads, and killed processes.
+//! Tests of baking recipes and single fields: files, crops, threads and killed processes.
 
 use crate::support::{Folder, ROCK, assert_done, assert_refused, stdout};
 use dapple::image::{Image, Limits, decode_image, read_image};
@@ -254,7 +254,7 @@ fn the_pictures_of_a_loop_differ_and_are_numbered() {
     assert_ne!(bytes("sea_001.png"), bytes("sea_002.png"));
 }
 
-/// A recipe of which a part moves, in a file.
+/// Text of a recipe with a node that moves.
 const LOOP: &str = "dapple = 1\nname = \"tide\"\nextent = [2.0, 2.0]
 [nodes.waves.pups.noise]\nspacing = 0.4\nnet = { motion = { radius = 0.25 } }
 [nodes.sand.pups.cells]\nspacing = 0.3

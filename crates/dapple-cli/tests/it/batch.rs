@@ -1,4 +1,4 @@
-//! Many recipes at once, sheets, previews, progress, and watched recipes.
+//! Tests of several recipes in one run, and of sheets, previews, progress and watched recipes.
 
 use crate::support::{Folder, assert_done, assert_refused, stderr, stdout};
 use dapple::image::{Image, Limits, read_image};

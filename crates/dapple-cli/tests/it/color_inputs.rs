@@ -1,14 +1,14 @@
-//! Images that say what their colors are.
+//! Tests of images that declare their color space.
 
 use crate::support::{Folder, assert_done, assert_refused, stdout};
 use dapple::image::{Limits, Transfer, encode_png, read_image, replace};
 use dapple::raster::Raster;
 
-/// The chunks `cICP` for Display P3, and for BT.2020 with PQ, with their checksums (CRC-32 of name and data).
+/// `cICP` chunks of PNG for Display P3, and for BT.2020 with PQ, with their checksums (CRC-32 of name and data).
 const DISPLAY_P3: [u8; 16] = *b"\0\0\0\x04cICP\x0c\x0d\0\x01\x6e\x03\xe3\xef";
 const PQ: [u8; 16] = *b"\0\0\0\x04cICP\x09\x10\0\x01\x4d\x23\x23\xfe";
 
-/// Writes a PNG image of one color, with a chunk behind the header, which ends at 33.
+/// Writes a PNG image of one color, and inserts a chunk after the header, which ends at byte 33.
 fn write(folder: &Folder, name: &str, chunk: [u8; 16]) {
     let raster = Raster::filled([16, 16], [120_u8, 160, 90]).unwrap();
     let mut bytes = encode_png(raster.view(), Transfer::Data).unwrap();

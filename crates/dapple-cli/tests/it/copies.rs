@@ -1,4 +1,4 @@
-//! Maps of varied copies, and sets of tiles.
+//! Tests of maps of varied copies, and of sets of tiles.
 
 use crate::support::{Folder, assert_done, assert_refused};
 use dapple::hash::Seed;
@@ -9,7 +9,7 @@ use dapple::tile::{BorderSource, CornerTiles, Disturbance, Map, MatchBorders};
 use dapple::worley::{Combination, Worley2};
 use std::fs;
 
-/// Writes a tile of cracks that repeats, as `name.exr` and `name.png`.
+/// Writes a repeating tile of cracks as `name.exr` and `name.png`, and returns it.
 fn write(folder: &Folder, name: &str, seed: u64) -> Raster<f32> {
     let worley = Worley2::new(Seed(seed)).with_period([Some(5); 2]).unwrap();
     let cracks = worley
@@ -33,7 +33,7 @@ fn run(folder: &Folder, line: &str) {
     assert_done(&folder.run(&line.split(' ').collect::<Vec<_>>()), line);
 }
 
-/// Returns the numbers of the only map.
+/// Returns the raster of the only map, which must have one number per pixel.
 fn value(maps: Vec<Map>) -> Raster<f32> {
     match maps.into_iter().next() {
         Some(Map::Value(raster)) => raster,

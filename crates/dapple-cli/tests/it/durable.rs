@@ -1,4 +1,5 @@
-//! What is on the disk when the command is done: the order of system calls, which a power cut can interrupt anywhere.
+//! Tests the order in which files are flushed and renamed, from the system calls of the command. A power failure may
+//! happen after any of them.
 
 #![cfg(target_os = "linux")]
 
@@ -6,16 +7,16 @@ use crate::support::{Folder, assert_done};
 use std::fs;
 use std::process::Command;
 
-/// What the command does with a path, in the order of its system calls.
+/// A system call on a file or directory. Its name is without the parent directories.
 #[derive(Debug, PartialEq, Eq)]
 enum Call {
-    /// The bytes of a file, or the names in a folder, are flushed to the disk.
+    /// Flushes the bytes of a file, or the names in a directory, to disk.
     Sync(String),
-    /// A temporary file gets its name.
+    /// Renames a temporary file to its final name.
     Rename(String),
 }
 
-/// Runs the command under `strace`, and returns its calls; nothing where processes cannot be traced.
+/// Runs the command under `strace`, and returns its calls; `None` if processes cannot be traced.
 fn trace(folder: &Folder, line: &str) -> Option<Vec<Call>> {
     let log = folder.path("trace.log");
     let traced = Command::new("strace")
@@ -45,7 +46,7 @@ fn trace(folder: &Folder, line: &str) -> Option<Vec<Call>> {
     Some(text.lines().filter_map(call).collect())
 }
 
-/// The call in a line of the log: `PID NAME(…) = 0`.
+/// Parses a line of the log, `PID NAME(…) = 0`; `None` for other and failed calls.
 fn call(line: &str) -> Option<Call> {
     let (_, call) = line.split_once(' ')?;
     let call = call.trim_start();
@@ -68,7 +69,7 @@ fn call(line: &str) -> Option<Call> {
     name(path).map(Call::Rename)
 }
 
-/// Checks that each file is flushed before it gets its name, and its folder after it.
+/// Checks that each file is flushed before it is renamed, and its directory after that.
 fn check_order(calls: &[Call], folder: &str, files: &[&str]) {
     let is_part = |call: &Call| matches!(call, Call::Sync(name) if name.starts_with(".dapple-"));
     let n_flushed = calls.iter().filter(|call| is_part(call)).count();

@@ -30,7 +30,7 @@ const SUBCOMMANDS: [&str; 22] = [
     "licenses",
 ];
 
-/// Returns the lines of a help text that are commands; a line that ends with a backslash continues.
+/// Returns the commands in a help text. A backslash at the end of a line joins it with the next one.
 fn examples(help: &str) -> Vec<String> {
     let help = help.replace("\\\n", " ");
     let lines = help.lines().map(str::trim);
@@ -48,8 +48,7 @@ fn help(folder: &Folder, subcommand: &[&str]) -> String {
     stdout(&output)
 }
 
-/// Returns an example with smaller maps and fewer sites, frames and variants: what its options do together does not
-/// depend on them.
+/// Returns an example with smaller maps and fewer sites, frames and variants, so that it runs faster.
 fn quick(example: &str) -> String {
     let fewer = [
         ("--sites 4000", "--sites 400"),
@@ -66,7 +65,7 @@ fn quick(example: &str) -> String {
     example.replace("--size 2048", "--size 256")
 }
 
-/// Runs each example of a help in a folder of its own: the first unchanged, the others quickly.
+/// Runs each example of a help text in a separate folder: the first unchanged, the others made faster by [`quick`].
 fn run_examples(subcommand: &[&str]) {
     let name = subcommand.first().copied().unwrap_or("dapple");
     let folder = Folder::new(&format!("help-{name}"));

@@ -1,4 +1,4 @@
-//! OpenEXR images as inputs: layers, windows, vectors, light without cover, and numbers that are not finite.
+//! Tests of OpenEXR images as inputs: layers, windows, vectors, light with alpha 0, and values that are not finite.
 
 use crate::support::{Folder, assert_done, assert_refused, read_gray, stderr, stdout};
 use dapple::color::Normal;
@@ -10,10 +10,10 @@ use std::process::Output;
 /// The side of the images, in pixels.
 const SIDE: u32 = 32;
 
-/// The name of a plane, and its value for every pixel.
+/// Name of an OpenEXR plane, and the function that returns its value at a pixel.
 type PlaneOf<'a> = (&'a str, &'a dyn Fn(u32, u32) -> f32);
 
-/// Writes planes.
+/// Writes an OpenEXR file of these planes.
 fn write(folder: &Folder, name: &str, planes: &[PlaneOf<'_>]) {
     let plane = |(name, value): &PlaneOf<'_>| {
         ExrPlane::new(*name, Raster::from_fn([SIDE; 2], value).unwrap())
@@ -22,7 +22,7 @@ fn write(folder: &Folder, name: &str, planes: &[PlaneOf<'_>]) {
     replace(&folder.path(name), &encode_exr(&planes).unwrap()).unwrap();
 }
 
-/// The planes of an OpenEXR file in a folder.
+/// Reads a plane of an OpenEXR file in a folder.
 fn read(folder: &Folder, name: &str, plane: &str) -> Raster<f32> {
     match read_image(folder.path(name), &Limits::default()).unwrap() {
         dapple::image::Image::Exr(exr) => exr.plane(plane).unwrap().clone(),
@@ -30,7 +30,7 @@ fn read(folder: &Folder, name: &str, plane: &str) -> Raster<f32> {
     }
 }
 
-/// Runs a line of words; outputs are replaced.
+/// Runs a command line, which begins with `dapple`. Outputs are replaced.
 fn shell(folder: &Folder, line: &str) -> Output {
     let words = line.split(' ').skip(1).chain(["--force"]);
     let words: Vec<_> = words.collect();
@@ -41,7 +41,7 @@ fn run(folder: &Folder, line: &str) {
     assert_done(&shell(folder, line), line);
 }
 
-/// Numbers without order from 0.2 to 0.8, other for each channel.
+/// Returns a function for pseudorandom values from 0.2 to 0.8, which differ by channel.
 fn texture(channel: u32) -> impl Fn(u32, u32) -> f32 {
     move |x, y| {
         let mut state = (x + SIDE * y + SIDE * SIDE * channel).wrapping_mul(2_654_435_761);
@@ -51,7 +51,7 @@ fn texture(channel: u32) -> impl Fn(u32, u32) -> f32 {
     }
 }
 
-/// Light and alpha: cover of nothing, too little to divide by, a half, all, and more than all.
+/// Pairs of light and alpha: alpha 0, an alpha too small to divide by, ½, 1, and above 1.
 const LIGHT: [[f32; 2]; 6] = [
     [5.0, 0.0],
     [1e5, 1e-38],
@@ -96,7 +96,8 @@ fn light_without_cover_is_neither_lost_nor_divided() {
     assert_eq!(pixels.row(8)[4].alpha, 1.0);
 }
 
-/// Writes `nan.exr` with one NaN in its green channel, `nan_y.exr` with one in its only one, and images around them.
+/// Writes `nan.exr` with one NaN in its green channel, `nan_y.exr` with one NaN in its only channel, and recipes and
+/// masks that use these files.
 fn write_nan(folder: &Folder) {
     let (r, g, b) = (texture(0), texture(1), texture(2));
     let broken = |x: u32, y: u32| match (x, y) {
@@ -119,7 +120,7 @@ fn write_nan(folder: &Folder) {
     }
 }
 
-/// Lines that read an image with a number that is not finite, where it is used.
+/// Command lines that read an image with a value that is not finite, at a pixel that is used.
 const LINES: [&str; 17] = [
     "dapple blend ok.exr nan.exr -o o.exr",
     "dapple blend nan.exr -o o.exr",
@@ -202,7 +203,7 @@ fn numbers_of_images_of_recipes_are_replaced_on_request() {
     assert_refused(&words(line), 1, "nan_y.exr: the channel Y is NaN", line);
 }
 
-/// The mean of the pixels around the one that is NaN.
+/// Returns the mean of the eight pixels around the NaN.
 fn mean_around() -> f32 {
     let around = (4..7).flat_map(|y| (8..11).map(move |x| (x, y)));
     let others = around.filter(|&pixel| pixel != (9, 5));

@@ -1,11 +1,11 @@
-//! Written files, and protection against overwriting.
+//! Tests of the written files, and of the protection against overwriting.
 
 use crate::support::{Folder, assert_done, assert_refused, stderr, stdout};
 use dapple::image::{Image, Limits, decode_image, read_image};
 use std::fs;
 use std::process::Stdio;
 
-/// A run of each subcommand that writes `out.png` or the like.
+/// Command lines that each write one file, and the name of that file.
 const WRITERS: [(&str, &[&str]); 7] = [
     ("out.png", &["tile", "photo.png", "-o", "out.png"]),
     (

@@ -1,4 +1,4 @@
-//! Files that others have made: pipes and devices where files are expected, absurd sizes, and names that are more than text.
+//! Tests of unusual input paths: pipes and devices instead of files, absurd sizes, and names with special characters.
 
 #![cfg(unix)]
 
@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Runs a shell command that must end on its own.
+/// Runs a shell command that must end by itself within a time limit.
 fn ends(folder: &Folder, line: &str) -> Output {
     // The limit is far above what any of these takes on a busy machine, and far below forever.
     let output = folder.shell(&format!("timeout -s KILL 60 {line}"));

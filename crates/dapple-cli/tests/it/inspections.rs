@@ -1,4 +1,5 @@
-//! What the command says of files: sizes past the limit, arrays and heights, tables of numbers, loops and clipping.
+//! Tests of what the command reports about files: sizes above the limit, arrays and heights, tables of numbers, loops
+//! and clipping.
 
 use crate::support::{Folder, assert_done, assert_refused, stderr, stdout};
 use dapple::color::LinearRgb;
@@ -6,7 +7,7 @@ use dapple::image::{Depth, Limits, read_image, write_color_exr, write_gray_exr, 
 use dapple::raster::Raster;
 use std::fs;
 
-/// Values of all places, each another one.
+/// Returns an image whose pixels all have different values, from 0 to below 1.
 fn places(size: [u32; 2]) -> Raster<f32> {
     let n_pixels = (size[0] * size[1]) as f32;
     Raster::from_fn(size, |x, y| (y * size[0] + x) as f32 / n_pixels).unwrap()
@@ -16,14 +17,14 @@ fn run(folder: &Folder, line: &str) -> std::process::Output {
     folder.run(&line.split(' ').collect::<Vec<_>>())
 }
 
-/// The checksum of a chunk of PNG: CRC-32 of ISO 3309, bit by bit.
+/// Returns the checksum of a PNG chunk: CRC-32 of ISO 3309, computed bit by bit.
 fn crc(bytes: &[u8]) -> u32 {
     let step = |crc: u32, bit: u32| (crc >> 1) ^ (0xedb8_8320 * ((crc ^ bit) & 1));
     let byte = |crc, &byte: &u8| (0..8).fold(crc, |crc, at| step(crc, u32::from(byte >> at)));
     !bytes.iter().fold(!0, byte)
 }
 
-/// The beginning of a PNG file of any size, without pixels.
+/// Returns the start of a PNG file of the given size: signature and header, without pixels.
 fn png_header(size: [u32; 2]) -> Vec<u8> {
     let mut chunk = b"IHDR".to_vec();
     chunk.extend(size.iter().flat_map(|side| side.to_be_bytes()));

@@ -1,4 +1,4 @@
-//! Tests of the remaining files after Ctrl-C and after kills.
+//! Tests which files remain after Ctrl-C and after kills.
 
 #![cfg(unix)]
 
@@ -7,7 +7,7 @@ use std::fs;
 use std::process::{Child, Command};
 use std::time::Duration;
 
-/// A synthesis that takes much longer than a test waits.
+/// Command line of a synthesis that takes much longer than the tests.
 const LONG: [&str; 9] = [
     "synth",
     "photo.png",
@@ -19,7 +19,7 @@ const LONG: [&str; 9] = [
     "-o",
     "out.png",
 ];
-/// The number of steps of 10 milliseconds that a test waits for an event that should come at once.
+/// Timeout of the tests, in steps of 10 milliseconds. The awaited events should happen at once.
 const PATIENCE: usize = 3000;
 
 /// Starts the synthesis, and waits until its temporary file exists.

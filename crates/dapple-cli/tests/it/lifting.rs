@@ -1,4 +1,4 @@
-//! Tests of `dapple synth` with a mesh as the example: textures lifted onto another mesh, and repairs.
+//! Tests of `dapple synth` with a mesh as the example: transfer of its texture to another mesh, and repairs.
 
 use crate::support::{Folder, SHELL_SIDE, assert_done, assert_refused, shell, stderr};
 use dapple::color::{LinearRgb, LinearRgba};
@@ -8,12 +8,12 @@ use dapple::mesh_io::{read_model, write_model};
 use dapple::points::glam::DVec2;
 use dapple::raster::Raster;
 
-/// Runs a line in a folder.
+/// Runs the command in a folder. `line` holds its arguments.
 fn run(folder: &Folder, line: &str) -> std::process::Output {
     folder.run(&line.split_whitespace().collect::<Vec<_>>())
 }
 
-/// The codes of an image with 8 bits in three channels.
+/// Returns the codes of an image with three channels of 8 bits.
 fn codes(image: Option<&EncodedImage>) -> Raster<[u8; 3]> {
     match decode_image(image.unwrap().bytes(), &Limits::default()).unwrap() {
         Image::Png(png) => match png.pixels {
@@ -84,7 +84,7 @@ fn colors_of_vertices_are_lifted_too() {
     }
 }
 
-/// Checks that texels differ in the stain of the mask alone, and that some do.
+/// Checks that no texels outside of the stain changed, and that some within it did.
 fn assert_only_the_stain_is_new(before: &Raster<[u8; 3]>, after: &Raster<[u8; 3]>) {
     let mut n_new = 0;
     for y in 0..SHELL_SIDE {
@@ -114,7 +114,7 @@ fn a_repair_of_a_mesh_changes_only_texels_that_are_white_in_its_mask() {
     assert_eq!(clean.uvs, read_model(folder.path("shell.glb")).unwrap().uvs);
 }
 
-/// The JSON of a GLB file, which is its first chunk.
+/// Returns the JSON of a GLB file, which is its first chunk.
 fn document(path: std::path::PathBuf) -> serde_json::Value {
     let bytes = std::fs::read(path).unwrap();
     let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
@@ -243,7 +243,7 @@ fn meshes_without_texture_and_options_without_effect_are_refused() {
     }
 }
 
-/// The shell with its left half in the unit square 1001 and its right half in 1012, and a texture for each.
+/// Returns the shell with its left half in UDIM tile 1001 and its right half in 1012. Each tile has its own image.
 fn in_two_squares(images: [&EncodedImage; 2]) -> Model {
     let mut model = shell().clone();
     let positions = model.mesh.positions();
@@ -269,7 +269,7 @@ fn in_two_squares(images: [&EncodedImage; 2]) -> Model {
     model
 }
 
-/// An image of one color.
+/// Returns a square image of one color.
 fn plain(side: u32, color: [u8; 3]) -> EncodedImage {
     let codes = Raster::filled([side; 2], color).unwrap();
     EncodedImage::new(encode_png(codes.view(), Transfer::Srgb).unwrap()).unwrap()

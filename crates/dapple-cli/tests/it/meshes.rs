@@ -1,11 +1,11 @@
-//! Covered meshes: hard edges, and surfaces that are visible from both sides.
+//! Tests of textured meshes: hard edges, and surfaces that are visible from both sides.
 
 use crate::support::{Folder, assert_done, stdout};
 use dapple::mesh::{CREASE, FaceIdx, Mesh, Model};
 use dapple::mesh_io::{read_model, write_model};
 use dapple::points::glam::DVec3;
 
-/// The cube from 0 to 1.
+/// Returns a cube that extends from 0 to 1 along each axis.
 fn cube() -> Mesh {
     let corner = |bits: u32| {
         DVec3::new(
@@ -26,7 +26,7 @@ fn cube() -> Mesh {
     Mesh::new((0..8).map(corner).collect(), &faces).unwrap()
 }
 
-/// Covers `hard.obj` in a folder.
+/// Synthesizes a texture on `hard.obj`, and returns the written model. `extra` are more arguments.
 fn cover(folder: &Folder, extra: &[&str], output: &str) -> Model {
     let arguments = [
         "synth",
@@ -42,7 +42,7 @@ fn cover(folder: &Folder, extra: &[&str], output: &str) -> Model {
     read_model(folder.path(output)).unwrap()
 }
 
-/// Returns the largest difference between normals of corners and normals of their faces.
+/// Returns the maximum distance between a corner normal and the normal of its face. Both are unit vectors.
 fn most_off(model: &Model) -> f64 {
     let normals = model.normals_of_corners().unwrap();
     let faces = (0..).map(FaceIdx).zip(&normals);

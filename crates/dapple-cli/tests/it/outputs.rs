@@ -1,4 +1,4 @@
-//! Formats for other programs: presets, documents, arrays and raw heights.
+//! Tests of formats for other programs: presets, documents, arrays and raw heights.
 
 use crate::support::{Folder, assert_done, assert_refused, stdout};
 use dapple::image::{Limits, PngPixels, decode_png, read_image};
@@ -46,15 +46,14 @@ normal_y = "directx"
 
 const SIZE: &str = "48x24";
 
-/// A folder with the recipe.
+/// Creates a folder with the recipe.
 fn folder(name: &str) -> Folder {
     let folder = Folder::new(name);
     fs::write(folder.path("varied.toml"), VARIED).unwrap();
     folder
 }
 
-/// Returns the channels of a PNG as 16 bits, one after the other. Channels of 8 bits are multiplied by 257, and gray
-/// counts as one channel.
+/// Returns the channels of a PNG as 16-bit codes. 8-bit codes are multiplied by 257. A gray image has one channel.
 fn channels(folder: &Folder, name: &str) -> Vec<Vec<u16>> {
     fn split<const N: usize>(raster: &Raster<[u16; N]>) -> Vec<Vec<u16>> {
         let channel = |at: usize| raster.pixels().iter().map(|pixel| pixel[at]).collect();
@@ -95,11 +94,11 @@ fn map(folder: &Folder, name: &str, normal_y: &str, format: &str) -> Vec<Vec<u16
     channels(folder, &file)
 }
 
-/// A file name without its ending, its format, and its channels.
+/// File name without its extension, format, and the expected content of each channel.
 type File = (&'static str, &'static str, &'static str);
 
-/// The expected files of presets, as the engines document them: the file, the bit depth, and for each channel the map
-/// and the index of the channel in it. `!` before a map inverts it, and `1` is white.
+/// Expected files of each preset, as the engines document them: the name, the direction of green, and the files. A
+/// channel is written as a map and the index of a channel in it. `!` inverts the map, and `1` is white.
 const EXPECTED: [(&str, &str, &[File]); 5] = [
     (
         "unity",
@@ -212,7 +211,7 @@ fn presets_write_the_files_and_channels_of_their_programs() {
     }
 }
 
-/// Fails unless a channel has the expected content.
+/// Checks that a channel has the expected content, written as in [`EXPECTED`].
 fn check_channel(folder: &Folder, found: &[u16], expected: &str, normal_y: &str, format: &str) {
     if expected == "1" {
         assert!(found.iter().all(|&code| code == u16::MAX), "white");

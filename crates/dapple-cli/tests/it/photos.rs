@@ -1,4 +1,4 @@
-//! Photographs: rectified by four corners, and materials that are estimated from them.
+//! Tests of photographs: rectification by four corners, and estimated materials.
 
 use crate::support::{Folder, assert_done, assert_refused, read_gray};
 use dapple::color::{

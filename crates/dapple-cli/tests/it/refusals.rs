@@ -1,4 +1,4 @@
-//! Tests of errors: inputs that are missing, empty, folders, unreadable or of another kind; and invalid outputs.
+//! Tests of errors: inputs that are missing, empty, directories, unreadable or of another kind, and invalid outputs.
 
 use crate::support::{Folder, assert_refused, stderr, stdout};
 use dapple::color::LinearRgb;
@@ -6,7 +6,7 @@ use dapple::image::{Depth, write_color_png};
 use dapple::raster::Raster;
 use std::fs;
 
-/// Each subcommand that reads a file, with `INPUT` for the file under test. All other inputs exist.
+/// Command lines of each subcommand that reads a file. `INPUT` stands for the file under test; all other inputs exist.
 const READERS: [&str; 24] = [
     "bake INPUT -o out/ --size 8",
     "pups control --points INPUT --size 8 -o out.png",
@@ -91,7 +91,7 @@ const WRONG: [&str; 53] = [
     "points --count 5 -o out.svg",
 ];
 
-/// Command lines with a value that a library rejects, and a part of the message.
+/// Command lines with a value that a library rejects, and a substring of the error message.
 const LIMITS: [(&str, &str); 31] = [
     ("bake flagston -o out/", "flagstone"),
     (
@@ -177,7 +177,7 @@ const LIMITS: [(&str, &str); 31] = [
     ),
 ];
 
-/// Command lines whose files do not match, and a part of the message.
+/// Command lines whose input files do not match each other, and a substring of the error message.
 const UNLIKE: [(&str, &str); 9] = [
     ("tile photo.png checker.png -o out/", CHECKER),
     ("blend photo.png checker.png -o out.png", CHECKER),
@@ -202,10 +202,10 @@ const UNLIKE: [(&str, &str); 9] = [
     ),
 ];
 
-/// The message with both names and sizes.
+/// Error message with the names and sizes of both files.
 const CHECKER: &str = "checker.png has 32 × 32 pixels, but photo.png has 64 × 64";
 
-/// Command lines that clap rejects, and a part of the message.
+/// Command lines that clap rejects, and a substring of the error message.
 const SLIPS: [(&str, &str); 10] = [
     ("worley --frequency 8 -o out.png", "--cells"),
     ("worley --scale=8 -o out.png", "--cells"),
@@ -228,12 +228,13 @@ const SLIPS: [(&str, &str); 10] = [
     ),
 ];
 
-/// The words of a line.
+/// Splits a line into words.
 fn words(line: &str) -> Vec<&str> {
     line.split(' ').collect()
 }
 
-/// Tries an input with every subcommand that reads one, and checks the messages and the remaining files.
+/// Uses `input` as the input of every subcommand that reads a file. Checks the error messages, and that no files are
+/// left.
 fn try_all(name: &str, input: &str, part: &str) {
     let folder = Folder::with_inputs(name);
     fs::write(folder.path("empty.png"), b"").unwrap();

@@ -144,7 +144,7 @@ fn auto_names_its_method_and_is_never_worse_than_others() {
     );
 }
 
-/// What `--method auto` takes for an image.
+/// Returns the name of the method that `--method auto` chooses for an image.
 fn auto_of(folder: &Folder, image: &Raster<f32>) -> String {
     write_gray_png(folder.path("source.png"), image, Depth::Eight).unwrap();
     let output = folder.run(&["tile", "source.png", "--method", "auto", "-o", "best.png"]);

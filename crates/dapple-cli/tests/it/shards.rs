@@ -1,4 +1,4 @@
-//! Tests of shards of a picture: they are listed, baked by processes that die, and joined.
+//! Tests of shards of an image: listing, baking by processes that are killed, and joining.
 
 #![cfg(unix)]
 
@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Stdio;
 use std::time::Duration;
 
-/// The lines of a list of shards.
+/// Returns the lines that `dapple shards` prints.
 fn list(folder: &Folder, arguments: &str) -> Vec<String> {
     let words: Vec<_> = arguments.split(' ').collect();
     let run = folder.run(&words);
@@ -16,7 +16,7 @@ fn list(folder: &Folder, arguments: &str) -> Vec<String> {
     stdout(&run).lines().map(str::to_owned).collect()
 }
 
-/// Runs all lines, and returns their standard error.
+/// Runs the command lines, and returns their standard error.
 fn run_all(folder: &Folder, lines: &[String]) -> String {
     let mut said = String::new();
     for line in lines {

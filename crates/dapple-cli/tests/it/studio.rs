@@ -1,4 +1,4 @@
-//! The studio, run by the command.
+//! Tests of the studio as a subcommand.
 
 use crate::support::{Folder, assert_done, assert_refused};
 use dapple::recipe::Recipe;
@@ -10,7 +10,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 use tungstenite::{Message, WebSocket};
 
-/// A running studio; it is stopped on drop.
+/// A running studio. The process is killed on drop.
 struct Studio {
     child: Child,
     port: u16,
@@ -60,7 +60,7 @@ impl Studio {
         tungstenite::client(request, self.stream()).unwrap().0
     }
 
-    /// The content of an exported file.
+    /// Requests a path from the studio by HTTP, and returns the body of the response.
     fn get(&self, path: &str) -> Vec<u8> {
         let (port, token) = (self.port, &self.token);
         let mut stream = self.stream();
@@ -78,7 +78,7 @@ impl Studio {
     }
 }
 
-/// Waits for the next message of a type.
+/// Waits for the next message of the type `name`.
 fn until(page: &mut WebSocket<TcpStream>, name: &str) -> Value {
     loop {
         if let Message::Text(text) = page.read().unwrap() {

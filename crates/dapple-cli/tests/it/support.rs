@@ -1,4 +1,4 @@
-//! Test folders with inputs, and running the command in them.
+//! Creates folders with inputs for tests, and runs the command in them.
 
 use dapple::color::{LinearRgb, LinearRgba, Normal};
 use dapple::image::{
@@ -21,7 +21,7 @@ const SIDE: u32 = 64;
 /// The side of the texture of `shell.glb`, in texels.
 pub(crate) const SHELL_SIDE: u32 = 256;
 
-/// A recipe with an image.
+/// Text of a recipe with an image.
 pub(crate) const ROCK: &str = r#"
 dapple = 1
 seed = 3
@@ -38,7 +38,7 @@ height = "cells"
 albedo = "lichen"
 "#;
 
-/// A folder for a test; it is removed on drop.
+/// A temporary folder for a test, removed on drop.
 pub(crate) struct Folder(PathBuf);
 
 impl Folder {
@@ -54,7 +54,7 @@ impl Folder {
         Self(folder)
     }
 
-    /// Creates a folder with every input in the examples of the help.
+    /// Creates a folder with all inputs that the examples of the help texts use.
     pub(crate) fn with_inputs(name: &str) -> Self {
         let folder = Self::new(name);
         for name in ["photo", "albedo", "rock", "grass", "sand", "stones"] {
@@ -102,7 +102,7 @@ impl Folder {
         self.0.join(name)
     }
 
-    /// The names of all files in the folder, sorted.
+    /// Returns the names of all files in the folder, sorted.
     pub(crate) fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(&self.0).unwrap();
         let name = |entry: std::io::Result<fs::DirEntry>| entry.unwrap().file_name();
@@ -114,7 +114,7 @@ impl Folder {
             .collect()
     }
 
-    /// Returns the command with arguments, in this folder.
+    /// Returns the command with these arguments, to be run in this folder.
     pub(crate) fn command<S: AsRef<OsStr>>(&self, arguments: &[S]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_dapple"));
         command
@@ -124,12 +124,12 @@ impl Folder {
         command
     }
 
-    /// Runs the command to its end.
+    /// Runs the command, and waits until it ends.
     pub(crate) fn run<S: AsRef<OsStr>>(&self, arguments: &[S]) -> Output {
         self.command(arguments).output().unwrap()
     }
 
-    /// Runs a shell command, in which `dapple` is the command.
+    /// Runs a shell command. `dapple` in it is the command under test.
     #[cfg(unix)]
     pub(crate) fn shell(&self, line: &str) -> Output {
         let program = Path::new(env!("CARGO_BIN_EXE_dapple"));
@@ -153,22 +153,22 @@ impl Drop for Folder {
     }
 }
 
-/// The standard error of a run.
+/// Returns the standard error of a run.
 pub(crate) fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// The standard output of a run.
+/// Returns the standard output of a run.
 pub(crate) fn stdout(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
-/// Fails unless the run succeeded.
+/// Checks that the run succeeded.
 pub(crate) fn assert_done(output: &Output, what: &str) {
     assert_eq!(output.status.code(), Some(0), "{what}: {}", stderr(output));
 }
 
-/// Fails unless the run failed with a message that contains `part`, and without a panic.
+/// Checks that the run failed with this exit code and a message that contains `part`, and did not panic.
 pub(crate) fn assert_refused(output: &Output, code: i32, part: &str, what: &str) {
     let message = stderr(output);
     assert_eq!(output.status.code(), Some(code), "{what}: {message}");
@@ -177,13 +177,13 @@ pub(crate) fn assert_refused(output: &Output, code: i32, part: &str, what: &str)
     assert!(!message.contains("panicked"), "{what}: {message}");
 }
 
-/// Returns a small model, which is made only once, since it takes a while.
+/// Returns a small model. It is built only once, since this is slow.
 fn model() -> &'static Model {
     static MODEL: OnceLock<Model> = OnceLock::new();
     MODEL.get_or_init(|| dapple_models::ray(300).unwrap().into())
 }
 
-/// The model with a checker on it.
+/// Returns the small model with a checkerboard texture.
 pub(crate) fn shell() -> &'static Model {
     static SHELL: OnceLock<Model> = OnceLock::new();
     SHELL.get_or_init(|| {
@@ -197,12 +197,12 @@ pub(crate) fn shell() -> &'static Model {
     })
 }
 
-/// Colors of a smooth hill.
+/// Returns an image of a smooth hill in color.
 fn color() -> Raster<LinearRgb> {
     gray().map(|&value| LinearRgb::new(value, 0.5 * value + 0.2, 1.0 - value))
 }
 
-/// A smooth hill on a slope, from 0.2 to 0.8.
+/// Returns a gray image of a smooth hill on a slope, with values from 0.2 to 0.8.
 fn gray() -> Raster<f32> {
     let half = SIDE as f32 / 2.0;
     Raster::from_fn([SIDE; 2], |column, row| {

@@ -353,7 +353,7 @@ fn colors_of_vertices_say_what_an_image_of_them_says() {
     assert_eq!(flat.status.code(), Some(1), "a mesh for an image");
 }
 
-/// Writes a square whose texture coordinates are its positions.
+/// Writes a mesh of a square whose texture coordinates equal its positions.
 fn write_square(folder: &Folder) {
     let square =
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";

@@ -1,4 +1,4 @@
-//! Tests of `dapple synth`: turned examples, masks and repairs with several of them, and images of what a texture is made of.
+//! Tests of `dapple synth`: rotated examples, masks and repairs with several examples, and diagnostic images.
 
 use crate::support::{Folder, assert_done, read_gray, stderr};
 use dapple::color::{LinearRgb, LinearRgba, Normal};
@@ -14,7 +14,7 @@ fn write(folder: &Folder, name: &str, size: [u32; 2], value: impl FnMut(u32, u32
     write_gray_png(folder.path(name), &plane, Depth::Eight).unwrap();
 }
 
-/// Runs the command with a line of arguments.
+/// Runs the command with arguments separated by spaces. It must succeed.
 fn run(folder: &Folder, line: &str) {
     assert_done(
         &folder.run(&line.split_whitespace().collect::<Vec<_>>()),

@@ -1,4 +1,4 @@
-//! Tests of baking again at every save.
+//! Tests of `dapple watch`, which bakes again at every save.
 
 use crate::support::Folder;
 use dapple::image::{Limits, read_image};
@@ -7,15 +7,15 @@ use std::path::Path;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-/// The time limit for the bake after a save. It takes some tenths of a second, and more if other tests run.
+/// Time limit for the bake after a save. It takes a few tenths of a second, and more if other tests run.
 const DEADLINE: Duration = Duration::from_secs(60);
 
-/// A recipe with a constant height.
+/// Returns the text of a recipe with a constant height.
 fn flat(height: &str) -> String {
     format!("dapple = 1\n\n[material]\nheight = {height}\n")
 }
 
-/// The running command; it is stopped on drop.
+/// The running command. The process is killed on drop.
 struct Watching(Child);
 
 impl Drop for Watching {
@@ -25,7 +25,7 @@ impl Drop for Watching {
     }
 }
 
-/// Whether a file is an image of this size and gray.
+/// Returns whether a file is an image of this size in which all pixels have this gray value.
 fn holds(path: &Path, size: [u32; 2], gray: f32) -> bool {
     let Ok(image) = read_image(path, &Limits::default()) else {
         return false;
@@ -38,7 +38,8 @@ fn holds(path: &Path, size: [u32; 2], gray: f32) -> bool {
             .is_ok_and(|image| image.pixels().iter().all(is_near))
 }
 
-/// Waits for an image of one gray; if it does not appear in time, fails with the image found instead.
+/// Waits for an image in which all pixels have this gray value. After the time limit, fails with the image that was
+/// found instead.
 #[expect(clippy::disallowed_methods, reason = "another program is waited for")]
 fn wait_for(watching: &mut Watching, path: &Path, gray: f32, what: &str) {
     let start = Instant::now();

@@ -1,16 +1,16 @@
-//! Shaders are valid WGSL, with their parameters.
+//! Tests that printed shaders are valid WGSL and contain their parameters.
 
 use crate::support::{Folder, assert_done, assert_refused, stdout};
 use dapple::hash::Seed;
 use dapple::noise::GradientNoise3;
 use dapple::recipe::{Images, Recipe, ShaderOptions};
 
-/// Prints modules of noise and validates them.
+/// Prints the shader of noise modules, validates it, and returns it.
 fn valid(folder: &Folder, arguments: &[&str]) -> String {
     valid_output(folder, &[&["wgsl"], arguments].concat())
 }
 
-/// Runs a command that prints a shader, and validates it.
+/// Runs a command that prints a shader, validates the shader, and returns it.
 fn valid_output(folder: &Folder, arguments: &[&str]) -> String {
     let output = folder.run(arguments);
     assert_done(&output, "a shader");
@@ -117,7 +117,7 @@ fn materials_of_builtin_recipes_are_valid_shaders() {
     }
 }
 
-/// Returns the first block of code in a language in a page.
+/// Returns the first code block of a language in a Markdown page.
 fn block(page: &str, language: &str) -> String {
     let start = page.split_once(&format!("```{language}\n"));
     let (block, _) = start
@@ -285,7 +285,7 @@ fn shaders_in_hlsl_have_all_functions() {
     assert!(written.contains("Material material(Place2d "), "{written}");
 }
 
-/// Returns Godot's shader as a whole shader of GLSL.
+/// Converts a Godot surface shader to an entire GLSL shader, so that it can be validated.
 #[cfg(feature = "shader-languages")]
 fn as_glsl(godot: &str) -> String {
     let text = godot.replace("shader_type spatial;", "");

@@ -1,4 +1,4 @@
-//! Meshes covered with all maps of a material.
+//! Tests of meshes that are textured with all maps of a material.
 
 use crate::support::{Folder, assert_done, assert_refused, read_gray, stdout};
 use dapple::color::{LinearRgb, LinearRgba};
@@ -11,7 +11,7 @@ use dapple::mesh_io::read_model;
 use dapple::raster::Raster;
 use std::fs;
 
-/// A folder with the maps `ao.png`, `rough.png` and `metal.png` of `checker.png`, all of them different.
+/// Creates a folder with the maps `ao.png`, `rough.png` and `metal.png` of `checker.png`. All of them differ.
 fn folder(name: &str) -> Folder {
     let folder = Folder::with_inputs(name);
     let write = |name: &str, code: fn(u32, u32) -> u32| {
@@ -24,7 +24,7 @@ fn folder(name: &str) -> Folder {
     folder
 }
 
-/// Covers the model of a folder with its checker, with more options.
+/// Synthesizes a texture of the checkerboard on the folder's model. `more` are further arguments.
 fn cover(folder: &Folder, more: &str) {
     let line = format!(
         "synth checker.png --mesh model.obj --edges wrap --sites 400 --texture-size 128 {more}"
@@ -33,7 +33,7 @@ fn cover(folder: &Folder, more: &str) {
     assert_done(&folder.run(&words), &line);
 }
 
-/// The codes of an image with 16 bits in three channels.
+/// Returns the codes of an image with three channels of 16 bits.
 fn codes(image: &EncodedImage) -> Vec<[u16; 3]> {
     match decode_image(image.bytes(), &Limits::default()).unwrap() {
         Image::Png(png) => match png.pixels {
@@ -44,7 +44,7 @@ fn codes(image: &EncodedImage) -> Vec<[u16; 3]> {
     }
 }
 
-/// The image with occlusion, roughness and metalness of a model, which has one for all three.
+/// Returns the codes of a model's packed image of occlusion, roughness and metalness.
 fn packed(model: &Model) -> Vec<[u16; 3]> {
     let image = model.material.metallic_roughness.as_ref().unwrap();
     let occlusion = model.material.occlusion.as_ref();
@@ -52,7 +52,7 @@ fn packed(model: &Model) -> Vec<[u16; 3]> {
     codes(image)
 }
 
-/// The codes of a gray image with 16 bits.
+/// Returns the codes of a 16-bit gray image.
 fn gray_codes(folder: &Folder, name: &str) -> Vec<u16> {
     let values = read_gray(folder, name).into_pixels();
     values
@@ -145,7 +145,7 @@ fn a_map_has_one_name() {
     assert_refused(&run, 2, "--map ao and --map occlusion are one map", line);
 }
 
-/// A folder with `plain.png`, a gray example in which nothing is to be seen, and `bumps.png`, its height: a checker of two
+/// Creates a folder with `plain.png`, a uniformly gray example, and `bumps.png`, its height map: a checkerboard of two
 /// heights.
 fn bumps(name: &str) -> Folder {
     let folder = Folder::with_inputs(name);
@@ -160,7 +160,7 @@ fn bumps(name: &str) -> Folder {
     folder
 }
 
-/// How often a value beside another one differs from it, of all pairs in rows.
+/// Returns the fraction of horizontally adjacent pixel pairs whose values differ by more than 0.1.
 fn steps(image: &Raster<f32>) -> f64 {
     let [width, height] = image.size();
     let rows = (0..height).map(|y| image.row(y));
@@ -273,7 +273,8 @@ fn weights_of_no_map_are_refused() {
     }
 }
 
-/// A folder with `leaf.png`, which is as opaque as it is gray, and `holes.png`, green with holes that are red.
+/// Creates a folder with `leaf.png`, whose alpha equals its gray value, and `holes.png`, which is green with
+/// transparent red holes.
 fn leaves(name: &str) -> Folder {
     let folder = Folder::with_inputs(name);
     let write = |name: &str, pixel: fn(u32, u32) -> LinearRgba| {
@@ -399,7 +400,8 @@ fn normals_of_an_obj_are_one_file() {
     assert_eq!(of_output.collect::<Vec<_>>(), expected);
 }
 
-/// How far the vertices of a mesh are from those of another, along its normals and across them.
+/// Returns the displacement of each vertex from mesh `from` to mesh `to`: its component along the normal, and its
+/// length perpendicular to the normal.
 fn moved(from: &Mesh, to: &Mesh) -> Vec<[f64; 2]> {
     let normals = from.vertex_normals();
     let vertices = from.positions().iter().zip(to.positions()).zip(normals);

@@ -1,9 +1,9 @@
-//! Names of options, values and files.
+//! Tests of the spelling of option names, values and file names.
 
 use crate::support::{Folder, assert_done, assert_refused, stderr, stdout};
 use std::fs;
 
-/// Two ways to type the same command.
+/// Pairs of command lines that must have the same effect.
 const SAME: [[&str; 2]; 10] = [
     ["worley --value f2_minus_f1", "worley --Value F2-Minus-F1"],
     ["worley --metric manhattan", "worley --metric Manhattan"],
@@ -35,7 +35,7 @@ const SAME: [[&str; 2]; 10] = [
     ],
 ];
 
-/// Runs of every subcommand with a file or a folder, and the files that they write to a folder.
+/// Command lines of every subcommand that writes to a folder, and the names of the files that they write.
 const NAMED: [(&str, &[&str]); 16] = [
     ("worley", &["worley.png"]),
     ("worley --frames 2", &["worley_001.png", "worley_002.png"]),

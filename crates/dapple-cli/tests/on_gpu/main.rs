@@ -1,4 +1,4 @@
-//! `dapple bake --gpu` as a program: the files of a bake on the processor, and its errors.
+//! Tests of `dapple bake --gpu` as a program: its files equal those of a bake on the CPU, and its errors.
 
 #![expect(
     clippy::disallowed_methods,
@@ -10,11 +10,11 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-/// Maps that read all nodes of a material.
+/// Names of maps that together read all nodes of a material.
 const MAPS: &str =
     "height,normal,ao,curvature,albedo,roughness,metallic,orm,emission,opacity,specular,clearcoat";
 
-/// A recipe with nodes on the GPU, on the CPU below and above them, and over the whole tile.
+/// A recipe with nodes on the GPU, nodes on the CPU below and above them, and global nodes.
 const ALL_STEPS: &str = r##"
 dapple = 1
 extent = [4.0, 3.0]
@@ -33,7 +33,7 @@ albedo = "color"
 roughness = "cells"
 "##;
 
-/// Returns `dapple bake` with these words after it, in `folder`.
+/// Returns the command `dapple bake` in `folder`, with `words` as its arguments.
 fn bake(folder: &Path, words: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_dapple"));
     command
@@ -52,7 +52,8 @@ fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// Returns the bytes of all maps in a folder and its folders, by path. A sidecar names its folder.
+/// Returns the bytes of all maps in a directory and its subdirectories, by path. Sidecars are left out, because they
+/// contain the directory's name.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut all = BTreeMap::new();
     for entry in fs::read_dir(folder).expect("a folder") {
@@ -72,7 +73,7 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     all
 }
 
-/// Bakes with `--gpu`; `None` without an adapter, unless `DAPPLE_NO_SKIP=1` is set.
+/// Runs a bake with `--gpu`. Returns `None` if there is no GPU adapter, unless `DAPPLE_NO_SKIP=1` is set.
 #[expect(
     clippy::print_stdout,
     reason = "the output of a test says that it was skipped"
@@ -92,7 +93,7 @@ fn on_gpu(folder: &Path, words: &str) -> Option<Output> {
     None
 }
 
-/// Bakes on both processors, and compares all bytes of all files.
+/// Bakes on the CPU and on the GPU, and checks that all files have equal bytes.
 fn compare(words: &str) {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("steps.toml"), ALL_STEPS).expect("a file");

@@ -23,7 +23,8 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// Unwraps the result for a recipe. With `--keep-going`, an error is printed and counted, and `None` is returned.
+    /// Returns the value if a recipe's `result` is a success. With `--keep-going`, an error is printed and counted, and
+    /// `None` is returned.
     ///
     /// # Errors
     ///

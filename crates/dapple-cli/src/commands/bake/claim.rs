@@ -21,12 +21,12 @@ use std::path::{Path, PathBuf};
 pub(super) struct Claimed {
     /// The images to bake.
     pub(super) images: Vec<Image>,
-    /// Files of a shard that exist already.
+    /// Files of the shard that exist already and are not baked again.
     pub(super) finished: Vec<Target>,
     /// A file for each image; empty if a document embeds the images.
     files: Vec<MapFile>,
     document: Option<(OutputIdx, Document)>,
-    /// The import settings of images for Unity, with the layers and the file name of the image.
+    /// Unity's import settings of each image: their output file, the layers of the image, and the image's file name.
     metas: Vec<(OutputIdx, Layers, String)>,
     pub(super) preview: Option<(OutputIdx, Format)>,
 }
@@ -170,7 +170,8 @@ fn image(layers: Layers, asked: Option<Format>, target: &Target) -> Result<Image
     Ok(Image { layers, format })
 }
 
-/// Claims the file of an image's import settings, unless it exists: settings that were changed in Unity remain.
+/// Claims the file of an image's import settings for Unity, unless it exists. Existing settings may have been edited in
+/// Unity, and are not replaced.
 fn claim_meta(
     image: &Target,
     layers: Layers,
@@ -216,7 +217,8 @@ fn check_ending(target: &Target, document: Document) -> Result<()> {
 }
 
 impl Args {
-    /// Returns whether a shard's file exists already. Such a file is complete and belongs to the shard's list.
+    /// Returns whether a shard's file exists and need not be baked again. Such a file is complete, and its directory's
+    /// name shows that it belongs to the shard's list.
     fn is_finished(&self, target: &Target) -> bool {
         let is_there = |path: &Path| path.exists();
         self.shard.is_some() && !self.files.force && target.path().is_some_and(is_there)
@@ -224,7 +226,7 @@ impl Args {
 }
 
 impl Claimed {
-    /// Returns the maps that the images need, each once.
+    /// Returns the kinds of all maps that the images contain, without duplicates.
     pub(super) fn map_kinds(&self) -> Vec<MapKind> {
         let mut kinds: Vec<MapKind> = Vec::new();
         for kind in self.images.iter().flat_map(|image| image.layers.kinds()) {
@@ -235,7 +237,7 @@ impl Claimed {
         kinds
     }
 
-    /// Bakes and writes the images, and the document that contains or names them.
+    /// Bakes the images and writes them, and writes the document that embeds or references them.
     pub(super) fn write(
         &self,
         job: &mut Job<'_>,

@@ -12,7 +12,7 @@ use dapple::raster::Raster;
 use dapple::tile::Map;
 use serde_json::Value;
 
-/// Width of the gap around each preview, in pixels.
+/// Width of the border around each preview, in pixels.
 const GAP: u32 = 8;
 
 /// Previews of the recipes baked so far, and the claimed file of their sheet.
@@ -68,7 +68,7 @@ impl<'a> ContactSheet<'a> {
     }
 }
 
-/// Arranges images of the same size in a grid that is about square, on a gray background.
+/// Returns a roughly square grid of images of the same size, on a gray background.
 fn arranged(images: &[Raster<LinearRgb>]) -> Result<Raster<LinearRgb>> {
     let count = images.len() as u32;
     let columns = (1..)

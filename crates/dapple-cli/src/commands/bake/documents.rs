@@ -64,12 +64,12 @@ pub(super) fn glb(
     Ok(gltf::write(&model)?)
 }
 
-/// The connection of a map to an input of the surface in MaterialX.
+/// Connection of a map to an input of the surface shader in MaterialX.
 struct Wire {
     kind: MapKind,
     /// The name of the image node.
     name: &'static str,
-    /// The type of the image node and of the input.
+    /// MaterialX type of the image node and of the input, such as `color3`.
     type_name: &'static str,
     color_space: &'static str,
     /// The input of the surface; `None` for the height, which is connected to the displacement.
@@ -164,10 +164,10 @@ pub(super) fn mtlx(recipe: &Recipe, files: &[(Layers, String)]) -> String {
     )
 }
 
-/// The displacement input of a material.
+/// XML of the material's displacement input.
 const DISPLACEMENT_INPUT: &str = "    <input name=\"displacementshader\" type=\"displacementshader\" nodename=\"displacement\" />\n";
 
-/// Returns the XML of the constant inputs of the surface that come with a map.
+/// Returns the XML of the surface's constant inputs that accompany a map, such as the strength of the emission.
 fn constants(kind: MapKind, recipe: &Recipe) -> String {
     let material = &recipe.material;
     let (name, value) = match kind {
@@ -181,8 +181,8 @@ fn constants(kind: MapKind, recipe: &Recipe) -> String {
     format!("    <input name=\"{name}\" type=\"float\" value=\"{value}\" />\n")
 }
 
-/// Returns the XML of a map's image node. For normals, it includes the node that decodes them. For the opacity, whose
-/// input is a color, it includes the conversion, and a comparison with the cut-off if there is one.
+/// Returns the XML of a map's image node. Normals include the node that decodes them. The opacity includes a conversion
+/// to a color, since the input of the surface is a color, and a comparison with the cutoff if there is one.
 fn image_node(wire: &Wire, file: &str, cutoff: Option<f64>) -> String {
     let Wire {
         name,

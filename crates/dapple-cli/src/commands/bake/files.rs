@@ -1,4 +1,4 @@
-//! The options of `bake` for the files of a material, for subcommands that make a material without a recipe file.
+//! Reuses the options of `bake` for output files in subcommands that create a material without a recipe file.
 
 use super::{Args, Made, MaterialArgs, Work};
 use crate::args::{OutputArgs, Size};
@@ -10,7 +10,7 @@ use dapple::recipe::{Images, Recipe};
 use serde::Serialize;
 use std::path::Path;
 
-/// The ids of the options.
+/// Names of the reused options.
 const IDS: [&str; 10] = [
     "maps", "preset", "normal_y", "sheet", "preview", "format", "output", "name", "force", "json",
 ];

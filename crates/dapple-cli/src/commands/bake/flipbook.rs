@@ -55,10 +55,11 @@ impl Work {
     }
 }
 
-/// Maximum number of frames of a loop, as for `--frames`.
+/// Maximum number of frames in a loop, equal to the limit of `--frames`.
 const MOST_FRAMES: u64 = 100_000;
 
-/// Returns the size of a grid of frames, in pixels.
+/// Returns the size of a grid of frames, in pixels. `frame` is the size of a frame in pixels; `grid` is the number of
+/// frames across and down.
 fn size_of(frame: [u32; 2], Size(grid): Size) -> Result<[u32; 2]> {
     let [width, height] = [0, 1].map(|axis| u64::from(frame[axis]) * u64::from(grid[axis]));
     if width.saturating_mul(height) > baking::MOST_PIXELS {

@@ -19,8 +19,8 @@ impl Args {
         preset.or_else(|| Preset::of_ending(&ending))
     }
 
-    /// Returns the document of the material, if the preset has one. A material of Godot is left out with images that
-    /// it cannot name: frames, parts of the tile, samples on corners, and normals with green down.
+    /// Returns the document of the material, if the preset has one. A Godot material is left out if it cannot reference
+    /// the images: frames, regions, corner samples, or normals whose green points down.
     pub(super) fn document(&self) -> Option<Document> {
         let document = self.preset()?.document?;
         let is_left_out = document == Document::Tres
@@ -53,7 +53,7 @@ impl Args {
         }
     }
 
-    /// Returns the first option that has no effect on a document.
+    /// Returns the first given option that has no effect on a document.
     fn in_the_way(&self, document: Document) -> Option<&'static str> {
         let is_by_ending = self.preset.is_empty();
         let in_the_way = [
@@ -80,8 +80,8 @@ impl Args {
         in_the_way.find_map(|(option, is_there)| is_there.then_some(option))
     }
 
-    /// Returns the images to bake for a material. Each has its part of the file name, its channels, and the format if one
-    /// was chosen. Images of a preset whose maps the material lacks are left out.
+    /// Returns the images to bake for a material. Each comes with its part of the file name (`NAME_PART`), its
+    /// channels, and its format if one was chosen. A preset's images of maps that the material lacks are left out.
     pub(super) fn images(
         &self,
         material: &Material,

@@ -10,7 +10,7 @@ use std::str::FromStr;
 pub(super) struct Maps(pub(super) Vec<MapKind>);
 
 impl Maps {
-    /// Returns whether these are all maps.
+    /// Returns whether the list has all maps, in their order.
     pub(super) fn are_all(&self) -> bool {
         self.0 == MapKind::ALL
     }

@@ -25,7 +25,7 @@ const USUAL: [MapKind; 5] = [
     MapKind::Roughness,
 ];
 
-/// The maps that only some materials have.
+/// The maps that a material may lack.
 const OPTIONAL: [MapKind; 4] = [
     MapKind::Emission,
     MapKind::Opacity,
@@ -144,7 +144,7 @@ pub(in crate::commands) struct MaterialArgs {
 }
 
 impl MaterialArgs {
-    /// Creates options for a recipe that remains as it is, except for the direction of green.
+    /// Creates options that leave the recipe unchanged, except for the direction of green.
     pub(super) fn new(size: Size, maps: Option<Maps>, normal_y: Option<NormalY>) -> Self {
         Self {
             size,

@@ -21,14 +21,14 @@ pub(super) struct Preset {
     pub(super) normal_y: NormalY,
     pub(super) images: &'static [PresetImage],
     pub(super) document: Option<Document>,
-    /// Whether each image has a file with Unity's import settings.
+    /// Whether each image gets a file with Unity's import settings.
     pub(super) has_metas: bool,
 }
 
 /// An image of a preset.
 #[derive(Debug, PartialEq)]
 pub(super) struct PresetImage {
-    /// The part of the file name after the name of the material: `NAME_PART.png`.
+    /// The part of the file name that follows the name of the material: `NAME_PART.png`.
     pub(super) part: &'static str,
     pub(super) image: Image,
 }
@@ -55,7 +55,7 @@ impl Document {
     }
 }
 
-/// Defines an image with 8 bits per channel.
+/// Creates an image with 8 bits per channel. `part` is its part of the file name.
 const fn eight(part: &'static str, layers: Layers) -> PresetImage {
     let format = Format::Png8;
     PresetImage {
@@ -64,7 +64,7 @@ const fn eight(part: &'static str, layers: Layers) -> PresetImage {
     }
 }
 
-/// Defines an image with 16 bits per channel.
+/// Creates an image with 16 bits per channel. `part` is its part of the file name.
 const fn sixteen(part: &'static str, layers: Layers) -> PresetImage {
     let format = Format::Png16;
     PresetImage {
@@ -89,7 +89,7 @@ const METALLIC_SMOOTHNESS: Layers = Layers::Rgba([
     Channel::OneLess(MapKind::Roughness),
 ]);
 
-/// A clear coat in red, and 1 in the other channels, among them the smoothness in green, for Unity.
+/// Clear coat map for Unity: the clear coat in red, and 1 in the other channels, including the smoothness in green.
 const COAT: Layers = Layers::Rgba([
     Channel::Of(MapKind::Clearcoat),
     Channel::Always(1.0),
@@ -97,7 +97,7 @@ const COAT: Layers = Layers::Rgba([
     Channel::Always(1.0),
 ]);
 
-/// The specular texture of glTF, which has its strength in alpha.
+/// Specular texture of glTF, which has the strength in alpha.
 const SPECULAR: Layers = Layers::Rgba([
     Channel::Always(1.0),
     Channel::Always(1.0),
@@ -105,7 +105,7 @@ const SPECULAR: Layers = Layers::Rgba([
     Channel::Of(MapKind::Specular),
 ]);
 
-/// Specular as in Unreal and in Blender's Principled BSDF, where 0.5 is an index of refraction of 1.5.
+/// Specular level as in Unreal and in Blender's Principled BSDF, where 0.5 is an index of refraction of 1.5.
 const HALF_SPECULAR: Layers = Layers::Gray(Channel::Half(MapKind::Specular));
 
 /// The images of glTF, as separate files or embedded in a document.
@@ -237,7 +237,7 @@ pub(super) static PRESETS: [Preset; 7] = [
 ];
 
 impl Preset {
-    /// Returns a sentence about the preset.
+    /// Returns the description of the preset, one sentence.
     #[cfg(feature = "studio")]
     pub(super) fn about(&self) -> &'static str {
         self.about
@@ -251,8 +251,8 @@ impl Preset {
         })
     }
 
-    /// Returns the note that names the images of data for a program that does not read how to import them; `None` if
-    /// another file says so, or if the preset has no such image for the material.
+    /// Returns a note that lists the images that must be imported without sRGB decoding. `None` if the preset writes
+    /// import settings, or if the material has no such image.
     pub(super) fn import_note(&self, material: &Material) -> Option<String> {
         if self.has_metas {
             return None;
@@ -282,7 +282,7 @@ impl Serialize for &'static Preset {
     }
 }
 
-/// Returns a table of the images of all presets, for the help.
+/// Returns a table of the images of all presets, for the help text.
 pub(super) fn table() -> String {
     let mut text = "Presets (see --preset), with * at images that only some materials have. Images that are not \"in sRGB\" are data: \
         they are imported as linear, without sRGB.\n"

@@ -1,4 +1,4 @@
-//! Parses a seed or a range of seeds, such as `7` or `1-20`.
+//! Parses a seed or an inclusive range of seeds, such as `7` or `1-20`.
 
 use crate::args::seed;
 use serde::{Serialize, Serializer};
@@ -34,7 +34,8 @@ impl Seeds {
         self.first..=self.last
     }
 
-    /// Returns the label of a seed for file names. All labels of a range have the same number of digits.
+    /// Returns the label of a seed for file names, padded with zeros so that all labels of the range have the same
+    /// length.
     pub(super) fn label(self, seed: u64) -> String {
         let digits = self.last.to_string().len();
         format!("{seed:0digits$}")

@@ -7,8 +7,9 @@ use crate::layers::Layers;
 use crate::output::sha256;
 use dapple::recipe::{MapKind, Recipe};
 
-/// Returns the import settings of an image: linear or sRGB, the type of a normal map, and how it continues past its
-/// sides. `file` is its name, from which its id follows, so that a material keeps its images when they are baked again.
+/// Returns the text of an image's import settings: linear or sRGB, whether it is a normal map, and the wrap mode of
+/// each axis. `file` is the image's file name. The asset id is derived from it, so that a material still finds its
+/// images after another bake.
 pub(super) fn meta(recipe: &Recipe, layers: Layers, file: &str) -> String {
     let id = &sha256(format!("dapple {file}").as_bytes())[..32];
     let is_srgb = u8::from(layers.is_color());

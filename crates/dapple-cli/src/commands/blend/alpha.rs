@@ -7,14 +7,15 @@ use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::tile::Map;
 
-/// Alpha representation of the mixed colors.
+/// How alpha is stored with the blended colors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::commands) enum AlphaForm {
     /// The image has no alpha.
     None,
     /// Straight colors, as in PNG.
     Straight,
-    /// Colors multiplied by alpha, since a layer is an OpenEXR image, where pixels with alpha 0 may emit light.
+    /// Associated colors, that is, colors multiplied by alpha. Used if a layer is an OpenEXR image, where pixels with
+    /// alpha 0 may emit light.
     Associated,
 }
 
@@ -41,7 +42,7 @@ pub(in crate::commands) fn multiply(materials: &mut [Material]) -> Result<AlphaF
     Ok(form)
 }
 
-/// Removes the alpha from the end of `maps` and returns it, and converts the first map to `form`.
+/// Removes the alpha from the end of `maps` and returns it. Converts the first map to `form`.
 pub(in crate::commands) fn take(
     maps: &mut Vec<Map>,
     form: AlphaForm,

@@ -20,16 +20,17 @@ const BASE: &str = "base";
 /// The name of the map with a layer's height.
 pub(in crate::commands) const HEIGHT: &str = "height";
 
-/// A layer on the command line.
+/// A layer as given on the command line.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(in crate::commands) struct LayerArg {
     path: PathBuf,
     weight: Option<Weight>,
-    /// The other maps, sorted by name; [`HEIGHT`] and `normal` have a special meaning.
+    /// The maps after the first one, as pairs of name and file, sorted by name. [`HEIGHT`] and `normal` have a special
+    /// meaning.
     maps: Vec<(String, PathBuf)>,
 }
 
-/// The weight of a layer, a number or a mask.
+/// Weight of a layer: a number, or the file of a mask.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 enum Weight {
@@ -48,7 +49,7 @@ pub(in crate::commands) struct Material {
     pub(in crate::commands) is_associated: bool,
     /// The layer's height; `None` if it has no height.
     pub(in crate::commands) height: Option<Raster<f32>>,
-    /// Whether an image has more than 8 bits per channel.
+    /// Whether any of the images has more than 8 bits per channel.
     pub(in crate::commands) is_deep: bool,
     weight: Option<ReadWeight>,
 }
@@ -94,7 +95,8 @@ impl FromStr for LayerArg {
 }
 
 impl LayerArg {
-    /// Adds maps to layers: the first map of a name belongs to the first layer, and so on.
+    /// Adds maps to layers. Of the maps with the same name, the first is added to the first layer, the second to the
+    /// second, and so on.
     ///
     /// # Errors
     ///
@@ -135,7 +137,7 @@ impl LayerArg {
         self.weight.is_some()
     }
 
-    /// Returns whether the layer has a height.
+    /// Returns whether the layer has a height map.
     pub(in crate::commands) fn has_height(&self) -> bool {
         self.maps.iter().any(|(name, _)| name == HEIGHT)
     }
@@ -197,7 +199,7 @@ impl LayerArg {
 /// Reads the images of all layers, and repeats or crops them to the same size.
 #[derive(Debug)]
 pub(in crate::commands) struct Reader<'a> {
-    /// The size to which images are repeated or cropped, if given.
+    /// Size to which images are repeated or cropped; `None` to require images of equal size.
     size: Option<Size>,
     /// How to handle alpha.
     alpha: Alpha,
@@ -210,8 +212,8 @@ pub(in crate::commands) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// Creates a reader that repeats or crops images to `size`. Without `size`, all images must be the same size as the
-    /// first one, and the error for another size has the hint `hint`.
+    /// Creates a reader that repeats or crops images to `size`. If `size` is `None`, all images must have the size of
+    /// the first one; the error for other sizes has the hint `hint`.
     pub(in crate::commands) fn new(
         size: Option<Size>,
         alpha: Alpha,
@@ -262,7 +264,8 @@ impl<'a> Reader<'a> {
         Ok(loaded)
     }
 
-    /// Reads gray maps again as colors if the same map of another layer has colors.
+    /// Makes maps with the same name have the same kind in all layers: a gray map is read again as colors if another
+    /// layer's map has colors.
     ///
     /// # Errors
     ///
@@ -289,7 +292,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Returns the weight of each layer at every pixel. Layers without a weight equally share the rest, up to 1.
+/// Returns the weight of each layer at every pixel. Layers without a weight equally divide the difference between 1 and
+/// the sum of the given weights.
 ///
 /// # Errors
 ///
@@ -318,7 +322,7 @@ pub(in crate::commands) fn weights(
         .collect())
 }
 
-/// Converts a map to numbers. Colors are converted to their luminance, normals to their z component.
+/// Returns a map as a single number per pixel: the luminance of colors, or the z component of normals.
 pub(in crate::commands) fn values(map: Map) -> Raster<f32> {
     match map {
         Map::Value(values) => values,
@@ -327,7 +331,8 @@ pub(in crate::commands) fn values(map: Map) -> Raster<f32> {
     }
 }
 
-/// Splits a text at each `,key=` into the image and key-value pairs. Other commas are part of file names.
+/// Splits a layer's text at each `,key=`. Returns the text before the first key and the pairs of key and value. Other
+/// commas are part of file names.
 fn split(text: &str) -> (String, Vec<(String, String)>) {
     let mut parts = text.split(',');
     let mut path = parts.next().unwrap_or_default().to_owned();
@@ -355,7 +360,7 @@ fn is_key(key: &str) -> bool {
             .all(|byte| byte.is_ascii_alphabetic() || b"_-".contains(&byte))
 }
 
-/// Returns an error if a key is a likely misspelling of a known one. All other keys are names of maps.
+/// Returns an error if a key is a likely misspelling of a known one. Any other key is the name of a map.
 fn check_key(key: &str) -> Result<(), String> {
     let maps = MapKind::ALL.into_iter().map(MapKind::name);
     slip("key", key, ["weight"].into_iter().chain(maps)).map_or(Ok(()), Err)

@@ -21,7 +21,7 @@ pub(super) struct MixingArgs {
     wrap: Option<Axes>,
 }
 
-/// The options of the node `blend` of recipes.
+/// Marker for the flags that come from the recipe node `blend`.
 #[derive(Clone, Debug)]
 struct MixingFlags;
 
@@ -41,8 +41,8 @@ impl NodeFlags for MixingFlags {
 }
 
 impl MixingArgs {
-    /// Returns the blend options. The default weighting is mask with a blend tile, otherwise height if a layer has a
-    /// height, otherwise the given weights.
+    /// Returns the blend options. The default weighting is by mask with a blend tile, otherwise by height if a layer
+    /// has a height, otherwise by the given weights.
     ///
     /// # Errors
     ///

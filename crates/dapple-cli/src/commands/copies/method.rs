@@ -37,8 +37,8 @@ pub(super) struct MethodArgs {
     node: NodeArgs<MethodFlags>,
 }
 
-/// The options of the nodes `disturb`, `match_borders` and `corner_tiles` of recipes. Widths have other defaults here,
-/// which depend on the size of the tiles.
+/// Marker for the flags that come from the recipe nodes `disturb`, `match_borders` and `corner_tiles`. Unlike in
+/// recipes, the default widths depend on the size of the tiles.
 #[derive(Clone, Debug)]
 struct MethodFlags;
 
@@ -79,7 +79,8 @@ pub(super) enum Method {
 }
 
 impl MethodArgs {
-    /// Returns the method for `count` tiles, which writes a map or, with `writes_tiles`, the tiles themselves.
+    /// Returns the method and its options for `count` input tiles. `writes_tiles` is true if the tiles themselves are
+    /// written instead of a map of copies.
     ///
     /// # Errors
     ///
@@ -133,7 +134,7 @@ impl Method {
     }
 }
 
-/// A method and the maps of its tiles. There is at least one tile.
+/// A method, and the maps of each input tile. There is at least one tile.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tiles<'a> {
     pub(super) method: Method,
@@ -175,7 +176,7 @@ impl Tiles<'_> {
         }
     }
 
-    /// Generates the tiles of a set, in the order of their names.
+    /// Generates the set of tiles, in the order of [`tile_names`](Method::tile_names).
     ///
     /// # Errors
     ///

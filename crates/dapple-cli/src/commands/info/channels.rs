@@ -11,7 +11,7 @@ use std::fmt;
 
 /// Number of bins of a histogram.
 const BINS: u32 = 24;
-/// The characters for the bars of a histogram, from an empty bin to the fullest.
+/// Characters of a histogram's bars, from an empty bin to the fullest one.
 const BARS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
 /// Minimum width of the name column, in characters.
@@ -22,7 +22,7 @@ const GRAY_ALPHA: [&str; 2] = ["gray", "alpha"];
 const RGB: [&str; 3] = ["red", "green", "blue"];
 const RGBA: [&str; 4] = ["red", "green", "blue", "alpha"];
 
-/// A channel with its name.
+/// A channel of an image, with its name.
 pub(super) struct Channel {
     pub(super) name: String,
     pub(super) values: Raster<f32>,
@@ -168,7 +168,7 @@ pub(super) fn format(content: &Content) -> String {
     }
 }
 
-/// The amount of transparency of an image, as fractions of its pixels.
+/// How transparent an image is, as fractions of its pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct Transparency {
     /// The fraction of pixels with alpha 0 or less.
@@ -205,7 +205,7 @@ pub(super) fn transparency(channels: &[Channel]) -> Option<Transparency> {
     })
 }
 
-/// Formats a table with a header and a line for each channel. Each line begins with a line feed.
+/// Formats a table of the channels, with a header. Each line begins with a line feed.
 pub(super) fn table(channels: &[Channel]) -> String {
     let names = channels.iter().map(|channel| channel.name.chars().count());
     let width = names.max().unwrap_or(0).max(NAME_MIN);
@@ -220,7 +220,8 @@ pub(super) fn table(channels: &[Channel]) -> String {
     table
 }
 
-/// Formats a number in at most 11 characters: with four decimals from 0.001 to 10,000, otherwise in exponential form.
+/// Formats a number in at most 11 characters: with four decimals if its magnitude is from 0.001 to 10,000, otherwise in
+/// exponential form.
 fn number(number: f64) -> String {
     let size = number.abs();
     if size != 0.0 && size.is_finite() && !(1e-3..1e4).contains(&size) {

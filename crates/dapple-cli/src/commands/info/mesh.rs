@@ -1,4 +1,4 @@
-//! Describes the content and the faults of a mesh.
+//! Describes the content and the defects of a mesh.
 
 use super::Findings;
 use crate::input;
@@ -8,7 +8,7 @@ use dapple::points::glam::DVec3;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Describes a mesh's content and faults.
+/// Returns the description of a mesh's content and defects.
 ///
 /// # Errors
 ///
@@ -62,7 +62,7 @@ pub(super) fn findings(path: &Path) -> Result<Findings> {
     })
 }
 
-/// Returns the counts in a mesh report, with their names.
+/// Returns the counts in a mesh report, each with its label.
 fn counts(report: &MeshReport) -> [(&'static str, usize); 12] {
     [
         ("vertices", report.vertices),
@@ -97,7 +97,7 @@ fn bounds(model: &Model) -> Option<[DVec3; 2]> {
     Some(rest.iter().fold([first; 2], grow))
 }
 
-/// Returns the names of a model's attributes and textures, except positions.
+/// Returns the names of a model's vertex attributes and textures, except positions.
 fn columns(model: &Model) -> Vec<&'static str> {
     let material = &model.material;
     let all = [

@@ -74,7 +74,7 @@ pub(super) fn draw(args: &Args, node: &FractalNode, context: &Context) -> Result
     Ok(Exit::Done)
 }
 
-/// Refuses sizes that do not fit, and options that noise in the plane refuses.
+/// Refuses sizes that do not fit a sphere or cube, and options that noise in the plane refuses, too.
 fn check(args: &Args, node: &FractalNode) -> Result<()> {
     let Size(size) = args.field.size;
     args.field.spaces()?;
@@ -105,7 +105,7 @@ fn check(args: &Args, node: &FractalNode) -> Result<()> {
     Ok(())
 }
 
-/// Maps the ends of a range to 0 and 1.
+/// Maps `value` linearly so that the ends of `range` become 0 and 1. Without a range, the value is unchanged.
 fn mapped(value: f32, range: Option<RangeArg>) -> f32 {
     match range {
         Some(RangeArg::Ends([low, high])) => (value - low) / (high - low),

@@ -16,7 +16,7 @@ const DOT: f64 = 0.25;
 /// Minimum default radius of a dot, in pixels, so that it is visible.
 const DOT_MIN: f64 = 0.6;
 
-/// Draws the points. The image is the largest one that fits into `size` with square pixels.
+/// Returns an image of the points. It is the largest image within `size` that has square pixels.
 ///
 /// # Errors
 ///
@@ -57,7 +57,7 @@ pub(super) fn picture(
     Ok(picture)
 }
 
-/// Returns the color of the background, followed by the colors of the levels; at least one.
+/// Returns the background color, followed by the colors of the levels.
 fn colors(ramp: Option<&RampArg>, n_levels: usize) -> Vec<LinearRgb> {
     match ramp.map(|ramp| ramp.colors.as_slice()) {
         Some(colors) if colors.len() > 1 => colors.to_vec(),
@@ -67,7 +67,7 @@ fn colors(ramp: Option<&RampArg>, n_levels: usize) -> Vec<LinearRgb> {
     }
 }
 
-/// Returns the shifts of the copies of a wrapping domain whose dots may reach into it.
+/// Returns the translations of the copies of a wrapping domain whose dots may reach into the domain.
 fn shifts(domain: &Domain) -> impl Iterator<Item = DVec2> {
     let steps = |axis: usize| if domain.wrap[axis] { -1..=1 } else { 0..=0 };
     let (columns, rows, size) = (steps(0), steps(1), domain.size);
@@ -77,7 +77,7 @@ fn shifts(domain: &Domain) -> impl Iterator<Item = DVec2> {
     })
 }
 
-/// Draws the part of an antialiased disk that is within the image. `center` and `radius` are in pixels.
+/// Draws an antialiased disk, clipped to the image. `center` and `radius` are in pixels.
 fn draw(picture: &mut Raster<LinearRgb>, center: DVec2, radius: f64, color: LinearRgb) {
     let [columns, rows] = [0, 1].map(|axis| {
         let side = f64::from(picture.size()[axis]);

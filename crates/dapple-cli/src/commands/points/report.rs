@@ -6,7 +6,7 @@ use dapple::points::{EmptyCircle, PointSet, Spectrum, SpectrumOptions, spectrum}
 use serde_json::{Value, json};
 use std::fmt;
 
-/// Frequency below which frequencies count as low, in units of sqrt(N / area). A blue-noise set has hardly any power
+/// Upper limit of the frequencies that count as low, in units of sqrt(N / area). A blue-noise set has hardly any power
 /// below it.
 const LOW: f64 = 0.5;
 
@@ -17,7 +17,7 @@ pub(super) struct Report {
     radius: Option<f64>,
     least_distance: Option<f64>,
     empty_circle: Option<EmptyCircle>,
-    /// Number of points per squared radius; `None` if the points have no radius.
+    /// Number of points per area of one squared radius; `None` if the points have no radius.
     density: Option<f64>,
     spectrum: Option<Spectrum>,
 }

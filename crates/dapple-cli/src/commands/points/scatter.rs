@@ -22,7 +22,7 @@ use std::sync::Arc;
 
 /// Default number of points.
 const COUNT: u32 = 1000;
-/// Maximum number of columns and rows at which the density of an image is sampled.
+/// Maximum number of columns and rows of the grid on which the density of an image is sampled.
 const PLACES_MAX: u32 = 2048;
 
 dapple::raster::named! {
@@ -123,7 +123,8 @@ pub(super) struct ScatterArgs {
 #[derive(Debug)]
 pub(super) struct Scattered {
     pub(super) points: PointSet,
-    /// For each level, the number of points up to this level; a single number for points without levels.
+    /// For each level, the number of points in this level and all coarser ones. A set without levels has a single
+    /// count.
     pub(super) lengths: Vec<usize>,
     /// Minimum distance between points; `None` if there is no minimum.
     pub(super) radius: Option<f64>,
@@ -266,7 +267,7 @@ impl ScatterArgs {
     }
 }
 
-/// A density, given as an image or as a ramp from the value at the left to that at the right.
+/// A density: an image, or a linear ramp, given by its values at the left and right sides.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 enum Density {
@@ -299,14 +300,14 @@ fn flat(points: PointSet, radius: Option<f64>) -> Scattered {
     }
 }
 
-/// Returns the columns and rows of a grid of about `count` nearly square cells.
+/// Returns the number of columns and rows of a grid with about `count` nearly square cells.
 fn square_cells(domain: Domain, count: u32) -> [u32; 2] {
     let side = (domain.area() / f64::from(count)).sqrt();
     let along = |length: f64| ((length / side + 0.5).floor().max(1.0)) as u32;
     [along(domain.size.x), along(domain.size.y)]
 }
 
-/// Adds a hint to frequent errors.
+/// Adds a hint to common errors.
 fn advise(error: PointsError) -> Error {
     let hint = match error.kind() {
         PointsErrorKind::PeriodTooShort { .. } => {

@@ -1,4 +1,4 @@
-//! The flags of textures of control points, from the schemas of all textures.
+//! Builds the flags of textures of control points from the schemas of all textures.
 
 use super::{KINDS, Kind};
 use crate::node::{Flag, NodeFlags, NodeOption, followed, schema, variants};
@@ -9,17 +9,17 @@ const WITHOUT_FLAG: [&str; 9] = [
     "alpha", "cells", "domain", "file", "motion", "net", "options", "points", "wrap",
 ];
 
-/// Options that have the same meaning in different textures and share a flag, as pairs of the flag and the names.
+/// Options with the same meaning in several textures, which share a flag. Pairs of the flag and the options' names.
 const SHARED: [(&str, &[&str]); 2] = [
     ("octaves", &["octaves", "layers", "iterations"]),
     ("spacings", &["distances"]),
 ];
 
-/// Help of the option `spacing`. The command takes a distance, not a density or a count.
+/// Help text of the option `spacing`. The command takes a distance, not a density or a count.
 const SPACING: &str =
     "Minimum distance of control points in units of the plane [default: the texture's]";
 
-/// The options of all textures of the node `pups`.
+/// Marker for the flags that come from the options of all textures of the recipe node `pups`.
 #[derive(Clone, Debug)]
 pub(super) struct PupsFlags;
 
@@ -63,7 +63,7 @@ impl NodeFlags for PupsFlags {
     }
 }
 
-/// Adds to the help of an option the textures that have it, unless most have it.
+/// Adds the names of the textures that have the option to its help text, unless most of them have it.
 fn described((mut option, kinds): (NodeOption, Vec<String>)) -> NodeOption {
     if 2 * kinds.len() < KINDS.len() {
         let help = option.help.trim_end_matches('.');
@@ -72,13 +72,13 @@ fn described((mut option, kinds): (NodeOption, Vec<String>)) -> NodeOption {
     option
 }
 
-/// Returns all names of an option that shares its flag with others, or its name alone.
+/// Returns the names of all options that share a flag with `name`; only `name` if it does not share its flag.
 pub(super) fn names_of(name: &str) -> Vec<&str> {
     let shared = SHARED.iter().find(|(_, names)| names.contains(&name));
     shared.map_or_else(|| vec![name], |(_, names)| names.to_vec())
 }
 
-/// Returns the tables of a texture's options: its own, and those inside of them.
+/// Returns the schemas of a texture's options: its own table and the tables nested in it.
 fn tables(kind: Kind) -> Vec<&'static Value> {
     let mut textures = variants(&schema()["$defs"]["PupsNode"]);
     let texture = textures.find_map(|texture| texture["properties"].get(kind.in_recipes()));
@@ -93,7 +93,7 @@ fn tables(kind: Kind) -> Vec<&'static Value> {
     ]
 }
 
-/// Returns the options of a table.
+/// Returns the options in a table's schema, as pairs of name and schema.
 fn entries(table: &'static Value) -> impl Iterator<Item = (&'static str, &'static Value)> {
     let entries = table["properties"].as_object().into_iter().flatten();
     entries.map(|(name, schema)| (name.as_str(), schema))

@@ -26,7 +26,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<ControlPoint>> {
     Ok(points)
 }
 
-/// The columns of CSV, without and with an orientation.
+/// Column names of CSV files, without and with an orientation.
 const FORMS: [&[&str]; 2] = [&["x", "y", "value"], &["x", "y", "value", "ox", "oy"]];
 
 /// Parses control points in CSV.

@@ -12,7 +12,7 @@ use std::path::{Component, Path, absolute};
 /// Maximum number of characters in the name of a job.
 const NAME_MAX: usize = 128;
 
-/// A job template with its parameters and a single step, which bakes.
+/// A job template with its parameters and one step, which bakes the shards.
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Template {
@@ -22,7 +22,7 @@ pub(super) struct Template {
     steps: [Step; 1],
 }
 
-/// A job parameter, which the user may change when the job is submitted.
+/// A job parameter. Its value can be changed when the job is submitted.
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
 struct Parameter {
@@ -77,7 +77,7 @@ struct Action {
     args: Vec<String>,
 }
 
-/// Builds a job template with a task for each shard. `options` are passed to every bake. The recipe, the output
+/// Builds a job template with a task for each shard. `options` are the arguments of every bake. The recipe, the output
 /// directory and the command are job parameters.
 ///
 /// # Errors
@@ -143,9 +143,9 @@ fn recipe(typed: &str) -> Result<Parameter> {
     }
 }
 
-/// Returns a job parameter with the path of a file or directory, which a farm may map to other machines. Templates
-/// allow such paths only below their own directory, which is assumed to be the current one. Other paths become absolute
-/// and are passed as strings, which must be valid on every machine.
+/// Returns a job parameter for the path of a file or directory. Farms map such paths to the machines that run the job.
+/// Templates allow path parameters only below their own directory, which is assumed to be the current one. Other paths
+/// become absolute strings, which must be valid on every machine.
 fn path(name: &'static str, what: [&'static str; 2], path: &Path) -> Result<Parameter> {
     let is_below = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
     if path.components().all(is_below) {

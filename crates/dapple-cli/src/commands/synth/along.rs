@@ -15,7 +15,7 @@ use dapple::synth::{PlaneAlong, PlaneScales, synthesize_plane_along};
 use serde_json::Value;
 use std::f32::consts::TAU;
 
-/// Synthesizes the image, and transfers the maps of the example.
+/// Synthesizes the image. Applies its source positions to the other maps of the example.
 pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "synth", &args.image.files);
     let target = args.target(&args.exemplar, args.image.ending())?;
@@ -61,14 +61,14 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
 }
 
 impl Args {
-    /// Returns whether a texture in the plane follows an image of directions or scales.
+    /// Returns whether the texture is in the plane and follows an image of directions or scales.
     pub(super) fn is_along(&self) -> bool {
         self.surface.mesh.is_none()
             && (self.surface.directions.is_some() || self.guides.given_for_scales().is_some())
     }
 
-    /// Refuses options that have no effect on a texture that follows directions or scales, and `--scales` without an
-    /// image to which it applies.
+    /// Refuses options that have no effect on a texture along directions or scales. Also refuses `--scales` without an
+    /// image of scales.
     pub(super) fn check_along(&self) -> Result<()> {
         if !self.is_along() {
             return Ok(());
@@ -89,8 +89,8 @@ impl Args {
         Ok(())
     }
 
-    /// Returns the angle of the direction at each pixel, in radians, and the scale at each pixel; `None` without an
-    /// image of scales.
+    /// Returns two rasters: the angle of the direction at each pixel, in radians, and the scale at each pixel. The
+    /// latter is `None` without an image of scales.
     fn planes(&self) -> Result<(Raster<f32>, Option<Raster<f32>>)> {
         let scales = self.read_scale()?.map(Values::into_raster);
         let Some(first) = self.surface.directions.as_deref() else {

@@ -5,7 +5,7 @@ use anyhow::{Result, anyhow};
 use dapple::mesh::{CREASE, FaceIdx, Model, Repair, Surface};
 use dapple::points::glam::{DVec2, DVec3};
 
-/// Returns the mesh's own texture coordinates for the faces of the repaired mesh.
+/// Returns the texture coordinates in the mesh file, for the corners of the repaired mesh's faces.
 pub(super) fn own_uvs(
     surface: &Surface,
     model: &Model,
@@ -22,8 +22,8 @@ pub(super) fn own_uvs(
     })
 }
 
-/// Returns, for each repaired face, the values of its corners in `column`, which has the values before the repair;
-/// `None` for a corner that the repair has moved.
+/// Returns, for each face of the repaired mesh, the values of its corners before the repair. `column` has the values of
+/// all corners before the repair. A corner that the repair has moved gets `None`.
 fn before_repair<'a, T: Copy>(
     surface: &'a Surface,
     model: &'a Model,
@@ -43,8 +43,8 @@ fn before_repair<'a, T: Copy>(
     })
 }
 
-/// Returns the normals at the corners of all faces. These are the mesh's own normals, or computed ones if the mesh has
-/// none or `crease` is given. `crease` is the angle, in radians, above which an edge counts as a crease.
+/// Returns the normals at the corners of all faces: those in the mesh file, or computed ones if there are none or
+/// `crease` is given. `crease` is the minimum angle of a crease, in radians.
 pub(super) fn shading(
     crease: Option<f64>,
     surface: &Surface,

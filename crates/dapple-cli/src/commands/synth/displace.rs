@@ -66,7 +66,7 @@ impl Args {
         Ok(())
     }
 
-    /// Returns the height at each site, transferred from the height map.
+    /// Returns the height at each site, looked up in the example's height map at the source of the site.
     fn heights(&self, texture: &SurfaceTexture, input: &Input) -> Result<Vec<f32>> {
         let mut maps = input.maps.iter();
         let found = maps.find(|(name, _)| is_of(name, MapKind::Height));
@@ -86,7 +86,8 @@ impl Args {
     }
 }
 
-/// Rotates corner normals by the rotation of their vertex normals between two shapes of a mesh, `from` and `to`.
+/// Rotates corner normals by the rotation that takes the vertex normals of `from` to the vertex normals of `to`. Both
+/// meshes have the same faces.
 fn turn(corners: &mut [[DVec3; 3]], from: &Mesh, to: &Mesh) {
     let (before, after) = (from.vertex_normals(), to.vertex_normals());
     let turn = |(&before, &after): (&DVec3, &DVec3)| {

@@ -18,7 +18,7 @@ use dapple::synth::Atlas;
 use dapple::tile::Map;
 use std::path::Path;
 
-/// Side of the texture that vertex colors are rendered to, in texels.
+/// Side of the texture that vertex colors are baked to, in texels.
 const DRAWN_SIDE: u32 = 2048;
 
 /// A textured mesh that serves as the example.
@@ -43,7 +43,8 @@ pub(super) fn is_mesh(path: &Path) -> bool {
 }
 
 impl Args {
-    /// Refuses options that have no effect on an example that is a mesh; for an image, options that need a mesh.
+    /// Refuses options that have no effect on the example: if it is a mesh, options for images; if it is an image,
+    /// options for meshes.
     pub(super) fn check_example(&self) -> Result<()> {
         let name = input::name(&self.exemplar);
         if !is_mesh(&self.exemplar) {
@@ -203,11 +204,11 @@ impl ExampleMesh {
     }
 }
 
-/// Selects a texture of a material.
+/// Returns one of the textures of a material.
 type ImageOf = fn(&Material) -> &Option<EncodedImage>;
 
-/// Returns the images of a texture that `of` selects: one for each UDIM tile, or a single one without tiles; `None` if
-/// the material does not have this texture.
+/// Returns the images of the texture that `of` selects: one for each UDIM tile, or one for a mesh without tiles. `None`
+/// if the material does not have this texture.
 ///
 /// # Errors
 ///
@@ -229,7 +230,7 @@ fn images(model: &Model, of: ImageOf) -> Result<Option<Vec<&EncodedImage>>> {
     images.collect::<Result<_>>().map(Some)
 }
 
-/// Extracts a channel from a packed map as data, that is, the stored codes from 0 to 1 without sRGB decoding.
+/// Extracts a channel from a packed map: its stored codes from 0 to 1, without sRGB decoding.
 fn channel_of(map: &Map, channel: usize) -> Result<Map> {
     let Map::Color(colors) = map else {
         return Err(anyhow!("a packed map has no colors"));
@@ -238,7 +239,7 @@ fn channel_of(map: &Map, channel: usize) -> Result<Map> {
     Ok(Map::Value(colors.map(code)))
 }
 
-/// Renders vertex colors to a texture whose layout has a chart for each part of the surface.
+/// Bakes vertex colors to a texture. Returns the texture coordinates of its atlas, and the texture.
 fn drawn(surface: &Surface, model: &Model, repair: &Repair) -> Result<(Vec<[DVec2; 3]>, Loaded)> {
     let colors = model.colors.as_deref().unwrap_or_default();
     let faces = surface.mesh().faces();

@@ -1,4 +1,4 @@
-//! Reads guides, which are images that determine which part of the example goes where in the texture.
+//! Reads guides: images that control which part of the example is used where in the texture.
 
 use super::Args;
 use super::corners::own_uvs;
@@ -85,7 +85,7 @@ pub(super) struct GuideArgs {
     pub(super) scales: Option<Numbers<f32, 2>>,
 }
 
-/// The default scales at black and at white.
+/// Default scales at black and at white in an image of scales.
 const SCALES: [f32; 2] = [1.0, 2.0];
 
 impl GuideArgs {
@@ -115,14 +115,14 @@ const LIGHTNESS_BLUR: f64 = 2.0;
 
 /// A guide channel. Synthesis compares its values in the example with those in the texture.
 pub(super) struct Guide {
-    /// The values at the pixels of the example.
+    /// The guide's values at the pixels of the example.
     pub(super) example: Raster<f32>,
-    /// The desired values in the texture.
+    /// The guide's values in the texture, which the example's values are compared with.
     pub(super) target: Values,
     pub(super) weight: f32,
 }
 
-/// Values that vary over the texture.
+/// Values that vary over a texture or a mesh.
 pub(super) enum Values {
     /// Values at the pixels of a texture in the plane, or in the texture coordinates of a mesh.
     Image(Raster<f32>),
@@ -267,7 +267,8 @@ impl Args {
     }
 }
 
-/// Matches the mean and the standard deviation of a guide to those of the example within its mask.
+/// Returns the guide, scaled and shifted so that its mean and standard deviation are those of the example within
+/// `mask`.
 fn like(guide: &Values, example: &Raster<f32>, mask: &Raster<bool>) -> Values {
     let pixels = example.pixels().iter().zip(mask.pixels());
     let used = pixels.filter_map(|(&value, &is_used)| is_used.then_some(value));
@@ -281,7 +282,7 @@ fn like(guide: &Values, example: &Raster<f32>, mask: &Raster<bool>) -> Values {
     guide.map(|&value| (mean + (f64::from(value) - own_mean) * scale) as f32)
 }
 
-/// Returns the mean and the standard deviation of values.
+/// Returns the mean and the standard deviation of `values`.
 fn moments(values: impl Iterator<Item = f32> + Clone) -> [f64; 2] {
     let n = values.clone().count().max(1) as f64;
     let mean = values.clone().map(f64::from).sum::<f64>() / n;
@@ -289,8 +290,8 @@ fn moments(values: impl Iterator<Item = f32> + Clone) -> [f64; 2] {
     [mean, (values.map(square).sum::<f64>() / n).sqrt()]
 }
 
-/// Samples values at all sites of a mesh. The result has a column for each element of `values`. Images are read at the
-/// mesh's own texture coordinates, and repeat. Values at vertices are interpolated.
+/// Samples values at all sites of a mesh. The result has a column for each element of `values`. Images repeat, and are
+/// read at the texture coordinates in the mesh file. Values at vertices are interpolated.
 pub(super) fn at_sites(
     values: &[&Values],
     synthesizer: &Synthesizer,

@@ -15,7 +15,7 @@ use dapple::tile::Map;
 /// Gain applied to differences in the diagnostic image, so that a quarter of the maximum difference is white.
 const LIGHTER: f32 = 4.0;
 
-/// The kind of a diagnostic image.
+/// A kind of diagnostic image.
 #[derive(Clone, Copy, Debug)]
 enum View {
     Pieces,
@@ -52,7 +52,7 @@ pub(super) fn claim(args: &PlaneArgs, job: &mut Job<'_>) -> Result<Vec<Inspectio
 }
 
 impl Inspection {
-    /// Writes the image. `last` is the index of the last example.
+    /// Writes the diagnostic image. `last` is the index of the last example.
     pub(super) fn write(
         &self,
         texture: &PlaneTexture,

@@ -14,7 +14,7 @@ use dapple::raster::Raster;
 use dapple::recipe::MapKind;
 use dapple::tile::Map;
 
-/// Default values of occlusion, roughness and metalness without a map: fully visible, rough, and not metallic.
+/// Values of occlusion, roughness and metalness without a map: unoccluded, rough and not metallic.
 const DEFAULTS: [f32; 3] = [1.0, 1.0, 0.0];
 
 /// The baked maps of a material.
@@ -55,8 +55,7 @@ pub(super) fn check_names(maps: &[MapArg]) -> Result<()> {
 }
 
 impl MaterialMaps {
-    /// Adds a baked map, if a material can contain a map of its kind. `example` is the map of the example that it was
-    /// baked from.
+    /// Adds a baked map, if materials can contain its kind. `example` is the example's map from which it was baked.
     pub(super) fn add(
         &mut self,
         name: &str,
@@ -102,8 +101,8 @@ impl MaterialMaps {
     }
 }
 
-/// Chooses a material's alpha mode, which is mask if more pixels of the example are fully than partly transparent, and
-/// blend otherwise.
+/// Returns the alpha mode of a material: mask if the example has more fully than partly transparent pixels, otherwise
+/// blend.
 pub(super) fn alpha_mode(alpha: &Raster<f32>) -> AlphaMode {
     let count = |is_it: fn(&&f32) -> bool| alpha.pixels().iter().filter(is_it).count();
     let n_clear = count(|&&alpha| alpha <= 0.0);

@@ -49,7 +49,7 @@ dapple::raster::named! {
 }
 
 impl Channel {
-    /// Returns the channel's values in an image, as stored codes from 0 to 1; `None` if the image has no such channel.
+    /// Returns the channel's values in an image, as stored codes from 0 to 1; `None` if the image lacks the channel.
     pub(super) fn of(self, image: &Loaded) -> Option<Raster<f32>> {
         let at = match self {
             Self::Red => 0,
@@ -273,7 +273,7 @@ pub(super) struct MatchArgs {
     pub(super) paper: bool,
 }
 
-/// Returns the name of the first option whose flag is true, which means that it was given.
+/// Returns the name of the first option that was given. `options` are pairs of a name and whether it was given.
 pub(super) fn first_given(options: &[(&'static str, bool)]) -> Option<&'static str> {
     let given = options.iter().find(|(_, is_given)| *is_given);
     given.map(|&(name, _)| name)
@@ -321,7 +321,7 @@ fn angle(text: &str) -> Result<f64, String> {
 }
 
 impl PlaneArgs {
-    /// Returns the name of an option for textures in the plane, if one was given.
+    /// Returns the name of a given option that only applies to textures in the plane; `None` if there is none.
     pub(super) fn given(&self) -> Option<&'static str> {
         first_given(&[
             ("size", self.size.is_some()),
@@ -338,7 +338,7 @@ impl PlaneArgs {
         ])
     }
 
-    /// Returns, for each axis, whether the texture wraps.
+    /// Returns, for each axis, whether the texture wraps or is cut.
     pub(super) fn edges(&self) -> [Edges; 2] {
         let wrap = self.wrap.unwrap_or(Axes::None);
         wrap.flags()
@@ -347,7 +347,7 @@ impl PlaneArgs {
 }
 
 impl SurfaceArgs {
-    /// Returns the name of an option that needs a mesh, if one was given.
+    /// Returns the name of a given option that only applies to a mesh; `None` if there is none.
     pub(super) fn given(&self) -> Option<&'static str> {
         first_given(&[
             ("symmetry", self.symmetry.is_some()),
@@ -363,7 +363,7 @@ impl SurfaceArgs {
         ])
     }
 
-    /// Returns the name of an option that needs a mesh as the example, if one was given.
+    /// Returns the name of a given option that only applies to an example that is a mesh; `None` if there is none.
     pub(super) fn given_for_example(&self) -> Option<&'static str> {
         first_given(&[
             ("example-directions", self.example_directions.is_some()),
@@ -371,7 +371,7 @@ impl SurfaceArgs {
         ])
     }
 
-    /// Returns the options for the sites on an example mesh.
+    /// Returns the options for placing sites on a mesh that is the example.
     pub(super) fn example_sites(&self, matching: &MatchArgs) -> HierarchyOptions {
         let sites = self.sites(matching);
         HierarchyOptions {
@@ -399,7 +399,7 @@ impl SurfaceArgs {
         self.crease.map(f64::to_radians)
     }
 
-    /// Returns the options for the sites on the mesh, which have one level per matching level.
+    /// Returns the options for placing sites on the mesh that is textured. They have one level per level of matching.
     pub(super) fn sites(&self, matching: &MatchArgs) -> HierarchyOptions {
         let default = HierarchyOptions::default();
         HierarchyOptions {
@@ -412,8 +412,8 @@ impl SurfaceArgs {
 }
 
 impl SurfaceArgs {
-    /// Returns the options for the sites on a surface. Without `--sites`, their number follows from the number of repeats
-    /// and from `size`, the example's size in pixels.
+    /// Returns the options for placing sites on a surface. Without `--sites`, the number of sites is computed from the
+    /// number of repeats and from `size`, the example's size in pixels.
     ///
     /// # Errors
     ///
@@ -435,13 +435,13 @@ impl SurfaceArgs {
 }
 
 impl MatchArgs {
-    /// Returns the matching weight of the map called `name`; 0 if none was given.
+    /// Returns the matching weight of the map called `name`; 0 if it has no weight.
     pub(super) fn weight_of(&self, name: &str) -> f32 {
         let given = self.weight.iter().find(|weight| weight.name == name);
         given.map_or(0.0, |given| given.weight)
     }
 
-    /// Refuses weights for maps that were not given, and several weights for one map.
+    /// Refuses weights for maps that were not given, and duplicate weights for one map.
     ///
     /// # Errors
     ///
@@ -460,7 +460,7 @@ impl MatchArgs {
         Ok(())
     }
 
-    /// Returns the name of an option that has no effect on an endless texture, if one was given.
+    /// Returns the name of a given option that has no effect on an endless texture; `None` if there is none.
     pub(super) fn given_for_sweeps(&self) -> Option<&'static str> {
         first_given(&[
             ("coherence", self.coherence.is_some()),
@@ -475,13 +475,14 @@ impl MatchArgs {
             .map_or(Options::default().n_levels, |levels| levels as usize)
     }
 
-    /// Returns the number of levels for the repair of a hole in an image, which follows its size by default.
+    /// Returns the number of levels for repairing a hole in an image. By default, it depends on the size of the hole.
     pub(super) fn repair_levels(&self, hole: &Raster<bool>) -> usize {
         self.levels
             .map_or_else(|| repair_levels(hole), |levels| levels as usize)
     }
 
-    /// Returns the options for an endless texture. `period` is in pixels, and `None` along axes without a period.
+    /// Returns the options for an endless texture. `period` is in pixels; `None` for axes along which the texture does
+    /// not repeat.
     pub(super) fn endless(&self, period: [Option<u32>; 2]) -> EndlessOptions {
         EndlessOptions {
             seed: Seed(self.seed),

@@ -24,10 +24,10 @@ use std::path::Path;
 /// The default size of a texture, in pixels.
 const SIZE: [u32; 2] = [512; 2];
 
-/// The largest number up to which `f32` represents all whole numbers: 2^24.
+/// Largest integer up to which `f32` represents all integers: 2^24.
 const MOST: f32 = 16_777_216.0;
 
-/// Synthesizes the image, and transfers the maps of the example.
+/// Synthesizes the image. Applies its source positions to the other maps of the example.
 pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "synth", &args.image.files);
     let target = args.target(&args.exemplar, args.image.ending())?;
@@ -102,8 +102,8 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Synthesizes a texture by the requested method. By default, the method is endless synthesis, or a sweep if options
-/// need it or the period does not fit the levels.
+/// Synthesizes a texture by the requested method. The default is endless synthesis; it is a sweep if an option needs
+/// one, or if endless synthesis does not support the period.
 fn grow(args: &Args, exemplar: &Exemplar, progress: &Progress) -> Result<PlaneTexture, SynthError> {
     let size = args.plane.size.map_or(SIZE, |size| size.0);
     let edges = args.plane.edges();
@@ -132,7 +132,7 @@ impl PlaneArgs {
 }
 
 impl Args {
-    /// Returns the name of an option that has no effect on an endless texture, if one was given.
+    /// Returns the name of a given option that has no effect on an endless texture; `None` if there is none.
     fn given_for_sweeps(&self) -> Option<&'static str> {
         self.matching.given_for_sweeps().or(self.guides.given())
     }
@@ -161,12 +161,13 @@ impl Args {
     }
 }
 
-/// Transfers a map of the example to the texture.
+/// Returns the texture's version of another map of the example, by copying the map's pixels from the texture's source
+/// positions.
 fn follow(texture: &PlaneTexture, example: &Map) -> Result<Map> {
     Ok(map_raster!(example, raster => texture.transfer(raster)?))
 }
 
-/// Claims the file of the sources, if it was requested.
+/// Claims the file for the texture's source positions, if it was requested.
 fn claim_sources(path: Option<&Path>, job: &mut Job<'_>) -> Result<Option<OutputIdx>> {
     let Some(path) = path else {
         return Ok(None);
@@ -182,7 +183,7 @@ fn claim_sources(path: Option<&Path>, job: &mut Job<'_>) -> Result<Option<Output
     job.claim(&target).map(Some)
 }
 
-/// Reads sources that were written by `--sources`.
+/// Reads source positions from a file that was written by `--sources`.
 fn read_sources(path: &Path) -> Result<Raster<[u32; 2]>> {
     let image = input::image(path)?;
     let places = image.color().with_context(|| input::name(path))?;

@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 
 /// The input to a synthesis. Several examples are placed side by side in one image.
 pub(super) struct Input {
-    /// The image that the texture shows, which is the example or its larger version given by `--detail`.
+    /// The image that the texture copies its pixels from: the example, or its larger version given by `--detail`.
     pub(super) base: Loaded,
     /// The maps of the example, with their names.
     pub(super) maps: Vec<(String, Loaded)>,
@@ -33,8 +33,8 @@ pub(super) struct Input {
 }
 
 impl Args {
-    /// Reads the examples, their maps, the masks, the guides, and the larger version given by `--detail`. Maps must be
-    /// as large as the image that the texture shows.
+    /// Reads the examples, their maps, masks and guides, and the larger version given by `--detail`. Maps must have the
+    /// size of the image from which pixels are copied.
     pub(super) fn read(&self) -> Result<Input> {
         let paths: Vec<_> = [&self.exemplar]
             .into_iter()
@@ -137,8 +137,8 @@ impl Args {
         })
     }
 
-    /// Reads the maps. For each name, there must be one map per example; they are placed side by side like the
-    /// examples. `shown` are the images that the maps must match in size.
+    /// Reads the maps. For each name, there must be one map per example. They are placed side by side in the same
+    /// layout as the examples. `shown` are the images whose sizes the maps must have.
     fn load_maps(
         &self,
         layout: &SideBySide,
@@ -223,8 +223,8 @@ impl Args {
         Ok(exemplar)
     }
 
-    /// Returns an error if an image has NaN or infinite values at a pixel that is used. These are the pixels outside of
-    /// the hole where the example's mask is white. `example` and `index` are the path and index of the example.
+    /// Returns an error if an image has a NaN or infinite value at a pixel that is used: one outside of the hole, where
+    /// the example's mask is white. `example` and `index` are the path and index of the example.
     fn check_usable(
         &self,
         path: &Path,
@@ -246,8 +246,8 @@ impl Args {
         image.faults.check(&input::name(path), is_used)
     }
 
-    /// Reads the mask of usable pixels, which are those outside of the hole that are white in the masks of the
-    /// examples. Returns `None` if all pixels are usable.
+    /// Reads the mask of usable pixels: those outside of the hole where the masks of the examples are white. Returns
+    /// `None` if all pixels are usable.
     fn read_masks(
         &self,
         paths: &[&PathBuf],
@@ -297,7 +297,7 @@ impl Args {
         Ok(Some(values.map(|&value| value < 0.5)))
     }
 
-    /// Reads a mask that is as large as an example. Pixels are set if their lightness is at least half that of white.
+    /// Reads a mask with the size of an example. Pixels are set if their lightness is at least ½.
     fn load_mask(
         &self,
         path: &Path,
@@ -411,7 +411,7 @@ pub(super) fn joined(layout: &SideBySide, mut images: Vec<Loaded>) -> Result<Loa
     Ok(joined)
 }
 
-/// Returns the rasters of all images if `part` selects all of them, and `None` otherwise.
+/// Returns the rasters that `part` selects, if it selects one in every image; otherwise `None`.
 fn all<'a, T>(images: &'a [Loaded], part: impl Fn(&'a Map) -> Option<&'a T>) -> Option<Vec<&'a T>> {
     images.iter().map(|image| part(&image.map)).collect()
 }

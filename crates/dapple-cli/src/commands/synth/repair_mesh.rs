@@ -37,10 +37,10 @@ struct Repaired<'a> {
     hole: Raster<bool>,
 }
 
-/// A repaired map, and its alpha.
+/// A repaired map, with its alpha if it has one.
 type Mended = (Map, Option<Raster<f32>>);
 
-/// Repairs the texture of the mesh that is the example.
+/// Repairs the texture of the example, which is a mesh.
 pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "synth", &args.image.files);
     let target = args.target(&args.exemplar, "glb")?;
@@ -157,7 +157,7 @@ fn model_format(target: &Target) -> Result<Option<&'static MeshFormat>> {
 }
 
 impl Repaired<'_> {
-    /// Replaces the textures of a model by repaired ones.
+    /// Returns the model with the repaired textures. `base` is the repaired base texture.
     fn model(&self, mut model: Model, base: &EncodedImage) -> Result<Model> {
         let material = &mut model.material;
         material.base_color = Some(base.clone());
@@ -176,15 +176,15 @@ impl Repaired<'_> {
         Ok(model)
     }
 
-    /// Repairs an image of a material.
+    /// Returns the repaired version of an image of a material.
     fn mended_image(&self, image: &EncodedImage, kind: Kind) -> Result<EncodedImage> {
         let image = input::embedded(image, &self.args.exemplar, kind, Alpha::Keep)?;
         let (map, alpha) = self.mended_part(&image, &image, &self.uvs, &self.hole)?;
         encoded(&map, alpha.as_ref(), image.is_deep)
     }
 
-    /// Repairs a map, which gets new texels in the hole and retains its old texels elsewhere. Returns one map for each
-    /// UDIM tile, or a single one.
+    /// Repairs a map. Texels in the hole are new; the others are unchanged. Returns one map for each UDIM tile, or a
+    /// single map.
     fn mended(&self, old: &Loaded) -> Result<Vec<Mended>> {
         let Some(sheet) = &self.sheet else {
             return Ok(vec![self.mended_part(old, old, &self.uvs, &self.hole)?]);
@@ -197,8 +197,8 @@ impl Repaired<'_> {
         (0..sheet.tiles.numbers.len()).map(mend).collect()
     }
 
-    /// Repairs the texture of the faces that have texture coordinates in `uvs`. `old` is this texture, and `from` is
-    /// the image from which new texels are copied.
+    /// Repairs the texture of the faces that have finite texture coordinates in `uvs`. `old` is the texture before the
+    /// repair. New texels are copied from `from`.
     fn mended_part(
         &self,
         from: &Loaded,
@@ -238,7 +238,8 @@ impl Repaired<'_> {
     }
 }
 
-/// Combines new texels in the hole with old texels elsewhere. If the hole differs in size, it is scaled.
+/// Returns a raster with the texels of `new` in the hole and of `old` elsewhere. If the hole differs in size, it is
+/// scaled.
 fn within_hole<T: Copy>(
     old: &Raster<T>,
     new: &Raster<T>,

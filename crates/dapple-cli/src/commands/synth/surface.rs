@@ -49,7 +49,7 @@ const IMAGES: [&str; 4] = ["png", "exr", "npy", "r16"];
 /// The file extension if the output is standard output or a directory.
 const DEFAULT_ENDING: &str = "glb";
 
-/// The claimed output files.
+/// Output files of a texture on a mesh, after they are claimed.
 struct Claimed {
     product: Product,
     /// The file name of the output without its extension.
@@ -58,13 +58,14 @@ struct Claimed {
     main: Vec<OutputIdx>,
     /// The files next to the mesh, such as materials and textures, with their names.
     beside: Vec<(String, OutputIdx)>,
-    /// For each map, its files, one per layout; empty for a map that is only embedded, or written next to the mesh.
+    /// For each map, its files, one per atlas. Empty for a map that is only embedded, or that is written next to the
+    /// mesh.
     maps: Vec<Vec<OutputIdx>>,
     /// The format for textures in separate files.
     format: Format,
 }
 
-/// Reads the mesh, and prints which parts of it and of the example are not used.
+/// Reads the mesh, and prints which parts of the mesh and the example are not used.
 fn read_target(
     args: &Args,
     mesh: &Path,
@@ -81,8 +82,7 @@ fn read_target(
     Ok(model)
 }
 
-/// Returns the UDIM tiles that get a texture each, if the mesh's own texture coordinates are used; empty for a single
-/// texture.
+/// Returns the UDIM tiles that each get a separate texture. Empty if the mesh gets a single texture, or a new atlas.
 fn squares(args: &Args, product: Product, model: &Model) -> Vec<TileMaterial> {
     let takes_several = match product {
         Product::Texture => true,
@@ -217,8 +217,8 @@ fn guide_columns(
     guides::at_sites(&targets, synthesizer, model, repair)
 }
 
-/// Synthesizes the texture at the sites of the mesh, from an image or, with `exemplar`, from a mesh. `columns` has the
-/// guide values at the sites, a column for each guide.
+/// Synthesizes the texture at the sites of the mesh. The example is an image, or a mesh if `exemplar` is given.
+/// `columns` has the guide values at the sites, one column per guide.
 fn grown(
     args: &Args,
     input: &Input,
@@ -238,7 +238,7 @@ fn grown(
     texture.map_err(advise)
 }
 
-/// Returns statistics of an atlas for the sidecar.
+/// Returns statistics of an atlas as JSON, for the sidecar.
 fn atlas_json(atlas: AtlasReport) -> serde_json::Value {
     json!({
         "pieces": atlas.pieces,
@@ -262,17 +262,17 @@ pub(super) fn exemplar_of_mesh(
 /// The atlases of the textures of a mesh.
 #[derive(Default)]
 pub(super) struct Layouts {
-    /// The atlases of the texture. There is one per UDIM tile if there are `tiles`, one without them, and none if the
-    /// output is a mesh of sites.
+    /// The atlases of the texture: one per UDIM tile if there are `tiles`, otherwise one. Empty if the output is a mesh
+    /// of sites.
     pub(super) atlases: Vec<Atlas>,
     /// The UDIM tiles that get a texture each, in the order of the atlases.
     tiles: Vec<TileMaterial>,
-    /// The mesh's own texture coordinates; `None` without `tiles`.
+    /// The texture coordinates in the mesh file; `None` without `tiles`.
     own_uvs: Option<Vec<[DVec2; 3]>>,
 }
 
 impl From<Atlas> for Layouts {
-    /// Creates the layout of a single texture.
+    /// Creates the layout of a mesh with a single texture.
     fn from(atlas: Atlas) -> Self {
         Self {
             atlases: vec![atlas],
@@ -282,7 +282,7 @@ impl From<Atlas> for Layouts {
 }
 
 impl Layouts {
-    /// Builds the atlas for a single texture, or the atlases for all UDIM tiles.
+    /// Builds the atlas of a single texture, or one atlas for each UDIM tile.
     fn new(
         args: &Args,
         surface: &Surface,
@@ -296,7 +296,7 @@ impl Layouts {
         }
     }
 
-    /// Builds the atlases for UDIM tiles, which use the mesh's own texture coordinates.
+    /// Builds one atlas for each UDIM tile, from the texture coordinates in the mesh file.
     fn of_tiles(args: &Args, surface: &Surface, model: &Model, repair: &Repair) -> Result<Self> {
         let numbers: Vec<_> = model.tiles.iter().map(|tile| tile.number).collect();
         let own_uvs = own_uvs(surface, model, repair)?;
@@ -314,8 +314,7 @@ impl Layouts {
         })
     }
 
-    /// Returns statistics of the atlases for the sidecar. They are an object, or a list with an object for each UDIM
-    /// tile.
+    /// Returns statistics of the atlases as JSON, for the sidecar: an object, or a list with one object per UDIM tile.
     fn report(&self, surface: &Surface) -> serde_json::Value {
         let reports = self.atlases.iter();
         let mut reports: Vec<_> = reports
@@ -385,7 +384,7 @@ pub(super) fn endings() -> String {
 }
 
 impl Covered {
-    /// Bakes a map of the example to a texture for the mesh.
+    /// Bakes the texture for the mesh that corresponds to a map of the example.
     pub(super) fn bake(&self, map: &Map, atlas: &Atlas) -> Result<Map> {
         let (synthesizer, texture) = (&self.synthesizer, &self.texture);
         Ok(match map {
@@ -414,7 +413,7 @@ impl Covered {
         Ok((Map::Color(baked.map(|pixel| pixel.color)), Some(alpha)))
     }
 
-    /// Returns the colors of the sites.
+    /// Returns the color of each site.
     fn site_colors(&self, args: &Args) -> Result<Vec<LinearRgba>> {
         let map = ramped(self.input.base.map.clone(), args.image.ramp.as_ref());
         let colors: Vec<_> = match &map {
@@ -543,8 +542,8 @@ fn claim_tiles(
         .collect()
 }
 
-/// Returns the names of the files that a format writes next to a mesh, found by writing an empty mesh with the same
-/// textures.
+/// Returns the names of the files that a format writes next to a mesh. They are found by writing an empty mesh with the
+/// same textures.
 fn names_beside(
     format: &MeshFormat,
     path: &Path,
@@ -617,7 +616,8 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
     write_model(format, claimed, &model, job)
 }
 
-/// Builds a model from the input mesh and its new texture. A gray texture is converted to colors, which models need.
+/// Builds a model from the input mesh and its new textures. Gray textures are converted to colors, since models require
+/// colors.
 fn model(
     args: &Args,
     covered: &Covered,
@@ -697,7 +697,7 @@ fn atlas(
     atlas.map_err(advise)
 }
 
-/// Places sites on the surface, and computes their orientation field from the directions.
+/// Places sites on the surface, and computes their orientation field from the given directions.
 fn synthesizer(
     surface: Surface,
     args: &Args,
@@ -711,8 +711,7 @@ fn synthesizer(
     Synthesizer::from_parts(surface, hierarchy, orientation, None)
 }
 
-/// Sets the scales at the sites. They come from the image `--scale` or, with `--scales` alone, follow from the
-/// directions.
+/// Sets the scale at each site: from the image `--scale` or, with `--scales` alone, from the orientation field.
 fn scaled(
     synthesizer: Synthesizer,
     args: &Args,

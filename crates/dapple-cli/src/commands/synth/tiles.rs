@@ -1,5 +1,5 @@
-//! Handles UDIM tiles, unit squares of texture coordinates with a texture each. The textures of an example are joined
-//! in one image, the sheet.
+//! UDIM tiles: unit squares of texture coordinates with a texture each. The textures of an example are joined in one
+//! image, the sheet.
 
 use super::reading::joined;
 use crate::error::{Hint, usage};
@@ -23,8 +23,8 @@ pub(super) struct Tiles {
     local: Vec<[DVec2; 3]>,
 }
 
-/// The layout of the textures of UDIM tiles side by side in one image. Each texture has a border that repeats its
-/// outermost texels, so that interpolation at its sides does not read its neighbors.
+/// Layout of the textures of all UDIM tiles in one image. Each texture has a border that repeats its outermost texels,
+/// so that interpolation near its sides does not read a neighboring texture.
 #[derive(Clone, Debug)]
 pub(super) struct Sheet {
     pub(super) tiles: Tiles,
@@ -57,8 +57,8 @@ impl Tiles {
         })
     }
 
-    /// Returns the texture coordinates of all faces. Faces outside of `tile` have NaN, so that an atlas leaves them
-    /// out.
+    /// Returns the texture coordinates of all faces within `tile`. Faces of other tiles get NaN, so that an atlas
+    /// leaves them out.
     pub(super) fn uvs_of(&self, tile: usize) -> Vec<[DVec2; 3]> {
         let faces = self.of_face.iter().zip(&self.local);
         let corners = |(&of_face, &local): (&usize, &[DVec2; 3])| match of_face == tile {

@@ -1,4 +1,4 @@
-//! Computes tiles by a method, or by the best of all methods.
+//! Makes tiles by one method, or by the best of all methods.
 
 use super::method::{Candidate, How, MethodArgs};
 use super::{advise, synth};
@@ -11,7 +11,7 @@ use dapple::tile::{Map, SeamOptions, SeamReports, Seamless};
 pub(in crate::commands) struct Made {
     pub(super) candidate: Candidate,
     pub(in crate::commands) tiles: Vec<Map>,
-    /// The seam reports of all maps; empty unless they were needed to choose the method.
+    /// Seam reports of all maps; empty unless the choice of the method needed them.
     pub(super) reports: Vec<SeamReports>,
 }
 
@@ -71,12 +71,12 @@ pub(in crate::commands) fn best(
     }
 }
 
-/// The quality of tiles, where smaller is better. Tiles that pass come before tiles that fail.
+/// Cost of the tiles of a candidate; smaller is better. Tiles that pass the seam report come before tiles that fail.
 #[derive(PartialEq, PartialOrd)]
 struct Rank {
     fails: bool,
-    /// Strangeness of tiles that pass, and badness of others, plus the lost fraction of the finest octave; the maximum
-    /// over all channels.
+    /// For tiles that pass, the strangeness of their seams; for others, the badness. To it, the lost fraction of the
+    /// finest octave is added. The maximum over all channels.
     cost: f64,
 }
 

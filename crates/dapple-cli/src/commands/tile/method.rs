@@ -22,7 +22,7 @@ struct Row {
     make: fn(&MethodArgs) -> How,
 }
 
-/// The table of all methods.
+/// All methods.
 const METHODS: [Row; 8] = [
     Row {
         name: "periodic",
@@ -79,11 +79,11 @@ const METHODS: [Row; 8] = [
     },
 ];
 
-/// The way in which a tile is computed.
+/// How a tile is computed.
 pub(super) enum How {
-    /// Apply a method of `dapple-tile`.
+    /// A method of `dapple-tile`.
     Seamless(Method),
-    /// Re-synthesize a strip along the seam.
+    /// Re-synthesis of a strip along the seam.
     Synth(Resynthesis),
 }
 
@@ -94,7 +94,7 @@ pub(super) struct Resynthesis {
     pub(super) seed: Seed,
 }
 
-/// The name of the method that re-synthesizes a strip. It takes much longer than all other methods.
+/// Name of the method that re-synthesizes a strip. It takes much longer than the other methods.
 const SYNTH: &str = "synth";
 
 /// The name of the default method.
@@ -123,7 +123,8 @@ pub(super) struct Candidate {
     /// The name of the method on the command line.
     pub(super) name: String,
     pub(super) how: How,
-    /// For each axis, the distance between boundaries of the tile that are comparable to its wrap, in pixels.
+    /// Lattice of the seam report: for each axis, the spacing of positions in the tile that are comparable to its wrap,
+    /// in pixels. Spline methods have a lattice of cells; for others, it is 1.
     pub(super) lattice: [u32; 2],
 }
 
@@ -207,8 +208,8 @@ pub(in crate::commands) struct MethodArgs {
 }
 
 impl MethodArgs {
-    /// Returns the methods to try on images of `size` pixels, with their options. There is one unless the method is
-    /// `auto`. The last resort is at the end.
+    /// Returns the methods to try on images of `size` pixels, with their options. Unless the method is `auto`, there is
+    /// only one. A method of last resort is at the end.
     pub(super) fn candidates(&self, size: [u32; 2]) -> Vec<Candidate> {
         let candidates_of = |is_wanted: &dyn Fn(&str) -> bool| -> Vec<Candidate> {
             let wanted = METHODS.iter().filter(|row| is_wanted(row.name));
@@ -271,7 +272,7 @@ impl MethodArgs {
         }
     }
 
-    /// Returns an error if an option of another method is given, which would have no effect.
+    /// Refuses options that belong to another method, since they would have no effect.
     ///
     /// # Errors
     ///

@@ -9,14 +9,14 @@ use core::ops::ControlFlow;
 use dapple::synth::{Edges, Exemplar, Options, SynthError, tile_plane};
 use dapple::tile::Map;
 
-/// Maximum side of the exemplar for matching, in pixels. Larger images are reduced for matching; their tiles copy
+/// Maximum side of the exemplar for matching, in pixels. Larger images are downscaled for matching; their tiles copy
 /// blocks of the original pixels.
 const MOST: u32 = 512;
 
-/// Minimum shorter side of the exemplar, in pixels, for which matching uses four levels instead of three.
+/// Minimum shorter side of the exemplar at which matching uses four levels instead of three, in pixels.
 const LARGE: u32 = 384;
 
-/// Computes a tile of each map. All tiles take their pixels from the same positions.
+/// Returns a tile of each map. All tiles copy their pixels from the same source positions.
 ///
 /// # Errors
 ///
