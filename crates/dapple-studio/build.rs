@@ -1,4 +1,5 @@
-//! Looks whether the page was built, and lists its files: of those that are there compressed, too, only that.
+//! Finds out whether the page was built, and lists its files. Of a file that also exists compressed, only the
+//! compressed version is listed.
 
 #![expect(
     clippy::disallowed_methods,
@@ -42,7 +43,7 @@ fn main() {
         .unwrap_or_else(|error| panic!("the list of files cannot be written: {error}"));
 }
 
-/// Lists the files of a folder, with their names as the page asks for them; hidden ones are left out.
+/// Lists the files of a folder, each with its path in the page's addresses. Hidden files are left out.
 fn list(folder: &Path, prefix: &str, files: &mut Vec<(String, PathBuf)>) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;

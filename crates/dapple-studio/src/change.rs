@@ -14,8 +14,8 @@ pub struct Change {
     pub insert: String,
 }
 
-/// Returns the changes that turn `old` into `new`. There is one per changed line if both have the same number of lines,
-/// and otherwise a single one.
+/// Returns the changes that turn `old` into `new`. There is one per changed line if both texts have the same number of
+/// lines; otherwise there is a single change.
 pub(crate) fn changes(old: &str, new: &str) -> Vec<Change> {
     let positions = Positions::new(old);
     let change = |start: usize, old_part: &str, new_part: &str| {
@@ -54,7 +54,8 @@ pub(crate) fn changes(old: &str, new: &str) -> Vec<Change> {
     changes
 }
 
-/// Returns the lengths in bytes of the common prefix and of the common suffix of two texts. The two do not overlap.
+/// Returns the lengths of the common prefix and the common suffix of two texts, in bytes. The prefix and suffix do not
+/// overlap.
 fn ends_in_common(old: &str, new: &str) -> (usize, usize) {
     let pairs = old.chars().zip(new.chars());
     let before = pairs

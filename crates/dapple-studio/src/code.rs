@@ -14,7 +14,7 @@ pub(crate) struct Code<'a> {
 }
 
 impl Code<'_> {
-    /// Returns the program or the text.
+    /// Returns the source of the program, or the recipe text.
     pub(crate) fn text(
         &self,
         document: &Document,
@@ -96,7 +96,7 @@ impl Code<'_> {
     }
 }
 
-/// Returns the material as a function of WGSL. Comments name the textures that it reads.
+/// Returns the material as a WGSL function. Comments list the textures that it reads.
 fn wgsl(recipe: &Recipe, images: &Images) -> Result<String, StudioError> {
     let shader = recipe.to_wgsl(images, &ShaderOptions { textures: true })?;
     let mut text = String::new();

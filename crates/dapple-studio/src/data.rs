@@ -87,7 +87,7 @@ fn value_of_number(number: &Number) -> Result<Value, StudioError> {
         .ok_or_else(|| StudioError::new("the number is not finite"))
 }
 
-/// Sets a TOML value to a JSON value and preserves its formatting where possible.
+/// Assigns JSON to a TOML value. The formatting of unchanged elements and entries is preserved.
 pub(crate) fn rewrite(old: &mut Value, json: &Json) -> Result<(), StudioError> {
     if json_of_value(old) == *json {
         return Ok(());

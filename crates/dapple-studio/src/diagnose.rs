@@ -86,8 +86,8 @@ fn byte_of(text: &str, place: Place) -> usize {
     before + column.map_or(line.trim_end().len(), |(byte, _)| byte)
 }
 
-/// Returns the end of the word, string or array that begins at the byte `start`. The range has at least one character,
-/// except at the end of the text.
+/// Returns the end of the word, string or array at the byte `start`, as a byte offset. The range has at least one
+/// character, except at the end of the text.
 fn word_end(text: &str, start: usize) -> usize {
     let rest = &text[start..];
     let Some(first) = rest.chars().next() else {
@@ -103,8 +103,7 @@ fn word_end(text: &str, start: usize) -> usize {
     start + length.max(first.len_utf8())
 }
 
-/// Returns the range that a plan's error refers to, which is the value named by the error, or else the name of the
-/// node.
+/// Returns the byte range that a plan's error refers to: the value named by the error, or else the name of the node.
 fn place(document: &Document, error: &RecipeError) -> Option<Range<usize>> {
     let root = document.table()?;
     let nodes = root.get("nodes").and_then(Item::as_table_like);
@@ -155,7 +154,7 @@ fn document_item<'a>(root: &'a toml_edit::Table, error: &RecipeError) -> Option<
     }
 }
 
-/// Returns the range of a string value in an item.
+/// Returns the byte range of the string `text` in an item.
 fn text_in(item: &Item, text: &str) -> Option<Range<usize>> {
     values(item)
         .into_iter()
@@ -163,8 +162,8 @@ fn text_in(item: &Item, text: &str) -> Option<Range<usize>> {
         .and_then(|(_, value)| value.span())
 }
 
-/// Returns the range of the value with the longest key that occurs in a sentence, such as `octaves` in "number of
-/// octaves".
+/// Returns the byte range of a value whose key occurs in `sentence`, such as `octaves` in "number of octaves". The
+/// longest key wins.
 fn words_in(item: &Item, sentence: &str) -> Option<Range<usize>> {
     let words: Vec<_> = sentence
         .split(|c: char| !c.is_alphanumeric() && c != '_')
@@ -179,7 +178,7 @@ fn words_in(item: &Item, sentence: &str) -> Option<Range<usize>> {
         .and_then(|(_, value)| value.span())
 }
 
-/// Lists all values in an item, except tables, with their keys. An element of an array has the key of the array.
+/// Returns all values in an item, except tables, with their keys. An element of an array has the key of the array.
 fn values(item: &Item) -> Vec<(String, &Value)> {
     fn of_value<'a>(key: &str, value: &'a Value, all: &mut Vec<(String, &'a Value)>) {
         match value {

@@ -95,7 +95,7 @@ impl Document {
     }
 }
 
-/// Extends a range to include an item and everything in it.
+/// Extends a byte range to include an item and everything in it.
 pub(crate) fn widen(span: &mut Range<usize>, item: &Item) {
     let mut include = |other: Option<Range<usize>>| {
         if let Some(other) = other {

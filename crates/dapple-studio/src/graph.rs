@@ -12,7 +12,7 @@ pub struct Graph {
     nodes: Vec<GraphNode>,
     /// The material's inputs, by name.
     material: Map<String, Json>,
-    /// The names of the nodes in topological order, with every node after its inputs. Without a plan, they are in the
+    /// The names of the nodes in topological order: every node follows its inputs. Without a plan, they are in the
     /// order of the text.
     order: Vec<String>,
 }
@@ -119,7 +119,7 @@ fn names_in_order(document: &Document, data: &Json) -> Vec<String> {
     }
 }
 
-/// Converts a found input. The first `skipped` components of its path are removed.
+/// Converts an input of the recipe to an input of its node. The first `skipped` components of its path are removed.
 fn input(found: &Found<'_>, skipped: usize) -> GraphInput {
     let path = found.path[skipped..].to_vec();
     let is_node = |text: &&str| !text.starts_with('#');
@@ -135,7 +135,7 @@ fn input(found: &Found<'_>, skipped: usize) -> GraphInput {
     }
 }
 
-/// Returns a short label for an input, its key followed by its 1-based indices in nested arrays.
+/// Returns a short label for an input: its key, followed by its indices in nested arrays, which start at 1.
 fn label(path: &[Part]) -> String {
     let parts = if path.len() > 1 { &path[1..] } else { path };
     let words = parts.iter().map(|part| match part {

@@ -203,12 +203,12 @@ pub struct Export {
     pub normal_y: Option<String>,
     /// The frame of a looping animation to export, as its number, starting at 1, and the number of frames.
     pub frame: Option<[u32; 2]>,
-    /// Exports all frames of a looping animation: their number.
+    /// Number of frames of a looping animation; all of them are exported.
     pub frames: Option<u32>,
-    /// A folder in the folder of the recipe, into which the files are written. By default, they are only offered for
+    /// Subfolder of the recipe's folder, to which the files are written. By default, they are only offered for
     /// download.
     pub folder: Option<String>,
-    /// Whether files that are in the folder already are replaced.
+    /// Whether to replace existing files in the folder.
     pub overwrite: bool,
 }
 
@@ -267,7 +267,7 @@ pub enum Reply {
         /// The data.
         recipe: Json,
     },
-    /// Announces a generation whose images follow.
+    /// Announces that the images of a new generation follow.
     Began {
         /// The generation.
         generation: u32,
@@ -279,7 +279,7 @@ pub enum Reply {
         node: Option<String>,
         /// Phase of the looping animation, from 0 to 1.
         time: f64,
-        /// Whether drafts may come first.
+        /// Whether drafts may precede the images.
         draft: bool,
     },
     /// All images of a generation, or all drafts of it, have been sent.

@@ -172,7 +172,7 @@ fn of_numbers(raster: &Raster<f32>, [min, max]: [f32; 2]) -> Vec<u8> {
     pixels(raster, |&value| [u8::from_unit((value - min) / width); 3])
 }
 
-/// Converts the values of a node to pixels. For numbers, also returns the values shown as black and white.
+/// Converts the values of a node to pixels. For numbers, also returns the values that black and white stand for.
 pub(crate) fn of_values(values: &recipe::Picture) -> (Vec<u8>, Option<[f32; 2]>) {
     match values {
         recipe::Picture::Colors(colors) => (of_colors(colors), None),
@@ -183,8 +183,8 @@ pub(crate) fn of_values(values: &recipe::Picture) -> (Vec<u8>, Option<[f32; 2]>)
     }
 }
 
-/// Returns the values to show as black and white. These are 0 and 1 if all numbers are in that range and are equal or
-/// span at least a quarter of it. Otherwise, they are the minimum and maximum of the finite numbers.
+/// Returns the values that black and white stand for. They are 0 and 1 if all numbers are in this range, and are equal
+/// or span at least a quarter of it. Otherwise, they are the minimum and maximum of the finite numbers.
 fn range_of(numbers: &Raster<f32>) -> [f32; 2] {
     let finite = numbers
         .pixels()

@@ -27,10 +27,11 @@ const THUMBNAIL_SIDE: u32 = 64;
 const MOST_THUMBNAILS: usize = 800;
 /// Pixels per band. Rendering checks between bands whether the job has been superseded.
 const BAND_PIXELS: u32 = 1 << 15;
-/// Pixels per sent part of a map. Parts are large because the page redraws its whole image for each.
+/// Number of pixels in each part of a map that is sent. Parts are large because the page redraws its whole image for
+/// each.
 const SENT_PIXELS: usize = 1 << 20;
-/// Time in milliseconds after which smaller parts are sent, and the number of pixels in such a part. Where a page
-/// scales an image down, the boundaries between parts are slightly visible, so small images are never divided.
+/// Time in milliseconds after which smaller parts are sent, and the number of pixels in such a part. If a page scales
+/// an image down, the boundaries between parts are slightly visible. For this reason, small images are never divided.
 const LATE: (f64, usize) = (100.0, 1 << 18);
 
 /// Work limits of a recipe in the studio.
@@ -230,7 +231,7 @@ impl Renderer {
         planned.map_or(Ok(()), |planned| pass.preview(recipe, &planned.images))
     }
 
-    /// Returns the plan of a job, from the cache if document, phase and images are unchanged.
+    /// Returns the plan of a job. It is the cached plan if document, phase and images are unchanged.
     fn plan(
         &mut self,
         job: &Job,
@@ -344,7 +345,7 @@ impl Pass<'_> {
         self.draw_frame(frame, false)
     }
 
-    /// Adapts the size of the next draft to the time of this one.
+    /// Chooses the size of the next draft from the time that this draft took.
     fn choose_draft(&mut self) {
         let ms = self.world.now() - self.start;
         let ([slow, fast], [largest, smallest]) = (DRAFT_MS, DRAFT_SIDES);
@@ -565,8 +566,8 @@ impl Pass<'_> {
 }
 
 impl Frame {
-    /// Returns the frame of a draft whose longest side has at most `side` pixels. The scale is the smallest power of
-    /// two from 2 to 64 that divides all sizes and offsets, so that pixels of both frames are aligned. Returns `None`
+    /// Returns the frame of a draft whose longer side has at most `side` pixels. The scale is the smallest power of two
+    /// from 2 to 64 that divides all sizes and offsets, so that pixels of both frames are aligned. Returns `None`
     /// without such a scale, or if the frame is small enough already.
     fn draft(self, side: u32) -> Option<Self> {
         let longest = self.region.size[0].max(self.region.size[1]);

@@ -8,7 +8,7 @@ use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Recipe};
 
 /// The direction to the light: a unit vector with the components right, up and toward the viewer.
 const LIGHT: [f32; 3] = [-0.48, 0.6, 0.64];
-/// The intensities of the ambient light and of the directional light.
+/// Intensities of the ambient light and the directional light.
 const LIGHTS: [f32; 2] = [0.35, 1.0];
 
 /// Maximum side of a thumbnail, in pixels.

@@ -15,7 +15,7 @@ pub(crate) enum Role {
     Seed,
 }
 
-/// A path in a recipe with its role and its value. If nothing is written there, the value is the default.
+/// An input or a seed of a recipe, with its path and its value: the default if the recipe does not set it.
 #[derive(Clone, Debug)]
 pub(crate) struct Found<'a> {
     pub(crate) path: Vec<Part>,
@@ -54,13 +54,13 @@ pub(crate) fn roles(recipe: &Json) -> Vec<Found<'_>> {
 #[derive(Default)]
 struct Walk<'a> {
     path: Vec<Part>,
-    /// Whether the table or array around the current value requires it.
+    /// Whether the enclosing table or array requires the current value.
     is_required: bool,
     found: Vec<Found<'a>>,
 }
 
 impl<'a> Walk<'a> {
-    /// Walks a value together with its schema.
+    /// Visits a value and everything in it, together with its schema.
     fn value(&mut self, schema: &'a Json, value: &'a Json) {
         if let Some(role) = role(schema) {
             let is_used = |found: &Found<'_>| found.path == self.path;
@@ -107,7 +107,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Records the optional inputs and seeds that a table lacks.
+    /// Records the optional inputs and seeds that a table leaves at their defaults.
     fn missing(&mut self, schema: &'a Json, entries: &serde_json::Map<String, Json>) {
         let Some(Json::Object(properties)) = schema.get("properties") else {
             return;
@@ -146,7 +146,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Returns the role of a value whose schema is only a reference; `None` for other schemas.
+/// Returns the role of a value whose schema is a reference to a type; `None` for other schemas.
 fn role(schema: &Json) -> Option<Role> {
     match schema.get("$ref")?.as_str()? {
         "#/$defs/Input" => Some(Role::Input),
@@ -155,7 +155,7 @@ fn role(schema: &Json) -> Option<Role> {
     }
 }
 
-/// Returns the role of a value whose schema makes it optional; `None` for other schemas.
+/// Returns the role of a value whose schema also allows null; `None` for other schemas.
 fn optional_role(schema: &Json) -> Option<Role> {
     role(schema).or_else(|| schema.get("anyOf")?.as_array()?.iter().find_map(role))
 }
@@ -176,7 +176,7 @@ fn requirements(schema: &Json) -> impl Iterator<Item = &str> {
     all.into_iter().flatten().filter_map(Json::as_str)
 }
 
-/// Returns all kinds of nodes, in the order in which recipes list them.
+/// Returns all kinds of nodes, in the order of [`KINDS`](dapple::recipe::KINDS).
 pub(crate) fn kinds() -> Vec<Kind> {
     let kind = |((name, (group, example)), tags)| Kind {
         name,

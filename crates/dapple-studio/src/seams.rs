@@ -15,8 +15,7 @@ const MAPS: [MapKind; 4] = [
     MapKind::Roughness,
 ];
 
-/// Returns a seam report for each map of a recipe. Of the map's channels, the one with the largest seam ratio is
-/// reported.
+/// Returns a seam report for each map of a recipe. It covers only the channel of the map with the largest seam ratio.
 pub(crate) fn report(
     recipe: &Recipe,
     images: &Images,

@@ -1,4 +1,4 @@
-//! The state of one page, which consists of the text, the view, and the newest generation of images.
+//! The state of one page: the text, the view, and the newest generation of images.
 
 use crate::change::changes;
 use crate::message::{Reply, Request, View};
@@ -8,7 +8,7 @@ use crate::{Document, StudioError, Variant, points, strip};
 use dapple::recipe::{Images, Recipe};
 use std::sync::Arc;
 
-/// Loads the images that a recipe names.
+/// Returns the images that a recipe names.
 pub type ImagesOf<'a> = &'a dyn Fn(&Recipe) -> Result<Images, StudioError>;
 
 /// The state of one page. Requests that need no rendering are answered immediately; rendering is returned as a
@@ -80,7 +80,7 @@ impl Session {
         replies
     }
 
-    /// Returns the text of a recipe that a page opens from a built-in name or from text, without a file.
+    /// Returns the text of a recipe that a page opens by a built-in name or as text.
     fn text_of(builtin: Option<&str>, text: Option<String>) -> Result<String, StudioError> {
         match (builtin, text) {
             (Some(name), None) => Ok(Recipe::builtin_text(name)?.to_owned()),
@@ -218,7 +218,7 @@ impl Session {
         ops.iter().map(with_points).collect()
     }
 
-    /// Replaces the document and returns its errors or its values.
+    /// Replaces the document. Returns a message with its errors, or with its data.
     fn put(&mut self, document: Document) -> Vec<Reply> {
         self.document = Arc::new(document);
         self.renew();

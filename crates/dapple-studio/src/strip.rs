@@ -16,9 +16,9 @@ const MAX_SIDE: u32 = 128;
 /// One thumbnail of a strip.
 #[derive(Clone, Debug)]
 pub struct Variant {
-    /// The document, which the edits leave unchanged.
+    /// The document before the edits.
     pub document: Arc<Document>,
-    /// The edits to show.
+    /// The edits that the thumbnail shows.
     pub changes: Vec<Op>,
     /// The node to show. Default: the lit material.
     pub node: Option<String>,

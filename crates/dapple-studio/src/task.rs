@@ -6,7 +6,7 @@ use crate::{Document, ImagesOf, Session, StudioError, points, seams};
 use dapple::recipe::{Images, Recipe};
 use std::sync::Arc;
 
-/// Bakes a recipe to files and returns the message that lists them.
+/// Bakes a recipe to files. Returns the reply that lists them.
 pub type ExportOf<'a> = &'a dyn Fn(&Recipe, &Export) -> Result<Reply, StudioError>;
 
 /// A request for a report, a program or files, together with the document it refers to.

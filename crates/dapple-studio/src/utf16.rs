@@ -8,8 +8,8 @@ const STEP: usize = 1 << 10;
 /// Converts byte offsets of a text to UTF-16 code units.
 #[derive(Clone, Debug)]
 pub(crate) struct Positions {
-    /// The number of code units before every [`STEP`]th byte, rounded down to a character boundary. Empty if the text
-    /// is ASCII.
+    /// Number of code units before every [`STEP`]th byte, rounded down to a character boundary. Empty if the text is
+    /// ASCII.
     known: Vec<usize>,
 }
 

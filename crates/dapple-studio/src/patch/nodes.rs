@@ -61,8 +61,8 @@ pub(super) fn disconnect(document: &mut DocumentMut, path: &[Part]) -> Result<()
     reset(document, &data, |found| found.path == path)
 }
 
-/// Resets the inputs that satisfy `is_link`: an optional input loses its value, and a required one gets the value that
-/// it has in a new node.
+/// Resets the inputs for which `is_link` returns true. An optional input loses its value. A required one gets the value
+/// that it has in a new node.
 fn reset(
     document: &mut DocumentMut,
     data: &Json,
@@ -84,7 +84,7 @@ fn reset(
     Ok(())
 }
 
-/// Returns the value of an input in a new node of the same kind. Further elements of a list are like its last one.
+/// Returns the value of an input in a new node of the same kind. Additional elements of a list equal its last one.
 fn initial(path: &[Part]) -> Option<Json> {
     let [_, _, Part::Key(kind), inner @ ..] = path else {
         return None;
@@ -132,7 +132,7 @@ pub(super) fn rename(document: &mut DocumentMut, name: &str, to: &str) -> Result
     keep_seed(document, &data, name, to)
 }
 
-/// Replaces the node's name in a path.
+/// Returns the path with the node's name replaced by `to`, if the path is in the node `name`.
 fn moved(mut path: Vec<Part>, name: &str, to: &str) -> Vec<Part> {
     if let [first, node, ..] = &mut path[..]
         && *first == Part::from("nodes")
@@ -143,8 +143,8 @@ fn moved(mut path: Vec<Part>, name: &str, to: &str) -> Vec<Part> {
     path
 }
 
-/// Writes seeds into the node `to` so that it draws from the same random stream as the node `name` in `data`. The
-/// node `to` is the renamed or copied node.
+/// Writes seeds into the node `to`, the renamed or copied node, so that it draws from the same random stream as the
+/// node `name` in `data`.
 fn keep_seed(
     document: &mut DocumentMut,
     data: &Json,

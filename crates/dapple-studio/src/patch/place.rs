@@ -59,7 +59,7 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// Inserts an element into the array at a path. A missing array is created.
+    /// Inserts an element into the array at a path. The array is created if it is missing.
     pub(super) fn insert(
         self,
         path: &[Part],
@@ -94,7 +94,7 @@ impl<'a> Place<'a> {
         path.iter().try_fold(self, Self::step)
     }
 
-    /// Navigates to the value at `path`, and creates missing tables on the way.
+    /// Navigates to the value at `path`. Missing tables are created.
     fn made(self, path: &[Part]) -> Result<Self, StudioError> {
         let mut place = self;
         for (depth, part) in path.iter().enumerate() {
@@ -107,7 +107,7 @@ impl<'a> Place<'a> {
         Ok(place)
     }
 
-    /// Returns whether this is a table that lacks the entry.
+    /// Returns whether this is a table without the entry.
     fn lacks(&self, part: &Part) -> bool {
         match (self, part) {
             (Self::Table(table), Part::Key(key)) => !table.contains_key(key),
@@ -253,7 +253,7 @@ fn rewrite_table(
     Ok(())
 }
 
-/// Gives an empty table a header. Without one it would not be written.
+/// Gives an empty table a header, without which the table would not be written.
 fn show(table: &mut Table) {
     if table.is_empty() {
         table.set_implicit(false);

@@ -33,7 +33,7 @@ pub(crate) fn spliced(document: &Document, ops: &[Op]) -> Option<String> {
     Some(text)
 }
 
-/// Returns the value at a path.
+/// Returns the TOML value at a path.
 fn at<'a>(document: &'a Document, path: &[Part]) -> Option<&'a Value> {
     let mut parts = path.iter();
     let Part::Key(first) = parts.next()? else {
@@ -49,8 +49,8 @@ fn at<'a>(document: &'a Document, path: &[Part]) -> Option<&'a Value> {
     item.as_value()
 }
 
-/// Collects the ranges of all numbers in a value with their new text, or `None` for unchanged numbers. Fails if the
-/// new value differs in anything other than numbers.
+/// Collects the byte ranges of all numbers in `old`, each with its new text, or `None` if the number is unchanged.
+/// Returns `None` if `new` differs from `old` in anything other than numbers.
 fn replace(old: &Value, new: &Json, parts: &mut Vec<(Range<usize>, Option<String>)>) -> Option<()> {
     if let (Value::Array(list), Json::Array(new)) = (old, new) {
         let mut pairs = list.iter().zip(new);

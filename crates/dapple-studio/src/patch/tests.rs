@@ -1,4 +1,4 @@
-//! Compares edits of texts with the same edits of their data.
+//! Tests that edits of texts change the data as edits of the data do.
 
 use super::{Op, Part, apply, spliced};
 use crate::Document;
@@ -374,7 +374,7 @@ fn what_does_not_fit_is_refused_and_nothing_changes() {
     );
 }
 
-/// Lists all paths in a value.
+/// Appends the paths of a value and of all values in it to `all`.
 fn paths(value: &Json, path: &mut Vec<Part>, all: &mut Vec<Vec<Part>>) {
     if !path.is_empty() {
         all.push(path.clone());
@@ -405,7 +405,7 @@ fn at<'a>(value: &'a mut Json, path: &[Part]) -> &'a mut Json {
     })
 }
 
-/// Returns whether values are equal. Integers and floating-point numbers are compared by value.
+/// Returns whether two JSON values are equal. An integer equals a floating-point number of the same value.
 fn are_equal(a: &Json, b: &Json) -> bool {
     match (a, b) {
         (Json::Number(a), Json::Number(b)) => a.as_f64() == b.as_f64(),

@@ -16,7 +16,7 @@ pub(super) struct Way {
     file: Mutex<Option<TempPath>>,
 }
 
-/// Maximum lifetime of the temporary file.
+/// Maximum lifetime of the temporary file, if no page connects.
 pub(super) const LONGEST: Duration = Duration::from_secs(60);
 
 impl Way {

@@ -20,7 +20,7 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 const MOST_CONNECTIONS: usize = 128;
 /// Maximum time to receive the head of a request, and to keep an idle connection open.
 const SILENCE: Duration = Duration::from_secs(5);
-/// Time for pending responses to finish after the server has ended.
+/// Time that pending responses get to finish when the server ends.
 const LAST: Duration = Duration::from_secs(10);
 /// Delay before retrying when the system has no free handle.
 const PAUSE: Duration = Duration::from_millis(100);

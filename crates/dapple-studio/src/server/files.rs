@@ -23,8 +23,8 @@ use toml_edit::DocumentMut;
 /// A folder of recipes. Hidden files, and links to files outside of the folder, are excluded.
 pub(super) struct Folder {
     path: PathBuf,
-    /// The recipe that the user named. It is read and written without these checks: its links may lead outside of the
-    /// folder, and its text need not be a recipe.
+    /// The recipe that the user named on the command line. It is read and written without the checks of other files:
+    /// its links may lead outside of the folder, and its text need not be a recipe.
     named: Option<String>,
 }
 
@@ -134,8 +134,8 @@ impl Folder {
         Ok(hash(text.as_bytes()))
     }
 
-    /// Writes files into a folder in this one, which is created if it is missing. Without `overwrite`, fails before
-    /// anything is written if one of the files is there.
+    /// Writes files into a subfolder, which is created if it is missing. Without `overwrite`, fails before anything is
+    /// written if any of the files exists.
     pub(super) fn write(
         &self,
         to: &str,
@@ -179,7 +179,8 @@ impl Folder {
         Ok(())
     }
 
-    /// Returns the paths of a recipe's images with the stamps of their files, which reveal later changes.
+    /// Returns the paths of a recipe's images with the stamps of their files. A file's stamp changes when the file
+    /// does.
     pub(super) fn image_stamps(&self, recipe: &Recipe) -> Vec<(PathBuf, Option<FileStamp>)> {
         let files = self.image_paths(recipe).into_iter();
         files

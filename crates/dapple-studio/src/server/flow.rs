@@ -11,7 +11,7 @@ pub(super) struct Flow {
 
 #[derive(Default)]
 struct Lane {
-    /// Whether an image is in flight.
+    /// Whether an image has been sent and not been acknowledged yet.
     is_busy: bool,
     waiting: VecDeque<Picture>,
 }
@@ -32,7 +32,7 @@ impl Flow {
         Some(picture)
     }
 
-    /// Handles an acknowledgement of the page and returns the next image of the map.
+    /// Handles the page's acknowledgement of an image. Returns the map's next image to send, if any.
     pub(super) fn drawn(&mut self, map: u16) -> Option<Picture> {
         let lane = self.lanes.iter_mut().find(|(shown, _)| shown.code() == map);
         let (_, lane) = lane?;

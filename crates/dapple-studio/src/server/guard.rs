@@ -1,4 +1,4 @@
-//! Access control, which serves only a page of this server that was opened with the token of this run.
+//! Access control: serves only a page of this server that was opened with the token of this run.
 //!
 //! A page of another site can send requests to 127.0.0.1. With a host name that resolves to 127.0.0.1 (DNS
 //! rebinding), it can even read the responses. So a request must name a loopback host, which nobody else can own, or
@@ -57,7 +57,7 @@ impl Guard {
         }
     }
 
-    /// Rejects requests from other origins, with a message that says how to proceed.
+    /// Rejects requests from other origins. The message says what the user can do.
     pub(super) fn check(&self, request: &Request) -> Result<(), String> {
         let headers = request.headers();
         let path = request.uri().path();
@@ -221,7 +221,7 @@ fn is_from_here(headers: &HeaderMap, path: &str) -> bool {
     opens_page || matches!(of("sec-fetch-site"), None | Some(b"same-origin" | b"none"))
 }
 
-/// Returns the value of a header that occurs exactly once.
+/// Returns the value of a header that occurs exactly once; otherwise `None`.
 fn one(headers: &HeaderMap, name: HeaderName) -> Option<&str> {
     let mut all = headers.get_all(name).iter();
     let value = all.next()?;

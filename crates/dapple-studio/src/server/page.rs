@@ -23,7 +23,7 @@ pub(super) fn licenses() -> Option<&'static str> {
     std::str::from_utf8(text).ok()
 }
 
-/// Finds a file by its name, or by its name with `.gz`. The flag says whether the bytes are compressed.
+/// Finds a file by its name, or by its name with `.gz`. Returns its bytes, and whether they are compressed.
 fn found<'a>(files: &[(&str, &'a [u8])], name: &str) -> Option<(&'a [u8], bool)> {
     files.iter().find_map(|(known, bytes)| {
         let is_compressed = known.strip_suffix(".gz") == Some(name);

@@ -299,13 +299,14 @@ impl Page {
         files
     }
 
-    /// Returns whether the open file or an image of its recipe has changed on disk and is no longer being written.
+    /// Returns whether the open file or an image of its recipe has changed on disk. A file that is still being written
+    /// counts as unchanged.
     fn looks_other(&mut self) -> bool {
         let files = self.files();
         self.changes.look(&files)
     }
 
-    /// Notifies the page if the open file has changed on disk, and renders again if the recipe has images.
+    /// Notifies the page if the open file has changed on disk. Renders again if the recipe has images.
     async fn compare_with_disk(&mut self) -> Result<(), Ended> {
         if let Some((file, known)) = &mut self.file
             && let Ok((text, hash)) = self.shared.folder.read(file)

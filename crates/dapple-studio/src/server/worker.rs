@@ -1,5 +1,5 @@
-//! The two threads of a page. The first renders images, always for the newest state, after pending reports. The second
-//! runs exports, which take a long time.
+//! The two threads of a page. The first renders images, always of the newest state, after it has answered pending
+//! requests for reports. The second runs exports, which are slow.
 
 use super::Shared;
 use crate::message::{Export, Output, Reply};
@@ -23,7 +23,7 @@ struct Queue {
     job: Option<Job>,
     tasks: VecDeque<Task>,
     exports: VecDeque<Task>,
-    /// Variants still to render, of the strip that was requested last.
+    /// Remaining thumbnails of the strip that was requested last.
     variants: VecDeque<Variant>,
     /// Thumbnails of the gallery, rendered at the lowest priority.
     samples: VecDeque<Sample>,
@@ -46,7 +46,7 @@ struct Inside {
     shared: Arc<Shared>,
     queue: Mutex<Queue>,
     changed: Condvar,
-    /// The newest requested generation.
+    /// The newest generation that was requested.
     newest: AtomicU32,
     /// Set to true to stop the running export.
     stop: Arc<AtomicBool>,
@@ -55,7 +55,7 @@ struct Inside {
     images: Mutex<Loaded>,
 }
 
-/// Cached images of the last recipe, with the stamps of their files.
+/// Images of the last recipe, cached with the stamps of their files.
 #[derive(Default)]
 struct Loaded {
     stamps: Vec<(PathBuf, Option<FileStamp>)>,
@@ -99,14 +99,14 @@ impl Worker {
         Ok(())
     }
 
-    /// Schedules a rendering job. It replaces the waiting job and cancels the running one.
+    /// Schedules a rendering job. A waiting job is dropped, and a running one is canceled.
     pub(super) fn draw(&self, job: Job) {
         self.inside.newest.store(job.generation, Ordering::SeqCst);
         self.inside.lock().job = Some(job);
         self.inside.changed.notify_all();
     }
 
-    /// Schedules the variants of a strip at low priority. They replace the variants of the previous strip.
+    /// Schedules the thumbnails of a strip at low priority. They replace those of the previous strip.
     pub(super) fn vary(&self, variants: Vec<Variant>) {
         self.inside.lock().variants = variants.into();
         self.inside.changed.notify_all();
@@ -166,7 +166,7 @@ impl Drop for Worker {
     }
 }
 
-/// The next unit of work of the rendering thread.
+/// The next task of the rendering thread.
 enum Next {
     Draw(Job),
     Do(Task),
@@ -223,7 +223,7 @@ impl Inside {
         self.put(Reply::refused(task.what(), &error).into());
     }
 
-    /// Runs `work` and returns whether it completed. A panic is reported to the page and does not end the server.
+    /// Runs `work`. Returns false if it panicked; the panic is reported to the page, and the server continues.
     fn attempt(&self, what: &str, work: impl FnOnce()) -> bool {
         let is_done = catch_unwind(AssertUnwindSafe(work)).is_ok();
         if !is_done {
@@ -253,7 +253,7 @@ impl Inside {
         woken.unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits for the next unit of work, in order of priority: tasks, the view, the strip, the gallery.
+    /// Waits for the next task. In order of priority: reports, the view, the strip, the gallery.
     fn next(&self) -> Option<Next> {
         let mut queue = self.lock();
         loop {

@@ -7,7 +7,7 @@ use std::path::Path;
 
 const RECIPE: &str = "dapple = 1\n[material]\nheight = 0.25\n";
 
-/// The HTTP status of a socket upgrade with this host and origin.
+/// Returns the HTTP status of a socket upgrade with this host and origin.
 fn upgrade(server: &Server, host: &str, origin: &str) -> u16 {
     let headers = [
         format!("Host: {host}"),
@@ -222,7 +222,7 @@ const OTHERS: [(&str, &str); 10] = [
     ("under/.config/hidden.toml", RECIPE),
 ];
 
-/// A server for a folder with these files, recipes, and a hidden image.
+/// Starts a server for a folder with these files, some recipes, and a hidden image.
 fn cluttered() -> Server {
     let server = Server::new(Some("my.toml"));
     let recipes = [

@@ -11,7 +11,7 @@ fn view(size: u32, maps: &[&str], draft: bool) -> serde_json::Value {
     json!({ "type": "view", "size": [size, size], "maps": maps, "draft": draft, "paused": false })
 }
 
-/// The pixels that a bake writes to an 8-bit PNG file.
+/// Returns the pixels that a bake writes to an 8-bit PNG file.
 fn baked(recipe: &str, kind: MapKind, side: u32) -> Vec<u8> {
     let plan = Plan::new(&Recipe::builtin(recipe).unwrap(), &Images::new(), 0.0).unwrap();
     let options = BakeOptions {
@@ -47,7 +47,7 @@ fn baked(recipe: &str, kind: MapKind, side: u32) -> Vec<u8> {
     }
 }
 
-/// The pixels of all parts of a map, concatenated.
+/// Returns the pixels of all parts of a map, concatenated.
 fn joined(pictures: &[Picture], shown: Shown) -> Vec<u8> {
     let parts = pictures
         .iter()

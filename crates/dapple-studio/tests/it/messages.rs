@@ -3,7 +3,7 @@
 use crate::render_host::{Page, of_type};
 use serde_json::{Value, json};
 
-/// The part of a text that JavaScript finds at the UTF-16 positions of an item.
+/// Returns the part of a text that JavaScript finds at the UTF-16 positions `from` and `to` of an item.
 fn part(text: &str, item: &Value) -> String {
     let units: Vec<u16> = text.encode_utf16().collect();
     let at = |name: &str| item[name].as_u64().unwrap() as usize;

@@ -4,7 +4,7 @@ use crate::render_host::Page;
 use serde_json::{Value, json};
 use std::time::Instant;
 
-/// A page that shows two maps of a cow texture whose points are written in the text.
+/// Returns a page that shows two maps of a cow texture, whose points are written in the text.
 fn page(n_points: u32) -> Page {
     let text = format!(
         "dapple = 1\nextent = [2.0, 2.0]\n[nodes.hide.pups.cow]\nspacing = {{ count = {n_points} }}\n\n[material]\nheight = \"hide\"\n"
@@ -21,7 +21,7 @@ fn page(n_points: u32) -> Page {
     page
 }
 
-/// The request sent while a point is dragged.
+/// Returns the request that is sent while a point is dragged.
 fn moved(point: usize, [x, y]: [f64; 2], rev: u32) -> Value {
     let path = |key| json!(["nodes", "hide", "pups", "points", "points", point, key]);
     json!({

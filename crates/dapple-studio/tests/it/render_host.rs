@@ -5,14 +5,14 @@ use dapple_studio::{Output, Picture, RenderHost, Renderer, Reply, Request, Sessi
 use serde_json::{Value, json};
 use std::cell::{Cell, RefCell};
 
-/// Collects outputs. A job may be superseded after a number of outputs.
+/// A host that collects outputs. Its job may be superseded after a number of outputs.
 #[derive(Default)]
 pub(crate) struct TestWorld {
     pub(crate) outputs: RefCell<Vec<Output>>,
     pub(crate) wanted: Cell<Option<usize>>,
-    /// The number of remaining checks for which a job counts as current. `None` for no limit.
+    /// Number of further checks at which the job still counts as current; `None` for no limit.
     pub(crate) patience: Cell<Option<usize>>,
-    /// Milliseconds by which the clock advances on every query.
+    /// Milliseconds that the clock advances at every query.
     pub(crate) pace: Cell<f64>,
     time: Cell<f64>,
 }
@@ -67,7 +67,7 @@ impl Page {
         page
     }
 
-    /// Renders the pending job, if any.
+    /// Renders the pending job, if any. Returns the messages and images.
     pub(crate) fn draw(&mut self) -> (Vec<Value>, Vec<Picture>) {
         let world = TestWorld::default();
         if let Some(job) = self.session.job() {
@@ -92,7 +92,7 @@ pub(crate) fn json_of(reply: &Reply) -> Value {
     serde_json::to_value(reply).unwrap()
 }
 
-/// The messages of one type.
+/// Returns the messages of one type.
 pub(crate) fn of_type<'a>(replies: &'a [Value], name: &str) -> Vec<&'a Value> {
     replies
         .iter()

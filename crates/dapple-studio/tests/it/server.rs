@@ -56,7 +56,7 @@ impl Host for TestHost {
     }
 }
 
-/// A server for a temporary folder.
+/// A running server for a temporary folder.
 pub(crate) struct Server {
     pub(crate) folder: TempDir,
     pub(crate) port: u16,
@@ -172,17 +172,17 @@ impl Server {
             .unwrap_or(0)
     }
 
-    /// A connected page that has received its greeting.
+    /// Connects a page, and waits for its greeting.
     pub(crate) fn page(&self) -> Page {
         self.greeted().0
     }
 
-    /// A connected page and its greeting.
+    /// Connects a page, and returns it with its greeting.
     pub(crate) fn greeted(&self) -> (Page, Value) {
         self.greeted_at("")
     }
 
-    /// A connected page and its greeting. `more` is appended to the query of its address.
+    /// Connects a page, and returns it with its greeting. `more` is appended to the query of its address.
     pub(crate) fn greeted_at(&self, more: &str) -> (Page, Value) {
         let (port, token) = (self.port, &self.token);
         let request = tungstenite::http::Request::builder()
