@@ -24,7 +24,7 @@ pub(crate) fn load(py: Python<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Converts values to an array of the given shape, without a copy.
+/// Converts a list of values to an array of the given shape, without a copy.
 pub(crate) fn array<'py, T: Element>(
     py: Python<'py>,
     values: Vec<T>,
@@ -35,8 +35,8 @@ pub(crate) fn array<'py, T: Element>(
     Ok(array.into_pyarray(py).into_any())
 }
 
-/// Fills an array of the given shape with `fill`. The array is new, or `out`, which must be float32, of this shape,
-/// and in C order.
+/// Returns an array of the given shape. `fill` writes its values, in C order. The array is new, or `out`, which must be
+/// float32, of this shape, and in C order.
 pub(crate) fn filled<'py>(
     py: Python<'py>,
     shape: &[usize],
@@ -79,7 +79,7 @@ pub(crate) fn filled<'py>(
     Ok(out.into_any())
 }
 
-/// Allocates `count` zeros; fails if there is not enough memory.
+/// Allocates `count` zeros. Fails with an error, instead of aborting, if there is not enough memory.
 fn zeros(count: usize) -> Result<Vec<f32>> {
     // Try a reservation first, which can fail without aborting. Neither it nor the zeroed allocation touches the
     // memory pages.
@@ -87,7 +87,7 @@ fn zeros(count: usize) -> Result<Vec<f32>> {
     Ok(vec![0.0; count])
 }
 
-/// Reserves memory for `count` numbers; fails if there is not enough memory.
+/// Reserves memory for `count` numbers. Fails with an error, instead of aborting, if there is not enough memory.
 pub(crate) fn reserve(values: &mut Vec<f32>, count: usize) -> Result<()> {
     values.try_reserve_exact(count).map_err(|_| {
         let message = format!("there is no memory for {count} numbers");
@@ -114,9 +114,9 @@ pub(crate) fn channels<'py, const N: usize>(
     )
 }
 
-/// Positions from an array of shape (…, axes).
+/// Positions read from an array of shape (…, axes).
 pub(crate) struct Positions {
-    /// Flat coordinates: all coordinates of a position are adjacent, x first.
+    /// Coordinates of all positions, interleaved: x, y and so on of the first position, then of the next one.
     pub(crate) numbers: Vec<f64>,
     /// Shape of the array without its last axis.
     pub(crate) shape: Vec<usize>,
@@ -154,7 +154,7 @@ pub(crate) fn raster(what: &str, data: &Bound<'_, PyAny>) -> Result<Raster<f32>>
     Ok(Raster::from_vec(raster_size(what, array.shape())?, values)?)
 }
 
-/// Returns the columns and rows of an array whose first axes are rows and columns.
+/// Returns the numbers of columns and rows of an array whose first axes are rows and columns.
 pub(crate) fn raster_size(what: &str, shape: &[usize]) -> Result<[u32; 2]> {
     let side = |length: usize| {
         u32::try_from(length).map_err(|_| {

@@ -22,7 +22,7 @@ fn filter(options: Option<&Bound<'_, PyDict>>) -> Result<SplineFilter> {
     )
 }
 
-/// Applies `step` to each channel of an image, and returns the results as an array.
+/// Applies `step` to each channel of an image, and returns the results as an array of the same kind.
 fn each<'py>(
     py: Python<'py>,
     image: &Bound<'py, PyAny>,

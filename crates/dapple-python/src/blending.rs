@@ -196,8 +196,8 @@ fn column<'py, T>(
     Err(Error::new("count", message))
 }
 
-/// Applies `by` to the colors and their alpha. Colors are mixed premultiplied by alpha, so that transparent pixels
-/// contribute no color.
+/// Replaces the colors of images with alpha by `by(color, alpha)`, such as by premultiplied colors. Blending
+/// premultiplied colors keeps transparent pixels from contributing color.
 fn multiply(
     layout: &Layout,
     maps: &mut [Map],

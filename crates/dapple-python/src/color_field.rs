@@ -26,7 +26,7 @@ pub(crate) struct ColorField {
 /// Number of positions that a thread processes at a time.
 const CHUNK: usize = 1024;
 
-/// Builds the field from its description: a `ColorField` if it has channels, otherwise a `Field`.
+/// Builds a Python field from its description: a `ColorField` if it has channels, otherwise a `Field`.
 pub(crate) fn object(py: Python<'_>, made: Made) -> Result<Py<PyAny>> {
     let (made, vectors) = threads::run(py, move || {
         let vectors = made.vectors();
@@ -201,7 +201,7 @@ impl ColorField {
 }
 
 impl Made {
-    /// Builds the function with several values at each position; `None` if the description has only one value.
+    /// Builds the function if the description has several values at each position; `None` if it has one.
     fn vectors(&self) -> Result<Option<Arc<dyn Vectors>>> {
         let values = match self {
             Self::Pups(made) => made.get()?,

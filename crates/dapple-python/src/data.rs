@@ -32,7 +32,7 @@ pub(crate) fn read<T: DeserializeOwned>(what: &str, data: Value) -> Result<T> {
     })
 }
 
-/// Rewrites a message about an unknown name without Rust terms.
+/// Rewrites a parser's message about an unknown name, without the words of Rust.
 fn in_our_words(message: &str) -> String {
     let parts = ["unknown variant ", "unknown field "].into_iter();
     let Some(rest) = parts.filter_map(|start| message.strip_prefix(start)).next() else {
@@ -81,7 +81,7 @@ fn write(data: &Bound<'_, PyAny>, depth: usize, text: &mut String) -> Result<()>
     Ok(())
 }
 
-/// The entries of a dictionary.
+/// Entries of a dictionary, as pairs of key and value.
 type Entries<'py> = Vec<(String, Bound<'py, PyAny>)>;
 
 /// Returns the entries of a dictionary; `None` for other data.
@@ -141,7 +141,7 @@ fn list(data: &Bound<'_, PyAny>, depth: usize) -> Result<Value> {
     Ok(Value::Array(items.collect::<Result<_>>()?))
 }
 
-/// Converts Python and NumPy numbers, and NumPy arrays.
+/// Converts Python and NumPy numbers and NumPy arrays to JSON. `depth` is the current nesting depth.
 fn number(data: &Bound<'_, PyAny>, depth: usize) -> Result<Value> {
     if data.hasattr("tolist")? {
         return nested(&data.call_method0("tolist")?, depth + 1);
@@ -167,12 +167,12 @@ fn number(data: &Bound<'_, PyAny>, depth: usize) -> Result<Value> {
     Err(PyTypeError::new_err(message).into())
 }
 
-/// Returns the value of `T` called `name`.
+/// Returns the value of the enum `T` called `name`. `what` is the option's name in error messages.
 pub(crate) fn named<T: dapple::raster::Named>(what: &str, name: &str) -> Result<T> {
     T::from_name(name).ok_or_else(|| unknown_name(what, name, T::NAMES))
 }
 
-/// Returns the error for an unknown name, with the known names and the nearest of them.
+/// Returns the error for an unknown name, with the known names and a suggestion.
 pub(crate) fn unknown_name(what: &str, name: &str, known: &[&str]) -> Error {
     let message = format!(
         "the {what} is `{name}`, but it must be one of {}",

@@ -58,7 +58,7 @@ impl Error {
         })
     }
 
-    /// Replaces the message.
+    /// Returns the error with another message.
     pub(crate) fn with_message(self, message: String) -> Self {
         match self {
             Self::Refused(refusal) => Self::Refused(Refusal { message, ..refusal }),
@@ -99,7 +99,8 @@ impl Error {
         }))
     }
 
-    /// Creates the exception for a directory where a file is expected, if the library itself has detected it.
+    /// Creates the exception for a directory in place of a file, for the case that the library reports it instead of
+    /// the operating system.
     fn of_folder(path: Option<&Path>) -> Self {
         let arguments = (EISDIR, "Is a directory", path.map(Path::to_owned));
         Self::Python(PyIsADirectoryError::new_err(arguments))

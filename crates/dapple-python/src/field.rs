@@ -44,7 +44,7 @@ impl Field {
         Ok(Self { made, function })
     }
 
-    /// Returns the function; an error unless it has two axes.
+    /// Returns the function of the field; an error unless it has two axes.
     pub(crate) fn plane(&self) -> Result<Arc<dyn dapple::raster::Field>> {
         self.made.plane()
     }
@@ -54,7 +54,8 @@ impl Field {
         self.function.period()
     }
 
-    /// Returns the default extent along each of four axes, for axes without a period.
+    /// Returns the default extent of a rendered image along each of up to four axes. It is used for axes without a
+    /// period.
     fn shown(&self) -> [f64; 4] {
         let shown = self.made.made().shown();
         [shown[0], shown[1], shown[0], shown[0]]
@@ -69,13 +70,13 @@ impl Field {
         }
     }
 
-    /// Writes the values at `positions`, given as flat coordinates.
+    /// Writes the values at `positions`, given as interleaved coordinates.
     fn sample_chunk(&self, positions: &[f64], values: &mut [f32]) {
         // Ignore the result: only unequal lengths are an error, and the lengths are equal here.
         let _ = self.function.values(positions, values);
     }
 
-    /// Combines this field with another field or number, value by value. `is_first` says whether this field is the
+    /// Combines this field with `other`, a field or a number, value by value. `is_first` is true if this field is the
     /// first operand.
     fn with(&self, other: Operand, operation: PairOperation, is_first: bool) -> Result<Self> {
         let (this, other) = (self.made.clone(), other.0);

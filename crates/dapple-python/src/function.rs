@@ -15,14 +15,14 @@ use sha2::{Digest, Sha256};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
-/// A function with two, three or four axes.
+/// A function of positions with two, three or four coordinates.
 #[derive(Clone)]
 pub(crate) enum Function {
-    /// A function with two axes.
+    /// A function of positions in the plane.
     Plane(Arc<dyn Field>),
-    /// A function with three axes.
+    /// A function of positions in space.
     Space(Arc<dyn Field<3>>),
-    /// A function with four axes.
+    /// A function of positions in space and time.
     Time(Arc<dyn Field<4>>),
 }
 
@@ -45,7 +45,7 @@ impl Function {
         }
     }
 
-    /// Writes the values at `positions`, given as flat coordinates.
+    /// Writes the values at `positions`, given as interleaved coordinates.
     pub(crate) fn values(&self, positions: &[f64], values: &mut [f32]) -> Result<()> {
         match self {
             Self::Plane(field) => field.values(positions.as_chunks().0, values)?,
@@ -55,7 +55,7 @@ impl Function {
         Ok(())
     }
 
-    /// Returns the slice along the first two axes, at fixed coordinates along the other axes.
+    /// Returns the slice along the first two axes. `rest` has the fixed coordinates along the other axes.
     fn slice(self, rest: &[f64]) -> Result<Arc<dyn Field>> {
         match (self, rest) {
             (Self::Space(field), &[z]) => Ok(Arc::new(field.slice([z]))),
@@ -85,7 +85,7 @@ pub(crate) enum Made {
     WaveletNoise(Shared<WaveletMade>),
     /// The field of values at control points.
     Pups(Shared<PupsMade>),
-    /// One of the paper's textures of control points, by name.
+    /// A texture of the PUPs paper, by name.
     Texture(Shared<TextureMade>),
     /// A node of a recipe.
     Node(Shared<NodeMade>),
@@ -113,20 +113,20 @@ pub(crate) enum Made {
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         further: Vec<Shared<Made>>,
     },
-    /// A field with one range of values mapped to another.
+    /// A field whose values are mapped linearly from one range to another.
     Remap {
         field: Shared<Made>,
         from: [f32; 2],
         to: [f32; 2],
     },
-    /// A field clamped between two bounds.
+    /// A field clamped to a range.
     Clamp {
         field: Shared<Made>,
         bounds: [f32; 2],
     },
     /// The absolute values of a field.
     Absolute(Shared<Made>),
-    /// Two fields combined value by value.
+    /// Two fields combined value by value, such as their sum.
     Pair {
         first: Shared<Made>,
         second: Shared<Made>,
@@ -151,13 +151,13 @@ pub(crate) enum Made {
 /// The return value of Python's `__reduce__`: a function and its arguments.
 pub(crate) type Reduced = (Py<PyAny>, (String,));
 
-/// A function, with the depth and the number of parts of its composition.
+/// A function, with the depth and the number of operations of its composition.
 #[derive(Clone)]
 pub(crate) struct Built {
     pub(crate) function: Function,
-    /// Length of the longest chain of nested operations.
+    /// Maximum number of nested operations.
     depth: usize,
-    /// Number of operations and elementary fields, each counted once per evaluation.
+    /// Number of operations and elementary fields. One that is evaluated several times counts several times.
     n_parts: usize,
 }
 
@@ -211,7 +211,7 @@ impl Shared<Made> {
 }
 
 impl Made {
-    /// Returns the fields that the operation combines.
+    /// Returns the operands of the operation.
     fn parts(&self) -> Vec<&Shared<Self>> {
         match self {
             Self::Constant(_)
@@ -241,7 +241,7 @@ impl Made {
         }
     }
 
-    /// Returns the default width and height of a rendered image along axes without a period: 8 cells for noise,
+    /// Returns the default width and height of a rendered image, for axes without a period: 8 cells for noise,
     /// otherwise 1.
     pub(crate) fn shown(&self) -> [f64; 2] {
         match self {
@@ -351,7 +351,7 @@ impl Made {
         })
     }
 
-    /// Applies the operation to fields with `N` axes.
+    /// Applies the operation to operands with `N` axes.
     fn composed<const N: usize>(
         &self,
         parts: impl Iterator<Item = Result<Arc<dyn Field<N>>>>,
@@ -436,7 +436,7 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Returns a function that clamps values between two bounds; NaN is unchanged.
+/// Returns a function that clamps values to a range; NaN is unchanged. Fails if the range is empty.
 fn clamp([low, high]: [f32; 2]) -> Result<impl Fn(f32) -> f32 + Send + Sync> {
     if low > high || low.is_nan() || high.is_nan() {
         return Err(Error::new(

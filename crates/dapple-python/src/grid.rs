@@ -8,14 +8,14 @@ use pyo3::conversion::FromPyObjectOwned;
 use pyo3::prelude::*;
 use pyo3::types::{PySlice, PyTuple};
 
-/// The pixels of an array with two to four axes, in the order of position coordinates: x first.
+/// Pixel grid of an array with two to four axes. The axes are in the order of position coordinates: x first.
 #[derive(Clone, Debug)]
 pub(crate) struct Grid {
     axes: Vec<Axis>,
 }
 
-/// The pixels along an axis: the center of pixel `i` is at `origin + (first + i + ½) · pixel`. For samples at
-/// corners, `origin` is half a pixel less than the caller's origin.
+/// Pixel grid along one axis: the center of pixel `i` is at `origin + (first + i + ½) · pixel`. For samples at corners,
+/// `origin` is half a pixel less than the caller's origin.
 #[derive(Clone, Copy, Debug)]
 struct Axis {
     origin: f64,
@@ -23,16 +23,16 @@ struct Axis {
     whole: u32,
     first: i64,
     size: u32,
-    /// The index of the corner that is a copy of corner 0, if any.
+    /// Index of the corner that duplicates corner 0, if any.
     copy: Option<i64>,
 }
 
-/// Pixels of an array that are copies of other pixels: the last column or row of a tile sampled at corners.
+/// Pixels of an array that duplicate other pixels: the last column or row of a tile that is sampled at corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Copies {
-    /// The pixels to evaluate.
+    /// The pixels that are duplicated.
     pub(crate) window: Window,
-    /// Column and row of the array at which the copies are written.
+    /// Column and row of the array to which they are copied.
     pub(crate) at: [usize; 2],
 }
 
@@ -144,7 +144,7 @@ impl Grid {
         copies
     }
 
-    /// Returns, for each plane, its coordinates along the axes after the first two, in the order of the array.
+    /// Returns the coordinates of each plane along the axes after the first two. Planes are in the order of the array.
     pub(crate) fn planes(&self) -> Vec<Vec<f64>> {
         let mut planes = vec![Vec::new()];
         for axis in &self.axes[2..] {
@@ -214,7 +214,7 @@ impl Axis {
         })
     }
 
-    /// Returns the index of the copy of corner 0 within the window to compute; `None` if it is outside.
+    /// Returns the index, within the computed window, of the corner that duplicates corner 0; `None` if it is outside.
     fn copied(&self) -> Option<usize> {
         let at = usize::try_from(self.copy? - self.first).ok()?;
         (at < self.size as usize).then_some(at)

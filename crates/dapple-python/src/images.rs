@@ -18,7 +18,7 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-/// Options for reading an image: its content, how its alpha is handled, and its layer.
+/// Options for reading an image: its content, the handling of alpha, and the layer.
 struct Reading {
     content: Option<Content>,
     alpha: Alpha,
@@ -51,7 +51,7 @@ impl Reading {
         })
     }
 
-    /// Converts an image to maps, and returns them with their kind.
+    /// Converts an image to maps. Returns the kind of the image, and its maps.
     fn maps(&self, image: &Image) -> Result<(Kind, Vec<Map>)> {
         let layer = self.layer.as_ref().map(|name| image.layer(name));
         let layer = layer.transpose()?;
@@ -114,7 +114,7 @@ impl Reading {
     }
 }
 
-/// Reads the image's channels as data: codes from 0 to 1, without sRGB decoding, one raster per channel.
+/// Reads each channel of an image as a raster of its codes, scaled to 0 to 1 without sRGB decoding.
 fn channels(image: &Image) -> Result<Vec<Raster<f32>>> {
     fn codes<T: Code, const N: usize>(raster: &Raster<[T; N]>) -> Vec<Raster<f32>> {
         (0..N)
@@ -491,7 +491,7 @@ fn encoded(
     Ok(bytes)
 }
 
-/// Minimum fraction of clipped pixels for a warning; the command uses the same value.
+/// Minimum fraction of clipped pixels for a warning, equal to the threshold of the command.
 const CLIPPED_MIN: f64 = 0.01;
 
 /// Returns the fraction of pixels that an integer format clips, that is, pixels with a value below 0 or above 1 by
@@ -512,7 +512,7 @@ fn clipped_share(kind: Kind, values: &[f32], encoding: Encoding, stop: &Stop) ->
     Ok(n_clipped as f64 / n_pixels as f64)
 }
 
-/// Returns the encoding of values in a format.
+/// Returns how a format encodes values.
 fn encoding(format: &str, kind: Kind, depth: Option<u32>) -> Result<Encoding> {
     let default = if kind.content == Content::Color {
         8
@@ -543,7 +543,7 @@ fn encoding(format: &str, kind: Kind, depth: Option<u32>) -> Result<Encoding> {
     }
 }
 
-/// Encodes values in pixel order as the bytes of an image file.
+/// Encodes values, in the order of pixels and channels, as the bytes of an image file.
 pub(crate) fn encode(
     kind: Kind,
     size: [u32; 2],

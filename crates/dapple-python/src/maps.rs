@@ -37,7 +37,7 @@ pub(crate) fn per_axis<T: Named>(
     Ok([data::named(what, &x)?, data::named(what, &y)?])
 }
 
-/// Reads the scale of heights: relief, extent and wrap.
+/// Reads the scale of a height map: relief, extent and wrap.
 fn plane(
     relief: f64,
     extent: Option<&Bound<'_, PyAny>>,
@@ -452,7 +452,7 @@ pub(crate) fn linear_from_srgb<'py>(
     Err(PyTypeError::new_err(message).into())
 }
 
-/// Applies `code` to each element of an array.
+/// Applies `code`, an sRGB encoding or decoding, to each element of an array.
 fn codes<'py, T: Element + Copy + Sync, U: Element + Send>(
     py: Python<'py>,
     array: &numpy::PyReadonlyArrayDyn<'py, T>,

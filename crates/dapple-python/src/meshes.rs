@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 
-/// Reads vectors of `N` numbers from an array whose last axes have the lengths `axes`.
+/// Reads vectors of `N` numbers from an array. `axes` are the lengths of the array's last axes.
 pub(crate) fn vectors<const N: usize>(
     what: &str,
     data: &Bound<'_, PyAny>,

@@ -67,7 +67,7 @@ pub(crate) struct Model {
     points: SitePoints,
 }
 
-/// The sites as a mesh, with a color for each site.
+/// The sites of a texture as a mesh, with a color for each site.
 enum SitePoints {
     /// Sites that have not been converted to a mesh yet.
     Sites(Box<Synthesizer>, Vec<LinearRgba>),
@@ -281,10 +281,11 @@ pub(crate) fn synthesize_on<'py>(
     watch::run(py, progress, cover)?
 }
 
-/// Fraction of the total work spent on cutting charts.
+/// Fraction of the total progress for cutting charts.
 const CHARTS: f64 = 0.3;
 
-/// Converts the progress of one step, `part`, to the total progress, of which the step covers `range`.
+/// Returns the total progress. `part` is the completed fraction of a step, and `range` is the range of the total
+/// progress that this step covers.
 fn part_of(range: core::ops::Range<f64>, part: f64) -> Progress {
     const STEPS: u32 = 1 << 16;
     let done = range.start + (range.end - range.start) * part;
@@ -336,7 +337,7 @@ fn uvs_of(what: &str, mesh: &Bound<'_, PyAny>) -> Result<Vec<[f64; 2]>> {
     vectors::<2>("uv", &uvs, &[3, 2])
 }
 
-/// Returns the mesh's own texture coordinates, for the faces that remain after repair.
+/// Returns the texture coordinates of the given mesh, for the faces that remain after repair.
 fn own_uvs(
     surface: &Surface,
     before: &Mesh,
@@ -357,7 +358,7 @@ fn own_uvs(
     })
 }
 
-/// Returns the corner values that the remaining faces had before the repair; `None` if a face was cut.
+/// Returns, for each remaining face, the values that its corners had before the repair; `None` if any face was cut.
 fn at_corners<T: Copy>(
     surface: &Surface,
     before: &Mesh,
@@ -379,7 +380,7 @@ fn at_corners<T: Copy>(
     whole.collect()
 }
 
-/// Bakes one of the example's maps into a texture for the mesh.
+/// Bakes the texture for the mesh that corresponds to a map of the example.
 fn bake(
     synthesizer: &Synthesizer,
     texture: &SurfaceTexture,
@@ -561,7 +562,7 @@ impl Model {
 }
 
 impl Model {
-    /// Returns the baked maps of the image at index `at` in the layout.
+    /// Returns the baked maps of the image with index `at` in the layout.
     fn picture(&self, at: usize) -> Vec<Map> {
         let before: usize = self.layout.kinds[..at]
             .iter()
@@ -609,7 +610,7 @@ impl Model {
     }
 }
 
-/// The sites as arrays: positions, faces, normals and colors.
+/// A mesh of sites as arrays: positions, faces, normals and colors.
 type PointParts<'py> = (
     Bound<'py, PyAny>,
     Bound<'py, PyAny>,

@@ -4,7 +4,7 @@ use crate::error::Result;
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::prelude::*;
 
-/// Weights of control points.
+/// Weighting of control points: the Python class `Net`.
 #[derive(FromPyObject)]
 pub(crate) struct Net<'py> {
     pub(crate) axis_scale: f64,
@@ -14,7 +14,7 @@ pub(crate) struct Net<'py> {
     pub(crate) fade: f64,
 }
 
-/// Layout of a mesh in a texture.
+/// Layout of a mesh in a texture: the Python class `Atlas`.
 #[derive(FromPyObject)]
 pub(crate) struct Atlas {
     pub(crate) texels: u32,
@@ -26,7 +26,7 @@ pub(crate) struct Atlas {
 /// Positions on a mesh, and a vector at each.
 pub(crate) type Vectors<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
 
-/// Directions and sizes of a texture on a mesh.
+/// Directions and sizes of a texture on a mesh: the Python class `Directions`.
 #[derive(FromPyObject)]
 pub(crate) struct Directions<'py> {
     pub(crate) field: Option<Vectors<'py>>,
@@ -35,7 +35,7 @@ pub(crate) struct Directions<'py> {
     pub(crate) scales: Option<Bound<'py, PyAny>>,
 }
 
-/// Maps with their edges, mask and mesh.
+/// Maps of an example, with their edges, mask and mesh: the Python class `Exemplar`.
 #[derive(FromPyObject)]
 pub(crate) struct Exemplar<'py> {
     pub(crate) maps: Bound<'py, PyAny>,
@@ -58,7 +58,7 @@ pub(crate) enum Coherence {
     Word(String),
 }
 
-/// Comparison of neighborhoods.
+/// Options for comparing neighborhoods: the Python class `Matching`.
 #[derive(FromPyObject)]
 pub(crate) struct Matching<'py> {
     pub(crate) levels: Option<u32>,

@@ -11,7 +11,7 @@ use dapple::tile::{EstimateOptions, Map, TileError, resample_with_alpha};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Applies a function to all maps of an image. Colors count by their alpha.
+/// Applies a resampling function to all maps of an image. Colors are weighted by their alpha.
 fn resampled<'py>(
     py: Python<'py>,
     image: &Bound<'py, PyAny>,

@@ -38,7 +38,8 @@ pub(crate) struct Kind {
     pub(crate) n_channels: usize,
 }
 
-/// The form of the input: a single image or a dictionary of images, with names and kinds.
+/// Layout of an input, so that results have the same form: a single image, or a dictionary with the names and kinds of
+/// its images.
 #[derive(Clone)]
 pub(crate) struct Layout {
     /// The names in the dictionary; `None` for a single image.
@@ -140,7 +141,7 @@ impl Kind {
     }
 }
 
-/// Flattens pixels to numbers, reusing the memory of the pixels.
+/// Converts pixels to a flat list of numbers, reusing the memory of the pixels.
 fn flattened<T>(raster: Raster<T>, numbers: fn(T) -> [f32; 3]) -> Vec<f32> {
     let pixels: Vec<[f32; 3]> = raster.into_pixels().into_iter().map(numbers).collect();
     pixels.into_flattened()
@@ -171,7 +172,7 @@ fn interleave(map: &Map, values: &mut [f32], n: usize) -> usize {
     }
 }
 
-/// The array of an image that is being read.
+/// The array of an image argument.
 pub(crate) struct Pixels<'py> {
     array: PyArrayLikeDyn<'py, f32, AllowTypeChange>,
     /// Columns and rows.
@@ -321,7 +322,7 @@ impl Layout {
         }
     }
 
-    /// Splits a list of all maps into a list for each image.
+    /// Groups a flat list of maps into one list for each image.
     pub(crate) fn split<T>(&self, maps: impl IntoIterator<Item = T>) -> Vec<Vec<T>> {
         let mut maps = maps.into_iter();
         let kinds = self.kinds.iter();

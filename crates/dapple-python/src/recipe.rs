@@ -538,7 +538,7 @@ impl Recipe {
     }
 }
 
-/// Returns the section of a Markdown text below a heading, up to the next heading of the same or a higher level.
+/// Returns the part of a Markdown text below a heading, up to the next heading of the same or a higher level.
 fn section<'a>(text: &'a str, heading: &str) -> Option<&'a str> {
     let level = heading.bytes().take_while(|&byte| byte == b'#').count();
     let start = text.find(&format!("\n{heading}\n"))? + 1;

@@ -1,4 +1,4 @@
-//! Descriptions that share the objects built from them.
+//! Descriptions of objects, which share the object that is built from them.
 
 use crate::error::Result;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

@@ -28,11 +28,11 @@ dapple::raster::named! {
     }
 }
 
-/// Comparison of neighborhoods, shared by synthesis in the plane and on meshes.
+/// Options for comparing neighborhoods, for synthesis in the plane and on meshes.
 pub(crate) struct Matching<'py>(options::Matching<'py>);
 
 impl<'py> Matching<'py> {
-    /// Reads the argument `matching`. Fields in `without` have no effect in the function, and are refused.
+    /// Reads the argument `matching`. The fields `without` have no effect in the calling function, and are refused.
     pub(crate) fn read(
         py: Python<'py>,
         given: Option<&Bound<'py, PyAny>>,
@@ -65,7 +65,7 @@ impl<'py> Matching<'py> {
         &self.0.guides
     }
 
-    /// Converts the options to the options of the library, with the defaults of the command.
+    /// Converts the options to [`Options`] of the library, with the same defaults as the command.
     pub(crate) fn options(&self, seed: SeedArgument) -> Result<Options> {
         let default = match self.0.paper {
             true => Options::paper(),
@@ -94,8 +94,8 @@ impl<'py> Matching<'py> {
         })
     }
 
-    /// Returns the requested method, or the method that other options require. `None` means endless synthesis, or a
-    /// sweep if the period does not fit the levels.
+    /// Returns the requested method, or the one that other options require. `None` means endless synthesis if the
+    /// period is a multiple that its levels allow, and a sweep otherwise.
     fn method(&self, at: Option<[i64; 2]>) -> Result<Option<Method>> {
         let Self(given) = self;
         let asked = given.method.as_ref();
@@ -125,7 +125,7 @@ impl<'py> Matching<'py> {
     }
 }
 
-/// The argument `exemplar`: maps of one size, and their options.
+/// The argument `exemplar`: maps of the same size, and their options.
 pub(crate) struct Exemplar<'py> {
     pub(crate) layout: Layout,
     pub(crate) maps: Vec<Map>,
@@ -155,7 +155,7 @@ impl<'py> Exemplar<'py> {
         })
     }
 
-    /// Reads maps that are not the texture of a mesh.
+    /// Reads an exemplar whose maps are an image. The texture of a mesh is refused.
     pub(crate) fn read_image(what: &str, given: &Bound<'py, PyAny>) -> Result<Self> {
         let image = Self::read(what, given)?;
         let given = &image.given;
@@ -168,8 +168,8 @@ impl<'py> Exemplar<'py> {
         Ok(image)
     }
 
-    /// Builds the exemplar from the first map, which is matched. The other maps are transferred. Nothing is copied from
-    /// `hole`, nor from outside of the mask.
+    /// Builds the exemplar from the first map. Only this map is matched; the others are transferred. Pixels in `hole`
+    /// and outside of the mask are never copied.
     pub(crate) fn matched(&self, hole: Option<&Raster<bool>>) -> Result<synth::Exemplar> {
         let edges: Edges = data::named("edges", &self.given.edges)?;
         let exemplar = match &self.maps[..] {
@@ -196,7 +196,7 @@ impl<'py> Exemplar<'py> {
     }
 }
 
-/// Reads a mask: pixels of at least 0.5 are set.
+/// Reads a mask: pixels with values of at least 0.5 are set.
 pub(crate) fn is_set(what: &str, mask: &Bound<'_, PyAny>) -> Result<Raster<bool>> {
     Ok(pictures::numbers(what, mask)?.map(|&value| value >= 0.5))
 }
@@ -297,8 +297,8 @@ pub(crate) fn synthesize<'py>(
     followed(py, given, &texture, sources)
 }
 
-/// Adds the guides to an exemplar, and returns it with the texture's guides, which must be the same size as the
-/// texture.
+/// Adds the guides' values in the example to an exemplar. Returns it with the guides' values in the texture, which must
+/// have the size of the texture.
 fn guided(
     exemplar: synth::Exemplar,
     size: [u32; 2],
@@ -387,8 +387,8 @@ pub(crate) fn repair<'py>(
     followed(py, image, &texture, sources)
 }
 
-/// Transfers the example's maps to a texture, and returns them in the layout of the example; with `sources`, also the
-/// source of each pixel.
+/// Transfers the example's maps to a texture. Returns them in the layout of the example. With `sources`, also returns
+/// the source position of each pixel.
 fn followed<'py>(
     py: Python<'py>,
     exemplar: Exemplar<'py>,
@@ -408,7 +408,7 @@ fn followed<'py>(
     Ok((picture, places).into_pyobject(py)?.into_any())
 }
 
-/// Transfers one of the example's maps to the texture.
+/// Transfers a map of the example to the texture, by copying pixels from the source positions.
 fn transfer(texture: &PlaneTexture, map: &Map) -> core::result::Result<Map, SynthError> {
     Ok(match map {
         Map::Value(raster) => Map::Value(texture.transfer(raster)?),

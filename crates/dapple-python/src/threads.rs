@@ -6,14 +6,14 @@ use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The pool, the id of the process that created it, and the requested number of threads (0: one per core).
+/// State of the pool: the requested number of threads (0: one per core), the pool, and the id of the process that
+/// created it.
 struct Threads {
     wanted: Option<usize>,
     pool: Option<(u32, Arc<ThreadPool>)>,
 }
 
-/// The state of the pool. It is locked only while the interpreter lock is held, so that it is never locked during a
-/// fork.
+/// The pool's state. It is locked only while the interpreter lock is held, and so is never locked during a fork.
 static THREADS: Mutex<Threads> = Mutex::new(Threads {
     wanted: None,
     pool: None,

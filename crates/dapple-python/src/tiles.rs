@@ -34,7 +34,7 @@ fn first(data: Option<&Bound<'_, PyAny>>) -> Result<[i64; 2]> {
     Ok(data.map_or(Ok([0; 2]), |first| first.extract())?)
 }
 
-/// Renders a window of the plane band by band, so that the work stops soon after an interruption.
+/// Renders a window of the plane band by band, so that an interruption stops it soon.
 fn rows(
     py: Python<'_>,
     first: [i64; 2],
@@ -60,7 +60,7 @@ fn rows(
     })?
 }
 
-/// Number of pixels in a band. It is large, so that few copies of a tile are cut by bands and rendered twice.
+/// Number of pixels in a band. Copies of a tile that a band cuts are rendered twice; large bands cut few of them.
 const BAND: usize = 1 << 22;
 
 /// Appends the rows of `maps` to `whole`, whose maps have the same kinds and widths.
@@ -500,7 +500,7 @@ fn borders(width: Option<u32>, source: Option<&str>) -> Result<MatchBorders> {
     })
 }
 
-/// Converts lists of maps to a list of images in the given layout.
+/// Converts each list of maps to an image in the given layout. Returns a Python list of the images.
 fn list<'py>(py: Python<'py>, layout: &Layout, all: Vec<Vec<Map>>) -> Result<Bound<'py, PyList>> {
     let pictures = all.into_iter().map(|maps| layout.python(py, maps));
     Ok(PyList::new(py, pictures.collect::<Result<Vec<_>>>()?)?)

@@ -5,8 +5,8 @@
 //!
 //! A thread cannot be stopped from outside. Work that owns its data ([`run`]) is abandoned when a handler raises an
 //! exception: the call returns at once, the work ends when it next checks [`Stop`] or when it is done, and the next
-//! call gets new threads. Work that writes to the caller's memory ([`within`]) is always waited for, and is divided
-//! into parts that take some milliseconds ([`in_parts`]).
+//! call gets new threads. Work that writes to the caller's memory ([`within`]) is always waited for. It is divided into
+//! slices of a few milliseconds ([`in_parts`]).
 
 use crate::error::{Error, Result};
 use crate::threads;
@@ -25,7 +25,7 @@ use std::time::Instant;
 /// Time between checks for signals.
 const PERIOD: Duration = Duration::from_millis(25);
 
-/// Target duration of a part of the work: far less than [`PERIOD`], and far more than the overhead of a part.
+/// Target duration of a slice of the work: far shorter than [`PERIOD`], and far longer than the overhead of a slice.
 const PART: Duration = Duration::from_millis(10);
 
 /// A progress callback of a synthesis, which can stop it.
@@ -42,7 +42,7 @@ thread_local! {
 
 /// Runs work with `stop` as the current stop flag of the thread.
 fn with_current<T>(stop: &Stop, work: impl FnOnce() -> T) -> T {
-    /// Restores the previous stop flag on drop, for the work that this thread continues afterward.
+    /// Restores the previous stop flag of the thread on drop.
     struct Restore(Stop);
     impl Drop for Restore {
         fn drop(&mut self) {
@@ -59,13 +59,13 @@ impl Stop {
         CURRENT.with_borrow(Self::clone)
     }
 
-    /// Returns the flag as the type that texture options use.
+    /// Converts the flag to the type that texture options use.
     pub(crate) fn cancel(&self) -> Cancel {
         let stop = self.clone();
         Cancel::by(move || stop.is_set())
     }
 
-    /// Returns the flag as the return value of a progress callback.
+    /// Converts the flag to the return value of a progress callback.
     pub(crate) fn flow(&self) -> ControlFlow<()> {
         match self.is_set() {
             true => ControlFlow::Break(()),
@@ -78,7 +78,7 @@ impl Stop {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// Returns an error if a stop was requested. The error ends the work but is never shown, since the call has
+    /// Returns an error if a stop was requested. The error ends the work and is never shown, since the Python call has
     /// already returned.
     pub(crate) fn check(&self) -> Result<()> {
         match self.is_set() {
@@ -159,8 +159,8 @@ pub(crate) fn within<T: Send>(
     made.unwrap_or_else(|| Err(Error::new("threads", "the work was not done")))
 }
 
-/// Processes `count` items in parts that take some milliseconds each; stops if requested. `first` is the number of
-/// items in the first part.
+/// Processes `count` items in slices that take a few milliseconds each. Stops if requested. `first` is the number of
+/// items in the first slice.
 #[expect(
     clippy::disallowed_methods,
     reason = "the clock decides how many items come at once, and no value depends on it"

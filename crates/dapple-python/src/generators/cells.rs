@@ -21,7 +21,7 @@ use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 use texture::Texture;
 
-/// The description of a cellular field.
+/// Description of a cellular field as data.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct CellsMade {
     seed: Seed,
@@ -56,7 +56,7 @@ impl CellsMade {
         }
     }
 
-    /// Builds the cellular basis, without a combination of distances.
+    /// Builds the cellular basis from the description, without a combination of distances.
     fn basis<const N: usize>(&self) -> Result<Basis<N>>
     where
         Dimensions: Space<N>,
@@ -135,7 +135,7 @@ impl Worley {
         )?)
     }
 
-    /// Builds the field from a description of cells.
+    /// Builds the Python field from the description of cells.
     pub(crate) fn from_made(py: Python<'_>, made: CellsMade) -> Result<Py<PyAny>> {
         Ok(Self::with(py, made)?.into_any())
     }

@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// The description of gradient noise.
+/// Description of gradient noise as data.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct GradientMade {
     seed: Seed,

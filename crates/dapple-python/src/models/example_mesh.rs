@@ -31,7 +31,7 @@ impl ExampleMesh {
         Self::new(&mesh, "mesh of the exemplar", n_sites, directions).map(Some)
     }
 
-    /// Reads a mesh and its texture directions. `name` is the caller's argument name, for error messages.
+    /// Reads a mesh and its texture directions. `name` is the name of the caller's argument in error messages.
     pub(super) fn new(
         of: &Bound<'_, PyAny>,
         name: &str,

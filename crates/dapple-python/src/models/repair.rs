@@ -106,7 +106,7 @@ pub(crate) fn repair_on<'py>(
     layout.python(py, mended)
 }
 
-/// Combines new texels in the hole with old texels elsewhere.
+/// Returns a map with the texels of `new` in the hole and of `old` elsewhere.
 fn within(hole: &Raster<bool>, old: &Map, new: &Map) -> core::result::Result<Map, SynthError> {
     Ok(match (old, new) {
         (Map::Value(old), Map::Value(new)) => Map::Value(mixed(hole, old, new)?),

@@ -17,7 +17,7 @@ pub(super) struct SurfaceGuides {
     of_mesh: Vec<OfMesh>,
 }
 
-/// The option `scales`.
+/// Scales of the texture on a mesh.
 pub(super) enum SurfaceScales {
     /// Scales between two bounds, derived from the directions.
     Conformal([f32; 2]),
@@ -46,26 +46,26 @@ impl SurfaceGuides {
         })
     }
 
-    /// Returns whether texture coordinates are needed.
+    /// Returns whether any guide is an image, which is sampled at texture coordinates.
     pub(super) fn have_images(&self) -> bool {
         self.of_mesh.iter().any(OfMesh::is_image)
     }
 
-    /// Returns an error unless every list has as many numbers as the mesh has vertices.
+    /// Returns an error unless every list of vertex values has as many numbers as the mesh has vertices.
     pub(super) fn check(&self, mesh: &Mesh) -> Result<()> {
         self.of_mesh
             .iter()
             .try_for_each(|guide| guide.check("a guide", mesh))
     }
 
-    /// Adds the guides' example values to an exemplar.
+    /// Adds the guides' values in the example to an exemplar, as channels with weights.
     pub(super) fn of_example(&self, exemplar: Exemplar) -> Result<Exemplar> {
         let planes = self.of_example.iter();
         let planes: Vec<_> = planes.map(|(plane, weight)| (plane, *weight)).collect();
         Ok(exemplar.with_guides(&planes)?)
     }
 
-    /// Samples each guide at the sites.
+    /// Returns the values of each guide at the sites.
     pub(super) fn at_sites(&self, sites: &SitesOfMesh<'_>) -> Result<Vec<Vec<f32>>> {
         self.of_mesh
             .iter()
@@ -83,12 +83,12 @@ impl SurfaceScales {
         })
     }
 
-    /// Returns whether texture coordinates are needed.
+    /// Returns whether the scales are an image, which is sampled at texture coordinates.
     pub(super) fn are_image(&self) -> bool {
         matches!(self, Self::OfMesh(numbers) if numbers.is_image())
     }
 
-    /// Returns an error unless the list has as many numbers as the mesh has vertices.
+    /// Returns an error unless a list of vertex values has as many numbers as the mesh has vertices.
     pub(super) fn check(&self, mesh: &Mesh) -> Result<()> {
         match self {
             Self::Conformal(_) => Ok(()),
@@ -96,7 +96,7 @@ impl SurfaceScales {
         }
     }
 
-    /// Sets these scales on the sites.
+    /// Returns a synthesizer with these scales at its sites.
     pub(super) fn scaled(
         &self,
         synthesizer: Synthesizer,
@@ -160,7 +160,7 @@ impl OfMesh {
         }
     }
 
-    /// Samples the numbers at the sites.
+    /// Returns the values at the sites.
     pub(super) fn at_sites(&self, sites: &SitesOfMesh<'_>) -> Result<Vec<f32>> {
         let SitesOfMesh { before, repair, .. } = *sites;
         let surface = sites.synthesizer.surface();

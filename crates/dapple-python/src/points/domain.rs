@@ -33,7 +33,7 @@ use pyo3::types::PyBool;
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Domain(pub(crate) dapple::points::Domain);
 
-/// The constructor arguments of a domain: size, origin and wrap.
+/// Constructor arguments of a domain: size, origin and wrap.
 type Arguments = ((f64, f64), (f64, f64), (bool, bool));
 
 impl Domain {

@@ -76,7 +76,7 @@ impl Graph {
         &self.points
     }
 
-    /// Returns how the graph was constructed.
+    /// Returns the method that constructed the graph.
     pub(crate) fn made(&self) -> GraphMade {
         self.made
     }
@@ -86,8 +86,8 @@ impl Graph {
         Arc::clone(&self.graph)
     }
 
-    /// Iterates over the edges, each once, as the first point and its axis. For a directed graph, all edges are
-    /// listed.
+    /// Returns the edges as pairs of a source point and the edge's target and offset. Undirected edges are listed once;
+    /// in a directed graph, all edges are listed.
     fn each_edge(&self) -> impl Iterator<Item = (u32, &Axis)> {
         let one_way = !self.graph.is_symmetric();
         let from = (0..self.graph.n_points() as u32).map(PointIdx);

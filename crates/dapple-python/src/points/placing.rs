@@ -11,7 +11,7 @@ use dapple::points::{PointSet, PointsError, RSA_DENSITY, VariablePoissonOptions}
 use dapple::raster::Varying;
 use pyo3::prelude::*;
 
-/// The requested distance or number of points.
+/// The density of a point set, as a distance or as a number of points.
 enum Wanted {
     /// Minimum distance, in units of the domain.
     Distance(Varying),
@@ -22,7 +22,7 @@ enum Wanted {
 }
 
 impl Wanted {
-    /// Generates the points.
+    /// Generates the points of a set.
     fn place(
         self,
         domain: dapple::points::Domain,
@@ -55,7 +55,8 @@ impl Wanted {
     }
 }
 
-/// Returns the columns and rows at which a density is sampled: about two per mean point spacing, from 64 to 4096.
+/// Returns the size of the grid on which a density is sampled, in columns and rows: about two samples per mean point
+/// spacing, from 64 to 4096.
 fn places(domain: &dapple::points::Domain, count: u32) -> [u32; 2] {
     let distance = (RSA_DENSITY * domain.area() / f64::from(count.max(1))).sqrt();
     let along = |side: f64| (2.0 * side / distance).clamp(64.0, 4096.0) as u32;

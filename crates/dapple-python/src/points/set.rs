@@ -54,7 +54,7 @@ impl Points {
         }
     }
 
-    /// Returns a Python set that shares the given points.
+    /// Returns a Python point set that shares `set`.
     pub(crate) fn shared_with(set: &Arc<PointSet>) -> Self {
         Self {
             set: Arc::clone(set),
@@ -62,7 +62,7 @@ impl Points {
         }
     }
 
-    /// Returns the point set.
+    /// Returns the shared point set.
     pub(crate) fn set(&self) -> Arc<PointSet> {
         Arc::clone(&self.set)
     }

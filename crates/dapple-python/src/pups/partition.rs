@@ -56,7 +56,7 @@ impl Build for NetMade {
 pub(crate) struct PupsMade {
     net: Shared<NetMade>,
     values: Vec<f32>,
-    /// Number of values per control point; `None` for scalars.
+    /// Number of values per control point; `None` if the values are scalars.
     channels: Option<usize>,
     labels: Option<Vec<u32>>,
 }

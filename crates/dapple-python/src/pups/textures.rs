@@ -20,11 +20,11 @@ use serde_json::{Map, Value};
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-/// The description of one of the paper's textures as data.
+/// Description of a texture of the PUPs paper as data.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct TextureMade {
     kind: String,
-    /// All options; `domain`, if it is set, replaces the domain in the options.
+    /// All options of the texture. `domain`, if it is set, replaces the domain in the options.
     options: Value,
     domain: Option<dapple::points::Domain>,
     image: Option<Image>,
@@ -49,7 +49,7 @@ impl Build for TextureMade {
     }
 }
 
-/// An entry of the table of textures.
+/// An entry of the table of textures: a name, its documentation, and functions of its options' type.
 struct Kind {
     name: &'static str,
     about: &'static str,
@@ -59,7 +59,7 @@ struct Kind {
     build: fn(&TextureMade) -> Result<PupsField>,
 }
 
-/// The options type of a texture.
+/// Options type of a texture, and whether an image guides the texture.
 trait Texture {
     const FOLLOWS_IMAGE: bool;
     type Options: DeserializeOwned + Serialize;
@@ -106,7 +106,7 @@ fn placed<T: PupsRecipe<I>, I>(mut options: T, domain: Option<dapple::points::Do
     options
 }
 
-/// Returns the table entry of a texture.
+/// Returns the table entry of a texture with the options type `T`.
 const fn row<T: Texture>(name: &'static str, about: &'static str) -> Kind {
     Kind {
         name,

@@ -52,7 +52,7 @@ macro_rules! vectors {
 
 vectors!(VectorTexture: |this| this.pups(), Labels: |this| this.pups);
 
-/// A label texture with a vector per label, and its net, which determines the period.
+/// A texture of labels with a vector for each label, and its control net, which determines the period.
 struct Labels<const N: usize> {
     texture: VectorLabelTexture<N>,
     pups: Pups,

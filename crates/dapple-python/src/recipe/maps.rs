@@ -21,7 +21,7 @@ pub(super) fn kind_of(map: MapKind) -> Kind {
     }
 }
 
-/// Returns the content that the map called `name` has, if it has several channels and is not a color.
+/// Returns the content of the map called `name` if it is neither a scalar nor a color; otherwise `None`.
 pub(crate) fn content_of(name: &str) -> Option<Content> {
     let kind = kind_of(MapKind::from_name(name)?);
     (kind.n_channels > 1 && kind.content != Content::Color).then_some(kind.content)

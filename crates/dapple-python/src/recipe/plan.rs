@@ -46,7 +46,7 @@ impl Plan {
     }
 }
 
-/// A plan's inputs: the recipe text, its images, and the time.
+/// Inputs that a plan is pickled with: the recipe text, its images, and the time.
 type PlanParts<'py> = (String, Bound<'py, PyDict>, f64);
 
 /// The values of a map, collected band by band.
@@ -86,7 +86,8 @@ fn flat<T>(pixels: Vec<T>, numbers: impl Fn(T) -> [f32; 3]) -> Vec<f32> {
         .into_flattened()
 }
 
-/// Bakes all bands of the maps; stops if requested. Returns the columns and rows, and the maps.
+/// Bakes all bands of the maps. Stops with an error if requested. Returns the numbers of columns and rows, and the
+/// maps.
 fn bake_all(
     plan: &RustPlan,
     options: &BakeOptions,

@@ -41,7 +41,7 @@ pub(crate) struct ShardList {
     shards: Shards,
 }
 
-/// Rows and columns.
+/// Numbers of rows and columns.
 type Sides = (u32, u32);
 
 #[pymethods]

@@ -22,7 +22,7 @@ pub(super) fn check_count(count: usize) -> Result<()> {
     ))
 }
 
-/// The nearest feature points of many positions.
+/// The nearest feature points of several positions.
 pub(super) struct Found {
     pub(super) distance: Vec<f32>,
     pub(super) vector: Vec<f64>,
@@ -59,7 +59,7 @@ where
     Ok(found)
 }
 
-/// The requested arrays of the nearest feature points, nearest point first.
+/// The requested arrays of the nearest feature points, nearest point first; `None` for an array that was not requested.
 pub(super) struct Drawn {
     pub(super) distance: Option<Vec<f32>>,
     pub(super) vector: Option<Vec<f32>>,
@@ -151,7 +151,7 @@ where
     Ok(gradients)
 }
 
-/// Returns the positions and ids of the feature points in a cell.
+/// Returns the positions and ids of the feature points in one cell.
 pub(super) fn cell_points<const N: usize>(
     made: &CellsMade,
     cell: &[i64],

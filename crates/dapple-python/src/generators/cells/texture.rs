@@ -31,7 +31,7 @@ where
     }
 }
 
-/// Returns the plane along the first two axes, at fixed coordinates along the other axes.
+/// Returns the plane along the first two axes. `rest` has the fixed coordinates along the other axes.
 pub(super) fn plane<const N: usize>(rest: &[f64]) -> Plane<N>
 where
     Dimensions: Space<N>,
