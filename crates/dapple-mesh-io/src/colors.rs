@@ -2,7 +2,7 @@
 
 use dapple_color::{Code, LinearRgb, LinearRgba};
 
-/// How a file encodes a color component as a number. Values out of range are clamped, and NaN becomes 0.
+/// How a file encodes a color component. Values out of range are clamped, and NaN becomes 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Coding {
     /// Integers from 0 to 255.
@@ -13,7 +13,7 @@ pub(crate) enum Coding {
     Unit,
 }
 
-/// Decodes red, green and blue from sRGB, and alpha as linear.
+/// Converts components to a linear color: decodes red, green and blue from sRGB; alpha is linear already.
 pub(crate) fn decode(parts: [f64; 4], codings: [Coding; 4]) -> LinearRgba {
     let linear = |i: usize| match codings[i] {
         Coding::Byte => code::<u8>(parts[i], 255.0).linear_from_srgb(),

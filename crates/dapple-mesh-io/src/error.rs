@@ -35,9 +35,9 @@ dapple_raster::error! {
             /// Supported extensions, as text.
             known: String,
         } => "no mesh format is named `{name}`; there are {known}";
-        /// The file name cannot be used, because the files written with it refer to each other by name.
+        /// The name of the main file cannot be used, because the files written with it refer to each other by name.
         Name {
-            /// Name of the files without extension.
+            /// Name without extension.
             name: String,
         } => "files of an OBJ model cannot be named `{name}`: white space, slashes and `#` do not work in them";
         /// The file would exceed the maximum size of its format.

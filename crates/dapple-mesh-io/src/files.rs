@@ -12,8 +12,8 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Component, Path};
 
-/// Maximum number of bytes read from a file, and from all files that it refers to. The length of a device or a pipe
-/// is unknown, and a small file may refer to a large one many times.
+/// Maximum number of bytes read from a file and from all files that it refers to. The length of a device or a pipe is
+/// unknown, and a small file may refer to a large one many times.
 const BYTES_MAX: u64 = 1 << 32;
 
 /// Reads a mesh file. The path's extension selects the format from [`FORMATS`](crate::FORMATS).
@@ -33,9 +33,9 @@ pub fn read_model(path: impl AsRef<Path>) -> Result<Model, MeshIoError> {
     format.read(&bytes, &mut |name| resolve(path, name, &mut left))
 }
 
-/// Reads a mesh file and encodes it again, with the first image of each pair replaced by the second. Nothing else
-/// changes. Returns a single file whose extension is [`written_ending`](MeshFormat::written_ending), or `None` if the
-/// format cannot contain images.
+/// Reads a mesh file and encodes it again with some images replaced: the first image of each pair by the second. The
+/// rest of the file is unchanged. Returns a single file whose extension is
+/// [`written_ending`](MeshFormat::written_ending), or `None` if the format cannot contain images.
 ///
 /// # Errors
 ///
@@ -77,7 +77,7 @@ pub fn write_model(path: impl AsRef<Path>, model: &Model) -> Result<(), MeshIoEr
     main.map_or(Ok(()), |main| replace(path, &main.bytes))
 }
 
-/// Returns the format for the extension of a path.
+/// Returns the format that a path's extension selects.
 fn format_of(path: &Path) -> Result<&'static MeshFormat, MeshIoError> {
     MeshFormat::of_path(path).ok_or_else(|| {
         let (name, known) = (ending(path), readable_endings().collect::<Vec<_>>());
@@ -93,7 +93,8 @@ pub(crate) fn unwritable(name: String) -> MeshIoError {
     MeshIoError::new(MeshIoErrorKind::Format { name, known })
 }
 
-/// Reads a file that another file refers to, if it is in the folder of that file or a subfolder.
+/// Reads a file that the file at `path` refers to by `name`; `None` unless it is in the same folder or a subfolder.
+/// `left` is the number of bytes that may still be read.
 fn resolve(path: &Path, name: &str, left: &mut u64) -> Option<Vec<u8>> {
     let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
     let name = Path::new(name);

@@ -13,7 +13,7 @@ use crate::MeshIoError;
 use dapple_mesh::{EncodedImage, Model};
 use std::path::Path;
 
-/// All formats, in the order used in error messages and help texts.
+/// All formats, in the order of error messages and help texts.
 pub static FORMATS: &[MeshFormat] = &[
     obj::OBJ,
     ply::PLY,
@@ -33,7 +33,7 @@ pub struct MeshFormat {
     writer: Option<Writer>,
 }
 
-/// Writer of a format.
+/// How a format is written.
 #[derive(Clone, Copy, Debug)]
 struct Writer {
     /// Extension of written files, one of the extensions of the format.
@@ -41,7 +41,7 @@ struct Writer {
     material: MaterialPlace,
     /// Whether vertex colors are written.
     has_colors: bool,
-    /// Encodes the files, the main file last.
+    /// Encodes the files of a model with a given stem. The main file is the last one.
     files: fn(&Model, &str) -> Result<Vec<NamedFile>, MeshIoError>,
     /// Encodes an existing file again with some images replaced; `None` if the format cannot contain images.
     replace_images: Option<ReplaceImages>,
@@ -181,7 +181,7 @@ pub(crate) fn ending(path: &Path) -> String {
     ending.to_ascii_lowercase()
 }
 
-/// Wraps the bytes of a format that writes a single file.
+/// Returns the only file of a format that writes a single file.
 fn alone(stem: &str, ending: &str, bytes: Vec<u8>) -> Vec<NamedFile> {
     let name = format!("{stem}.{ending}");
     vec![NamedFile { name, bytes }]

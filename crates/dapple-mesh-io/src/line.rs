@@ -7,7 +7,7 @@ use glam::DVec3;
 /// A non-empty line, split into words.
 pub(crate) struct Line<'a> {
     format: &'static str,
-    /// Line number, starting at 1; of several joined lines, the last.
+    /// Line number, starting at 1. If several lines are joined, it is the number of the last one.
     number: usize,
     /// The text of the whole line.
     text: &'a [u8],
@@ -83,7 +83,7 @@ impl Line<'_> {
         words(self.text).skip(1).collect()
     }
 
-    /// Appends the words of the next line, which continues this one.
+    /// Appends the words of the next line, for a line that continues there.
     pub(crate) fn extend(&mut self, next: Self) {
         self.number = next.number;
         self.words.extend(next.words);

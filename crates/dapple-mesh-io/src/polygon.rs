@@ -19,13 +19,13 @@ use std::collections::VecDeque;
 /// corners.
 const TESTS_MAX: usize = 1 << 28;
 
-/// Polygons with more than three corners, as ranges of faces that are fans.
+/// Polygons with more than three corners. Each is a range of faces that form a fan.
 #[derive(Default)]
 pub(crate) struct Polygons {
     fans: Vec<Range<usize>>,
 }
 
-/// Triangulations of concave polygons, as indices into each polygon's corners.
+/// Triangulations of concave polygons: the range of faces, and triangles of indices into the polygon's corners.
 #[derive(Default)]
 pub(crate) struct Ears {
     polygons: Vec<(Range<usize>, Vec<[u32; 3]>)>,
@@ -35,7 +35,7 @@ pub(crate) struct Ears {
     is_cut_short: bool,
 }
 
-/// Sine of the angle below which a right turn counts as straight: files contain rounded corners on straight sides.
+/// Sine of the angle below which a right turn counts as straight. Files contain rounded corners on straight edges.
 const STRAIGHT: f64 = 1.0 / (1 << 20) as f64;
 
 /// Corners of a polygon in its plane, counterclockwise, as a linked ring from which ears are cut.
@@ -46,8 +46,8 @@ struct Ring {
     /// Corners that may be inside an ear, sorted by x. These are the corners where the initial polygon does not turn
     /// left.
     reflex: Vec<u32>,
-    /// For each entry of `reflex`, the index of itself or a later entry, such that all entries in between are cut or
-    /// now turn left. An entry that refers to itself is live.
+    /// Skip list over `reflex`. Each entry has its own index if the corner is live, that is, neither cut nor convex by
+    /// now; otherwise it has the index of a later entry, and all entries in between are dead.
     live: Vec<u32>,
     /// Index of each corner in `reflex`; `u32::MAX` if it is not there.
     rank: Vec<u32>,
@@ -58,7 +58,7 @@ struct Ring {
 /// How strictly a corner must qualify as an ear.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Ear {
-    /// The ear has a positive area, and no corner inside or on its sides.
+    /// The ear has a positive area, and no corner inside it or on its edges.
     Proper,
     /// The ear does not turn right by more than rounding, and has no corner inside.
     Weak,
@@ -83,7 +83,7 @@ pub(crate) fn strip<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
     })
 }
 
-/// Returns the corners of a polygon that was converted to a fan.
+/// Returns the corners of the polygon that a fan was made from.
 fn corners_of<T: Copy>(fan: &[[T; 3]]) -> Vec<T> {
     let first = fan.iter().take(1).flat_map(|face| face[..2].to_vec());
     first.chain(fan.iter().map(|face| face[2])).collect()
@@ -136,7 +136,7 @@ impl Polygons {
 }
 
 impl Ears {
-    /// Replaces the fans of concave polygons in an array of per-corner face data.
+    /// Replaces the fans of concave polygons in a list of values per face corner.
     pub(crate) fn apply<T: Copy>(&self, faces: &mut [[T; 3]]) {
         for (range, triangles) in &self.polygons {
             let faces = &mut faces[range.clone()];
@@ -147,7 +147,7 @@ impl Ears {
         }
     }
 
-    /// Returns the entries of [`Model::left_out`](dapple_mesh::Model::left_out) about polygons that stay fans.
+    /// Returns the texts for [`Model::left_out`](dapple_mesh::Model::left_out) about polygons that stay fans.
     pub(crate) fn left_out(&self) -> impl Iterator<Item = String> {
         let crossing = match self.n_crossing {
             0 => None,
@@ -193,7 +193,7 @@ fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// Returns whether the path from `a` through `b` to `c` turns right by more than rounding.
+/// Returns whether the path from `a` through `b` to `c` turns right by more than rounding errors.
 fn turns_right(a: DVec2, b: DVec2, c: DVec2) -> bool {
     let sides = (b - a).length_squared() * (c - b).length_squared();
     area(a, b, c) < -STRAIGHT * sides.sqrt()
@@ -294,7 +294,7 @@ impl Ring {
         (!turns_right(a, b, c)).then_some(triangles)
     }
 
-    /// Cuts off the triangle of a corner.
+    /// Cuts off the ear at a corner: removes the corner from the ring.
     fn cut(&mut self, corner: u32) {
         let [before, _, next] = self.triangle(corner);
         self.is_cut[corner as usize] = true;
@@ -355,7 +355,7 @@ impl Ring {
         Some(true)
     }
 
-    /// Returns the first live index of `reflex`, starting at `from`.
+    /// Returns the first live entry of `reflex` at index `from` or later.
     fn live(&mut self, from: usize) -> usize {
         let mut at = from;
         while self.live[at] as usize != at {
@@ -366,14 +366,15 @@ impl Ring {
         at
     }
 
-    /// Removes a corner from the list of live reflex corners.
+    /// Marks a corner as dead in the list of reflex corners.
     fn pass_over(&mut self, corner: u32) {
         if let Some(live) = self.live.get_mut(self.rank[corner as usize] as usize) {
             *live = self.rank[corner as usize] + 1;
         }
     }
 
-    /// Returns whether the polygon enters a triangle from another corner that coincides with one of its corners.
+    /// Returns whether the polygon's boundary at `other` enters the triangle. `other` coincides with a corner of the
+    /// triangle.
     fn enters(&self, other: u32, [a, b, c]: [DVec2; 3]) -> bool {
         let at = self.at(other);
         let [from, to] = match at {
@@ -386,7 +387,7 @@ impl Ring {
         is_between(before) || is_between(next)
     }
 
-    /// Returns whether two sides cross in their interiors; `None` if the test limit is reached.
+    /// Returns whether two edges cross in their interiors; `None` if the test limit is reached.
     fn crosses(&mut self) -> Option<bool> {
         let ends = |side: u32| {
             let ends = [side, self.next[side as usize]];

@@ -5,9 +5,11 @@ use glam::DVec3;
 /// Maximum displacement of a vertex by rounding to `f32`, relative to the extent of the mesh. If it is exceeded,
 /// positions are written relative to an origin.
 const MOVE_MAX: f64 = 1.0 / (1 << 20) as f64;
-/// Ratio of the largest coordinate to the extent up to which an origin would gain less than four bits.
+/// Minimum ratio of the largest coordinate to the extent at which an origin is used. Below it, an origin would gain
+/// less than four bits.
 const FAR: f64 = 16.0;
-/// Largest coordinate of a mesh with an origin, so that coordinate plus origin stays below the limit for positions.
+/// Maximum coordinate of a mesh with an origin, so that the sum of a coordinate and the origin is below the limit for
+/// positions.
 const COORDINATE_MAX: f64 = 1e29;
 /// Largest number that is written; chosen so that rounding never exceeds the limit of
 /// [`Model::check`](dapple_mesh::Model::check).
@@ -43,7 +45,7 @@ pub(crate) fn origin(positions: &[DVec3]) -> Option<DVec3> {
     }))
 }
 
-/// Rounds to single precision, within the limit for positions.
+/// Rounds to single precision, and clamps to the limit for positions.
 pub(crate) fn narrow(part: f64) -> f32 {
     (part as f32).clamp(-PART_MAX, PART_MAX)
 }

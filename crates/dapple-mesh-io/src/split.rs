@@ -41,7 +41,7 @@ pub(crate) fn with_vertex_normals(model: &Model) -> Result<Cow<'_, Model>, MeshE
 }
 
 struct Split {
-    /// Mesh vertex that each new vertex is a copy of. The first entries are the mesh vertices in order.
+    /// For each new vertex, the mesh vertex that it is a copy of. The first entries are the mesh vertices in order.
     vertex: Vec<usize>,
     /// Normal of each new vertex; `None` until a corner sets it.
     normals: Vec<Option<DVec3>>,
@@ -59,7 +59,7 @@ impl Split {
         }
     }
 
-    /// Returns the copy of a vertex with this normal, and creates it if necessary.
+    /// Returns the copy of a vertex that has this normal. The copy is created if it does not exist.
     fn vertex_with(&mut self, vertex: VertexIdx, normal: DVec3) -> VertexIdx {
         let mut at = vertex.index();
         while *self.normals[at].get_or_insert(normal) != normal {

@@ -1,4 +1,4 @@
-//! Invalid bytes: every reader returns a model or an error, and never panics.
+//! Tests of invalid bytes: every reader returns a model or an error, and never panics.
 
 use super::*;
 use crate::test_meshes::cube;
@@ -30,7 +30,7 @@ fn creased() -> Model {
     model
 }
 
-/// Returns the positions of all corners with their normals.
+/// Returns the position and the normal of each corner.
 fn corners(model: &Model) -> Vec<(DVec3, DVec3)> {
     let normals = model.normals_of_corners().expect("it has normals");
     let corners = model.mesh.faces().iter().zip(&normals);
@@ -77,7 +77,7 @@ fn files() -> Vec<Vec<u8>> {
     files
 }
 
-/// Reads the bytes in every format. Models of writable formats are written and read again.
+/// Reads the bytes as each format. Models in writable formats are written and read again.
 fn read_all(bytes: &[u8]) {
     for format in FORMATS {
         let name = format.name();
@@ -160,7 +160,7 @@ proptest! {
     }
 }
 
-/// Words of the text formats.
+/// Words of the text formats, for random files.
 const WORDS: &[&str] = &[
     "v",
     "vt",

@@ -25,8 +25,7 @@ pub(crate) fn parse<T: FromStr>(word: &[u8]) -> Option<T> {
     core::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// Checks the range of a component of a position, a normal or a texture coordinate; an error is returned as its
-/// message.
+/// Returns a component of a position, normal or texture coordinate if it is in range; otherwise a message.
 pub(crate) fn in_range(part: f64) -> Result<f64, String> {
     if part.abs() <= POSITION_MAX {
         return Ok(part);
@@ -41,7 +40,7 @@ pub(crate) fn no_vertex(vertex: impl Display, count: impl Display) -> String {
     format!("a corner of a face is vertex {vertex}, but there are {count}")
 }
 
-/// Appends the shortest text that reads back as the same number, with an exponent if there would be many zeros.
+/// Appends the shortest text that reads back as the same number. Numbers with many zeros get an exponent.
 pub(crate) fn shortest(text: &mut String, number: f64) {
     let plain = number == 0.0 || (1e-5..1e16).contains(&number.abs());
     // Writing to a string cannot fail.

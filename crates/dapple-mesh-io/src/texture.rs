@@ -3,17 +3,16 @@
 use crate::FileResolver;
 use dapple_mesh::{EncodedImage, Model};
 
-/// Tolerance for texture coordinates outside the range 0 to 1; smaller excesses are rounding errors.
+/// Tolerance for texture coordinates outside the range 0 to 1. Smaller excesses count as rounding errors.
 const OUTSIDE: f64 = 1e-4;
 
-/// Reads the texture called `name`. An error is returned as the entry for
-/// [`Model::left_out`](dapple_mesh::Model::left_out).
+/// Reads the texture called `name`. An error is the text for [`Model::left_out`](dapple_mesh::Model::left_out).
 pub(crate) fn texture(name: &str, resolve: &mut FileResolver<'_>) -> Result<EncodedImage, String> {
     let bytes = resolve(name).ok_or_else(|| unreadable("texture", name))?;
     encoded(name, bytes)
 }
 
-/// Wraps the bytes of a texture file; `name` is used in error messages.
+/// Creates an image from the bytes of a texture file. `name` is used in error messages.
 pub(crate) fn encoded(name: &str, bytes: Vec<u8>) -> Result<EncodedImage, String> {
     let wrong = |_| format!("the texture {}, which is neither PNG nor JPEG", shown(name));
     EncodedImage::new(bytes).map_err(wrong)
@@ -51,8 +50,8 @@ pub fn tile_name(name: &str, number: u32) -> Option<String> {
     })
 }
 
-/// Replaces a unit square's number in a name such as `skin.1001.png` by the placeholder; `None` if there is only one
-/// square, or the name contains no number from `squares`.
+/// Returns a name such as `skin.1001.png` with the placeholder instead of the number of a unit square. `None` if there
+/// is only one square, or the name contains no number from `squares`.
 pub(crate) fn name_of_all(name: &str, squares: &[u32]) -> Option<String> {
     let is_digit = |letter: Option<char>| letter.is_some_and(|letter| letter.is_ascii_digit());
     let with_mark = |number: &u32| {
@@ -103,7 +102,7 @@ mod tests {
     const TRIANGLE: &str =
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\n";
 
-    /// Returns a triangle with texture coordinates at the corners of the texture, and a material.
+    /// Reads a triangle with texture coordinates at the corners of the texture. `material` is the text of its material.
     fn obj_with(material: &str) -> Model {
         let library = format!("newmtl a\n{material}\n");
         let mut resolve = |name: &str| match name {

@@ -58,7 +58,7 @@ pub(super) const OBJ: MeshFormat = MeshFormat {
 
 /// Index that stands for a missing texture coordinate or normal of a corner.
 const NONE: u32 = u32::MAX;
-/// Index that stands for a texture coordinate or normal that cannot exist, such as one whose index is too large.
+/// Index of a texture coordinate or normal that cannot exist, such as one above the maximum.
 const MISSING: u32 = u32::MAX - 1;
 
 /// Indices of the position, texture coordinate and normal of a corner.
@@ -78,8 +78,8 @@ struct Draft {
     skipped: BTreeSet<&'static str>,
     /// Name of the current material, and whether a face uses it.
     material: Option<(String, bool)>,
-    /// Whether the current material differs from the first material used, followed by whether any face uses such a
-    /// different material.
+    /// Two flags: whether the current material differs from the first one that was used, and whether any face has used
+    /// such a different material.
     others: [bool; 2],
 }
 
@@ -129,8 +129,8 @@ pub fn read_with(bytes: &[u8], resolve: &mut FileResolver<'_>) -> Result<Model, 
     Ok(model)
 }
 
-/// Joins lines that end with a backslash to the next one, except comments, where it is often the end of a path. A
-/// joined line is padded with newlines, so that all other lines keep their numbers.
+/// Joins lines that end with a backslash to the next one. Comments are excluded, since a backslash there is often the
+/// end of a path. A joined line is padded with newlines, so that all other lines keep their numbers.
 fn joined(bytes: &[u8]) -> Cow<'_, [u8]> {
     let continued = |pair: &[u8]| pair[0] == b'\\' && matches!(pair[1], b'\n' | b'\r');
     if !bytes.windows(2).any(continued) {
@@ -261,7 +261,8 @@ impl Draft {
         Ok(())
     }
 
-    /// Removes references to texture coordinates and normals that the file lacks, and returns entries for `left_out`.
+    /// Removes references to texture coordinates and normals that the file lacks. Returns the texts for
+    /// [`Model::left_out`].
     fn take_away_missing(&mut self) -> Vec<String> {
         let mut left_out = Vec::new();
         for (i, count, what) in [
@@ -341,8 +342,8 @@ impl Draft {
         self.faces.iter().map(of_face).collect()
     }
 
-    /// Returns the vertex normals, if no vertex has two different ones at its corners; for a point cloud, in file
-    /// order.
+    /// Returns the vertex normals; `None` if a vertex has two different ones at its corners. The normals of a point
+    /// cloud are in file order.
     fn vertex_normals(
         &self,
         count: usize,
@@ -364,7 +365,7 @@ impl Draft {
     }
 }
 
-/// Color of vertices without a color, if others have one.
+/// Color of vertices without a color in a file where other vertices have one.
 const WHITE: LinearRgba = LinearRgba::opaque(LinearRgb::WHITE);
 
 /// Returns the rest of a line as a name, which may contain spaces.

@@ -36,7 +36,7 @@ struct Header {
     normal: bool,
 }
 
-/// Attributes of the vertices.
+/// Positions and attributes of the vertices.
 #[derive(Default)]
 struct Vertices {
     positions: Vec<DVec3>,
@@ -136,7 +136,7 @@ fn strip<'a>(word: &'a [u8], prefix: &[u8]) -> (&'a [u8], bool) {
         .map_or((word, false), |rest| (rest, true))
 }
 
-/// Parses the numbers of vertices and faces; the number of edges, which follows, is ignored.
+/// Parses the numbers of vertices and faces from a line. The number of edges that follows is ignored.
 fn counts_of(line: Option<&Line<'_>>) -> Result<[u64; 2], MeshIoError> {
     let line = line.ok_or_else(|| MeshIoError::file(FORMAT, "there are no counts"))?;
     let count = |at: usize| line.words.get(at).copied().and_then(parse::<u64>);

@@ -76,7 +76,7 @@ const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 #[derive(Default)]
 struct Draft {
-    /// Number of vertices that the header states, which is known even if faces precede vertices.
+    /// Number of vertices that the header states. It is known even if faces precede vertices.
     n_vertices: u64,
     positions: Vec<DVec3>,
     normals: Vec<DVec3>,
@@ -88,7 +88,7 @@ struct Draft {
     left_out: Vec<String>,
 }
 
-/// The attribute that a vertex property holds, and how it encodes a color.
+/// The vertex attribute that a property holds, and its encoding if it is a color.
 struct Target {
     column: usize,
     coding: Coding,
@@ -172,7 +172,7 @@ fn pass_over(element: &Element, body: &mut Body<'_>) -> Result<(), MeshIoError> 
 }
 
 impl Draft {
-    /// Lists an unused element in `left_out`.
+    /// Adds the name of an unused element to `left_out`.
     fn skip(&mut self, element: &Element) {
         if element.count > 0 && !element.properties.is_empty() {
             let name = shown(&element.name);
@@ -335,7 +335,7 @@ impl Draft {
     }
 }
 
-/// Returns the attribute for a property called `name`.
+/// Returns the attribute that a property called `name` holds; `None` if it is not used.
 fn target(name: &str, kind: Kind) -> Option<Target> {
     let column = COLUMNS.iter().position(|names| names.contains(&name))?;
     let Kind::Scalar(scalar) = kind else {

@@ -38,7 +38,7 @@ const HEAD: usize = 84;
 /// Number of bytes per face of a binary file: a normal, three positions, and two bytes of attributes.
 const FACE: usize = 50;
 
-/// Faces read so far; corners at the same position share a vertex.
+/// Faces read so far. Corners at the same position share a vertex.
 #[derive(Default)]
 struct Draft {
     positions: Vec<DVec3>,

@@ -1,10 +1,10 @@
-//! Tests of concave polygons against their shoelace areas and their sides.
+//! Tests of concave polygons against their shoelace areas and their edges.
 
 use super::*;
 use crate::{obj, off, ply};
 use dapple_mesh::Model;
 
-/// An L of six corners with an area of 3; the fan around its first corner covers 4.
+/// An L-shaped polygon with six corners and area 3. The triangle fan around its first corner has area 4.
 const L: [[f64; 2]; 6] = [
     [0.0, 0.0],
     [2.0, 0.0],
@@ -19,7 +19,7 @@ fn flat(corners: &[[f64; 2]]) -> Vec<DVec3> {
     corners.map(|&[x, y]| DVec3::new(x, y, 0.0)).collect()
 }
 
-/// Returns the triangles of one polygon, and whether it is listed as self-intersecting.
+/// Returns the triangles of a polygon, and whether it is reported as self-intersecting.
 fn triangles(corners: &[DVec3]) -> (Vec<[u32; 3]>, bool) {
     let (mut polygons, mut faces) = (Polygons::default(), Vec::new());
     let numbers: Vec<_> = (0..corners.len() as u32).collect();
@@ -35,7 +35,7 @@ fn shoelace(corners: &[DVec3]) -> DVec3 {
     pairs.sum()
 }
 
-/// Checks that triangles cover the polygon once, use all corners, and have its sides.
+/// Checks that the triangles cover the polygon once, use all of its corners, and have its edges.
 fn check(corners: &[DVec3], what: &str) {
     let (faces, is_named) = triangles(corners);
     assert!(!is_named, "{what}");

@@ -4,14 +4,14 @@ use super::document::{Accessor, Sparse};
 use super::{Source, wrong};
 use crate::MeshIoError;
 
-/// The values of an accessor.
+/// Values of an accessor, as a flat list.
 pub(super) struct Column {
-    /// Number of values per element.
+    /// Number of components per element, such as 3 for positions.
     pub(super) width: usize,
     pub(super) values: Vec<f64>,
 }
 
-/// Number of values that a file's accessors may still have.
+/// Number of values that the accessors of a file may still produce.
 ///
 /// Accessors may share bytes, represent zeros, and be used by many nodes, so a small file can claim a large amount of
 /// memory. The limit is four values per byte of the file plus 2^24.
@@ -44,7 +44,7 @@ impl Budget {
         Self { left }
     }
 
-    /// Takes `count` values from the budget; fails if fewer are left.
+    /// Subtracts `count` from the remaining values; fails if fewer are left.
     pub(super) fn take(&mut self, count: usize) -> Result<(), MeshIoError> {
         let left = self.left.checked_sub(count);
         self.left = left.ok_or_else(|| wrong("it says much more than it has bytes for"))?;
@@ -145,7 +145,7 @@ impl Source<'_> {
         })
     }
 
-    /// Applies the substitutions of a sparse accessor.
+    /// Overwrites the elements that a sparse accessor substitutes.
     fn replace(
         &self,
         sparse: &Sparse,
@@ -236,7 +236,7 @@ impl Component {
         matches!(self, Self::U8 | Self::U16 | Self::U32)
     }
 
-    /// Reads a value of this type from its bytes.
+    /// Converts the bytes of a component to a number.
     fn read(self, bytes: &[u8]) -> f64 {
         match (self, bytes) {
             (Self::I8, &[a]) => i8::from_le_bytes([a]).into(),
@@ -250,7 +250,7 @@ impl Component {
         }
     }
 
-    /// Returns the fraction of a normalized value (specification, section 3.6.2.2).
+    /// Returns the fraction that a normalized integer stands for (specification, section 3.6.2.2).
     fn fraction(self, value: f64) -> f64 {
         match self {
             Self::I8 => (value / 127.0).max(-1.0),

@@ -20,7 +20,7 @@ pub(super) struct Container<'a> {
 }
 
 impl<'a> Container<'a> {
-    /// Splits a GLB file into its chunks; any other file is treated as JSON.
+    /// Splits a GLB file into its chunks. The bytes of any other file are its JSON.
     pub(super) fn read(bytes: &'a [u8]) -> Result<Self, MeshIoError> {
         if !bytes.starts_with(MAGIC) {
             let json = content(FORMAT, bytes)?;

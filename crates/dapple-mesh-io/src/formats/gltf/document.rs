@@ -1,4 +1,4 @@
-//! Parts of the glTF JSON that the reader uses, with their glTF names.
+//! The subset of the glTF JSON that the reader uses. Names are those of glTF.
 //!
 //! Rare fields are boxed, so that a long list of empty objects takes little memory.
 
@@ -76,7 +76,7 @@ pub(super) struct NodeExtensions {
     pub(super) instancing: Option<Instancing>,
 }
 
-/// Accessors that hold a transform for each copy of a node's mesh.
+/// Accessors of the instances' transforms, by attribute.
 #[derive(Deserialize)]
 pub(super) struct Instancing {
     pub(super) attributes: BTreeMap<String, usize>,

@@ -10,7 +10,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// A document under edit, with the bytes of its merged buffer.
+/// A document that is being edited, with the bytes of its merged buffer.
 struct Draft {
     value: Value,
     bin: Vec<u8>,
@@ -102,7 +102,7 @@ fn media_type(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// Counts the properties named `bufferView` in a value, recursively.
+/// Adds the properties named `bufferView` in a value, recursively, to the counts in `uses`.
 fn count_views(value: &Value, uses: &mut BTreeMap<u64, usize>) {
     match value {
         Value::Array(items) => items.iter().for_each(|item| count_views(item, uses)),
@@ -133,7 +133,7 @@ impl Draft {
         list.into_iter().flatten().filter_map(Value::as_object_mut)
     }
 
-    /// Merges all buffers into one. Offsets of views, and of extensions of views that name a buffer, are adjusted.
+    /// Merges all buffers into one. Adjusts the offsets of buffer views, and of extensions that name a buffer.
     fn join_buffers(&mut self, buffers: &[Option<Cow<'_, [u8]>>]) {
         let mut starts = Vec::new();
         for buffer in buffers {
@@ -192,7 +192,7 @@ impl Draft {
         self.contents.insert(own.unwrap_or(n_views), bytes);
     }
 
-    /// Removes alternatives in other formats from the textures of an image.
+    /// Removes alternative images in other formats from the textures that use an image.
     fn drop_copies(&mut self, image: usize) {
         for texture in self.objects("textures") {
             if texture.get("source").and_then(Value::as_u64) != Some(image as u64) {
@@ -209,7 +209,8 @@ impl Draft {
         }
     }
 
-    /// Returns the byte ranges that only replaced images used, in order. The length of each is a multiple of four.
+    /// Returns the byte ranges that no longer have a use because their images were replaced, in order. The length of
+    /// each is a multiple of four.
     fn cuts(&mut self) -> Vec<Range<usize>> {
         let contents = core::mem::take(&mut self.contents);
         let (mut freed, mut kept) = (Vec::new(), Vec::new());
@@ -255,7 +256,7 @@ impl Draft {
         cuts
     }
 
-    /// Encodes the GLB file: without the bytes of replaced images, and with the new images at its end.
+    /// Encodes the GLB file, without the bytes of replaced images and with the new images at its end.
     fn file(mut self) -> Result<Vec<u8>, MeshIoError> {
         let cuts = self.cuts();
         // Total number of bytes removed up to and including each cut.

@@ -50,8 +50,8 @@ impl Placement {
 }
 
 impl Source<'_> {
-    /// Returns the placement of a material's textures. It is taken from the base color texture, or else the normal
-    /// map, or else the metallic-roughness texture.
+    /// Returns the placement of a material's textures, taken from the first of these textures: base color, normal map,
+    /// metallic-roughness.
     pub(super) fn placement(&self, material: usize) -> Placement {
         let material = self.document.materials.get(material);
         let pbr = material.and_then(|material| material.pbr_metallic_roughness.as_deref());
@@ -62,7 +62,7 @@ impl Source<'_> {
         info.map_or(Placement::PLAIN, Placement::new)
     }
 
-    /// Reads a material into a model whose texture coordinates are already set.
+    /// Reads a material into a model. The texture coordinates of the model must be set already.
     pub(super) fn read_material(
         &self,
         index: usize,
@@ -129,7 +129,7 @@ impl Source<'_> {
         }
     }
 
-    /// Returns the name of the wrap mode of a texture, if it does not repeat.
+    /// Returns the name of the wrap mode of a texture; `None` if it repeats.
     fn wrap(&self, texture: usize) -> Option<&'static str> {
         let sampler = self.document.textures.get(texture)?.sampler?;
         let sampler = self.document.samplers.get(sampler)?;
@@ -142,7 +142,7 @@ impl Source<'_> {
         })
     }
 
-    /// Returns the image of a texture, or the entry of [`Model::left_out`] if it cannot be read.
+    /// Returns the image of a texture. An error is the text for [`Model::left_out`].
     fn image(&self, index: usize, resolve: &mut FileResolver<'_>) -> Result<EncodedImage, String> {
         let no_image = || format!("texture {index}, which has no image");
         let texture = self.document.textures.get(index).ok_or_else(no_image)?;

@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Accessors of positions, normals, colors and texture coordinates.
 type Attributes = [Option<usize>; 4];
 
-/// Where the vertices of a primitive come from.
+/// Sources of the vertices of a primitive: accessors and morph targets.
 struct Vertices<'a> {
     attributes: Attributes,
     /// Transform of texture coordinates.
@@ -33,21 +33,19 @@ struct Draft<'a> {
     positions: Vec<DVec3>,
     /// Normals of all vertices; incomplete if a primitive lacks them.
     normals: Vec<DVec3>,
-    /// Colors of the vertices, up to the last vertex that has one. `uvs` likewise ends with the last vertex that has
-    /// texture coordinates.
+    /// Colors of the vertices, up to the last vertex that has one. The field `uvs` is shortened in the same way.
     colors: Vec<LinearRgba>,
     uvs: Vec<DVec2>,
     faces: Vec<[u32; 3]>,
     material: Option<usize>,
-    /// Materials of the faces.
+    /// Indices of the materials that the faces use; `None` for the default material.
     materials: BTreeSet<Option<usize>>,
-    /// Whether the scene has lines. `has_further_uvs` tells whether it has texture coordinate sets that no texture
-    /// uses.
+    /// Whether the scene has lines. `has_further_uvs` is whether it has texture coordinate sets that no texture uses.
     has_lines: bool,
     has_further_uvs: bool,
 }
 
-/// Reads the model without its material, and the index of the material. `n_bytes` is the size of the file with its
+/// Reads the model without its material, and the index of the material. `n_bytes` is the size of the file and its
 /// buffers.
 pub(super) fn read(
     source: &Source<'_>,
@@ -109,7 +107,7 @@ pub(super) fn read(
     draft.into_model()
 }
 
-/// Returns the root nodes of the default scene. Without scenes, these are all nodes that have no parent.
+/// Returns the root nodes of the default scene. A file without scenes has all nodes without a parent as roots.
 fn roots(source: &Source<'_>) -> Result<Vec<usize>, MeshIoError> {
     let document = &source.document;
     if document.scene.is_none() && document.scenes.is_empty() {
@@ -130,7 +128,7 @@ fn roots(source: &Source<'_>) -> Result<Vec<usize>, MeshIoError> {
 }
 
 impl Draft<'_> {
-    /// Returns the transforms of a mesh's instances.
+    /// Returns the transform of each instance of a node's mesh.
     fn copies(
         &mut self,
         instancing: &Instancing,
@@ -266,7 +264,7 @@ impl Draft<'_> {
         Ok(Some(vectors))
     }
 
-    /// Joints and weights of the vertices.
+    /// Reads the joints and weights of the vertices.
     fn influences(&mut self, vertices: &Vertices<'_>) -> Result<Influences, MeshIoError> {
         let mut influences = Influences::default();
         for &[joints, weights] in &vertices.influences {
@@ -410,7 +408,8 @@ impl Draft<'_> {
 }
 
 impl Vertices<'_> {
-    /// Returns a key for the vertices of a primitive. Primitives of a mesh with equal keys share their vertices.
+    /// Returns a key that identifies the vertices of a primitive. Primitives of a mesh with equal keys share their
+    /// vertices.
     fn key(&self, primitive: &Primitive) -> (Attributes, Option<usize>, Vec<Option<usize>>) {
         let material = primitive
             .material
@@ -430,7 +429,7 @@ impl Vertices<'_> {
     }
 }
 
-/// Returns the values of element `index`; `None` if there is no column.
+/// Returns the components of element `index`; `None` if there is no column.
 fn element<const N: usize>(column: &Option<Column>, index: usize) -> Option<[f64; N]> {
     let (elements, _) = column.as_ref()?.values.as_chunks();
     elements.get(index).copied()

@@ -9,7 +9,7 @@ use super::{Source, wrong};
 use crate::MeshIoError;
 use glam::{DMat4, DVec3};
 
-/// How a mesh is transformed to the scene.
+/// How a mesh is transformed to scene space.
 pub(super) enum Pose {
     /// The transform of the mesh's node.
     Node(DMat4),
@@ -25,7 +25,7 @@ pub(super) struct Influences {
 }
 
 impl Source<'_> {
-    /// Returns the transform of each node to the scene; the identity for nodes in a cycle.
+    /// Returns the transform of each node to scene space; the identity for nodes in a cycle.
     pub(super) fn worlds(&self) -> Vec<DMat4> {
         let nodes = &self.document.nodes;
         let mut is_root = vec![true; nodes.len()];
@@ -50,7 +50,7 @@ impl Source<'_> {
         worlds.into_iter().map(Option::unwrap_or_default).collect()
     }
 
-    /// Returns the pose of a node's mesh, given the node's transform to the scene.
+    /// Returns the pose of a node's mesh, given the node's transform to scene space.
     pub(super) fn pose(
         &self,
         node: &Node,
@@ -92,7 +92,7 @@ impl Influences {
         self.weights.push(weights);
     }
 
-    /// Returns whether all columns have `n_vertices` entries.
+    /// Returns whether all columns have `n_vertices` elements.
     pub(super) fn fits(&self, n_vertices: usize) -> bool {
         let mut columns = self.joints.iter().chain(&self.weights);
         columns.all(|column| column.width == 4 && column.values.len() == 4 * n_vertices)
@@ -121,7 +121,7 @@ impl Influences {
 }
 
 impl Pose {
-    /// Transforms positions and normals to the scene.
+    /// Transforms positions and normals of vertices to scene space.
     pub(super) fn apply(
         &self,
         influences: &Influences,
@@ -155,7 +155,7 @@ impl Pose {
         Ok(())
     }
 
-    /// Returns whether the pose mirrors the mesh, which reverses the winding.
+    /// Returns whether the pose mirrors the mesh, which reverses the winding of faces.
     pub(super) fn is_mirrored(&self) -> bool {
         match self {
             Self::Node(transform) => glam::DMat3::from_mat4(*transform).determinant() < 0.0,

@@ -1,4 +1,4 @@
-//! Tests with handwritten files, round trips, and another reader.
+//! Tests with handwritten files, round trips, and the crate `gltf` as a second reader.
 
 use super::*;
 use crate::MeshIoErrorKind;
@@ -32,7 +32,7 @@ fn base64(bytes: &[u8]) -> String {
     text + &"=="[..(3 - bytes.len() % 3) % 3]
 }
 
-/// Returns four corners of a square, the indices 0 to 3, and integer colors.
+/// Returns a document with the four corners of a square, the indices 0 to 3, and integer colors.
 fn square() -> Value {
     let positions = [
         0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0f32,
@@ -85,7 +85,7 @@ fn faces(model: &Model) -> Vec<[u32; 3]> {
         .collect()
 }
 
-/// Returns a cube with all attributes, whose corners differ at each vertex.
+/// Returns a cube with all attributes. The attributes of corners at the same vertex differ.
 fn full() -> Model {
     let mut model = Model::from(cube());
     let uv = |i: usize, k: usize| DVec2::new(0.125 * (i % 4) as f64, 0.25 * k as f64);
@@ -438,8 +438,8 @@ fn clouds_and_nothing_read_back() {
     );
 }
 
-/// A file that is an error here, but passes the validation of the crate `gltf` and makes it panic. It is the reason
-/// for our own reader.
+/// A file that must be refused: it passes the validation of the crate `gltf` and makes that crate panic. It is the
+/// reason for our own reader.
 #[test]
 fn file_that_makes_the_crate_gltf_panic_is_refused() {
     let mut document = square();

@@ -33,8 +33,7 @@ pub(super) fn trs(
     )
 }
 
-/// Returns the matrix that transforms normals, except for their lengths. It exists even if the transform has no
-/// inverse.
+/// Returns the matrix that transforms normals up to their lengths. It exists even if the transform has no inverse.
 pub(super) fn cofactors(transform: DMat4) -> DMat3 {
     let matrix = DMat3::from_mat4(transform);
     let (x, y, z) = (matrix.x_axis, matrix.y_axis, matrix.z_axis);
@@ -47,7 +46,7 @@ pub(super) fn cofactors(transform: DMat4) -> DMat3 {
     }
 }
 
-/// Axes after a rotation. The quaternion need not have unit length.
+/// Returns the three axes after a rotation. The quaternion need not have unit length.
 fn axes(rotation: DQuat) -> [DVec3; 3] {
     let [x, y, z, w] = rotation.to_array();
     let square = x * x + y * y + z * z + w * w;

@@ -31,9 +31,10 @@ struct Bin {
     images: Vec<Value>,
 }
 
-/// The vertices of a file. A mesh vertex is split where its corners have different texture coordinates.
+/// The vertices of a GLB file. A mesh vertex is split where its corners have different texture coordinates.
 struct Split {
-    /// Mesh vertex of each file vertex. The first entries are the mesh vertices in order.
+    /// For each vertex of the file, the mesh vertex that it is a copy of. The first entries are the mesh vertices in
+    /// order.
     vertex: Vec<usize>,
     uvs: Vec<[f32; 2]>,
     faces: Vec<[u32; 3]>,
@@ -108,8 +109,8 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
     container(document.to_string().into_bytes(), bin.bytes)
 }
 
-/// Adds the attributes of a model without corner normals, with positions relative to `origin`, and returns the
-/// primitive that refers to them.
+/// Adds the attributes of a model without corner normals. Positions are relative to `origin`. Returns the primitive
+/// that refers to them.
 fn primitive(model: &Model, origin: Option<DVec3>, bin: &mut Bin) -> Value {
     let mesh = &model.mesh;
     let split = Split::new(model);
@@ -209,8 +210,8 @@ fn material(model: &Model, bin: &mut Bin) -> Value {
     value
 }
 
-/// Adds emission, specular and clear coat to a material, with the extensions that they need. `texture` adds an image and
-/// returns the reference to its texture.
+/// Adds emission, specular and clear coat to a material, with the glTF extensions that they need. `texture` is a
+/// callback that adds an image and returns the reference to its texture.
 fn add_extensions(
     value: &mut Value,
     material: &Material,
@@ -249,8 +250,8 @@ fn is_open(mesh: &Mesh) -> bool {
     mesh.report().boundary_edges > 0
 }
 
-/// Normalizes a normal. A normal whose length is already 1 within single precision stays unchanged, so that a file
-/// that was read is written with the same bits.
+/// Returns a normal with length 1. A normal whose length is already 1 within single precision is unchanged, so that a
+/// file that was read is written with the same bits.
 fn unit(normal: DVec3) -> DVec3 {
     if (normal.length_squared() - 1.0).abs() < 1e-6 {
         normal
@@ -270,7 +271,7 @@ fn bound(positions: &[[f32; 3]], choose: fn(f32, f32) -> f32) -> [f32; 3] {
     positions.iter().copied().reduce(choose).unwrap_or_default()
 }
 
-/// Assembles a GLB file from both chunks, each padded to a multiple of four bytes.
+/// Assembles a GLB file from its two chunks, each padded to a multiple of four bytes.
 pub(super) fn container(mut json: Vec<u8>, mut bin: Vec<u8>) -> Result<Vec<u8>, MeshIoError> {
     json.resize(json.len().next_multiple_of(4), b' ');
     bin.resize(bin.len().next_multiple_of(4), 0);

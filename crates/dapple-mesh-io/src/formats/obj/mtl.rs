@@ -25,7 +25,7 @@ struct Entry {
     other_maps: BTreeSet<String>,
 }
 
-/// A texture with its options.
+/// A texture file name with its options.
 #[derive(Default)]
 struct Texture {
     name: String,
@@ -35,15 +35,15 @@ struct Texture {
     other_options: Vec<String>,
 }
 
-/// A scale followed by an offset, applied to texture coordinates with v pointing up.
+/// A scale and then an offset of texture coordinates whose v points up.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct UvMap {
     scale: DVec2,
     offset: DVec2,
 }
 
-/// Sets a model's material to the one called `name` in the available libraries, or to the first one if `name` is
-/// `None`. The transform of its textures is applied to the texture coordinates.
+/// Sets a model's material to the one called `name` in the referenced libraries, or to the first one if `name` is
+/// `None`. Applies the transform of its textures to the texture coordinates.
 ///
 /// Fails if any material of the libraries has a color outside the range of `f32`.
 pub(super) fn add_material(
@@ -184,7 +184,7 @@ impl Entry {
 
 /// State while the textures of a material are read.
 struct Reading<'a, 'b> {
-    /// Unit squares that contain faces.
+    /// Numbers of the unit squares of texture coordinates that contain faces.
     squares: Vec<u32>,
     uv_map: Option<UvMap>,
     resolve: &'a mut FileResolver<'b>,
@@ -192,8 +192,8 @@ struct Reading<'a, 'b> {
 }
 
 impl Reading<'_, '_> {
-    /// Returns the images of a texture. There is one per unit square if the squares have separate textures, and
-    /// otherwise at most one.
+    /// Returns the images of a texture: one per unit square if the squares have separate textures, otherwise at most
+    /// one.
     fn images(&mut self, found: Option<&Texture>) -> Vec<Option<EncodedImage>> {
         let Some(found) = found else {
             return Vec::new();
@@ -220,8 +220,8 @@ impl Reading<'_, '_> {
         images
     }
 
-    /// Returns the images of the unit squares, if the texture name is a pattern, or contains the number of a square
-    /// and all files exist.
+    /// Returns the images of the unit squares if the texture's name is a pattern, or contains the number of a square
+    /// and the files of all squares exist. Otherwise returns `None`.
     fn tiles(&mut self, found: &Texture) -> Option<Vec<Option<EncodedImage>>> {
         let name = &found.name;
         if tile_name(name, 1001).is_some() {
@@ -244,7 +244,7 @@ impl Reading<'_, '_> {
         has_all.then_some(images)
     }
 
-    /// Returns the images of the unit squares for a name pattern.
+    /// Returns the image of each unit square. `name` is a pattern with a placeholder for the square.
     fn tiles_of(&mut self, name: &str) -> Vec<Option<EncodedImage>> {
         let mut missing = None;
         let mut n_missing = 0;
@@ -269,7 +269,7 @@ impl Reading<'_, '_> {
     }
 }
 
-/// Converts a `Kd` to a color; an error if it is outside the range of `f32`.
+/// Converts a `Kd` value to a color. Fails if it is outside the range of `f32`.
 fn diffuse(color: DVec3, line: &Line<'_>) -> Result<LinearRgb, MeshIoError> {
     let parts = color.as_vec3().to_array();
     match parts.iter().position(|part| !part.is_finite()) {
@@ -284,7 +284,7 @@ fn diffuse(color: DVec3, line: &Line<'_>) -> Result<LinearRgb, MeshIoError> {
 }
 
 impl Texture {
-    /// Parses the options of a texture, each a word with a dash and its arguments, and then its name.
+    /// Parses the options of a texture, which are words that begin with a dash and their arguments, and then its name.
     fn new(line: &Line<'_>) -> Option<Self> {
         let words = line.name_words();
         let mut words = words.as_slice();
@@ -339,7 +339,7 @@ impl Texture {
 }
 
 impl UvMap {
-    /// Transforms texture coordinates with v pointing down, although the transform in the file is for v pointing up.
+    /// Transforms texture coordinates whose v points down. The transform itself is for v pointing up, as in the file.
     pub(super) fn apply(&self, uv: DVec2) -> DVec2 {
         let up = DVec2::new(uv.x, 1.0 - uv.y) * self.scale + self.offset;
         DVec2::new(up.x, 1.0 - up.y)

@@ -327,7 +327,7 @@ fn value_stability_obj_text() {
     assert_eq!(text, want);
 }
 
-/// Checks that the files have the counts that their sources state.
+/// Checks that the files have the numbers of vertices and faces that their sources state.
 #[test]
 fn real_files_have_the_counts_that_are_known() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/meshes/");

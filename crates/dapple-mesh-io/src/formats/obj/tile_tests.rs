@@ -1,4 +1,4 @@
-//! Tests of textures per unit square (UDIM).
+//! Tests of textures for each unit square (UDIM).
 
 use super::{read_with, write_files};
 use dapple_mesh::{EncodedImage, Model};
@@ -21,7 +21,8 @@ fn text(squares: &[[f64; 2]]) -> String {
     text
 }
 
-/// Reads triangles in unit squares, with a material and files in the same folder.
+/// Reads an OBJ with a triangle in each of the given unit squares. `material` is the text of its material; `files` are
+/// the files in its folder.
 fn read(squares: &[[f64; 2]], material: &str, files: &[&str]) -> Model {
     let library = format!("newmtl a\n{material}\n");
     let mut resolve = |name: &str| match name {

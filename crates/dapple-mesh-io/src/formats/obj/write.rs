@@ -54,7 +54,7 @@ fn file(name: String, bytes: &[u8]) -> NamedFile {
     NamedFile { name, bytes }
 }
 
-/// Returns the text of the MTL file; its textures are added to `files`.
+/// Returns the text of the MTL file. Adds the textures to `files`.
 fn material(model: &Model, stem: &str, files: &mut Vec<NamedFile>) -> String {
     let LinearRgba { color, alpha } = model.material.base_color_factor;
     let mut text = format!(
@@ -126,13 +126,13 @@ fn numbers(text: &mut String, vector: DVec3) {
     }
 }
 
-/// Returns a color's sRGB codes as fractions from 0 to 1; rounding to 1e-6 preserves all 16-bit codes.
+/// Returns a color's sRGB codes as fractions from 0 to 1, rounded to 1e-6, which preserves all 16-bit codes.
 fn coded(color: LinearRgb) -> DVec3 {
     let unit = |code: u16| (f64::from(code.to_unit()) * 1e6).round() / 1e6;
     DVec3::from_array(color.to_srgb::<u16>().map(unit))
 }
 
-/// Writes the normals, and returns the 1-based index of the normal of each corner. Vertex normals are written in
+/// Writes the normals, and returns the index of each corner's normal, starting at 1. Vertex normals are written in
 /// order; equal corner normals are written once.
 fn normals(model: &Model, text: &mut String) -> Vec<[usize; 3]> {
     let mut line = |normal: DVec3| {
@@ -163,7 +163,7 @@ fn normals(model: &Model, text: &mut String) -> Vec<[usize; 3]> {
         .collect()
 }
 
-/// Writes each texture coordinate once, and returns the 1-based index for each corner.
+/// Writes each distinct texture coordinate once, and returns the index for each corner, starting at 1.
 fn uvs(model: &Model, text: &mut String) -> Vec<[usize; 3]> {
     let mut known = BTreeMap::new();
     let mut number = |uv: DVec2| {

@@ -6,7 +6,7 @@ use crate::MeshIoError;
 use crate::text::{in_range, parse};
 use core::fmt::Display;
 
-/// The unread rest of the file.
+/// The rest of the file after the header that has not been read yet.
 pub(super) struct Body<'a> {
     encoding: Encoding,
     /// The whole file, including its header.
@@ -23,7 +23,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Creates an error about the last values read, with the line number if the body is text.
+    /// Creates an error about the values that were read last, with the line number if the body is text.
     pub(super) fn error(&self, why: impl Display) -> MeshIoError {
         if self.encoding != Encoding::Text {
             return MeshIoError::file(FORMAT, why.to_string());
@@ -33,7 +33,7 @@ impl<'a> Body<'a> {
         MeshIoError::file(FORMAT, format!("line {}: {why}", ends.count() + 1))
     }
 
-    /// Checks that the remaining bytes can hold the element count of the header.
+    /// Checks that the remaining bytes are enough for the number of items that the header states for this element.
     pub(super) fn check_room(&self, element: &Element) -> Result<(), MeshIoError> {
         let least = |kind: Kind| match kind {
             // A digit and a space; the last space may be missing.
@@ -57,8 +57,9 @@ impl<'a> Body<'a> {
         Err(MeshIoError::file(FORMAT, why))
     }
 
-    /// Checks that the last value is in range for a component of a position, a normal or a texture coordinate. Values
-    /// of binary files are checked after reading, with the vertex index instead of a line number.
+    /// Returns a component of a position, normal or texture coordinate if it is in range; otherwise an error.
+    /// Components in binary files are checked later, since the error then has the vertex index instead of a line
+    /// number.
     pub(super) fn in_range(&self, part: f64) -> Result<f64, MeshIoError> {
         if self.encoding == Encoding::Text {
             return in_range(part).map_err(|why| self.error(why));

@@ -20,7 +20,7 @@ pub(super) enum Encoding {
     Big,
 }
 
-/// An element: consecutive items with the same properties.
+/// An element of PLY: consecutive items with the same properties, such as vertices.
 pub(super) struct Element {
     pub(super) name: String,
     pub(super) count: u64,
@@ -39,7 +39,7 @@ pub(super) struct Property {
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
     Scalar(Scalar),
-    /// A list: the type of its length, and the type of its values.
+    /// A list, with the type of its length and the type of its values.
     List(Scalar, Scalar),
 }
 
@@ -57,7 +57,7 @@ pub(super) enum Scalar {
 }
 
 impl Header {
-    /// Parses the header, and returns it and the remaining bytes.
+    /// Parses the header. Returns it with the remaining bytes.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, &[u8]), MeshIoError> {
         let mut header = Self {
             encoding: Encoding::Text,
@@ -95,7 +95,7 @@ impl Header {
         }
     }
 
-    /// Parses a line of the header; `None` if it is invalid.
+    /// Parses a line of the header; `None` if the line is invalid.
     fn add(&mut self, number: usize, line: &[&[u8]]) -> Option<()> {
         let text = |word: &[u8]| String::from_utf8_lossy(word).into_owned();
         match line {

@@ -8,12 +8,12 @@ use dapple_mesh::Model;
 use glam::DVec3;
 use std::fmt::Write as _;
 
-/// Writes numbers as bytes or text.
+/// An encoder of numbers as bytes or text.
 struct Out {
     bytes: Vec<u8>,
     /// Current line of a text file; `None` for a binary file.
     line: Option<String>,
-    /// Whether positions, normals and texture coordinates are `double`.
+    /// Whether positions, normals and texture coordinates, in this order, are written as `double`.
     wide: [bool; 3],
 }
 
@@ -88,7 +88,7 @@ fn encode(model: &Model, line: Option<String>) -> Result<Vec<u8>, MeshIoError> {
     Ok(out.bytes)
 }
 
-/// Returns whether a number changes when it is rounded to `f32`.
+/// Returns whether rounding to `f32` changes a number.
 fn wide(part: f64) -> bool {
     f64::from(part as f32).to_bits() != part.to_bits()
 }

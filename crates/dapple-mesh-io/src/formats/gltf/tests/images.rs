@@ -6,8 +6,8 @@ fn png(text: &str) -> EncodedImage {
     EncodedImage::new([b"\x89PNG\r\n\x1a\n", text.as_bytes()].concat()).expect("it begins as PNG")
 }
 
-/// Returns the square with three images in its buffer, behind and between other views, and with properties that a
-/// model cannot represent.
+/// Returns the square with three images in its buffer, located between and after other buffer views. The document also
+/// has properties that a model cannot represent.
 fn document() -> (Value, Vec<u8>) {
     let mut document = square();
     let uri = document["buffers"][0]["uri"]
@@ -59,7 +59,7 @@ fn document() -> (Value, Vec<u8>) {
     (document, bytes)
 }
 
-/// Returns a GLB file's document without the parts that may differ, and its images.
+/// Returns a GLB file's document without images, buffer views and buffers, and the bytes of its images.
 fn parts(bytes: &[u8]) -> (Value, Vec<Vec<u8>>) {
     let file = ::gltf::Gltf::from_slice(bytes).expect("it is valid");
     let blob = file.blob.as_deref().unwrap_or_default();

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Returns a cube whose minimum corner is at `position`.
+/// Returns a cube whose minimum corner is at `corner`, with edges of length `edge`.
 fn cube_at(corner: DVec3, edge: f64) -> Model {
     let unit = cube();
     let positions = unit.positions().iter();

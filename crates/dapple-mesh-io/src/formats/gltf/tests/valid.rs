@@ -1,4 +1,4 @@
-//! Tests of unusual valid files, and of invalid files that look valid.
+//! Tests of unusual but valid files, and of invalid files that look valid.
 
 use super::*;
 
