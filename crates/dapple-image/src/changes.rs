@@ -66,7 +66,7 @@ impl FileChanges {
         changes
     }
 
-    /// Records the current stamp of a file that is not yet known. If this is called before the file is read, the next
+    /// Records the current stamp of a file that is not known yet. Call this before reading the file, so that the next
     /// check detects every later write.
     pub fn remember(&mut self, file: PathBuf) {
         let entry = self.seen.entry(file);
@@ -82,7 +82,8 @@ impl FileChanges {
 
     /// Checks `files` for changes, and returns whether they should be read again now.
     ///
-    /// A file that was neither part of the last check nor [remembered](Self::remember) is only recorded.
+    /// A file that was neither part of the last check nor [remembered](Self::remember) is only recorded, and does not
+    /// count as changed.
     pub fn look(&mut self, files: &[PathBuf]) -> bool {
         let stamps = files.iter().map(|file| (file.clone(), FileStamp::of(file)));
         let now: BTreeMap<_, _> = stamps.collect();

@@ -1,6 +1,6 @@
 //! Color space declared by a file, and the conversion of its codes to linear light with the primaries of ITU-R BT.709.
 //!
-//! References: ICC.1:2022 (profiles of three components with a matrix and curves); ITU-T H.273, 2021 (the code points of
+//! References: ICC.1:2022 (three-component profiles with a matrix and curves); ITU-T H.273, 2021 (the code points of
 //! `cICP`); the W3C recommendation "Portable Network Graphics (PNG) Specification (Third Edition)", 2025, section 4.3
 //! (`cICP` before `iCCP` before `sRGB` before `gAMA` and `cHRM`); SMPTE RP 177 (matrices from chromaticities). A white
 //! point other than D65 is adapted by the Bradford method, as in ICC profiles, so that white stays white.
@@ -82,7 +82,7 @@ enum Conversion {
     Unknown(&'static str),
 }
 
-/// Transfer curves for red, green and blue, and the matrix from their linear light to BT.709.
+/// Transfer curves of red, green and blue, and the matrix from their linear light to BT.709.
 #[derive(Clone, Debug, PartialEq)]
 struct MatrixSpace {
     matrix: Matrix,
@@ -159,7 +159,7 @@ impl ColorSpace {
         }
     }
 
-    /// Creates a color space with these primaries and one curve for all channels.
+    /// Creates a color space from its primaries and one curve for all channels.
     #[cfg(any(feature = "png", feature = "jpeg"))]
     pub(crate) fn from_primaries(source: Source, primaries: Primaries, curve: Curve) -> Self {
         match bt709_from(&primaries) {
@@ -265,7 +265,7 @@ impl Converter {
     }
 }
 
-/// Applies a matrix to linear light and returns a color of BT.709.
+/// Multiplies linear light by a matrix, and rounds the result to a color.
 pub(crate) fn times(matrix: &Matrix, light: [f64; 3]) -> LinearRgb {
     apply(matrix, light).map(|part| part as f32).into()
 }
@@ -301,7 +301,8 @@ fn xyz_of_white([x, y]: [f64; 2]) -> [f64; 3] {
     [x / y, 1.0, (1.0 - x - y) / y]
 }
 
-/// Returns the Bradford matrix that adapts the white point `from` to `to`.
+/// Returns the matrix that adapts colors from one white point to another by the Bradford method. White points are in
+/// XYZ.
 fn adapted(from: [f64; 3], to: [f64; 3]) -> Option<Matrix> {
     let [from, to] = [from, to].map(|white| apply(&BRADFORD, white));
     let scaled = [0, 1, 2].map(|row| BRADFORD[row].map(|entry| entry * (to[row] / from[row])));

@@ -11,33 +11,33 @@ use dapple_color::{Code, LinearRgb, LinearRgba, Normal};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Content {
     /// Data such as heights and masks. PNG: gray from 0 to 1, `round(value · max)`, linear, without a color chunk.
-    /// OpenEXR: the plane `Y`, any number.
+    /// OpenEXR: the plane `Y`, with any values.
     Gray,
-    /// Color in linear light. PNG: RGB under the sRGB curve, with the chunk that says so. OpenEXR: the planes `R`, `G`
+    /// Color in linear light. PNG: RGB encoded with the sRGB curve, with an `sRGB` chunk. OpenEXR: the planes `R`, `G`
     /// and `B`, linear.
     Color,
-    /// Color with alpha. PNG: RGBA, color under the sRGB curve, alpha linear. OpenEXR: the planes `R`, `G`, `B` and `A`,
-    /// linear, with alpha multiplied into the color.
+    /// Color with alpha. PNG: RGBA, colors encoded with the sRGB curve, alpha linear. OpenEXR: the planes `R`, `G`, `B`
+    /// and `A`, linear, with alpha multiplied into the colors.
     ColorAlpha,
-    /// Unit vectors. PNG: RGB of `round((part + 1) / 2 · max)`, linear, without a color chunk. OpenEXR: `(part + 1) /
-    /// 2`, unrounded, in the planes `R`, `G` and `B`, as programs expect of a normal map.
+    /// Unit vectors. PNG: RGB of `round((component + 1) / 2 · max)`, linear, without a color chunk. OpenEXR:
+    /// `(component + 1) / 2`, unrounded, in the planes `R`, `G` and `B`, as programs expect of a normal map.
     Normal,
     /// Three values that are not a color, such as occlusion, roughness and metallic. PNG: RGB from 0 to 1, linear,
-    /// without a color chunk. OpenEXR: the planes `R`, `G` and `B`, any numbers.
+    /// without a color chunk. OpenEXR: the planes `R`, `G` and `B`, with any values.
     Packed,
-    /// Four values that are not a color and whose fourth value is not coverage, such as metallic, occlusion, a mask
-    /// and smoothness. PNG: RGBA from 0 to 1, linear, without a color chunk. OpenEXR: the planes `R`, `G`, `B` and
-    /// `A`, any numbers.
+    /// Four values that are not a color and whose fourth value is not coverage, such as metallic, occlusion, a mask and
+    /// smoothness. PNG: RGBA from 0 to 1, linear, without a color chunk. OpenEXR: the planes `R`, `G`, `B` and `A`,
+    /// with any values.
     PackedFour,
 }
 
 /// Bits per channel of a PNG file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Depth {
-    /// 8 bits: 256 steps.
+    /// 8 bits, 256 codes.
     #[default]
     Eight,
-    /// 16 bits: 65536 steps, for heights and other data for further computation.
+    /// 16 bits, 65536 codes, for heights and other data that is processed further.
     Sixteen,
 }
 
@@ -110,7 +110,7 @@ pub(crate) trait Pixel: Sync {
 
     fn sixteen(&self) -> Self::Sixteen;
 
-    /// Returns the value of the pixel in a plane, by its index in [`Content::planes`].
+    /// Returns the pixel's sample in a plane, given the index of the plane in [`Content::planes`].
     fn part(&self, plane: usize) -> f32;
 
     /// Returns the pixel's values without encoding.

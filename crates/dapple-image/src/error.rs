@@ -97,11 +97,11 @@ dapple_raster::error_kind! {
             /// The number of rows of the image.
             needed: u32,
         } => "only {rows} rows of {needed} are written";
-        /// The image's channels are not the requested ones.
+        /// The image does not have the requested channels.
         Channels {
-            /// The channels of the image.
+            /// Description of the image's channels.
             found: &'static str,
-            /// The requested channels.
+            /// Description of the requested channels.
             needed: &'static str,
         } => "the image is {found}, but {needed} is needed";
         /// The file has no plane with this name.

@@ -245,13 +245,13 @@ impl ExrImage {
     }
 }
 
-/// Maximum difference between chromaticities that count as equal, which files round to four digits.
+/// Maximum difference between chromaticities that count as equal. Files round them to four digits.
 const SAME_CHROMATICITY: f64 = 0.000_2;
 
-/// Description of vector images in errors.
+/// Description of vector images in error messages.
 const VECTORS: &str = "of the vectors X, Y and Z";
 
-/// Normalizes a vector. If its length is zero or not finite, returns the normal of a flat surface.
+/// Returns a vector with length 1. If its length is zero or not finite, returns the normal of a flat surface.
 fn normalized(parts: [f32; 3]) -> Normal {
     // In f64, squares of f32 neither overflow nor vanish.
     let [x, y, z] = parts.map(f64::from);
@@ -264,7 +264,7 @@ fn normalized(parts: [f32; 3]) -> Normal {
     }
 }
 
-/// Checks that a plane is the same size as the preceding planes.
+/// Checks that a plane has the size of the preceding planes.
 fn check_size(size: [u32; 2], needed: [u32; 2]) -> Result<(), ImageError> {
     if size == needed {
         Ok(())

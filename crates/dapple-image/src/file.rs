@@ -78,7 +78,7 @@ fn check_regular(found: &fs::Metadata) -> io::Result<()> {
     Err(io::Error::new(kind, what))
 }
 
-/// Opens pipes and devices without blocking.
+/// Sets options so that opening a pipe or device does not block.
 fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
     #[cfg(unix)]
     std::os::unix::fs::OpenOptionsExt::custom_flags(options, libc::O_NONBLOCK);
@@ -196,7 +196,7 @@ pub fn sync_folder(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Ignores the error that a file system returns if it does not support flushing.
+/// Ignores the error of a file system that does not support flushing.
 fn tolerate_unsupported(synced: io::Result<()>) -> io::Result<()> {
     use io::ErrorKind::{InvalidInput, Unsupported};
     match synced {

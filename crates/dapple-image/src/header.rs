@@ -1,4 +1,4 @@
-//! Reads the size and format of image files, however large, from their first bytes.
+//! Reads the size and format of image files from their first bytes. The files may be larger than memory.
 //!
 //! Reference: PNG Specification, third edition (W3C, 2025), section 11.2.1; OpenEXR, "The OpenEXR File Layout".
 

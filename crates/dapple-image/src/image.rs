@@ -55,7 +55,7 @@ pub fn decode_image(bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> 
     }))
 }
 
-/// Signatures of formats whose codec may be compiled out, and the feature name for the error.
+/// Signatures of formats whose codec may be compiled out, each with the text of the error for it.
 const LEFT_OUT: [(&[u8], &str); 3] = [
     (&PNG_SIGNATURE, "PNG without the feature `png`"),
     (&JPEG_SIGNATURE, "JPEG without the feature `jpeg`"),

@@ -27,7 +27,7 @@ const START_OF_SCAN: u8 = 0xda;
 /// Second byte of the end-of-image marker.
 const END_OF_IMAGE: u8 = 0xd9;
 
-/// Maximum side length that the format allows, in pixels.
+/// Maximum side of an image in the format, in pixels.
 const SIDE_LIMIT: usize = 65_535;
 
 /// Memory per sample, in bytes: one for the code and two for the 16-bit coefficient, since decoding a progressive
@@ -102,7 +102,8 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
 
 /// Checks that the last scan of a file is complete; otherwise the codec would invent its last pixels.
 ///
-/// Neither marker can occur within a scan, and an embedded preview ends before the first scan begins.
+/// Neither the start-of-scan nor the end-of-image marker can occur within a scan. An embedded preview ends before the
+/// first scan begins.
 fn check_end(bytes: &[u8]) -> Result<(), ImageError> {
     let last = |marker: u8| bytes.windows(2).rposition(|pair| pair == [0xff, marker]);
     if last(END_OF_IMAGE) > last(START_OF_SCAN) {

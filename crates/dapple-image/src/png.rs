@@ -40,6 +40,6 @@ const GAMMA_OF_SRGB: u32 = 45_455;
 pub enum Transfer {
     /// Unchanged values: heights, masks, normals. The file has no color chunk.
     Data,
-    /// Colors under the sRGB curve. The file has a chunk that declares it.
+    /// Colors encoded with the sRGB curve. The file has a chunk that declares it.
     Srgb,
 }

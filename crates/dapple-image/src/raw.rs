@@ -1,4 +1,4 @@
-//! Files of plain numbers (NumPy arrays and raw heights), written row by row and read as a whole.
+//! Files of unencoded numbers (NumPy arrays and raw heights), written row by row and read at once.
 //!
 //! Reference: NumPy Developers, "A Simple File Format for NumPy Arrays" (`numpy.lib.format`), version 1.0. Raw
 //! heights have no standard; the Unity and Unreal terrain importers call them RAW and r16. They are 16-bit codes,
@@ -20,7 +20,7 @@ const ALIGNMENT: usize = 64;
 /// Length of the preamble: the magic string, the version 1.0, and the length of the header text.
 const PREAMBLE: usize = 10;
 
-/// A file of plain numbers being written into a sink.
+/// A file of unencoded numbers that is written to a sink.
 pub(crate) struct RawStream {
     /// Buffer for the bytes of a row.
     bytes: Vec<u8>,

@@ -55,8 +55,8 @@ pub(crate) trait Sink: Write + Seek {}
 
 impl<W: Write + Seek> Sink for W {}
 
-/// An image being written. It does not depend on the sink's type, so that the formats are compiled in this crate and
-/// not in every crate that writes images.
+/// An image that is being written. It does not depend on the sink's type, so that the formats are compiled in this
+/// crate and not in every crate that writes images.
 struct Rows {
     content: Content,
     size: [u32; 2],
@@ -67,7 +67,7 @@ struct Rows {
     file: File,
 }
 
-/// State of the file for each encoding.
+/// The file that is being written, by encoding.
 enum File {
     #[cfg(feature = "png")]
     Eight(Box<PngStream>),
@@ -79,7 +79,7 @@ enum File {
     R16(RawStream),
 }
 
-/// A band of rows, by content type.
+/// Several rows, by content type.
 enum Band<'a> {
     Gray(RasterView<'a, f32>),
     Color(RasterView<'a, LinearRgb>),

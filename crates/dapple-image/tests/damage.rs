@@ -1,5 +1,5 @@
-//! Tests of damaged files in every format: they give an image within the limits or an error, without a panic or much
-//! memory. It is a separate binary, since it measures its peak memory.
+//! Tests of damaged files in every format. They must give an image within the limits or an error, without a panic and
+//! with little memory. This is a separate binary because it measures its peak memory.
 
 use dapple_image::{
     Content, Depth, Encoding, ExrPlane, Limits, RowWriter, Transfer, decode_image, encode_exr,
@@ -17,11 +17,11 @@ const LIMITS: Limits = Limits {
     bytes: 1 << 20,
 };
 
-/// The largest additional memory in bytes that reading may take: tables and copies of codecs exceed the limit, but not
-/// by orders of magnitude.
+/// Maximum additional memory for reading, in bytes. It is larger than the limit on pixels because codecs need tables
+/// and copies, but not by orders of magnitude.
 const MEMORY: u64 = 48 << 20;
 
-/// Complete files, small enough that a change hits an important part.
+/// Returns complete files, small enough that most changes hit an important part.
 fn files() -> Vec<Vec<u8>> {
     let size = [21, 18];
     let gray = Raster::from_fn(size, |x, y| (x * 5 + y * 7) as f32 / 255.0).unwrap();
@@ -64,7 +64,7 @@ fn files() -> Vec<Vec<u8>> {
     files
 }
 
-/// A change of a file, at a fraction of its length.
+/// A change to a file, at a fraction of its length.
 #[derive(Clone, Debug)]
 enum Change {
     Set(f64, u8),
@@ -107,7 +107,7 @@ fn apply(change: &Change, bytes: &mut Vec<u8>) {
     }
 }
 
-/// Returns the peak memory of this process so far, if the system reports it.
+/// Returns the peak memory of this process so far, in bytes; `None` if the system does not report it.
 #[expect(clippy::disallowed_methods, reason = "the test asks the system")]
 fn peak() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;

@@ -1,20 +1,20 @@
-//! Tests that rows are written to a file in little memory, however many there are. It is a separate binary, since it
-//! measures its peak memory.
+//! Tests that writing rows to a file takes little memory, regardless of their number. This is a separate binary because
+//! it measures its peak memory.
 
 use dapple_image::{Content, Depth, Encoding, RowWriter};
 use dapple_raster::Raster;
 use std::io::{self, Seek, SeekFrom, Write};
 
-/// The numbers of columns and rows. As one raster of `f32` the image takes 256 MiB.
+/// Columns and rows of the image. A single raster of `f32` would take 256 MiB.
 const SIZE: [u32; 2] = [16384, 4096];
 
-/// The number of rows that are written at a time.
+/// Number of rows written at a time.
 const BAND: u32 = 100;
 
-/// The memory limit in bytes: a band of rows and the band of tiles take 11 MB; the rest is for the program itself.
+/// Memory limit in bytes. A band of rows and the band of tiles take 11 MB; the rest is for the program itself.
 const LIMIT: u64 = 64 << 20;
 
-/// A sink that only keeps the length of its file.
+/// A sink that stores only the length of its file.
 #[derive(Debug, Default)]
 struct Length {
     position: u64,
@@ -43,7 +43,7 @@ impl Seek for Length {
     }
 }
 
-/// Returns the peak memory of this process so far, if the system reports it.
+/// Returns the peak memory of this process so far, in bytes; `None` if the system does not report it.
 #[expect(clippy::disallowed_methods, reason = "the test asks the system")]
 fn peak() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
@@ -52,7 +52,7 @@ fn peak() -> Option<u64> {
     Some(number << 10)
 }
 
-/// Returns the length of a file whose rows come in bands.
+/// Writes an image in bands, and returns the length of the file.
 fn write(encoding: Encoding) -> u64 {
     let band = Raster::from_fn([SIZE[0], BAND], |x, y| (x * y % 97) as f32 / 96.0).unwrap();
     let mut writer = RowWriter::new(Length::default(), SIZE, Content::Gray, encoding).unwrap();

@@ -176,7 +176,7 @@ fn decode_region(
     Ok(with_planes(&headers, planes))
 }
 
-/// The pixels of a region that come from one part of a file.
+/// Pixels of a region that come from one part of a file.
 struct Part {
     /// First column and row of the region, relative to the data window.
     first: [i64; 2],
@@ -186,14 +186,14 @@ struct Part {
 }
 
 impl Part {
-    /// Returns the range of columns or rows of a block inside the region, relative to the data window.
+    /// Returns the range of columns or rows of a block that are inside the region, relative to the data window.
     fn span(&self, [position, size]: [[usize; 2]; 2], axis: usize) -> Range<i64> {
         let (first, end) = (position[axis] as i64, (position[axis] + size[axis]) as i64);
         let last = self.first[axis] + i64::from(self.size[axis]);
         first.max(self.first[axis])..end.min(last)
     }
 
-    /// Copies the samples of a line that fall inside the region.
+    /// Copies the samples of a scan line that are inside the region.
     fn put(&mut self, line: LineRef<'_>, channels: &ChannelList) -> Result<(), ImageError> {
         let at = line.location;
         let corners = [[at.position.0, at.position.1], [at.sample_count, 1]];
@@ -218,7 +218,7 @@ impl Part {
     }
 }
 
-/// Converts and copies samples of a line into `target`.
+/// Converts the samples of a scan line, and copies them to `target`.
 fn copy<T>(
     target: &mut [f32],
     samples: impl Iterator<Item = exr::error::Result<T>>,
@@ -302,7 +302,7 @@ fn check_windows(data: IntegerBounds, display: IntegerBounds) -> Result<(), Imag
     Ok(())
 }
 
-/// Crops or pads values of the data window to the display window; pixels without data are 0.
+/// Crops or pads the values of the data window to the display window. Pixels without data are 0.
 fn shown(
     values: Vec<f32>,
     data: IntegerBounds,

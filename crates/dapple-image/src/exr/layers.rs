@@ -14,14 +14,14 @@ use dapple_raster::Raster;
 /// View names assumed for files that do not list their views.
 const USUAL_VIEWS: [&str; 2] = ["left", "right"];
 
-/// The planes of an image, by kind.
+/// The planes of an image, by the kind of image.
 pub(crate) enum Picture<'a> {
-    /// One value per pixel, and alpha.
+    /// One value per pixel, and optionally alpha.
     Gray {
         values: &'a Raster<f32>,
         alpha: Option<&'a Raster<f32>>,
     },
-    /// Red, green and blue, and alpha.
+    /// Red, green and blue, and optionally alpha.
     Color {
         parts: [&'a Raster<f32>; 3],
         alpha: Option<&'a Raster<f32>>,
@@ -30,7 +30,7 @@ pub(crate) enum Picture<'a> {
     Vectors([&'a Raster<f32>; 3]),
 }
 
-/// A layer: its name, and its planes with their names inside the layer.
+/// A layer: its name, and its planes by their names within the layer.
 struct Layer<'a> {
     name: &'a str,
     planes: Vec<(&'a str, &'a ExrPlane)>,
@@ -66,8 +66,8 @@ impl<'a> Layer<'a> {
 
     /// Returns the rank of the layer among the layers of a file; the main image has the smallest rank.
     ///
-    /// Vectors come last. Then the order of names is: no name, `Combined`, `rgba`, `beauty`, any other name. Then the
-    /// order of views applies. Of two layers with other names, color comes before gray.
+    /// Vectors come last. Layers are then ordered by name: no name, `Combined`, `rgba`, `beauty`, any other name. Ties
+    /// are broken by the order of views. Between layers with other names, color precedes gray.
     fn rank(&self, picture: &Picture<'_>, views: &[String]) -> [usize; 4] {
         let name = self.name.to_lowercase();
         let words: Vec<&str> = name.split(['.', '_']).collect();
@@ -148,9 +148,9 @@ impl ExrImage {
 
     /// Returns the planes of the main image of the file.
     ///
-    /// The only plane of a file is a gray image. Of several layers, the one without a name is chosen, then one named
-    /// `Combined`, `rgba` or `beauty`, then the only one with an image. If several views have the layer, the first
-    /// view is chosen.
+    /// If the file has a single plane, it is a gray image. Of several layers, the one without a name is chosen, then
+    /// one named `Combined`, `rgba` or `beauty`, then the only one with an image. If several views have the layer, the
+    /// first view is chosen.
     ///
     /// # Errors
     ///
@@ -258,7 +258,8 @@ impl Picture<'_> {
     }
 }
 
-/// Returns the names of the views of a file in lower case, the default view first.
+/// Returns the names of a file's views in lower case, the default view first. `listed` are the views in the header's
+/// list, `of_parts` the views of its parts.
 #[cfg(feature = "exr")]
 pub(super) fn views(
     listed: impl IntoIterator<Item = String>,

@@ -4,9 +4,10 @@
 //! the tiles; this module arranges them. Tiles are written band by band, and the table is written last, into the gap
 //! reserved for it.
 //!
-//! The compression is run-length encoding. On a fractal height of 2048 × 2048 pixels and on colors and normals derived
-//! from it, ZIP makes files 0.6 to 2.5 % smaller, since the lower bits of `f32` are noise, and takes eleven times as
-//! long; PIZ gains less and takes longer still. Masks, cells and flat parts consist of runs.
+//! The compression is run-length encoding. Compared with it on a fractal height of 2048 × 2048 pixels, and on colors
+//! and normals derived from this height, ZIP makes files 0.6 to 2.5 % smaller and takes eleven times as long. The gain
+//! is small because the lower bits of `f32` are noise. PIZ gains less and takes longer still. Masks, cells and flat
+//! areas consist of runs.
 
 use crate::limits::check_side;
 use crate::rows::Sink;
@@ -33,7 +34,7 @@ const GROUP: usize = 64;
 /// above half of their range.
 const SIDE_LIMIT: u32 = i32::MAX as u32 / 2 - 1;
 
-/// An OpenEXR file being written into a sink. It does not own the sink, so that the codec is compiled only once.
+/// An OpenEXR file that is written to a sink. It does not own the sink, so that the codec is compiled only once.
 pub(crate) struct TileStream {
     band: Band,
     /// Offset of the tile table in the file.
@@ -44,13 +45,13 @@ pub(crate) struct TileStream {
     places: Vec<u64>,
 }
 
-/// Buffered rows that are not yet in the file.
+/// Rows that are buffered until they fill a row of tiles.
 struct Band {
     /// The only header of the file.
     headers: [Header; 1],
     /// Values of each row, plane by plane.
     values: Vec<f32>,
-    /// Row of the image at which the band starts.
+    /// Index of the image row at which the band starts.
     first_row: usize,
 }
 
@@ -84,7 +85,7 @@ impl TileStream {
         })
     }
 
-    /// Writes complete rows, at most as many as the file still needs. `part` returns a pixel's value in a plane.
+    /// Writes complete rows, at most the number of missing rows. `part` returns a pixel's sample in a plane.
     pub(crate) fn write_rows<T>(
         &mut self,
         sink: &mut dyn Sink,

@@ -1,4 +1,4 @@
-//! Parser for Exif data, which is a TIFF file without pixels whose directories contain numbered entries.
+//! Parser for Exif data: a TIFF file without pixels, whose directories contain numbered entries.
 //!
 //! Reference: "Exchangeable image file format for digital still cameras: Exif Version 2.32", CIPA DC-008, 2019.
 //! Damaged data is treated as missing.
@@ -83,12 +83,12 @@ impl<'a> Tiff<'a> {
         self.long(4)
     }
 
-    /// Returns the offset of the directory that an entry points to.
+    /// Returns the offset of the directory that an entry of `directory` points to.
     fn place(&self, directory: usize, tag: u16) -> Option<usize> {
         self.long(self.entry(directory, tag)?)
     }
 
-    /// Returns the offset of the value of an entry; values of at most four bytes are stored in the entry.
+    /// Returns the offset of an entry's value. Values of at most four bytes are stored in the entry itself.
     pub(super) fn entry(&self, directory: usize, tag: u16) -> Option<usize> {
         let n_entries = self.short(directory)?;
         let entries = (0..usize::from(n_entries)).map(|entry| directory + 2 + ENTRY * entry);

@@ -1,4 +1,4 @@
-//! Reads a photograph's Exif orientation and turns the image upright.
+//! Reads a photograph's Exif orientation, and rotates or mirrors the image so that it is upright.
 //!
 //! Reference: "Exchangeable image file format for digital still cameras: Exif Version 2.32", CIPA DC-008, 2019, tag
 //! 274 of the first directory of its TIFF data. Malformed data counts as upright.
@@ -29,7 +29,7 @@ impl Orientation {
         }
     }
 
-    /// Returns the upright image. `size` is the stored width and height.
+    /// Returns the upright image. `size` is the width and height of the stored image.
     pub(super) fn raster<T: Copy>(
         self,
         size: [u32; 2],

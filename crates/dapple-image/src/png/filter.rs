@@ -1,4 +1,4 @@
-//! Chooses a filter for each row. The filter with the smallest sum of absolute differences wins, as the specification
+//! Chooses a filter for each row: the one with the smallest sum of absolute differences, as the specification
 //! recommends.
 //!
 //! Each byte is replaced by its difference from a prediction. The prediction uses the bytes of the pixels at the
@@ -9,7 +9,7 @@ use dapple_raster::simd;
 /// Number of bytes processed in parallel.
 const LANES: usize = 64;
 
-/// Number of additions before a 16-bit lane can overflow: each absolute difference is at most 128.
+/// Number of additions after which a 16-bit lane may overflow. Each absolute difference is at most 128.
 const REGISTERS: usize = 256;
 
 const SUB: u8 = 1;
@@ -17,7 +17,7 @@ const UP: u8 = 2;
 const AVERAGE: u8 = 3;
 const PAETH: u8 = 4;
 
-/// Bytes of a row and the bytes that predict them, all of the same length.
+/// Bytes of a row, and the bytes to the left, above and above left of each, which predict it. All have the same length.
 #[derive(Clone, Copy)]
 pub(super) struct Row<'a> {
     pub(super) here: &'a [u8],
@@ -26,7 +26,7 @@ pub(super) struct Row<'a> {
     pub(super) corner: &'a [u8],
 }
 
-/// Writes the number of the chosen filter, and then the filtered bytes of a row.
+/// Writes the number of the chosen filter, followed by the filtered bytes of a row.
 pub(super) fn filter(row: Row<'_>, out: &mut [u8]) {
     simd::dispatch!(simd::level(), simd => choose(row, out));
 }
@@ -54,7 +54,7 @@ fn choose(row: Row<'_>, out: &mut [u8]) {
     }
 }
 
-/// Returns the sum of the absolute differences of a row, as signed bytes.
+/// Returns the sum of a row's absolute differences from the predictions of filter `KIND`. Differences are signed bytes.
 #[inline(always)]
 fn cost<const KIND: u8>(row: Row<'_>) -> u64 {
     let mut sum = 0;
@@ -80,7 +80,7 @@ fn cost<const KIND: u8>(row: Row<'_>) -> u64 {
     sum
 }
 
-/// Adds absolute differences to the lanes.
+/// Adds the absolute differences of `LANES` bytes from their predictions to the sums in `lanes`.
 #[inline(always)]
 fn add<const KIND: u8>(
     lanes: &mut [u16; LANES],

@@ -22,7 +22,7 @@ pub fn write_gray_png(
     })
 }
 
-/// Writes colors as an RGB PNG file under the sRGB curve, with the chunk that declares it.
+/// Writes colors as an RGB PNG file, encoded with the sRGB curve, with an `sRGB` chunk.
 ///
 /// # Errors
 ///
@@ -38,7 +38,7 @@ pub fn write_color_png(
     })
 }
 
-/// Writes colors with alpha as an RGBA PNG file: color under the sRGB curve, with the chunk that declares it; alpha
+/// Writes colors with alpha as an RGBA PNG file: colors encoded with the sRGB curve, with an `sRGB` chunk; alpha
 /// linear.
 ///
 /// # Errors
@@ -55,7 +55,7 @@ pub fn write_color_alpha_png(
     })
 }
 
-/// Writes normals as an RGB PNG file: `round((part + 1) / 2 · max)`, linear, without a color chunk.
+/// Writes normals as an RGB PNG file: `round((component + 1) / 2 · max)`, linear, without a color chunk.
 ///
 /// # Errors
 ///

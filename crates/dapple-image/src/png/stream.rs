@@ -32,12 +32,12 @@ const STRIPS: usize = 2;
 /// pixel type.
 const LEFT: usize = 8;
 
-/// A PNG file being written into a sink. It does not own the sink, so that the code is compiled only once.
+/// A PNG file that is written to a sink. It does not own the sink, so that the code is compiled only once.
 pub(crate) struct PngStream {
     samples: Samples,
     /// Bytes per row.
     length: usize,
-    /// The last row in the file, then the rows not yet in the file, each preceded by `LEFT` zeros.
+    /// The last row that was written to the file, followed by the buffered rows. Each is preceded by `LEFT` zeros.
     rows: Vec<u8>,
     /// Adler-32 checksum of all filtered rows so far.
     adler: u32,
@@ -94,7 +94,7 @@ impl PngStream {
         })
     }
 
-    /// Writes complete rows, at most as many as the file still needs. `code` encodes a pixel.
+    /// Writes complete rows, at most the number of missing rows. `code` encodes a pixel.
     pub(crate) fn write_rows<T: Sync, P: PngPixel>(
         &mut self,
         sink: &mut dyn Write,
@@ -140,7 +140,7 @@ impl PngStream {
         (STRIP / self.length).max(1)
     }
 
-    /// Returns the number of rows not yet in the file.
+    /// Returns the number of buffered rows that are not in the file yet.
     fn n_rows(&self) -> usize {
         self.rows.len() / (LEFT + self.length) - 1
     }
@@ -190,7 +190,7 @@ impl PngStream {
     }
 }
 
-/// Compresses a part of a stream into non-final blocks that end at a byte boundary.
+/// Compresses bytes into non-final deflate blocks that end at a byte boundary.
 fn compressed(bytes: &[u8], level: u32) -> Result<Vec<u8>, CompressError> {
     let mut deflate = Compress::new(Compression::new(level), false);
     let mut out = Vec::with_capacity(bytes.len() + 1024);
@@ -204,8 +204,8 @@ fn compressed(bytes: &[u8], level: u32) -> Result<Vec<u8>, CompressError> {
     }
 }
 
-/// Returns the Adler-32 checksum (RFC 1950) of the preceding bytes followed by a strip. It combines the sum of the
-/// bytes and the sum of all partial sums.
+/// Returns the Adler-32 checksum (RFC 1950) of all bytes up to and including a strip. `before` is the checksum of the
+/// bytes before the strip. Both the sum of the bytes and the sum of all partial sums are updated.
 fn joined(before: u32, strip: &Strip) -> u32 {
     const BASE: u64 = 65521;
     let sums = |adler: u32| [u64::from(adler & 0xffff), u64::from(adler >> 16)];

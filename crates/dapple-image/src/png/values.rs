@@ -114,7 +114,7 @@ fn gray_alpha<C: Code>(&[code, alpha]: &[C; 2]) -> LinearRgba {
     }
 }
 
-/// Checks that the last channel of a raster, alpha, is at its maximum everywhere.
+/// Returns the raster if its last channel, alpha, is at its maximum everywhere; otherwise an error.
 fn opaque<'a, C: Code, const CHANNELS: usize>(
     raster: &'a Raster<[C; CHANNELS]>,
     needed: &'static str,

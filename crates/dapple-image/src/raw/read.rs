@@ -15,7 +15,7 @@ const MAGIC: &[u8] = b"\x93NUMPY";
 /// Maximum number of channels of an image.
 const CHANNELS_MAX: usize = 4;
 
-/// Function that converts the bytes of a number to `f32`.
+/// Function that decodes the bytes of an array element to `f32`.
 type Number = fn(&[u8]) -> f32;
 
 /// Decodes a NumPy array with the shape (height, width) or (height, width, channels), with at most four channels.
@@ -117,7 +117,7 @@ pub fn decode_r16(
         .map_err(|error| ImageError::damaged("raw", error))
 }
 
-/// Returns the text of the value for `key` in the header, a Python dictionary with three keys.
+/// Returns the text of the value for `key` in the header of a NumPy file, a Python dictionary with three keys.
 fn value_of<'a>(header: &'a str, key: &str) -> Option<&'a str> {
     let at = ['\'', '"']
         .iter()
@@ -132,7 +132,7 @@ fn value_of<'a>(header: &'a str, key: &str) -> Option<&'a str> {
     Some(value[..end].trim())
 }
 
-/// Returns the size in bytes of a value of type `descr`, and the function that converts it.
+/// Returns the size in bytes of an array element of type `descr`, and the function that decodes it.
 fn number_of(descr: &str) -> Result<(usize, Number), ImageError> {
     let feature = match descr.trim_matches(['\'', '"']) {
         "<f4" => return Ok((4, |b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))),

@@ -1,4 +1,4 @@
-//! The bytes of arrays and raw heights, compared with bytes written by hand.
+//! Tests of the bytes of arrays and raw heights against bytes written by hand.
 
 use crate::pixel::Pixel;
 use dapple_color::{LinearRgb, LinearRgba, Normal};
@@ -8,7 +8,7 @@ use dapple_image::{
 use dapple_raster::Raster;
 use std::io::Cursor;
 
-/// Encodes an image that is written in bands of one and two rows.
+/// Encodes an image in two bands: the first row, and the remaining rows.
 fn encode<T: Pixel>(image: &Raster<T>, encoding: Encoding) -> Vec<u8> {
     let [width, height] = image.size();
     let sink = Cursor::new(Vec::new());

@@ -1,4 +1,4 @@
-//! What images say about their channels.
+//! Tests of the reported channels of images.
 
 use dapple_image::{
     Channels, ColorSpace, ExrImage, ExrPlane, Image, Limits, PngImage, PngPixel, PngPixels,

@@ -1,4 +1,5 @@
-//! What files say of their colors, against constants that NumPy computed from the definitions, and littlecms confirmed.
+//! Tests of color spaces declared by files. The expected constants were computed with NumPy from the definitions, and
+//! confirmed by littlecms.
 
 use crate::png::{chunk, naive_png, stored};
 use dapple_color::LinearRgb;
@@ -6,7 +7,7 @@ use dapple_image::{ExrImage, ExrPlane, Image, ImageErrorKind, Limits, decode_ima
 use dapple_raster::Raster;
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
 
-/// Colors in codes of 8 bits.
+/// Test colors as 8-bit codes.
 const CODES: [[u8; 3]; 6] = [
     [200, 80, 60],
     [120, 160, 90],
@@ -16,7 +17,8 @@ const CODES: [[u8; 3]; 6] = [
     [0, 255, 0],
 ];
 
-/// A matrix profile: its columns in XYZ of D50, its curve, and the linear light of BT.709 of all colors.
+/// An ICC matrix profile: the columns of its matrix in XYZ of D50, its curve, and the expected linear BT.709 light of
+/// the test colors.
 struct Profile {
     columns: [[f64; 3]; 3],
     curve: Curve,
@@ -25,9 +27,9 @@ struct Profile {
 
 #[derive(Clone, Copy)]
 enum Curve {
-    /// A power, as the profile's tag `curv` of one number.
+    /// A power function, stored as the tag `curv` with one number.
     Power(f64),
-    /// The curve of sRGB, as the profile's tag `para` of kind 3.
+    /// The sRGB curve, stored as the tag `para` of type 3.
     Srgb,
 }
 
@@ -93,7 +95,7 @@ fn fixed(number: f64) -> [u8; 4] {
     ((number * 65536.0).round() as i32).to_be_bytes()
 }
 
-/// The bytes of a profile of version 2 with three columns and one curve.
+/// Returns the bytes of an ICC profile of version 2 with a matrix of three columns and one curve.
 fn icc(columns: [[f64; 3]; 3], curve: Curve) -> Vec<u8> {
     let curve = match curve {
         Curve::Power(gamma) => {
@@ -119,7 +121,7 @@ fn icc(columns: [[f64; 3]; 3], curve: Curve) -> Vec<u8> {
     profile(b"RGB ", &tags)
 }
 
-/// The bytes of a profile with tags.
+/// Returns the bytes of an ICC profile with these tags.
 fn profile(space: &[u8; 4], tags: &[(&[u8; 4], Vec<u8>)]) -> Vec<u8> {
     let mut bytes = vec![0; 128];
     bytes[12..16].copy_from_slice(b"mntr");
@@ -138,19 +140,19 @@ fn profile(space: &[u8; 4], tags: &[(&[u8; 4], Vec<u8>)]) -> Vec<u8> {
     bytes
 }
 
-/// The chunk of a profile.
+/// Returns the PNG chunk that contains an ICC profile.
 fn iccp(profile: &[u8]) -> Vec<u8> {
     chunk(b"iCCP", &[b"p\0\0".as_slice(), &stored(profile)].concat())
 }
 
-/// A PNG file of 8 bits with one row of colors, and chunks before them.
+/// Decodes a PNG file with one row of 8-bit colors, preceded by `chunks`.
 fn png(colors: &[[u8; 3]], chunks: &[Vec<u8>]) -> Image {
     let line = [&[0], colors.concat().as_slice()].concat();
     let bytes = naive_png([colors.len() as u32, 1], [8, 2, 0], chunks, &line);
     decode_image(&bytes, &Limits::default()).unwrap()
 }
 
-/// A JPEG file of one color, with a profile or a segment of Exif.
+/// Decodes a JPEG file of one color, with an ICC profile or an Exif segment.
 fn jpeg(color: [u8; 3], profile: Option<&[u8]>, exif: Option<&[u8]>) -> Image {
     let mut bytes = Vec::new();
     let mut encoder = Encoder::new(&mut bytes, 100);
@@ -347,7 +349,7 @@ fn gray_and_normals_stay_codes() {
     assert_eq!(gray(&linear).color().unwrap(), gray(&[]).color().unwrap());
 }
 
-/// The bytes of Exif with a color space, and a rule of interoperability.
+/// Returns Exif bytes with a color space and an interoperability rule.
 fn exif(space: u16, rule: &[u8; 4]) -> Vec<u8> {
     let entry = |tag: u16, kind: u16, count: u32, value: [u8; 4]| {
         [
@@ -394,7 +396,7 @@ fn exif_names_adobe_rgb() {
     assert_eq!(both.color().unwrap(), plain, "the profile comes first");
 }
 
-/// An OpenEXR image of one pixel with chromaticities.
+/// Returns an OpenEXR image of one pixel with these chromaticities.
 fn exr(parts: [f32; 3], chromaticities: [[f32; 2]; 4]) -> Image {
     let plane =
         |(name, value): (&str, f32)| ExrPlane::new(name, Raster::filled([1, 1], value).unwrap());

@@ -1,4 +1,4 @@
-//! Round trips, limits and damage of OpenEXR files.
+//! Tests of round trips, limits and damage of OpenEXR files.
 
 use dapple_color::{LinearRgb, LinearRgba};
 use dapple_image::{
@@ -134,7 +134,8 @@ fn a_long_name_survives() {
     assert_eq!(image.planes, [plane], "255 bytes");
 }
 
-/// A file with two named parts, of 16-bit and of whole numbers, in tiles with the given compression.
+/// Returns a file with two named parts, one with 16-bit floats and one with integers, in tiles with the given
+/// compression.
 fn parts(compression: Compression) -> Vec<u8> {
     let part = |name: &str, samples: FlatSamples| {
         let encoding = Encoding {
@@ -256,7 +257,7 @@ fn a_region_needs_only_its_blocks_and_keeps_the_limits() {
     );
 }
 
-/// A file of named parts, each with the colors 1, 2, 3.
+/// Returns a file with these named parts, each with the color 1, 2, 3.
 fn colored_parts(names: &[&str]) -> Vec<u8> {
     let part = |name: &&str| {
         let plane = |(channel, value)| AnyChannel::new(channel, FlatSamples::F32(vec![value; 2]));

@@ -1,4 +1,4 @@
-//! Files that are replaced as a whole, and read within limits.
+//! Tests of files that are replaced atomically, and read within limits.
 
 #![expect(
     clippy::disallowed_methods,
@@ -10,7 +10,7 @@ use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
 
-/// An empty folder of its own for a test.
+/// Creates an empty folder for a test.
 fn folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("dapple-image-{}-{name}", std::process::id()));
     let _ = fs::remove_dir_all(&folder);

@@ -1,15 +1,15 @@
-//! JPEG files that are read, and those that are errors.
+//! Tests of JPEG files that can be read, and of those that are errors.
 
 use dapple_image::{Image, ImageErrorKind, Limits, PngPixels, Transfer, decode_image, decode_jpeg};
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
 use proptest::prelude::*;
 
-/// Smooth colors, which the format hardly changes.
+/// Returns a color of a smooth gradient, which JPEG changes little.
 fn color(x: u32, y: u32) -> [u8; 3] {
     [(3 * x + 20) as u8, (2 * y + 60) as u8, (x + y + 100) as u8]
 }
 
-/// Encodes samples as a file; `set` chooses the kind of coding.
+/// Encodes a smooth gradient as a JPEG file. `set` configures the encoder, such as the kind of coding.
 fn encode(
     size: [u32; 2],
     kind: ColorType,
@@ -29,7 +29,7 @@ fn encode(
     bytes
 }
 
-/// The files of one image in the ways that the format has.
+/// Returns files of the same image in different codings of JPEG.
 fn files(size: [u32; 2]) -> [Vec<u8>; 5] {
     [
         encode(size, ColorType::Luma, |_| ()),

@@ -1,4 +1,4 @@
-//! Layers, views and vectors of OpenEXR files.
+//! Tests of layers, views and vectors of OpenEXR files.
 
 use dapple_color::{LinearRgb, Normal};
 use dapple_image::{
@@ -6,7 +6,7 @@ use dapple_image::{
 };
 use dapple_raster::Raster;
 
-/// An image of planes of one pixel, by name and value.
+/// Returns an image of one pixel, with a plane for each pair of name and value.
 fn image(planes: &[(&str, f32)]) -> Image {
     let plane =
         |&(name, value): &(&str, f32)| ExrPlane::new(name, Raster::filled([1, 1], value).unwrap());
@@ -15,7 +15,8 @@ fn image(planes: &[(&str, f32)]) -> Image {
     Image::Exr(decode_exr(&bytes, &Limits::default()).unwrap())
 }
 
-/// Planes of a layer: a prefix, the names of its channels, and the number in all of them but for alpha, which is 1.
+/// Returns an image of one pixel with several layers. Each is given as a prefix, the names of its channels, and the
+/// value of all channels except alpha, which is 1.
 fn layers(layers: &[(&str, &[&str], f32)]) -> Image {
     let mut planes = Vec::new();
     for (prefix, channels, value) in layers {
@@ -162,7 +163,7 @@ fn a_layer_is_read_by_its_name() {
     assert_eq!(error.kind(), &expected);
 }
 
-/// Vectors of length 1 in three planes: the parts, then the vector.
+/// Checks that three planes with the values `parts` are read as the unit vector `expected`.
 fn assert_normal(names: [&str; 3], parts: [f32; 3], expected: Normal, tolerance: f32) {
     let planes: Vec<_> = names.into_iter().zip(parts).collect();
     let found = image(&planes).normals().unwrap().pixels()[0];

@@ -1,8 +1,8 @@
-//! Formats whose codec is left out.
+//! Tests of formats whose codec is compiled out.
 
 use dapple_image::{ImageErrorKind, Limits, decode_image};
 
-/// The signatures of formats, and the beginning of the error.
+/// Signatures of formats, and the start of the error message for each.
 const LEFT_OUT: [(&[u8], &str); 3] = [
     (b"\x89PNG\r\n\x1a\n", "PNG without the feature `png`"),
     (b"\xff\xd8\xff", "JPEG without the feature `jpeg`"),

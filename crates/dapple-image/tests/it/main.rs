@@ -1,4 +1,4 @@
-//! Tests of the formats, through the public interface, so that the codecs are compiled only once, in the library.
+//! Tests of the formats through the public interface. The codecs are compiled once, in the library.
 
 #[cfg(feature = "png")]
 mod arrays;

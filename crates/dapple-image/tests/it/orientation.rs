@@ -1,14 +1,14 @@
-//! Photographs that were stored turned.
+//! Tests of photographs that were stored rotated or mirrored.
 
 use dapple_image::{Limits, PngPixels, decode_jpeg};
 use dapple_raster::Raster;
 use jpeg_encoder::{ColorType, Encoder};
 
-/// The side of a block of the format, in pixels.
+/// Side of a JPEG block, in pixels.
 const BLOCK: u32 = 8;
 
-/// The pixels of a picture of 3 columns and 2 rows, as the eight orientations store it. The specification defines
-/// where the first row and the first column of the file are in the picture.
+/// Stored size and pixels of the same upright image of 3 × 2 pixels, for each of the eight orientations. The
+/// specification defines where the first row and first column of the file are in the image.
 const STORED: [([u32; 2], &[u8]); 8] = [
     ([3, 2], b"abcdef"),
     ([3, 2], b"cbafed"),
@@ -20,8 +20,8 @@ const STORED: [([u32; 2], &[u8]); 8] = [
     ([2, 3], b"daebfc"),
 ];
 
-/// The picture that was stored, in an orientation that is said in TIFF data. Each pixel is a gray block of the file,
-/// which its best quality keeps as it is.
+/// Decodes the test image, stored with orientation `number` and the Exif data `tiff`. Each pixel is a gray block, which
+/// the best JPEG quality preserves exactly.
 fn read(number: usize, tiff: &[u8]) -> Raster<u8> {
     let ([width, height], stored) = STORED[number - 1];
     let samples: Vec<u8> = (0..BLOCK * height)
@@ -45,7 +45,7 @@ fn read(number: usize, tiff: &[u8]) -> Raster<u8> {
     Raster::from_fn(blocks, |x, y| codes.row(BLOCK * y)[(BLOCK * x) as usize]).unwrap()
 }
 
-/// The picture that all orientations store.
+/// Returns the upright image that is stored in all orientations.
 fn upright() -> Raster<u8> {
     Raster::from_vec([3, 2], b"abcdef".to_vec()).unwrap()
 }

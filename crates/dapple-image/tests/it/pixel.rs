@@ -1,17 +1,17 @@
-//! Pixels of each content, with their codes and the door that writes them.
+//! Pixel types for each content, their codes, and the function that writes them.
 
 use dapple_color::{Code, LinearRgb, LinearRgba, Normal};
 use dapple_image::{Content, ImageError, PngPixel, RowWriter};
 use dapple_raster::RasterView;
 use std::io::Cursor;
 
-/// A type of pixels that can be written.
+/// A pixel type that can be written.
 pub(crate) trait Pixel: Clone {
-    /// The content of images with such pixels.
+    /// Content type of images with this pixel type.
     const CONTENT: Content;
-    /// The pixel in codes of 8 bits.
+    /// The pixel type encoded with 8 bits per channel.
     type Eight: PngPixel;
-    /// The pixel in codes of 16 bits.
+    /// The pixel type encoded with 16 bits per channel.
     type Sixteen: PngPixel;
 
     fn eight(&self) -> Self::Eight;

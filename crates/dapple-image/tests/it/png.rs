@@ -1,4 +1,5 @@
-//! PNG files against a naive writer, which stores the samples without compression, by the specification alone.
+//! Tests of PNG files against a naive encoder that stores the samples without compression, written from the
+//! specification alone.
 
 use core::slice;
 use dapple_image::{
@@ -9,7 +10,7 @@ use proptest::prelude::*;
 
 const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// The checksum of chunks, CRC-32, bit by bit.
+/// Returns the CRC-32 checksum of a chunk, computed bit by bit.
 fn crc(bytes: &[u8]) -> u32 {
     let mut sum = u32::MAX;
     for &byte in bytes {
@@ -32,7 +33,7 @@ pub(crate) fn chunk(name: &[u8; 4], data: &[u8]) -> Vec<u8> {
     .concat()
 }
 
-/// A zlib stream of one stored block.
+/// Returns a zlib stream with a single uncompressed block.
 pub(crate) fn stored(data: &[u8]) -> Vec<u8> {
     let length = u16::try_from(data.len()).unwrap();
     let (mut a, mut b) = (1_u32, 0_u32);
@@ -48,7 +49,8 @@ pub(crate) fn stored(data: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// A PNG file; `format` is bit depth, color type and interlacing, `lines` are filter bytes and samples as they stand.
+/// Returns a PNG file. `format` is the bit depth, the color type and the interlacing; `extra` are chunks after the
+/// header; `lines` are the filter bytes and samples, unchanged.
 pub(crate) fn naive_png(
     size: [u32; 2],
     format: [u8; 3],

@@ -1,4 +1,4 @@
-//! Round trips: values to a file and back.
+//! Tests of round trips of values through a file.
 
 use dapple_color::{LinearRgb, LinearRgba, Normal};
 use dapple_image::{
@@ -11,7 +11,7 @@ use dapple_raster::Raster;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-/// A unique file name for a test; the file is removed at the end.
+/// A unique file name for a test. The file is removed on drop.
 struct Scratch(PathBuf);
 
 impl Scratch {
@@ -48,7 +48,7 @@ fn covered() -> Raster<LinearRgba> {
     colors().map(|&color| LinearRgba { color, alpha: 0.5 })
 }
 
-/// The pixels and the curve of a PNG file.
+/// Returns the content of a PNG image; panics for other formats.
 fn png(image: Image) -> PngImage {
     match image {
         Image::Png(png) => png,

@@ -1,4 +1,4 @@
-//! The writer of rows compared with the writers of whole images, and its errors.
+//! Tests of the row writer against the writers of whole images, and of its errors.
 //!
 //! Reference: for the bytes of tiles, Academy Software Foundation, "OpenEXR File Layout", <https://openexr.com>.
 
@@ -45,7 +45,7 @@ fn normals(size: [u32; 2]) -> Raster<Normal> {
     })
 }
 
-/// Encodes an image that is written in bands of these heights, over and over.
+/// Encodes an image in bands. Their heights are `heights`, repeated.
 fn encode<T: Pixel>(image: &Raster<T>, encoding: Encoding, heights: &[u32]) -> Vec<u8> {
     let [width, height] = image.size();
     let sink = Cursor::new(Vec::new());
@@ -256,7 +256,7 @@ fn sizes_that_do_not_fit_are_refused() {
     }
 }
 
-/// A sink that takes some bytes and then fails.
+/// A sink that accepts some bytes and then fails.
 #[derive(Debug)]
 struct Full {
     bytes: Cursor<Vec<u8>>,

@@ -1,15 +1,15 @@
-//! PNG files of several strips: their pixels come back from an independent decoder, whatever the rows are like, and
-//! their bytes are the same on any number of threads and at every SIMD level.
+//! Tests of PNG files with several strips. An independent decoder must return their pixels. Their bytes must be the
+//! same on any number of threads and at every SIMD level.
 
 use dapple_image::{Limits, PngPixel, PngPixels, Transfer, decode_png, encode_png};
 use dapple_raster::Raster;
 use dapple_raster::simd::for_every_level;
 use proptest::prelude::*;
 
-/// A size of three and a half strips of three samples of 16 bits.
+/// Size of an image of three and a half strips, with three 16-bit samples per pixel.
 const SIZE: [u32; 2] = [401, 763];
 
-/// A random number for a pixel.
+/// Returns a pseudorandom number for a pixel.
 fn noise(x: u32, y: u32) -> u32 {
     let number = (x ^ y.wrapping_mul(0x9e37_79b9)).wrapping_mul(0x85eb_ca6b);
     (number ^ number >> 15).wrapping_mul(0xc2b2_ae35) >> 8
@@ -23,7 +23,8 @@ fn decode(bytes: &[u8]) -> PngPixels {
     decode_png(bytes, &Limits::default()).unwrap().pixels
 }
 
-/// Rows of all kinds: noise, slopes, flat parts, and noise that is repeated, also from row to row.
+/// Returns the pixel of an image with all kinds of rows: noise, gradients, constant areas, and noise that repeats
+/// within a row and between rows.
 fn mixed(x: u32, y: u32) -> [u16; 3] {
     let noise = noise(x, y) as u16;
     match (y / 100 + x / 200) % 5 {
@@ -61,7 +62,8 @@ fn rows_longer_than_a_strip_come_back() {
     assert_eq!(decode(&encode(&raster)), PngPixels::Gray16(raster));
 }
 
-/// Bytes of which each is half as frequent as the one before, and whose codes would be longer than the longest.
+/// Tests byte frequencies that halve from one byte value to the next. The optimal codes of the rarest bytes exceed the
+/// maximum code length.
 #[test]
 fn rare_bytes_come_back() {
     let rare = |x, y| (noise(x, y) | 1 << 20).trailing_zeros() as u8;

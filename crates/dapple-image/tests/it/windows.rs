@@ -1,4 +1,4 @@
-//! Data windows and display windows of OpenEXR files.
+//! Tests of data windows and display windows of OpenEXR files.
 
 use dapple_image::{ImageErrorKind, Limits, decode_exr, decode_exr_region};
 use exr::image::write::WritableImage;
@@ -8,15 +8,15 @@ use exr::meta::attribute::IntegerBounds;
 use exr::meta::header::{ImageAttributes, LayerAttributes};
 use std::io::Cursor;
 
-/// The first column and row of a window, and its numbers of columns and rows.
+/// First column, first row, width and height of a window.
 type Window = [i32; 4];
 
-/// The value of a pixel at a place in the space of the windows; none is 0.
+/// Returns the value of the pixel at column `x` and row `y`, in the coordinates of windows. It is never 0.
 fn value(x: i32, y: i32) -> f32 {
     (1000 + 100 * y + x) as f32
 }
 
-/// A file whose pixels have the values of their places.
+/// Returns a file whose pixels have the values that [`value`] returns.
 fn file(data: Window, display: Window) -> Vec<u8> {
     let bounds = |[x, y, width, height]: Window| {
         IntegerBounds::new((x, y), (width as usize, height as usize))
@@ -37,7 +37,8 @@ fn file(data: Window, display: Window) -> Vec<u8> {
     bytes
 }
 
-/// A crop, an overscan, windows that are shifted against each other in eight directions, and places below 0.
+/// Data window and display window of each test: equal windows, a crop, an overscan, windows shifted against each other
+/// in eight directions, and negative coordinates.
 const WINDOWS: [[Window; 2]; 12] = [
     [[0, 0, 7, 5], [0, 0, 7, 5]],
     [[24, 20, 16, 10], [0, 0, 64, 64]],
