@@ -2,7 +2,7 @@
 
 use crate::{FaceIdx, Mesh, VertexIdx};
 
-/// An edge seen from one of its faces: the edge from corner `edge` of `face` to the next corner.
+/// A directed edge of a face: from corner `edge` of `face` to the face's next corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FaceEdge {
     /// Face that the edge belongs to.
@@ -50,8 +50,8 @@ impl Adjacency {
         across
     }
 
-    /// Returns the adjacency that pairs up as many faces as possible at every edge. Faces that traverse the edge in
-    /// opposite directions are paired first.
+    /// Returns an adjacency with as many neighbors as possible: at every edge, faces are paired until at most one is
+    /// left. Faces that traverse the edge in opposite directions are paired first.
     pub(crate) fn paired(n_faces: usize, edges: &[SortedEdge]) -> Self {
         let mut across = Self::alone(n_faces);
         for group in edges.chunk_by(|a, b| a.ends == b.ends) {
@@ -98,7 +98,7 @@ impl Adjacency {
         self.across[from.face.index()][usize::from(from.edge)] = to;
     }
 
-    /// Returns the three edges of a face as seen from the neighboring faces.
+    /// Returns, for each edge of a face, the same edge as seen from the neighboring face; `None` at a border.
     pub(crate) fn around(&self, face: FaceIdx) -> [Option<FaceEdge>; 3] {
         self.across[face.index()]
     }
@@ -132,7 +132,7 @@ impl Adjacency {
         labels
     }
 
-    /// Returns the lowest corner of the fan of each corner, where corners are numbered `3 * face + corner`.
+    /// Returns, for each corner, the lowest corner of its fan. Corner `c` of face `f` has the number `3 * f + c`.
     ///
     /// A fan is a set of corners at one vertex whose faces are connected around the vertex through neighbors.
     pub(crate) fn fans(&self, mesh: &Mesh) -> Vec<usize> {
@@ -162,7 +162,7 @@ impl Adjacency {
     }
 }
 
-/// A face's edge in a sortable form.
+/// An edge of a face, in a form that can be sorted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct SortedEdge {
     /// The lower and the higher vertex index.
@@ -192,7 +192,7 @@ pub(crate) fn sorted_edges(mesh: &Mesh) -> Vec<SortedEdge> {
     edges
 }
 
-/// Returns whether two corners of a face are the same vertex.
+/// Returns whether a face contains a vertex twice.
 pub(crate) fn names_twice([a, b, c]: [VertexIdx; 3]) -> bool {
     a == b || b == c || c == a
 }

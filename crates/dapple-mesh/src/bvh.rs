@@ -160,9 +160,9 @@ impl Bvh {
         }
     }
 
-    /// Moves the origin of a ray to its point nearest to the center of the mesh, and returns the distance moved.
-    /// Distances from the new origin are about the size of the mesh, so that rounding stays well below the margin of
-    /// the boxes.
+    /// Moves the origin of a ray along it to the point nearest to the center of the mesh. Returns the new ray and the
+    /// distance moved. Hit distances from the new origin are about as large as the mesh, so that their rounding errors
+    /// stay well below the margin of the boxes.
     fn near_ray(&self, ray: &Ray) -> (Ray, f64) {
         let shift = (self.tree.middle() - ray.origin).dot(ray.direction);
         let origin = ray.at(shift);
@@ -170,7 +170,8 @@ impl Bvh {
         (Ray { origin, direction }, shift)
     }
 
-    /// Intersects the ray with one face; `None` unless the distance is above zero.
+    /// Intersects the ray with one face. Returns `None` unless the distance from the ray's original origin, `shift`
+    /// plus the distance along the moved ray, is above zero.
     fn meet(&self, probe: &Probe, shift: f64, slot: u32) -> Option<RayHit> {
         let (distance, weights) = probe.meet(&self.corners[slot as usize])?;
         let distance = distance + shift;

@@ -9,7 +9,7 @@ use dapple_color::{LinearRgb, LinearRgba};
 use glam::{DVec2, DVec3};
 use std::collections::BTreeSet;
 
-/// Rounding tolerance for a corner outside the unit square of its face, in texture coordinates.
+/// Tolerance for rounding errors by which a corner may be outside of its face's unit square, in texture coordinates.
 const UV_SLACK: f64 = 1e-4;
 /// Signature of PNG files.
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";

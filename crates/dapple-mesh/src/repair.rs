@@ -91,7 +91,7 @@ impl Mesh {
     }
 }
 
-/// A mesh under repair, with the origins of its vertices and faces.
+/// A mesh during its repair, with the original index of each vertex and face.
 struct Draft {
     mesh: Mesh,
     vertex_before: Vec<VertexIdx>,
@@ -99,7 +99,7 @@ struct Draft {
 }
 
 impl Draft {
-    /// Redirects all faces to the first vertex at each position; the other vertices remain unused.
+    /// Creates a draft in which all faces use the first vertex at each position. The other vertices are unused.
     fn new(mesh: &Mesh) -> Self {
         let mut draft = Self {
             vertex_before: (0..mesh.positions().len() as u32).map(VertexIdx).collect(),
@@ -110,7 +110,7 @@ impl Draft {
         draft
     }
 
-    /// Replaces the vertices of all faces by `vertices`.
+    /// Replaces each vertex of all faces by its entry in `vertices`.
     fn rename(&mut self, vertices: &[u32]) {
         for corner in self.mesh.faces.as_flattened_mut() {
             *corner = VertexIdx(vertices[corner.index()]);

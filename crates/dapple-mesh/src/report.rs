@@ -104,7 +104,7 @@ impl Mesh {
         faces
     }
 
-    /// Counts the faces with a winding opposite to the first face at the same positions.
+    /// Returns the number of faces whose winding is opposite to that of the first face at the same positions.
     fn back_to_back_faces(&self, first_at_position: &[u32]) -> usize {
         let mut faces = Vec::with_capacity(self.faces().len());
         for (face, &corners) in (0..).map(FaceIdx).zip(self.faces()) {

@@ -95,8 +95,8 @@ pub(crate) fn ring(n: u32, twisted: bool) -> Mesh {
     mesh(&corners, &faces)
 }
 
-/// Returns random triangle soups of up to 24 triangles on up to 9 vertices, many of which coincide or are collinear,
-/// exactly or nearly.
+/// Generates random meshes of up to 24 triangles on up to 9 vertices. Many vertices coincide or are collinear, exactly
+/// or nearly.
 pub(crate) fn soup() -> impl Strategy<Value = Mesh> {
     let part = prop_oneof![
         4 => (0_i8..3).prop_map(f64::from),

@@ -94,7 +94,7 @@ impl Surface {
         }
     }
 
-    /// Walks the remaining distance.
+    /// Walks until the remaining distance is zero, or the path reaches a border.
     #[inline]
     fn forward(&self, mut walk: Walk) -> Walk {
         let mut entered = None;
@@ -111,7 +111,8 @@ impl Surface {
         walk
     }
 
-    /// Moves to the end of the path, or to the edge where it leaves the face. The edge by which it entered is ignored.
+    /// Moves the end of the walk along its direction, up to the total distance or to the edge where the path leaves the
+    /// face. `entered` is the edge by which it entered the face, which is ignored.
     ///
     /// Returns the transition across the exit edge; `None` at the end of the path and at a border.
     #[inline]

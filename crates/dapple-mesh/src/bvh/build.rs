@@ -76,7 +76,7 @@ struct Split {
     cost: f64,
 }
 
-/// Mapping from a coordinate along an axis to a bin.
+/// Maps coordinates along an axis to bins.
 #[derive(Clone, Copy)]
 struct Binning {
     low: f64,
@@ -102,7 +102,7 @@ impl Builder {
         }
     }
 
-    /// Returns the nodes, root first, and the order of the triangles in the leaves.
+    /// Returns the nodes, with the root first, and the indices of the triangles in the order of the leaves.
     pub(crate) fn build(mut self) -> (Vec<Node>, Vec<u32>) {
         let all = 0..self.order.len();
         if all.is_empty() {
@@ -149,8 +149,8 @@ impl Builder {
         })
     }
 
-    /// Partitions a range into two halves and returns the start of the second one; `None` if the range should stay a
-    /// leaf.
+    /// Partitions a range of triangles into two halves. Returns the start of the second half; `None` if the range
+    /// should become a leaf.
     fn split(&mut self, range: Range<usize>, depth: u32) -> Option<usize> {
         let count = range.len();
         if count <= 1 {
@@ -201,7 +201,7 @@ impl Builder {
         Some(middle)
     }
 
-    /// Finds the split between two bins with the lowest cost and with triangles on both sides.
+    /// Returns the cheapest split between two bins that has triangles on both sides; `None` if there is none.
     fn best_split(&self, range: Range<usize>, binnings: &[Binning; 3]) -> Option<Split> {
         // Sort the triangles into bins.
         let mut bins = [[(Bounds::NONE, 0_usize); BINS]; 3];

@@ -1,11 +1,11 @@
-//! Tests of the hierarchy against a search through all faces.
+//! Tests of the hierarchy against a search through all triangles.
 
 use super::{Bvh, NearestPoint, Probe, Ray, RayHit};
 use crate::{FaceIdx, Mesh};
 use glam::DVec3;
 
-/// Generator of random numbers from 0 to 1, which are the high bits of a multiplicative congruential generator by
-/// L'Ecuyer, Mathematics of Computation 68, 1999.
+/// A generator of random numbers from 0 to 1: the high bits of a multiplicative congruential generator by L'Ecuyer,
+/// Mathematics of Computation 68, 1999.
 struct Numbers(u64);
 
 impl Numbers {
@@ -59,7 +59,7 @@ fn flat_grid(side: u32) -> Bvh {
     bvh(positions, &triangles)
 }
 
-/// Returns the nearest hit among all triangles by brute force; on a tie, the one with the lowest index.
+/// Returns the nearest hit among all triangles, by brute force. On a tie, it is the triangle with the lowest index.
 fn first_of_all(bvh: &Bvh, ray: &Ray, limit: f64) -> Option<RayHit> {
     let (ray, shift) = bvh.near_ray(ray);
     let probe = Probe::new(&ray);
@@ -72,7 +72,7 @@ fn first_of_all(bvh: &Bvh, ray: &Ray, limit: f64) -> Option<RayHit> {
     })
 }
 
-/// Compares the hierarchy with the oracle, and returns the number of rays with a hit.
+/// Compares the hierarchy with a brute-force search. Returns the number of rays with a hit.
 fn compare(bvh: &Bvh, rays: impl Iterator<Item = Ray>) -> u32 {
     let mut found = 0;
     for (index, ray) in rays.enumerate() {
@@ -186,7 +186,7 @@ fn closed_mesh_lets_no_ray_through_its_edges_and_vertices() {
     }
 }
 
-/// Returns the nearest point over all faces by brute force.
+/// Returns the nearest point among all triangles, by brute force.
 fn nearest_of_all(bvh: &Bvh, position: DVec3) -> Option<NearestPoint> {
     let points = (0..bvh.corners.len() as u32).map(|slot| bvh.nearest_of(slot, position));
     points.min_by(|a, b| {

@@ -23,7 +23,7 @@ impl Corners {
     }
 }
 
-/// A ray, with the shear that maps it to a coordinate axis.
+/// A ray prepared for intersection tests: its origin, and the shear that maps it to a coordinate axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Probe {
     origin: [f64; 3],

@@ -120,8 +120,8 @@ impl Draft {
         changed
     }
 
-    /// Returns whether a flip gives a shorter edge, or only faces with nonzero area. Other flips could repeat
-    /// forever.
+    /// Returns whether flipping the cap's longest edge gives a shorter edge, or only faces with nonzero area. Flips
+    /// without such a gain could repeat forever.
     fn gains(&self, cap: &Cap, to: FaceEdge) -> bool {
         let corner = |vertex: VertexIdx| self.mesh.positions[vertex.index()];
         let [tip, third] = [self.third(cap.of), self.third(to)].map(corner);
@@ -132,8 +132,9 @@ impl Draft {
                 .all(|corners| area_vector(corners).is_some())
     }
 
-    /// Returns the neighbors across the other two edges of a cap and of its neighbor: first those at the start of the
-    /// shared edge (as the neighbor traverses it), then those at its end.
+    /// Returns the edges across the two free sides of a cap, and across the two free sides of its neighbor. Of each
+    /// pair, the first side is at the start of the shared edge, as the neighbor traverses it, and the second is at its
+    /// end.
     fn sides(&self, cap: FaceEdge, to: FaceEdge, across: &Adjacency) -> [[Option<FaceEdge>; 2]; 2] {
         let after = |at: FaceEdge, steps| across.across(step(at, steps));
         let [past_end, past_start] = [1, 2].map(|steps| after(to, steps));
@@ -143,8 +144,8 @@ impl Draft {
         [cap_sides, [past_start, past_end]]
     }
 
-    /// Splits the neighbor of a cap at the corner of the cap on their shared edge. The cap becomes one of the two
-    /// parts.
+    /// Flips the longest edge of a cap: splits the neighbor at the cap's corner on that edge. The cap becomes one of
+    /// the two parts.
     ///
     /// Both parts have the winding of the neighbor.
     fn flip(&mut self, cap: FaceEdge, to: FaceEdge, across: &mut Adjacency) {
@@ -174,7 +175,8 @@ impl Draft {
     }
 }
 
-/// A cap and its longest edge. Caps are ordered by the length of this edge; on a tie, the lower face is greater.
+/// A cap and its longest edge. Caps are ordered by the length of this edge. On a tie, the face with the lower index is
+/// greater.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cap {
     length_sq: f64,
@@ -221,7 +223,7 @@ fn step(at: FaceEdge, steps: u8) -> FaceEdge {
     }
 }
 
-/// Makes two edges neighbors; an edge whose counterpart is `None` becomes a border.
+/// Makes two edges neighbors. If one of them is `None`, the other becomes a border.
 fn join(across: &mut Adjacency, a: Option<FaceEdge>, b: Option<FaceEdge>) {
     for (from, to) in [(a, b), (b, a)] {
         if let Some(from) = from {

@@ -1,4 +1,4 @@
-//! Repairs of single defects.
+//! Tests of repairs of single defects.
 
 mod any;
 
@@ -22,7 +22,7 @@ fn union(meshes: &[Mesh]) -> Mesh {
     Mesh::new(positions, &faces).expect("the meshes are valid")
 }
 
-/// Returns the mesh with the given faces flipped.
+/// Returns the mesh with flipped faces: those for whose index `which` returns true.
 fn turned(mesh: &Mesh, which: impl Fn(usize) -> bool) -> Mesh {
     let over = |(face, [a, b, c]): (usize, &[VertexIdx; 3])| {
         if which(face) {

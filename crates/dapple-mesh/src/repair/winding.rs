@@ -1,4 +1,4 @@
-//! Makes the winding of each piece's faces consistent, and makes cuts in non-orientable pieces.
+//! Makes the winding of faces consistent within each piece, and cuts non-orientable pieces.
 
 use super::Draft;
 use crate::adjacency::{Adjacency, FaceEdge, sorted_edges};
@@ -23,7 +23,8 @@ impl Draft {
         count
     }
 
-    /// Collects the piece of a seed face, and whether each face must be flipped to agree with the seed.
+    /// Returns the piece that contains a seed face. Each of its faces is marked if it must be flipped to agree with the
+    /// seed.
     fn flood(&self, seed: FaceIdx, adjacency: &Adjacency, seen: &mut [bool]) -> Piece {
         seen[seed.index()] = true;
         let mut faces = vec![(seed, false)];
@@ -54,7 +55,8 @@ impl Draft {
         self.mesh.faces[at.face.index()][usize::from(at.edge)]
     }
 
-    /// Flips either the marked or the unmarked faces of a piece, and returns the number of flipped faces.
+    /// Flips either the marked or the unmarked faces of a piece: in a closed piece so that normals point outward, in
+    /// others so that less area is flipped. Returns the number of flipped faces.
     fn turn_piece(&mut self, piece: &Piece) -> usize {
         // Sum the signed volume, and the areas of marked and unmarked faces.
         let origin = self.mesh.corners(piece.faces[0].0)[0];
@@ -108,7 +110,8 @@ impl Draft {
         count
     }
 
-    /// Gives every fan of a marked vertex except the first a new vertex, in the order of their lowest corners.
+    /// Splits the marked vertices: each fan at the vertex, except the first one, gets a new vertex. Fans are ordered by
+    /// their lowest corners.
     fn split(&mut self, marked: &[bool]) {
         let fans = Adjacency::new(&self.mesh).fans(&self.mesh);
         let mut taken = vec![false; marked.len()];
@@ -135,7 +138,8 @@ impl Draft {
 
 /// A piece: faces that are connected across edges with exactly two faces.
 struct Piece {
-    /// Faces in flood order, each with whether its winding is opposite to the first face's.
+    /// Faces in the order in which they were found, each with whether its winding is opposite to that of the first
+    /// face.
     faces: Vec<(FaceIdx, bool)>,
     /// Whether every edge has two faces.
     closed: bool,

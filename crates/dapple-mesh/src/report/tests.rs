@@ -4,7 +4,7 @@ use super::*;
 use crate::test_meshes::{cube, mesh, plane, ring, soup, tetrahedron};
 use proptest::prelude::*;
 
-/// Returns the directed edges of a face; none if it contains a vertex twice.
+/// Returns the directed edges of a face; an empty list if it contains a vertex twice.
 fn directed(face: [VertexIdx; 3]) -> Vec<[VertexIdx; 2]> {
     let [a, b, c] = face;
     if a == b || b == c || c == a {
@@ -14,7 +14,7 @@ fn directed(face: [VertexIdx; 3]) -> Vec<[VertexIdx; 2]> {
     }
 }
 
-/// Returns the faces at an edge, and whether they traverse it from the first to the second vertex.
+/// Returns the faces at an edge, each with whether it traverses the edge from `a` to `b`.
 fn faces_at(mesh: &Mesh, [a, b]: [VertexIdx; 2]) -> Vec<(usize, bool)> {
     let at = |(face, corners): (usize, &[VertexIdx; 3])| {
         let edges = directed(*corners);
@@ -24,7 +24,7 @@ fn faces_at(mesh: &Mesh, [a, b]: [VertexIdx; 2]) -> Vec<(usize, bool)> {
     mesh.faces().iter().enumerate().filter_map(at).collect()
 }
 
-/// Returns the number of connected components among items.
+/// Returns the number of connected components of `items`. `joined` returns whether two items are connected.
 fn count_sets(items: &[usize], joined: impl Fn(usize, usize) -> bool) -> usize {
     let mut left = items.to_vec();
     let mut count = 0;

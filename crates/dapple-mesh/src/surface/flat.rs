@@ -69,7 +69,8 @@ impl FaceFrame {
     }
 }
 
-/// Returns the transition that maps an edge in the plane of one face to the same edge in the plane of the other.
+/// Returns the transition across a shared edge: the rigid motion from the plane of one face to the plane of the other
+/// that maps the edge to itself.
 ///
 /// `along` is the edge as a vector in space; its directions in both planes determine the rotation. Differences of
 /// planar corners would be less precise for the short edges of needles.

@@ -1,11 +1,12 @@
-//! Tests of planes and transitions.
+//! Tests of the planes of faces and the transitions between them.
 
 use super::*;
 use crate::test_meshes::{cube, mesh, plane, ring, soup, surface, tetrahedron};
 use crate::{MeshErrorKind, VertexIdx};
 use proptest::prelude::*;
 
-/// Checks that axes are orthonormal, that rotations have length 1, and that neighbors agree about their edge.
+/// Checks that the axes of each plane are orthonormal, that the rotations of transitions have length 1, and that
+/// transitions map the edge to the neighbor's edge.
 fn check_tables(surface: &Surface) {
     for (face, flat) in (0..).map(FaceIdx).zip(&surface.flats) {
         let corners = surface.mesh.corners(face);

@@ -1,4 +1,4 @@
-//! Walks with known ends, from unrolling the surface.
+//! Tests of walks whose ends are known from unrolling the surface.
 
 mod limits;
 
@@ -7,10 +7,11 @@ use crate::FaceIdx;
 use crate::test_meshes::{cube, plane, ring, surface, tetrahedron};
 use glam::DVec3;
 
-/// Error bound of 16 faces for position and direction, relative to the distance and the size of a face: 2^-46.
+/// Error bound of position and direction after 16 faces, relative to the distance and the size of a face: 2^-46.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Returns the point on a face below `position`, and the direction in its plane along a vector.
+/// Returns a start point: `position` projected onto a face. Also returns the unit direction of `along` in the plane of
+/// the face.
 fn start(
     surface: &Surface,
     face: u32,

@@ -1,4 +1,4 @@
-//! Repairs of files and of soups.
+//! Tests of repairs of mesh files and of random triangles.
 
 use super::turned;
 use crate::test_meshes::{cube, ring, soup, tetrahedron};
@@ -39,7 +39,7 @@ fn repair_of_files_gives_surfaces() {
     }
 }
 
-/// Returns the triangles of an OBJ file, polygons as fans.
+/// Returns the triangles of an OBJ file. Polygons become triangle fans.
 #[expect(clippy::disallowed_methods, reason = "reads test data")]
 fn read(path: &str) -> Option<Mesh> {
     let text = std::fs::read_to_string(path).ok()?;
@@ -69,9 +69,9 @@ fn read(path: &str) -> Option<Mesh> {
     Mesh::new(positions, &faces).ok()
 }
 
-/// Inserts a vertex on an edge of one face only, with a cap between the parts and the face on the other side.
+/// Splits a face at a vertex on one of its edges, and fills the gap to the face on the other side with a cap.
 ///
-/// `part` is the position along the edge, from 0 to 1.
+/// `part` is the vertex's position along the edge, from 0 to 1.
 fn crack(mesh: &Mesh, face: usize, edge: usize, part: f64) -> Mesh {
     let mut positions = mesh.positions().to_vec();
     let mut faces: Vec<[u32; 3]> = mesh

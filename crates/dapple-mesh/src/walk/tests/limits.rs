@@ -1,4 +1,4 @@
-//! Walks to borders, across needles, with invalid numbers, and on arbitrary meshes.
+//! Tests of walks to borders, across needles, with numbers that are not finite, and on arbitrary meshes.
 
 use super::{ROUNDING, is_inside, start};
 use crate::test_meshes::{cube, mesh, plane, ring, sheet, soup, surface, tetrahedron};
@@ -154,7 +154,7 @@ fn walk_around_the_tip_of_a_spike_ends() {
     }
 }
 
-/// Returns a closed, open, or rough surface, and a point in one of its faces.
+/// Generates a closed, open or rough surface, and a point in one of its faces.
 fn somewhere() -> impl Strategy<Value = (Surface, SurfacePoint)> {
     let rough = sheet(9, 9, |column, row| {
         let height = libm::sin(f64::from(column * 7 + row * 3)) + 0.1 * f64::from(row);
