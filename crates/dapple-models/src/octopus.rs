@@ -28,8 +28,8 @@ const DIRECTIONS: [[f64; 2]; 8] = {
     ]
 };
 
-/// Two arm shapes as points along an arm, starting at its root: distance outward, height, distance to the left, and
-/// radius.
+/// Shapes of the arms. Each is a list of points along the arm from its root: distance outward, height, distance to the
+/// left, and radius.
 const ARMS: [[[f64; 4]; 7]; 2] = [
     [
         [0.06, 0.02, 0.0, 0.16],

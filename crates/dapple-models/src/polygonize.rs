@@ -122,7 +122,7 @@ impl<'a> Cut<'a> {
     }
 }
 
-/// Remeshes a sheet until about `count` triangles remain.
+/// Remeshes a closed surface until about `count` triangles remain.
 fn evened(cut: &Cut, mut sheet: Sheet, count: usize) -> Result<Mesh, ModelError> {
     /// Maximum number of rounds. Each round removes at least a few percent of the faces until no edge can be
     /// collapsed.

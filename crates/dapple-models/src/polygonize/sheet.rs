@@ -9,16 +9,16 @@ use glam::DVec3;
 pub(super) struct Sheet {
     positions: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
-    /// For each vertex, the indices of its faces. Empty for a removed vertex.
+    /// For each vertex, the indices of the faces that contain it. Empty for a removed vertex.
     fans: Vec<Vec<u32>>,
     n_faces: usize,
 }
 
 /// Vertex indices that mark a removed face.
 const GONE: [u32; 3] = [u32::MAX; 3];
-/// Minimum cosine of the angle between a face's normals before and after a change.
+/// Minimum cosine of the angle by which a change may rotate the normal of a face.
 const TURN: f64 = 0.5;
-/// Evenness above which a change may make a face less even.
+/// Evenness above which a change may make a triangle less even, from 0 to 1.
 const EVEN: f64 = 0.3;
 /// Step length in smoothing, as a fraction of the distance from a vertex to the centroid of its neighbors.
 const SLIDE: f64 = 0.8;
@@ -79,7 +79,7 @@ impl Sheet {
         }
     }
 
-    /// Flips edges where that increases the lower evenness of the two triangles.
+    /// Flips edges where that increases the evenness of the less even of the two triangles.
     pub(super) fn flip(&mut self) {
         for [a, b] in self.edges(|_, from, to| from < to) {
             self.flip_edge(a, b);
@@ -163,7 +163,7 @@ impl Sheet {
         true
     }
 
-    /// Flips an edge if that increases the lower evenness of its two triangles and no face turns over.
+    /// Flips an edge if that increases the evenness of the less even of its two triangles and no face turns over.
     fn flip_edge(&mut self, a: u32, b: u32) {
         let [Some(left), Some(right)] = [self.face_of(a, b), self.face_of(b, a)] else {
             return;
@@ -195,8 +195,8 @@ impl Sheet {
         self.fans[c as usize].push(right);
     }
 
-    /// Returns whether the faces at `vertices` keep their orientation and evenness if all these vertices move to the
-    /// position `to` with the normal `normal`. Faces that have two of the vertices are ignored, since they will be
+    /// Returns whether the faces around `vertices` keep their orientation and evenness if all these vertices move to
+    /// `to`, where the surface has the normal `normal`. Faces with two of the vertices are ignored, since they will be
     /// removed.
     fn keeps_shape(&self, vertices: &[u32], to: DVec3, normal: DVec3) -> bool {
         let (mut least_before, mut least_after) = (EVEN, EVEN);
@@ -233,7 +233,7 @@ impl Sheet {
         least_after >= least_before
     }
 
-    /// Returns the directed edges of the faces that satisfy `wanted`, in face order.
+    /// Returns the directed edges of the faces for which `wanted` returns true, in the order of faces.
     fn edges(&self, wanted: impl Fn(&Self, u32, u32) -> bool) -> Vec<[u32; 2]> {
         let mut edges = Vec::new();
         for &[a, b, c] in self.faces.iter().filter(|&&face| face != GONE) {
@@ -305,8 +305,8 @@ fn next([a, b, c]: [u32; 3], corner: u32) -> u32 {
     }
 }
 
-/// Projects a position to the surface along a line. Returns `None` if the secant method does not converge within a
-/// few steps.
+/// Moves a position along the line `along` onto the surface. Returns `None` if the secant method does not converge
+/// within a few steps.
 fn settled(cut: &Cut, from: DVec3, along: DVec3) -> Option<DVec3> {
     const STEPS: u32 = 8;
     let (mut at, mut distance, mut slope) = (from, cut.distance(from), 1.0);

@@ -151,7 +151,7 @@ fn points_of_the_lattice_on_the_surface_leave_no_slivers() {
     assert!(angles[0] > 15.0, "least {}", angles[0]);
 }
 
-/// A solid given by a distance function, and the half-side length of its bounding cube.
+/// A solid given by its distance function and half the side of its bounding cube.
 struct Odd(fn(DVec3) -> f64, f64);
 
 impl Solid for Odd {

@@ -31,7 +31,7 @@ const LEAF: i64 = 4;
 /// Distance from the center of a block to its farthest corners, in multiples of the block's side. It is half of the
 /// longest diagonal, √11 / 2.
 const REACH: f64 = 0.5 * 1.658_312_395_177_7;
-/// Maximum change of a distance, relative to the change of the position.
+/// Maximum change of a solid's distance, relative to the change of the position.
 const STRETCH: f64 = 1.2;
 
 /// A point of the lattice.
@@ -52,8 +52,8 @@ pub(super) fn march(cut: &Cut) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (positions, faces.collect())
 }
 
-/// Key of a lattice edge that the surface crosses: the coordinates of its lower point, and in the lowest 3 bits the
-/// basis vectors that lead to the other point.
+/// Key of an edge of the lattice that the surface crosses. It contains the coordinates of the edge's lower point and,
+/// in the lowest 3 bits, the basis vectors that lead to the other point.
 type Crossing = u64;
 
 /// Bits per coordinate in a key.
@@ -61,7 +61,7 @@ const BITS: u32 = 20;
 
 struct March<'a> {
     cut: &'a Cut<'a>,
-    /// Lattice coordinates of the first point.
+    /// Lattice coordinates of the lowest point.
     low: Point,
     /// Number of cells along each axis of the lattice.
     size: i64,
@@ -91,7 +91,8 @@ impl<'a> March<'a> {
         (BASIS[0] * i + BASIS[1] * j + BASIS[2] * k) * self.cut.side
     }
 
-    /// Subdivides a block recursively, down to the leaf blocks that the surface may cross.
+    /// Adds the triangles of a block. The block is subdivided recursively; parts that the surface cannot cross are
+    /// skipped.
     fn block(&mut self, first: Point, size: i64) {
         let last = first.map(|coordinate| coordinate + size);
         let center = (self.position(first) + self.position(last)) * 0.5;
@@ -138,7 +139,7 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Adds the triangles that separate a tetrahedron's inside corners from its outside corners.
+    /// Adds the triangles within a tetrahedron, which separate its inside corners from its outside corners.
     fn tetrahedron(&mut self, cell: Point, corners: [usize; 4], inside: &[bool; 8]) {
         let n_inside = corners.iter().filter(|&&corner| inside[corner]).count();
         // Sort the inside corners first. An odd number of swaps mirrors the tetrahedron; one more swap restores its

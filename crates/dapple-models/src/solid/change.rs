@@ -133,7 +133,7 @@ impl<S: Solid> Solid for Bent<S> {
     }
 }
 
-/// Returns the bounding box of a box's transformed corners.
+/// Returns the bounding box of the corners of a box after the transform `moved`.
 fn around_corners([low, high]: [DVec3; 2], moved: impl Fn(DVec3) -> DVec3) -> [DVec3; 2] {
     let corners = (0..8).map(|corner| {
         let part = DVec3::from_array([0, 1, 2].map(|axis| f64::from(corner >> axis & 1)));

@@ -1,4 +1,4 @@
-//! Compares the solids' distances with sampled distances.
+//! Tests the distances of solids against sampled distances.
 
 use super::{
     Ball, Bent, Blend, Ellipsoid, Grown, Mirrored, Placed, RoundBox, RoundCone, Scaled, Solid,

@@ -92,7 +92,7 @@ fn link(cone: &RoundCone) -> Link {
     }
 }
 
-/// Evaluates the spline between its second point (`part` 0) and its third point (`part` 1).
+/// Returns a point of the spline segment between the second and the third point, at `part` from 0 to 1.
 fn on_spline(points: &[[f64; 4]; 4], part: f64) -> [f64; 4] {
     core::array::from_fn(|number| {
         let [before, from, to, after] = points.map(|point| point[number]);
