@@ -46,7 +46,7 @@ impl PreviewError {
         Self::check(holds, what, value, "from 1e-30 to 1e30")
     }
 
-    /// Normalizes a vector, which must have a direction.
+    /// Returns the normalized vector. Fails if it has no direction.
     pub(crate) fn direction(what: &'static str, vector: DVec3) -> Result<DVec3, Self> {
         Self::check_vector(what, vector)?;
         let none = || Self::new(PreviewErrorKind::NoDirection { what });

@@ -100,7 +100,7 @@ impl Material {
         Self { emission, ..self }
     }
 
-    /// Replaces numbers that are not finite by zero.
+    /// Returns the material with zero in place of numbers that are not finite.
     pub(crate) fn cleaned(self) -> Self {
         Self {
             color: clean(self.color),
@@ -118,8 +118,8 @@ impl Material {
 }
 
 impl Mirror {
-    /// Returns the reflectance, from 0 to 1. `cosine` is that of the angle between the normal and the direction to the
-    /// eye.
+    /// Returns the reflectance, from 0 to 1. `cosine` is the cosine of the angle between the normal and the direction
+    /// to the eye.
     pub(crate) fn part(self, cosine: f64) -> f32 {
         match self {
             Self::None => 0.0,
@@ -138,7 +138,7 @@ fn finite(value: f32) -> f32 {
     if value.is_finite() { value } else { 0.0 }
 }
 
-/// Replaces components that are not finite by zero.
+/// Returns the color with zero in place of components that are not finite.
 pub(crate) fn clean(color: LinearRgb) -> LinearRgb {
     color.to_array().map(finite).into()
 }

@@ -84,7 +84,7 @@ impl fmt::Debug for Object<'_> {
     }
 }
 
-/// A validated object.
+/// A validated object, with its placement in the world.
 pub(crate) struct Placed<'a> {
     pub(crate) body: Body<'a>,
     pub(crate) placement: Placement,

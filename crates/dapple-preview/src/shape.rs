@@ -120,7 +120,7 @@ impl Shape {
     }
 }
 
-/// A validated shape.
+/// A validated shape, prepared for intersection.
 #[derive(Debug)]
 pub(crate) enum Body<'a> {
     Flat { half_size: DVec2 },

@@ -219,7 +219,7 @@ impl<'a> World<'a> {
     }
 }
 
-/// Flips the normals of `detail` to the side of the eye.
+/// Returns the detail with its normals flipped to the side of the eye.
 fn seen(mut detail: Detail, to_eye: DVec3) -> Detail {
     if detail.geometric_normal.dot(to_eye) < 0.0 {
         detail.geometric_normal = -detail.geometric_normal;

@@ -41,7 +41,7 @@ fn middle(scene: &Scene<'_>) -> LinearRgb {
     render(scene, 1).pixels()[0]
 }
 
-/// Returns a scene with every kind of shape, light and look.
+/// Returns a scene with every kind of shape, light and material.
 fn everything() -> Scene<'static> {
     let corners = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X];
     let mesh = Mesh::smooth(&corners, &[[0, 1, 2], [2, 1, 3], [1, 0, 3]]).unwrap();

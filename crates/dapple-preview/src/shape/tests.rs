@@ -1,4 +1,4 @@
-//! Compares shapes with their definitions at points along rays.
+//! Tests of shapes against their definitions at points along rays.
 
 use super::{Body, Cut, Shape};
 use crate::PreviewErrorKind;
@@ -7,7 +7,8 @@ use crate::surface::Part;
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::DVec3;
 
-/// Low-discrepancy numbers from 0 to 1: the fractional parts of multiples of powers of the root of `x⁶ = x + 1`.
+/// Returns five low-discrepancy numbers from 0 to 1: the fractional parts of `index` times powers of the root of `x⁶ =
+/// x + 1`.
 fn spread(index: u32) -> [f64; 5] {
     let root = 0.881_271_497_064_361_6_f64;
     let mut power = 1.0;
@@ -32,7 +33,8 @@ fn torus_distance(point: DVec3, major: f64, minor: f64) -> f64 {
     (outward * outward + point.y * point.y).sqrt() - minor
 }
 
-/// Marches along rays and checks that a hit is on the surface and that no point before it is inside.
+/// Checks hits of a shape by marching along rays: a hit must be on the surface, and no point before it may be inside.
+/// `outside` is the signed distance. Returns the numbers of hits on the skin and on the cut.
 fn compare(shape: &Shape, cut: Option<Cut>, outside: impl Fn(DVec3) -> f64) -> [u32; 2] {
     let body = shape.prepare(cut).unwrap();
     let mut found = [0; 2];

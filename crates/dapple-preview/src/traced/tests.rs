@@ -1,4 +1,4 @@
-//! Tests of normals and positions on a mesh, and of refused meshes.
+//! Tests of normals and positions on a mesh, and of rejected meshes.
 
 use super::Mesh;
 use crate::PreviewErrorKind;
