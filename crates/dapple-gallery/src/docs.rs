@@ -34,12 +34,12 @@ use core::fmt::Write as _;
 use dapple_color::Code;
 use dapple_image::{Limits, PngImage, Transfer, decode_png, encode_png};
 
-/// A folder with a README and documentation, and their images.
+/// A folder with a README and documentation that contain rendered images.
 #[derive(Clone, Copy, Debug)]
 pub struct Documented {
     /// Path of the folder relative to the workspace root; empty for the root itself.
     pub folder: &'static str,
-    /// Strips in its documentation, written to `docs/<name>.md`.
+    /// Rows of images in its documentation, written to `docs/<name>.md`.
     pub strips: &'static [Strip],
     /// Renders the README's image, which is written to `docs/gallery.png`.
     pub banner: fn() -> anyhow::Result<Panel>,

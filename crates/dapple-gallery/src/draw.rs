@@ -145,8 +145,8 @@ impl<T: Texel> Canvas<T> {
         self.raster
     }
 
-    /// Returns the copies of a line that may be visible in the window, on a domain that may wrap. Positions, and the
-    /// margin `margin_px` on both sides, are in pixels.
+    /// Returns the copies of a line that may be visible in the window, on a domain that may wrap. Positions are in
+    /// pixels, and so is `margin_px`, the margin on both sides of the line.
     fn copies(&self, domain: &Domain, [from, to]: [DVec2; 2], margin_px: f64) -> Vec<[DVec2; 2]> {
         let [shift, size] = [domain.origin, domain.origin + domain.size]
             .map(|corner| self.pixel_from_plane(corner));
@@ -177,7 +177,7 @@ impl<T: Texel> Canvas<T> {
         shifts.map(|shift| line.map(|end| end + shift)).collect()
     }
 
-    /// Converts a position of the plane to pixels from the top left corner.
+    /// Converts a position in the plane to pixels from the top left corner of the window.
     fn pixel_from_plane(&self, position: DVec2) -> DVec2 {
         let [first_x, first_y] = self.window.first.map(|first| first as f64);
         let [origin, pixel] = [self.window.origin, self.window.pixel].map(DVec2::from);
@@ -288,8 +288,8 @@ mod tests {
         assert_same(&here, &far);
     }
 
-    /// Compares rasters with a small tolerance. Shifted copies of a line are rounded at their ends, so their coverage
-    /// may differ in the last bits.
+    /// Checks that two rasters are equal up to a small tolerance. Shifted copies of a line are rounded at their ends,
+    /// so their coverage may differ in the last bits.
     fn assert_same(a: &Raster<f32>, b: &Raster<f32>) {
         let largest = a
             .zip_map(b, |a, b| (a - b).abs())

@@ -1,8 +1,9 @@
 //! Generates the page that shows the figures: one HTML file that needs only the images next to it.
 //!
-//! It opens with what dapple is and with some of its best images, and shows thumbnails by paper below. A thumbnail links to the full image; arrow keys go to adjacent images, and images
-//! that repeat can be shown tiled. Each figure has its source and the command that renders it. Without scripts,
-//! thumbnails are plain links, and controls that need scripts are hidden.
+//! It starts with an introduction to dapple and some of its best images, followed by thumbnails grouped by paper. A
+//! thumbnail links to the full image; arrow keys go to adjacent images, and images that repeat can be shown tiled. Each
+//! figure has its source and the command that renders it. Without scripts, thumbnails are plain links, and controls
+//! that need scripts are hidden.
 
 use crate::{Figure, Paper, papers};
 
@@ -30,7 +31,7 @@ pub struct Image {
     pub size: [u32; 2],
 }
 
-/// Images at the top of the page, as names of a figure and labels of its image. Images that were not rendered are
+/// Images at the top of the page: the name of a figure and the label of its image. Images that were not rendered are
 /// left out.
 const FEATURED: [(&str, &str); 8] = [
     ("surface-fig-05", "octopus"),
@@ -169,8 +170,8 @@ fn parameter((name, value): (&str, &str)) -> String {
     )
 }
 
-/// Returns the code section of a figure: the command that renders it, commands that open similar recipes, and its
-/// source.
+/// Returns the HTML of a figure's code section: the command that renders it, the commands that open similar recipes,
+/// and its source.
 fn code(figure: &Figure, root: &str) -> String {
     let recipes = figure.parameters.iter().filter(|(name, _)| *name == RECIPE);
     let studio = recipes.map(|(_, recipe)| command(&format!("dapple studio {recipe}")));
@@ -197,7 +198,7 @@ const RECIPE: &str = "recipe";
 /// HTML of a button that copies the text before it.
 const COPY: &str = "<button class=\"scripted\" data-copy>Copy</button>";
 
-/// Replaces backticks around code by elements.
+/// Replaces each pair of backticks by an HTML code element.
 fn with_code(text: &str) -> String {
     let mut parts = text.split('`');
     let first = parts.next().unwrap_or_default().to_owned();
@@ -206,7 +207,7 @@ fn with_code(text: &str) -> String {
     })
 }
 
-/// Escapes a text for an HTML element or an attribute in double quotes.
+/// Escapes text for use in an HTML element or in a double-quoted attribute.
 fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {

@@ -23,7 +23,7 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-/// The names that a Chromium may have on the `PATH`.
+/// Names of Chromium programs on the `PATH`.
 const NAMES: [&str; 4] = [
     "chromium",
     "chromium-browser",
@@ -31,7 +31,7 @@ const NAMES: [&str; 4] = [
     "google-chrome-stable",
 ];
 
-/// Figures of one, two and six pictures, with and without periods, of two papers.
+/// Figures of two papers, with one, two and six images. Some of the images repeat.
 const FIGURES: [&str; 6] = [
     "pups-fig-01a",
     "pups-fig-02",
@@ -41,7 +41,7 @@ const FIGURES: [&str; 6] = [
     "worley-fig-01",
 ];
 
-/// The checks of the harness, by the names of its functions.
+/// Names of the harness functions that check the page.
 const CHECKS: [&str; 8] = [
     "pictures",
     "enlarging",
@@ -53,7 +53,7 @@ const CHECKS: [&str; 8] = [
     "withoutScripts",
 ];
 
-/// The time limit for a browser in tenths of a second: the first start on a machine takes tens of seconds.
+/// Time limit for a browser, in tenths of a second. The first start on a machine takes tens of seconds.
 const TENTHS_MAX: u32 = 1800;
 
 #[test]
@@ -99,7 +99,7 @@ fn papers_without_figures_have_no_section() {
     assert!(!html(&[], "").contains("<section"), "an empty section");
 }
 
-/// How often the checks are begun that may not come to their end.
+/// Maximum number of attempts to run the checks, which do not always finish.
 const TRIALS: usize = 5;
 
 #[test]
@@ -149,7 +149,7 @@ fn page_is_light_or_dark_as_the_system_and_shows_pictures() {
     assert!(same > 0.1, "{same} of the pixels are the same");
 }
 
-/// Finds the browser; if there is none, prints a note and returns `None`.
+/// Returns the path of a Chromium. If there is none, prints a note and returns `None`.
 fn browser() -> Option<PathBuf> {
     let found = match std::env::var_os("CHROMIUM") {
         Some(named) => Some(PathBuf::from(named)),
@@ -183,7 +183,7 @@ fn on_path() -> Option<PathBuf> {
         .find(|candidate| candidate.is_file() && runs(candidate))
 }
 
-/// Renders a few figures and their page into a new folder.
+/// Renders a few figures and their page into a new folder. Returns the folder.
 fn rendered(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("page-{name}"));
     if folder.exists() {
@@ -217,7 +217,7 @@ fn screenshot(browser: &Path, folder: &Path, scheme: u32) -> Raster<LinearRgb> {
     image.color().expect("it is in color")
 }
 
-/// Opens a file of the folder in a browser with a fresh profile, and returns the printed output.
+/// Opens a file of the folder in a browser with a new profile. Returns the text that the browser prints.
 fn run(browser: &Path, folder: &Path, arguments: &[&str], file: &str) -> String {
     let output = folder.join("output.txt");
     let file = folder.join(file);

@@ -1,4 +1,4 @@
-//! Strips for the documentation of `dapple-color`.
+//! Renders the rows of images for the documentation of `dapple-color`.
 
 use super::picture::{BANNER, COLORS, GRAYS, banner_of, colored, rounded, shaded};
 use super::{Documented, Strip};
@@ -11,7 +11,7 @@ use dapple_raster::{Field, Raster, Window, Wrap};
 use dapple_worley::{Combination, Worley2, hash::Seed};
 use glam::DVec2;
 
-/// The crate and its strips, in the order of its documentation.
+/// The folder of the crate and its rows of images, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-color",
     strips: &[
@@ -115,7 +115,7 @@ const fn palette(name: &'static str, render: fn() -> anyhow::Result<Vec<Panel>>)
     }
 }
 
-/// Renders a palette as a bar; categorical palettes get bands without transitions.
+/// Renders a palette as a bar. Categorical palettes get bands without transitions.
 fn of(palette: Palette) -> anyhow::Result<Vec<Panel>> {
     let ramp = match palette {
         Palette::Cow | Palette::Labels => ColorRamp::bands(&palette.colors())?,
@@ -140,7 +140,7 @@ fn ramp() -> anyhow::Result<ColorRamp> {
     Ok(ColorRamp::new(stops)?)
 }
 
-/// Renders a bar with the colors for the values from 0 to `end`, from left to right.
+/// Renders a color ramp as a bar, for values from 0 at the left to `end` at the right.
 fn bar(label: &str, ramp: &ColorRamp, end: f32) -> anyhow::Result<Panel> {
     let value = |column: u32| (column as f32 + 0.5) * end / BAR[0] as f32;
     let colors = Raster::from_fn(BAR, |column, _| ramp.at(value(column)))?;
@@ -157,7 +157,7 @@ fn height(side: u32) -> anyhow::Result<Raster<f32>> {
     Ok(bumps.to_raster(&window)?.map(|value| 1.0 - value))
 }
 
-/// Returns a height map colored by a palette, reduced to as many colors as a gray image has shades.
+/// Returns a height map colored by a palette, with as many colors as a gray image has shades.
 fn painted(label: &str, palette: Palette, height: &Raster<f32>) -> Panel {
     let height = height.map(|&value| rounded(value, GRAYS));
     Panel::color(label, palette.ramp().apply(&height))

@@ -1,4 +1,4 @@
-//! Renders the image for the workspace's README: models covered from exemplars, and below them lit built-in recipes.
+//! Renders the image for the workspace's README: models with synthesized textures, and below them lit built-in recipes.
 
 use super::Documented;
 use super::picture::{below, colored, lit_recipe, of_figures, row};

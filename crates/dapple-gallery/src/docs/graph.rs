@@ -1,4 +1,4 @@
-//! Strips for the documentation of `dapple-graph`.
+//! Renders the rows of images for the documentation of `dapple-graph`.
 
 use super::picture::{BANNER, GRAYS, LARGE, banner_of, shaded};
 use super::{Documented, Strip};
@@ -8,7 +8,7 @@ use dapple_graph::{EdgeDirection, Graph, delaunay, gabriel, k_nearest, yao};
 use dapple_points::{Domain, PointSet, hash::Seed, poisson_disk};
 use dapple_raster::Window;
 
-/// The crate and its strips, in the order of its documentation.
+/// The folder of the crate and its rows of images, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-graph",
     strips: &[DELAUNAY, GABRIEL, YAO, K_NEAREST],

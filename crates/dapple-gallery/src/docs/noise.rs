@@ -1,4 +1,4 @@
-//! Strips for the documentation of `dapple-noise`.
+//! Renders the rows of images for the documentation of `dapple-noise`.
 
 use super::picture::{BANNER, SIDE, SMOOTH_GRAYS, banner_of, shaded};
 use super::{Documented, Strip};
@@ -6,7 +6,7 @@ use crate::Panel;
 use dapple_noise::{GradientNoise2, hash::Seed};
 use dapple_raster::{Field, FieldExt, FractalShape};
 
-/// The crate and its strips, in the order of its documentation.
+/// The folder of the crate and its rows of images, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-noise",
     strips: &[GRADIENT_NOISE],
@@ -25,7 +25,7 @@ const GRADIENT_NOISE: Strip = Strip {
     },
 };
 
-/// Renders one period each of the noise, three fractal sums, and noise displaced by noise.
+/// Renders five panels, each one period wide: the noise, three fractal sums, and noise displaced by noise.
 fn panels(side: u32, labels: [&str; 5]) -> anyhow::Result<[Panel; 5]> {
     let noise = |seed| GradientNoise2::new(Seed(seed)).with_period([Some(CELLS); 2]);
     let [noise, right, down] = [noise(1)?, noise(2)?, noise(3)?];

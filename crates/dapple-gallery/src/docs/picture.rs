@@ -80,8 +80,8 @@ pub(super) fn rounded(value: f32, shades: f32) -> f32 {
     (value.clamp(0.0, 1.0) * last).round() / last
 }
 
-/// Returns panels of figures, all `height` pixels high. Each of `places` is the name of a figure and the index of its
-/// panel, starting at 0.
+/// Returns panels of figures, scaled to `height` pixels. Each entry of `places` is the name of a figure and the index
+/// of its panel, starting at 0.
 pub(super) fn of_figures(places: &[(&str, usize)], height: u32) -> anyhow::Result<Vec<Panel>> {
     places
         .iter()

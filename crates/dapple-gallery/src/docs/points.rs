@@ -1,4 +1,4 @@
-//! Strips for the documentation of `dapple-points`.
+//! Renders the rows of images for the documentation of `dapple-points`.
 
 use super::picture::{GRAYS, LARGE, banner_of, shaded};
 use super::{Documented, Strip};
@@ -11,7 +11,7 @@ use dapple_points::{
 use dapple_raster::{Ramp, Varying, Window};
 use glam::DVec2;
 
-/// The crate and its strips, in the order of its documentation.
+/// The folder of the crate and its rows of images, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-points",
     strips: &[POISSON_DISK, EXTENDED, NESTED, VARIABLE, WHITE, JITTERED],

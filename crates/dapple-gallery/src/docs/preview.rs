@@ -1,4 +1,4 @@
-//! Strips for the documentation of `dapple-preview`.
+//! Renders the rows of images for the documentation of `dapple-preview`.
 
 use super::picture::{SIDE, banner, colored};
 use super::{Documented, Strip};
@@ -12,7 +12,7 @@ use dapple_preview::{
 };
 use glam::DVec3;
 
-/// The crate and its strips, in the order of its documentation.
+/// The folder of the crate and its rows of images, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-preview",
     strips: &[SHAPE, CUT, SHADOWS, MATERIAL, MIRROR],

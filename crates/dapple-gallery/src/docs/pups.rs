@@ -1,4 +1,4 @@
-//! Strips for the documentation of `dapple-pups`.
+//! Renders the rows of images for the documentation of `dapple-pups`.
 
 mod labels;
 mod net;
@@ -9,7 +9,7 @@ use super::picture::{LARGE, SIDE, banner, edged, smooth, square};
 use crate::Panel;
 use dapple_raster::Field;
 
-/// The crate and its strips, in the order of its documentation.
+/// The folder of the crate and its rows of images, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-pups",
     strips: &[

@@ -1,4 +1,4 @@
-//! Strips for the documentation of `dapple-synth`.
+//! Renders the rows of images for the documentation of `dapple-synth`.
 
 use super::picture::{BANNER, COLORS, banner_of, colored, of_figures};
 use super::{Documented, Strip};
@@ -9,7 +9,7 @@ use dapple_color::LinearRgb;
 use dapple_raster::Raster;
 use dapple_synth::{Coherence, Edges, Exemplar, Options, synthesize_plane};
 
-/// The crate and its strips, in the order of its documentation.
+/// The folder of the crate and its rows of images, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-synth",
     strips: &[PLANE, COHERENCE],
@@ -85,7 +85,7 @@ fn grown(
     Ok(colored(label, &colors, COLORS))
 }
 
-/// Centers an exemplar on a white image that is as high as the other images of its row.
+/// Returns an exemplar centered on a white image that is as high as the other images of its row.
 fn on_white(image: &Raster<LinearRgb>) -> anyhow::Result<Panel> {
     let [width, height] = image.size();
     let above = BANNER.saturating_sub(height) / 2;

@@ -1,4 +1,4 @@
-//! Strips for the documentation of `dapple-tile`.
+//! Renders the rows of images for the documentation of `dapple-tile`.
 
 mod blending;
 mod methods;
@@ -10,7 +10,7 @@ use dapple_raster::{Field, Raster, Window};
 use dapple_worley::{Combination, Worley2, hash::Seed};
 use glam::DVec2;
 
-/// The crate and its strips, in the order of its documentation.
+/// The folder of the crate and its rows of images, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-tile",
     strips: &[

@@ -1,4 +1,4 @@
-//! Strips for the documentation of `dapple-wavelet`.
+//! Renders the rows of images for the documentation of `dapple-wavelet`.
 
 use super::picture::{BANNER, GRAYS, SIDE, SMOOTH_GRAYS, banner_of, shaded};
 use super::{Documented, Strip};
@@ -9,7 +9,7 @@ use dapple_wavelet::{Border, Degree, SplineFilter, WaveletNoise2, wavelet_tile};
 use dapple_worley::{Combination, Worley2, hash::Seed};
 use glam::DVec2;
 
-/// The crate and its strips, in the order of its documentation.
+/// The folder of the crate and its rows of images, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-wavelet",
     strips: &[SPLINE_FILTER, DEGREE, ANALYZE, NOISE, WEIGHTS, TILE],
@@ -150,14 +150,14 @@ fn noise(weights: &[f32]) -> anyhow::Result<WaveletNoise2> {
     Ok(WaveletNoise2::new(64, Seed(1))?.with_weights(weights)?)
 }
 
-/// Renders noise centered on middle gray.
+/// Renders noise, with the value 0 as middle gray.
 fn signed(label: &str, noise: &WaveletNoise2, side: u32) -> anyhow::Result<Panel> {
     let window = Window::new(DVec2::ZERO, DVec2::splat(CELLS), [side; 2])?;
     let gray = noise.to_raster(&window)?.map(|value| half_gray(*value));
     Ok(shaded(label, &gray, GRAYS))
 }
 
-/// Maps a roughly normally distributed value with variance 1 to a shade.
+/// Maps a value with an approximately normal distribution and variance 1 to a shade from 0 to 1.
 fn half_gray(value: f32) -> f32 {
     0.5 + 0.18 * value
 }

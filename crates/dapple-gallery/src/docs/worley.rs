@@ -1,4 +1,4 @@
-//! Strips for the documentation of `dapple-worley`.
+//! Renders the rows of images for the documentation of `dapple-worley`.
 
 mod cells;
 mod combinations;
@@ -16,7 +16,7 @@ use dapple_raster::{Raster, Window};
 use dapple_worley::{Cellular, Dimensions, Space, Worley2, WorleyError, hash::Seed};
 use glam::DVec2;
 
-/// The crate and its strips, in the order of its documentation.
+/// The folder of the crate and its rows of images, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "crates/dapple-worley",
     strips: &[
@@ -123,7 +123,7 @@ fn fine(cells: f64) -> anyhow::Result<Window> {
     Ok(Window::new(DVec2::ZERO, DVec2::splat(cells), size)?)
 }
 
-/// Scales a texture so that its measured range is mapped to 0 to 1.
+/// Returns the texture, scaled so that its measured range becomes 0 to 1.
 fn ranged<const N: usize>(texture: Cellular<N>) -> Result<Cellular<N>, WorleyError>
 where
     Dimensions: Space<N>,
@@ -145,8 +145,8 @@ fn flat(label: &str, cells: f64, worley: &Worley2) -> anyhow::Result<Panel> {
     })
 }
 
-/// Returns the color for a vector: red increases to the right and green downward, and the zero vector is gray.
-/// `longest` is the length with full saturation.
+/// Returns a color for a vector. Red increases to the right and green downward; the zero vector is gray. Vectors of the
+/// length `longest` are fully saturated.
 fn color_of(vector: DVec2, longest: f64) -> LinearRgb {
     let code = |part: f64| (128.0 + 120.0 * (part / longest).clamp(-1.0, 1.0)).round() as u8;
     LinearRgb::from_srgb([code(vector.x), code(vector.y), 128])

@@ -65,7 +65,7 @@ fn corners(stroke: &str) -> Vec<DVec2> {
     points
 }
 
-/// Cuts the corners of a polyline once; its two ends stay in place (Chaikin, An algorithm for high-speed curve
+/// Cuts the corners of a polyline once. Its two ends stay in place (Chaikin, An algorithm for high-speed curve
 /// generation, 1974).
 fn cut(points: &[DVec2]) -> Vec<DVec2> {
     let last = points.len().saturating_sub(2);

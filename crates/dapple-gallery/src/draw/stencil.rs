@@ -55,7 +55,7 @@ impl Stencil {
     }
 }
 
-/// Clamps `coordinate` to the range of a side with `n` pixels and rounds it down to a pixel index.
+/// Converts a coordinate to a pixel index: clamps it to the range of a side with `n` pixels, and rounds it down.
 fn clamped(coordinate: f64, n: u32) -> u32 {
     coordinate.clamp(0.0, f64::from(n)) as u32
 }

@@ -67,7 +67,7 @@ fn tile_side(size: u32) -> u32 {
     (size / 32 * 8).max(8)
 }
 
-/// Returns a margin in pixels, and the soft cut with this margin for a tile of `side` pixels. The image must be
+/// Returns the margin for a tile of `side` pixels, in pixels, and the soft cut with this margin. The image must be
 /// larger than the tile by the margin.
 fn cut(side: u32) -> (u32, Method) {
     let margin = side / 4;
@@ -100,7 +100,7 @@ fn originals(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
     ])
 }
 
-/// Returns gray images that do not tile, by name, for the comparison of the methods.
+/// Returns gray images that do not tile, by name, for the comparison of methods.
 fn crops(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
     let gray = |ground: Material| ground.color.map(|color| color.luminance().sqrt());
     Ok([

@@ -43,7 +43,7 @@ pub(crate) fn bless(selected: &[&'static Figure], path: &Path) -> anyhow::Result
     fs::write(path, new.to_string()).with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// Returns the old lock with updated hashes for `selected`, and without the lines of deleted figures.
+/// Returns the lock with the new hashes of `selected`, and without the lines of deleted figures.
 fn updated(old: &Lock, selected: &[&'static Figure]) -> anyhow::Result<Lock> {
     let mut lock = old.clone();
     let names: Vec<String> = figures().map(Figure::name).collect();

@@ -41,7 +41,7 @@ pub(crate) struct Command {
 }
 
 impl Command {
-    /// Returns the number of pixels along the longer side of an image.
+    /// Returns the size of images along their longer side, in pixels.
     pub(crate) fn size(&self) -> u32 {
         if self.full { 1024 } else { self.size }
     }

@@ -10,7 +10,7 @@ use dapple_gallery::docs::{Documented, documented};
 use std::fs;
 use std::path::PathBuf;
 
-/// Writes every image that has changed into the folder `docs` of its crate, and prints the total size of all images.
+/// Writes each changed image into the folder `docs` of its crate. Prints the total size of all images.
 pub(crate) fn write() -> anyhow::Result<()> {
     for documented in documented() {
         let folder = folder(documented);

@@ -83,7 +83,7 @@ fn grains(side: u32) -> anyhow::Result<Raster<LinearRgb>> {
         .apply(&height.map(|value| 0.3 + 0.5 * value)))
 }
 
-/// Blends grains on the left with a coarser blue texture on the right, using `how`.
+/// Blends grains on the left with a coarser blue texture on the right, by the method `how`.
 fn blended(label: &str, how: &Blend) -> anyhow::Result<Panel> {
     let left = [Map::Color(grains(SMALL)?)];
     let coarse = pebbles(4, SMALL, true, Seed(5))?.map(|value| 0.2 + 0.6 * value);

@@ -119,7 +119,7 @@ pub(super) const CROSSFADE: Strip = Strip {
     },
 };
 
-/// Renders two by two copies of the crop, then of each method's result.
+/// Renders two by two copies of a crop, and then two by two copies of the tile that each method makes of it.
 fn beside(crop: &Raster<f32>, methods: &[(&str, Method)]) -> anyhow::Result<Vec<Panel>> {
     let copies = |label: &str, tile: &Raster<f32>| -> anyhow::Result<Panel> {
         let map = repeat(tile, [2 * TILE; 2])?;

@@ -1,4 +1,4 @@
-//! Strips about maps in which the copies of a tile differ inside.
+//! Rows of images about maps in which the interiors of a tile's copies differ.
 
 use super::pebbles;
 use crate::docs::Strip;

@@ -8,7 +8,7 @@ use dapple_worley::{Combination, Profile};
 /// Width and height of an image, in cells.
 const CELLS: f64 = 2.5;
 
-/// A value that F1 almost never exceeds.
+/// Value that F1 almost never exceeds, in cells.
 const F1_MAX: f32 = 0.6;
 
 pub(super) const FEATURE: Strip = Strip {

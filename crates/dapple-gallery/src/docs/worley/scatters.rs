@@ -12,7 +12,7 @@ const CELLS: f64 = 4.0;
 /// Densities to show, in feature points per cell.
 const DENSITIES: [f64; 3] = [1.0, 3.0, 8.0];
 
-/// Renders the scatter for each of `values`.
+/// Renders the cells of a basis for each of `values`, which vary one option of the scatter.
 fn scattered(
     what: &str,
     values: [f64; 3],

@@ -18,7 +18,7 @@ pub(crate) fn lit(recipe: &Recipe, size: u32) -> anyhow::Result<Raster<LinearRgb
     Ok(surface.zip_map(&albedo, |&(normal, orm), &color| shaded(normal, orm, color))?)
 }
 
-/// Maps of a whole tile: normals; occlusion, roughness and metallic; colors.
+/// Maps of a tile: normals; occlusion, roughness and metallic; base color.
 type Maps = (Raster<Normal>, Raster<[f32; 3]>, Raster<LinearRgb>);
 
 fn maps(plan: &Plan, size: [u32; 2]) -> anyhow::Result<Maps> {
@@ -39,8 +39,8 @@ fn maps(plan: &Plan, size: [u32; 2]) -> anyhow::Result<Maps> {
     }
 }
 
-/// Returns the light that a point reflects: diffuse unless it is metal, plus a reflection that is blurrier where the
-/// surface is rough.
+/// Returns the light that a point reflects. It is a diffuse part, unless the point is metal, plus a reflection that is
+/// blurrier on rough surfaces. `free` is the ambient occlusion.
 fn shaded(normal: Normal, [free, roughness, metallic]: [f32; 3], color: LinearRgb) -> LinearRgb {
     let normal = DVec3::from_array(normal.to_array().map(f64::from));
     let toward = DVec3::new(-0.5, 0.6, 0.75).normalize();

@@ -23,7 +23,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Rate of change, in values per loop, that is drawn as white.
+/// Rate of change that is drawn as white, in values per loop.
 const WHITE: f32 = 8.0;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
@@ -67,7 +67,7 @@ fn still(texture: &Texture) -> anyhow::Result<Texture> {
     Ok(pups.texture(texture.values().to_vec())?)
 }
 
-/// Stacks renderings of one line of pixels: row by row at `n_times` times evenly spaced over the loop.
+/// Stacks renderings of one line of pixels, one row for each of `n_times` times that are evenly spaced over the loop.
 fn through_time(
     line: &Window,
     n_times: u32,

@@ -6,7 +6,7 @@ use dapple_pups::{Pups, PupsError, PupsOptions, hash::Seed};
 use dapple_raster::{RasterError, Window};
 use glam::DVec2;
 
-/// A point set, and the point nearest to its center, with that point's axes.
+/// A point set, the index of the point nearest to its center, and the axes of that point.
 pub(super) struct Star {
     pub(super) points: PointSet,
     pub(super) graph: Graph,

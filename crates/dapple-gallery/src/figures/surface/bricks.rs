@@ -46,8 +46,8 @@ pub(super) fn bricks(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     })?)
 }
 
-/// Returns the brick at a position, and the vector from the brick's center to the position, in multiples of the brick
-/// height.
+/// Returns the column and row of the brick at a position, and the offset of the position from the brick's center, in
+/// multiples of the brick height.
 fn brick(at: DVec2) -> ([i64; 2], DVec2) {
     let row = (at.y * N_BRICKS[1] as f64).floor();
     let shift = 0.5 * (row as i64).rem_euclid(2) as f64;

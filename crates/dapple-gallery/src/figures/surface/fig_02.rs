@@ -76,8 +76,8 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     ])
 }
 
-/// Returns whether a position is in an arrow. `from` is the position relative to the start of the arrow; the arrow is
-/// `length` long and twice `half_width` wide.
+/// Returns whether a position is in an arrow. `from` is the position relative to the start of the arrow. The arrow
+/// points along `vector`, is `length` long, and has half the width `half_width`.
 fn is_arrow(from: DVec3, vector: DVec3, [length, half_width]: [f64; 2]) -> bool {
     let vector = vector.normalize_or(DVec3::X);
     let along = from.dot(vector) / length;
@@ -91,7 +91,7 @@ fn is_arrow(from: DVec3, vector: DVec3, [length, half_width]: [f64; 2]) -> bool 
     (0.0..1.0).contains(&along) && aside < width
 }
 
-/// Returns whether a position is in the arrow of a site on the second coarsest level.
+/// Returns whether a position is in the arrow of any site of the second coarsest level.
 fn is_field(synthesizer: &Synthesizer, position: DVec3) -> bool {
     let (hierarchy, level) = (
         synthesizer.hierarchy(),
@@ -108,8 +108,8 @@ fn is_field(synthesizer: &Synthesizer, position: DVec3) -> bool {
     hit
 }
 
-/// Returns the sweep distance at a position, that is, the nearest site's distance plus how far the position is ahead
-/// of that site along the field. A mean over several sites would blur the lines where the distance jumps.
+/// Returns the sweep distance at a position: the distance of the nearest site, plus the offset of the position from
+/// that site along the field. A mean over several sites would blur the lines where the distance jumps.
 fn distance(synthesizer: &Synthesizer, position: DVec3) -> f64 {
     let (hierarchy, level) = (
         synthesizer.hierarchy(),

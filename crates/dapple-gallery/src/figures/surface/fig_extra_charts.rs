@@ -79,7 +79,8 @@ impl Charts {
         LinearRgb { r, g, b }
     }
 
-    /// Returns white for a face without stretch, and a redder color the more the face is stretched.
+    /// Returns white for a face without stretch, and a more saturated red or blue the more the face is stretched or
+    /// shrunk.
     fn stretched(&self, face: FaceIdx) -> LinearRgb {
         let off = ((self.stretches[face.index()] - 1.0) * 10.0).clamp(-1.0, 1.0) as f32;
         let [r, g, b] = [1.0 + off.min(0.0), 1.0 - off.abs(), 1.0 - off.max(0.0)];

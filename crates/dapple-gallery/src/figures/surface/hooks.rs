@@ -124,13 +124,13 @@ fn surface([from, to]: [DVec3; 2], at: DVec2) -> Option<(f64, DVec3)> {
     Some((height, to_image(aside + height * DVec3::Z)))
 }
 
-/// Solves `square · h² + 2 · half · h + rest = WIRE²` and returns the larger `h`.
+/// Returns the larger root `h` of `square · h² + 2 · half · h + rest = WIRE²`; `None` if there is no real root.
 fn later_root(square: f64, half: f64, rest: f64) -> Option<f64> {
     let inside = half * half - square * (rest - WIRE * WIRE);
     (inside >= 0.0 && square > 0.0).then(|| (inside.sqrt() - half) / square)
 }
 
-/// Converts a normal from axes along and across the strand to the axes of the image.
+/// Converts a normal from axes along and across the strand to image axes.
 fn to_image(radius: DVec3) -> DVec3 {
     let turned = DVec2::new(radius.x - radius.y, radius.x + radius.y);
     (turned * core::f64::consts::FRAC_1_SQRT_2).extend(radius.z) / WIRE

@@ -99,9 +99,9 @@ fn piece(place: DVec2) -> [i64; 2] {
     [column, row]
 }
 
-/// The edge between a square and the previous one along an axis.
+/// The edge between a square and its predecessor along an axis.
 struct Edge {
-    /// Whether the knob belongs to the piece in the previous square.
+    /// Whether the knob belongs to the piece in the preceding square.
     forward: bool,
     /// Position of the knob along the edge, as a fraction from 0 to 1.
     middle: f64,

@@ -31,7 +31,7 @@ pub(crate) struct Subject {
     /// Number of sites on the finest level at full size, and number of levels, from table 1.
     pub(crate) n_sites: usize,
     n_levels: usize,
-    /// Pairs of a position and the direction in which the exemplar's downward axis points there.
+    /// Directions of the texture: pairs of a position and the direction of the exemplar's downward axis there.
     directions: &'static [[DVec3; 2]],
     /// Bounds of feature sizes that follow the directions; `None` for a uniform size.
     pub(crate) sizes: Option<[f32; 2]>,
@@ -184,8 +184,8 @@ pub(crate) const ELEPHANT: Subject = Subject {
 };
 
 impl Subject {
-    /// Returns the options for the sites in a figure of `size` pixels. At full size there are as many sites as in the
-    /// paper; smaller figures have fewer, in proportion to the number of pixels.
+    /// Returns the options for placing sites in a figure of `size` pixels. At full size, there are as many sites as in
+    /// the paper. Smaller figures have fewer, in proportion to their number of pixels.
     pub(crate) fn sites(&self, size: u32) -> HierarchyOptions {
         HierarchyOptions {
             n_sites: (self.n_sites as f64 * part(size)).max(SITES_MIN) as usize,
@@ -248,7 +248,7 @@ impl Subject {
     }
 }
 
-/// Returns the figure's number of pixels as a fraction of that at full size.
+/// Returns the figure's number of pixels relative to that at full size.
 fn part(size: u32) -> f64 {
     let side = f64::from(size) / f64::from(FULL_SIZE);
     (side * side).min(1.0)

@@ -37,7 +37,7 @@ pub(super) fn suckers(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     })?)
 }
 
-/// Returns the radius of the sucker with the given id.
+/// Returns the radius of the sucker with this feature id, in multiples of the image width.
 fn radius(id: u64) -> f64 {
     let part = unit_f64(CellHash::new(Seed(5), [id as i64]).at(0));
     RADIUS * (0.62 + 0.38 * part)

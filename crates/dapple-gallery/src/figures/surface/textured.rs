@@ -12,7 +12,7 @@ use dapple_synth::{
 };
 use glam::{DVec2, DVec3};
 
-/// The inputs and options of a texture map.
+/// Inputs and options for synthesizing and baking a texture map.
 #[derive(Clone, Debug)]
 pub(super) struct Job {
     pub(super) mesh: Mesh,

@@ -121,7 +121,7 @@ pub(super) fn methods(margin: u32) -> [(&'static str, Option<Method>); 12] {
     ]
 }
 
-/// Measures one tile and returns its row of the table.
+/// Measures a tile. Returns its row of the table.
 fn line(name: &str, crop: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<String> {
     let [near, far, fine, contrast, least] = measured(crop, tile)?;
     let mut line = String::new();

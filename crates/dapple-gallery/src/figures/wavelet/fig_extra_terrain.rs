@@ -46,7 +46,7 @@ struct Ground {
     soil_mask: Raster<f32>,
 }
 
-/// Fraction of stone, and fraction of grass on the remaining ground.
+/// Fraction of stone on the terrain, and fraction of grass on the remaining ground, at each pixel.
 struct Shares {
     stone: Raster<f32>,
     grass: Raster<f32>,
@@ -95,7 +95,7 @@ impl Ground {
         over([&self.stone, &lower], &shares.stone, None)
     }
 
-    /// Blends with blend tiles: grass appears first where the soil's tile is low, and both appear first where the
+    /// Blends with blend tiles. Grass first covers soil where the soil's tile is low; both first cover stone where the
     /// stone's tile is low.
     fn by_tiles(&self, shares: &Shares) -> anyhow::Result<Raster<LinearRgb>> {
         let lower = over(
@@ -108,7 +108,8 @@ impl Ground {
     }
 }
 
-/// Blends one texture over another by `share`: linearly if `mask` is `None`, otherwise first where the mask is low.
+/// Blends the first texture over the second one by the fraction `share`: linearly if `mask` is `None`, otherwise where
+/// the mask is lowest.
 fn over(
     textures: [&Raster<LinearRgb>; 2],
     share: &Raster<f32>,

@@ -8,7 +8,7 @@ use dapple_points::{hash::Seed, white_noise};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// Area of the image per blade, in square parts.
+/// Image area per blade of grass, in square parts. A part is 1/256 of the image's side.
 const AREA: f64 = 8.0;
 /// Number of straight segments per blade.
 const N_PIECES: u32 = 4;

@@ -1,4 +1,4 @@
-//! Draws rounded lumps that lie on top of each other, for pebbles and crumbs. Lengths are in parts, as in `patch`.
+//! Draws overlapping rounded lumps, for pebbles and crumbs. Lengths are in parts, as defined in `patch`.
 
 use super::patch::{Dice, Patch, Spot};
 use crate::draw::smooth_step;
@@ -19,7 +19,7 @@ pub(super) struct Layer {
     pub(super) ground: f64,
     /// Height of a lump divided by its radius. Heights are in multiples of the relief's depth.
     pub(super) steepness: f64,
-    /// Fraction of the positions where there is a lump, from 0 to 1.
+    /// Probability that a position of the layer has a lump, from 0 to 1.
     pub(super) share: f64,
     /// Roughness of the surface, at least 0.
     pub(super) roughness: f64,
@@ -40,14 +40,14 @@ struct Lump {
     /// Vector along the longer axis.
     axis: DVec2,
     elongation: f64,
-    /// Amplitudes by which the outline deviates from an ellipse, for two and three lobes.
+    /// Amplitudes of the outline's deviation from an ellipse, for two and three lobes.
     lobes: [DVec2; 2],
     color: LinearRgb,
     surface: DVec2,
     rank: f64,
 }
 
-/// Draws the lumps of all layers onto the spots, in layer order; `color` returns the color of each lump.
+/// Draws the lumps of all layers over the spots, in the order of the layers. `color` returns the color of each lump.
 pub(super) fn lay(
     layers: &[Layer],
     patch: &Patch,
@@ -63,7 +63,7 @@ pub(super) fn lay(
 }
 
 impl Layer {
-    /// Draws the lumps of the layer onto the spots; `color` returns the color of each lump.
+    /// Draws the lumps of the layer over the spots. `color` returns the color of each lump.
     fn lay(
         &self,
         patch: &Patch,
@@ -133,7 +133,7 @@ impl Layer {
         });
     }
 
-    /// Returns the spot at `part`, the fraction of the way from the center of a lump to its outline.
+    /// Returns the appearance of a lump at `part`, the fraction of the way from its center to its outline.
     fn body(&self, lump: &Lump, part: f64, lumpy: f64, grain: f64) -> Spot {
         let part = part.clamp(0.0, 1.0);
         let dome = (1.0 - part * part * part).sqrt();
@@ -154,8 +154,8 @@ impl Lump {
         (long * long + short * short).map(f64::sqrt) * self.radius
     }
 
-    /// Returns the approximate distance of a position, relative to the center, from the outline (negative inside),
-    /// and its distance from the center divided by the outline's distance.
+    /// Returns two measures of a position relative to the lump's center: its approximate distance from the outline,
+    /// negative inside, and its distance from the center as a fraction of the outline's distance.
     fn outline(&self, at: DVec2) -> (f64, f64) {
         let along = DVec2::new(
             at.dot(self.axis) / self.elongation,

@@ -55,7 +55,7 @@ pub(super) struct Patch {
     pub(super) domain: Domain,
 }
 
-/// A random number generator for one object.
+/// A random number generator for one object, such as a stone.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Dice {
     hash: CellHash,
@@ -94,7 +94,7 @@ impl Patch {
         FractalNoise::new(spacing / self.period(), seed)
     }
 
-    /// Computes the spots of all pixels; `spot` receives a position in parts.
+    /// Returns the appearance of all pixels. `spot` receives a position in parts.
     pub(super) fn spots(
         &self,
         spot: impl Fn(DVec2) -> Spot + Sync,
@@ -102,8 +102,8 @@ impl Patch {
         Raster::from_window(&self.window, spot)
     }
 
-    /// Changes the spots in a box on the torus, which extends by `reach` from `center` to each side. `paint` receives
-    /// each spot with its offset from the center.
+    /// Repaints the pixels of a square on the torus that extends from `center` by `reach` to each side. `paint`
+    /// receives each spot with its offset from the center.
     pub(super) fn paint(
         &self,
         spots: &mut Raster<Spot>,

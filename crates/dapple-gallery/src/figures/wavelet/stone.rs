@@ -103,8 +103,8 @@ impl Stones {
         spot
     }
 
-    /// Returns the stone at a position, the vector from its center to the position, and the distance to the nearest
-    /// border with another stone, with corners rounded.
+    /// Returns the id of the stone at a position, the offset of the position from the stone's center, and the distance
+    /// to the nearest border with another stone. Corners of borders are rounded.
     fn border(&self, at: DVec2) -> (u64, DVec2, f64) {
         let [own] = self.middles.sample::<1>(at);
         let axes = self.neighbors.axes(PointIdx(own.id as u32));

@@ -84,7 +84,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     Ok(vec![photo(&scene, [size, size * 3 / 4])?])
 }
 
-/// Returns the distance to the nearest border of the cell, and its gradient.
+/// Returns the distance to the nearest border of the first point's cell, and the gradient of this distance.
 fn nearest_border(first: &Feature<DVec2>, others: &[Feature<DVec2>]) -> (f32, DVec2) {
     let border = |other: &Feature<DVec2>| {
         let way = other.vector - first.vector;

@@ -22,7 +22,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The tori, each with its primitive, the number of cells per unit, its colors from low to high, and the depth of its
+/// The tori. Each has its primitive, the number of cells per unit, its colors from low to high, and the depth of its
 /// bumps.
 const TORI: [(Combination, f64, [&str; 4], f64); 4] = [
     (

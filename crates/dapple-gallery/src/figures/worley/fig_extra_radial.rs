@@ -26,7 +26,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// F1 values at which there is a step, and the height of a step.
+/// Values of F1 at which the surface has a step. The height of each is [`STEP`].
 const LEVELS: [f32; 3] = [0.2, 0.32, 0.44];
 const STEP: f64 = 0.005;
 /// Center of the dish, and its radius.

@@ -1,4 +1,4 @@
-//! Checks whether the measure behind [`Coherence::Auto`](dapple_synth::Coherence) agrees with human judgment.
+//! Tests whether the measure behind [`Coherence::Auto`](dapple_synth::Coherence) agrees with human judgment.
 //!
 //! Textures of 256 × 256 pixels were synthesized from each exemplar with coherences of 0 and 2. The judgments
 //! below were written down before the measure existed. Where neither texture looks better, the judgment says so.
@@ -13,12 +13,12 @@ use dapple_raster::Raster;
 use dapple_synth::{Edges, Exemplar};
 use std::path::Path;
 
-/// Coherence whose texture looks better to a person.
+/// The coherence whose texture looks better to a person.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Better {
-    /// A coherence of 0, on finer levels. With 2 the texture has tears.
+    /// A coherence of 0 on finer levels is better. With 2, the texture has tears.
     Least,
-    /// A coherence of 2. With 0, details blur or shapes melt.
+    /// A coherence of 2 is better. With 0, details blur or shapes melt.
     Coherent,
     Neither,
 }

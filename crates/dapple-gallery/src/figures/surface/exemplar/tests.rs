@@ -8,7 +8,7 @@ fn draw(exemplar: &Exemplar, size: u32) -> Raster<LinearRgb> {
     (exemplar.draw)(size).unwrap()
 }
 
-/// Returns the mean difference between the pixels of two lines.
+/// Returns the mean difference between the pixels of two lines, over all channels.
 fn apart(a: &[LinearRgb], b: &[LinearRgb]) -> f64 {
     let gaps = a.iter().zip(b).flat_map(|(&a, &b)| (a - b).to_array());
     gaps.map(|gap| f64::from(gap.abs())).sum::<f64>() / a.len() as f64

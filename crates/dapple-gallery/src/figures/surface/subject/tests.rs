@@ -1,5 +1,5 @@
-//! Tests that the squares on the ray stay separate. They merge at the start of the sweep if the minimum distance
-//! always wins and the exemplar is sharper than the neighborhoods it is compared with.
+//! Tests that the squares on the ray's texture stay separate. They would merge at the start of the sweep if the minimum
+//! distance always won and the exemplar was sharper than the neighborhoods it is compared with.
 
 use super::RAY;
 use dapple_synth::mesh::Surface;
@@ -10,7 +10,7 @@ use dapple_worley::hash::Seed;
 /// of a square, 10.7. The center of a square of the exemplar is at most 8 from its edges.
 const RADIUS: f64 = 10.0;
 
-/// Returns the fraction of sites within whose [`RADIUS`] there is only one color.
+/// Returns the fraction of sites for which all sites within [`RADIUS`] have the same color.
 fn part_of_one_color(synthesizer: &Synthesizer, values: &[f32]) -> f64 {
     let hierarchy = synthesizer.hierarchy();
     let level = &hierarchy.levels()[0];
