@@ -27,14 +27,14 @@ use std::hint::black_box;
 #[derive(Debug)]
 pub(crate) struct Bench {
     filters: Vec<String>,
-    /// Results whose rows are left out.
+    /// Earlier results. Cases that have a row there are not measured.
     known: Page,
     one: ThreadPool,
     two: ThreadPool,
     rows: Vec<Row>,
 }
 
-/// One side of a row: its state, the setup before each run, and the run itself.
+/// One side of a row: its state, a setup function for each run, and the measured function.
 pub(crate) struct Side<'a, S> {
     state: S,
     runs_per_turn: u32,
@@ -43,7 +43,7 @@ pub(crate) struct Side<'a, S> {
 }
 
 impl<'a, S: Send> Side<'a, S> {
-    /// Returns a side whose runs call `work` on `state`, which holds the input and the output.
+    /// Creates a side whose runs call `work` on `state`, which holds the input and the output.
     pub(crate) fn new(state: S, work: impl FnMut(&mut S) + Send + 'a) -> Self {
         Self {
             state,
@@ -95,7 +95,7 @@ impl Done {
 }
 
 impl Bench {
-    /// Returns a benchmark that measures the cases selected by `filters`, except for those in `known`.
+    /// Creates a benchmark that measures the cases selected by `filters`, except for those that have a row in `known`.
     pub(crate) fn new(filters: Vec<String>, known: Page) -> Result<Self> {
         let pool = |n_threads| ThreadPoolBuilder::new().num_threads(n_threads).build();
         Ok(Self {
@@ -107,12 +107,12 @@ impl Bench {
         })
     }
 
-    /// Returns whether the filters select `case`.
+    /// Returns whether `case` must be measured: the filters select it, and it has no row in the earlier results.
     pub(crate) fn wants(&self, case: &Case) -> bool {
         case.is_wanted(&self.filters) && !self.known.has(case)
     }
 
-    /// Returns whether the filters select any of `cases`, so that preparing their common inputs is worthwhile.
+    /// Returns whether any of `cases` must be measured, so that preparing their common inputs is worthwhile.
     pub(crate) fn wants_any(&self, cases: &[Case]) -> bool {
         cases.iter().any(|case| self.wants(case))
     }
@@ -122,7 +122,7 @@ impl Bench {
         self.rows
     }
 
-    /// Measures both sides on one thread in `turns` turns and adds the row. Does nothing if the case is not selected.
+    /// Measures both sides on one thread in `turns` turns, and adds the row. Does nothing if the case is not selected.
     ///
     /// `confirm` checks the output of the last run of both sides, and counts the work.
     pub(crate) fn beside<A: Send, B: Send>(
@@ -180,7 +180,7 @@ impl Bench {
         self.keep(row);
     }
 
-    /// Adds a row and prints it to standard error.
+    /// Adds a row, and prints it to standard error.
     fn keep(&mut self, row: Row) {
         let verdict = if row.holds { "" } else { "  BELOW ITS BAR" };
         eprintln!(

@@ -54,7 +54,7 @@ fn processor() -> Option<String> {
     model_name(&text)
 }
 
-/// Returns the first `model name` in the text of `/proc/cpuinfo`, followed by family and model, which identify a
+/// Returns the first `model name` in the text of `/proc/cpuinfo`, followed by family and model. These identify a
 /// processor whose name a virtual machine has shortened.
 fn model_name(cpuinfo: &str) -> Option<String> {
     let field = |name: &str| {

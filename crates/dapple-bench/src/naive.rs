@@ -13,9 +13,9 @@
 pub(crate) struct Naive {
     centers: Vec<[f32; 2]>,
     values: Vec<f32>,
-    /// The index of the first axis of each point, and a final end index.
+    /// For each point, the index of its first axis in `axes`. A last entry is the number of axes.
     first: Vec<u32>,
-    /// `r / |r|²` for each axis.
+    /// For each axis `r`, the vector `r / |r|²`.
     axes: Vec<[f32; 2]>,
 }
 
@@ -66,7 +66,7 @@ impl Naive {
     }
 }
 
-/// Returns the product of the axial weights at an offset from the control point.
+/// Returns the weight of a control point: the product of its axial weights at the offset `[dx, dy]` from it.
 fn weight(dx: f32, dy: f32, axes: &[[f32; 2]]) -> f32 {
     let mut weight = 1.0;
     for axis in axes {
@@ -79,7 +79,7 @@ fn weight(dx: f32, dy: f32, axes: &[[f32; 2]]) -> f32 {
     weight
 }
 
-/// Wraps a coordinate difference on the unit torus to the shorter way round.
+/// Wraps a coordinate difference on the unit torus to the range from -½ to ½.
 fn wrapped(offset: f32) -> f32 {
     if offset > 0.5 {
         offset - 1.0

@@ -141,7 +141,8 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     terrain(bench)
 }
 
-/// Measures the value and the derivatives of a field at single positions, compared with the value alone.
+/// Measures evaluation of a field's value and derivatives at single positions. The other side evaluates the value
+/// alone.
 pub(crate) fn with_derivatives<const N: usize>(
     bench: &mut Bench,
     case: &Case,
@@ -246,7 +247,7 @@ fn picture(bench: &mut Bench, case: &Case, px_per_cell: u32) -> Result<()> {
     )
 }
 
-/// Returns a function that fills in values by evaluating one position at a time.
+/// Returns a function that fills a slice with values, evaluated at one position at a time.
 pub(crate) fn one_by_one<const N: usize>(
     sample: impl Fn([f64; N]) -> f32,
 ) -> impl Fn(&[[f64; N]], &mut [f32]) {
@@ -257,7 +258,7 @@ pub(crate) fn one_by_one<const N: usize>(
     }
 }
 
-/// Measures evaluation at random positions in a cube with sides of `cells` cells, compared with Perlin noise from
+/// Measures evaluation at random positions in a cube with sides of `cells` cells. The other side is Perlin noise from
 /// `noise-functions`.
 pub(crate) fn beside_perlin<const N: usize>(
     bench: &mut Bench,
@@ -295,7 +296,7 @@ pub(crate) fn confirm_spread(values: &[f32]) -> Result<()> {
     Ok(())
 }
 
-/// Checks that values are within the bound, and that their variance is near the documented one.
+/// Checks that values are within the documented bound, and that their variance is near the documented one.
 fn confirm(values: &[f32]) -> Result<()> {
     let past = values
         .iter()

@@ -82,7 +82,7 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     distance(bench)
 }
 
-/// Measures rendering a field in a window with sides of `extent` units.
+/// Measures rendering a field in a square window with sides of `extent` units.
 fn field(
     bench: &mut Bench,
     case: &Case,
@@ -115,7 +115,7 @@ fn field(
     })
 }
 
-/// Returns a part of pixels of size 1, and random values for it and its halo.
+/// Returns an area of pixels with side length 1, and random values for its pixels and the halo around them.
 fn part_and_values(halo: [u32; 2]) -> (Part, Vec<f32>) {
     let part = Part {
         size: [SIDE; 2],
@@ -189,7 +189,7 @@ fn distance(bench: &mut Bench) -> Result<()> {
     })
 }
 
-/// Returns the distances of a row's pixels to the mask, found by searching the square around each pixel.
+/// Returns the distance from each pixel of a row to the mask, found by searching the square around the pixel.
 fn plain_distances(mask: &[f32], part: &Part, row: u32) -> Vec<f32> {
     let [left, above] = part.halo;
     let wide = part.input_size()[0].cast_signed();
@@ -210,7 +210,7 @@ fn plain_distances(mask: &[f32], part: &Part, row: u32) -> Vec<f32> {
     (0..SIDE).map(distance).collect()
 }
 
-/// Checks that an image is not flat.
+/// Checks that the values of an image are not all equal.
 fn confirm_spread(values: &[f32]) -> Result<()> {
     let range = values
         .iter()

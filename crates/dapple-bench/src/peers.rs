@@ -105,7 +105,8 @@ impl<L: HintGenerator<f64>> Spade<L> {
     }
 }
 
-/// Fills an image of the unit square, every other row from right to left.
+/// Fills an image of the unit square with the values that `value_at` returns. Every other row is visited from right to
+/// left.
 fn serpentine(side: usize, image: &mut [f32], value_at: impl Fn(Point2<f64>) -> Option<f64>) {
     let pixel = 1.0 / side as f64;
     for (row, values) in image.chunks_exact_mut(side).enumerate() {
@@ -176,7 +177,7 @@ pub(crate) fn fast_poisson(radius: f64, seed: u64) -> Vec<[f64; 2]> {
 mod tests {
     use super::*;
 
-    /// Returns a grid of points whose values are linear, except at the seam of the torus.
+    /// Returns a grid of points, and values that are linear except at the seam of the torus.
     fn grid() -> (Vec<DVec2>, Vec<f32>) {
         let steps = || (0..16).map(|i| (f64::from(i) + 0.5) / 16.0);
         let positions: Vec<DVec2> = steps()

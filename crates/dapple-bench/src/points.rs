@@ -22,8 +22,8 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     alone::run(bench)
 }
 
-/// Checks that our set has the known density, that no two points are too close, and that no further point fits.
-/// Returns the number of points.
+/// Checks that our set has the known density, that no two points are too close, and that there is no room for another
+/// point. Returns the number of points.
 fn confirm_maximal(points: &Option<PointSet>, radius: f64) -> Result<usize> {
     let points = points.as_ref().context("no points")?;
     // The density is 0.697, with less than 1 % deviation for 100,000 points or more.

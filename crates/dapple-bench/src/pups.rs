@@ -28,7 +28,7 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
 /// Width and height of the images in pixels.
 const SIDE: u32 = 1000;
 
-/// A texture with about the requested number of control points, and the structures that it consists of.
+/// A texture with about the requested number of control points, and the point set and graph that it is built from.
 struct Scene {
     points: PointSet,
     graph: Graph,

@@ -22,12 +22,12 @@ const COLUMNS: [(&str, bool); 9] = [
 /// The results page: the machines, and the rows measured on them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Page {
-    /// Machines by number, from 1.
+    /// Descriptions of the machines. Rows refer to them by number, starting at 1.
     machines: Vec<String>,
     lines: Vec<Line>,
 }
 
-/// A row as text.
+/// A row of the results as text.
 #[derive(Clone, Debug, PartialEq)]
 struct Line {
     group: String,
@@ -37,7 +37,7 @@ struct Line {
 }
 
 impl Line {
-    /// Returns whether two rows are of the same case and peer.
+    /// Returns whether two rows have the same group, case and peer.
     fn is_same(&self, other: &Self) -> bool {
         self.group == other.group && self.cells[..2] == other.cells[..2]
     }
@@ -48,7 +48,7 @@ impl Line {
 }
 
 impl Page {
-    /// Returns the page of rows that were measured on one machine.
+    /// Creates the page of rows that were measured on one machine.
     pub(crate) fn new(machine: &Machine, rows: &[Row]) -> Self {
         let lines = rows.iter().map(|row| Line {
             group: row.group.to_owned(),
@@ -61,7 +61,7 @@ impl Page {
         }
     }
 
-    /// Reads a page as [`markdown`](Self::markdown) writes it.
+    /// Parses a page that [`markdown`](Self::markdown) has written.
     pub(crate) fn read(text: &str) -> Self {
         let mut page = Self::default();
         let mut group = String::new();
@@ -151,7 +151,7 @@ explains the rows on two; beside what papers took, ours is the wall time on two 
 that of distances and angles is always ours over theirs. `on` is the number of the machine.
 Every row also confirms that both sides did the work: see the modules of the groups.";
 
-/// Returns one group as a table, followed by the notes of its rows.
+/// Returns the table of one group, followed by the notes of its rows.
 fn table(lines: &[&Line]) -> String {
     let heads = COLUMNS.map(|(head, _)| head.to_owned());
     let widths: Vec<usize> = (0..COLUMNS.len())
@@ -221,7 +221,7 @@ fn line(cells: &[String; 9], widths: &[usize]) -> String {
     text
 }
 
-/// Formats a positive number with three significant digits, or with all digits before the point.
+/// Formats a positive number with three significant digits. Digits before the point are never rounded away.
 pub(crate) fn three_digits(value: f64) -> String {
     let decimals = match value {
         value if value < 10.0 => 2,
@@ -246,7 +246,7 @@ pub(crate) fn print(page: &str) {
     print!("{page}");
 }
 
-/// Reads the results page; a page without rows if the file is missing.
+/// Reads the results page. If the file is missing, returns a page without rows.
 #[expect(
     clippy::disallowed_methods,
     reason = "the results of other runs are in a file"

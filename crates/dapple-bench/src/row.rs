@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// The direction of a ratio, and the threshold that it must reach.
+/// A threshold for the ratio of both sides, and its direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Goal {
     /// The other side's time divided by ours must be at least this, that is, ours is this many times faster.
@@ -14,7 +14,7 @@ pub(crate) enum Goal {
 }
 
 impl Goal {
-    /// Returns the ratio of two times in this direction.
+    /// Returns the ratio that this goal limits, from the measurements of both sides.
     pub(crate) fn ratio(self, ours: f64, theirs: f64) -> f64 {
         match self {
             Self::Faster(_) => theirs / ours,
@@ -22,7 +22,7 @@ impl Goal {
         }
     }
 
-    /// Returns whether a ratio meets the threshold. NaN never does.
+    /// Returns whether a ratio meets the threshold; false for NaN.
     pub(crate) fn holds(self, ratio: f64) -> bool {
         match self {
             Self::Faster(bar) | Self::AtLeast(bar) => ratio >= bar,
@@ -64,7 +64,8 @@ impl Case {
             })
     }
 
-    /// Returns this case's row. Both numbers are seconds per unit of work, or bytes, distances or angles.
+    /// Returns the measured row of this case. Both measurements are in base units: seconds per unit of work, bytes,
+    /// distances or degrees.
     pub(crate) fn row(&self, ours: f64, theirs: f64) -> Row {
         let ratio = self.must.ratio(ours, theirs);
         let (must, at) = match self.must {
@@ -164,7 +165,8 @@ pub(crate) struct Row {
     pub(crate) ours: f64,
     /// The measurement of the other side.
     pub(crate) theirs: f64,
-    /// Their time divided by ours if `at` is `least` and times are compared; ours divided by theirs otherwise.
+    /// The ratio that is compared with the threshold: their time divided by ours if our speed is measured, otherwise
+    /// our measurement divided by theirs.
     pub(crate) ratio: f64,
     /// Threshold for the ratio.
     pub(crate) must: f64,

@@ -51,7 +51,7 @@ pub(crate) fn positions(n: usize) -> Vec<DVec2> {
         .collect()
 }
 
-/// Returns `n` random positions in a cube with the given side, whose minimum corner is the origin.
+/// Returns `n` random positions in a cube with sides of length `side`, whose minimum corner is the origin.
 #[cfg(feature = "peers")]
 pub(crate) fn positions_in<const N: usize>(n: usize, side: f64) -> Vec<[f64; N]> {
     let seed = SEED.child("bench scattered positions", 0);

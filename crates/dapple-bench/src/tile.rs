@@ -75,7 +75,7 @@ fn map_of(tile: &Raster<f32>) -> Result<Raster<f32>> {
     Ok(map)
 }
 
-/// Returns our side, which fills a map with copies of a tile.
+/// Returns our side: it fills a map with copies of a tile.
 fn splat(tile: &Raster<f32>) -> Result<Side<'_, Raster<f32>>> {
     Ok(Side::new(map_of(tile)?, move |map: &mut Raster<f32>| {
         repeat_into(tile, [0, 0], map.view_mut());

@@ -38,7 +38,7 @@ fn white_noise(side: u32) -> Result<Raster<f32>> {
     })?)
 }
 
-/// State of our side: inputs and buffers, all allocated before the timed section, as they are for the other side.
+/// State of our side: inputs and buffers. All of them are allocated before the timed section, as on the other side.
 pub(crate) struct Halved {
     coarse: Raster<f32>,
     memory: FilterMemory,
@@ -46,7 +46,7 @@ pub(crate) struct Halved {
     fine: Raster<f32>,
 }
 
-/// Returns our side, which halves a raster and doubles it again.
+/// Returns our side: it halves a raster, and doubles it again.
 fn down_and_up(raster: &Raster<f32>) -> Result<Side<'_, Halved>> {
     let filter = SplineFilter::default();
     let halved = Halved {

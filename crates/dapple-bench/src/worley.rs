@@ -87,13 +87,12 @@ impl<const N: usize> Grid<N>
 where
     Dimensions: Space<N>,
 {
-    /// Returns a raster of `size` pixels that starts at the origin, with `px_per_cell` pixels per unit cell along each
-    /// axis.
+    /// Creates a raster of `size` pixels that starts at the origin, with `px_per_cell` pixels per cell along each axis.
     fn new(known: Known, size: [u32; N], px_per_cell: u32) -> Result<Self> {
         Self::of(&Worley::new(SEED), known, size, px_per_cell)
     }
 
-    /// Like [`new`](Self::new), for the given basis.
+    /// Creates a raster like [`new`](Self::new), from the given basis.
     fn of(worley: &Worley<N>, known: Known, size: [u32; N], px_per_cell: u32) -> Result<Self> {
         let px = f64::from(px_per_cell);
         let extent = DVec2::new(f64::from(size[0]), f64::from(size[1])) / px;

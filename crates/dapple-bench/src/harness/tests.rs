@@ -1,4 +1,4 @@
-//! Tests of the harness itself: turns, checks, filters, medians.
+//! Tests of the harness: turns, checks, filters and medians.
 
 use super::two_threads::LEAST_JOB_S;
 use super::*;
@@ -138,7 +138,7 @@ fn two_threads_gains_nothing_from_a_job_that_is_not_divided() {
     );
 }
 
-/// Works on one thread for slightly longer than the minimum job time.
+/// Works on one thread for slightly longer than [`LEAST_JOB_S`], the minimum time of a job.
 fn tenth_of_a_second(n: &mut u64) {
     let start = ThreadTime::now();
     while start.elapsed().as_secs_f64() < LEAST_JOB_S * 1.01 {

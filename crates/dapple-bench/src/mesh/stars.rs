@@ -33,7 +33,7 @@ const STARS: Case = Case {
 /// large.
 const REACHES: [f64; 3] = [1.8, 2.8, 2.0 * STAR_RADIUS];
 
-/// A site projected to another site's tangent plane, as a vertex for `spade`.
+/// A site, projected to another site's tangent plane, as a vertex for `spade`.
 #[derive(Clone, Copy)]
 struct Near {
     at: Point2<f64>,
@@ -48,11 +48,11 @@ impl HasPosition for Near {
     }
 }
 
-/// Stars found by `spade`, as a graph.
+/// The graph of neighbors that `spade` finds.
 #[derive(Default)]
 struct Theirs {
     graph: SiteGraph,
-    /// For each site, whether an empty circle around it is too large for our method.
+    /// For each site, whether an empty circle around it exceeds the limit of our method.
     open: Vec<bool>,
 }
 
@@ -107,7 +107,7 @@ impl Theirs {
     }
 }
 
-/// Returns the neighbors of a site, and whether an empty circle between them is too large.
+/// Returns the neighbors of a site, and whether an empty circle between them exceeds the limit.
 fn star(sites: &Sites, grid: &SiteGrid, center: SiteIdx, spacing: f64) -> (Vec<u32>, bool) {
     let mut around = Vec::new();
     for reach in REACHES.map(|reach| reach * spacing) {
@@ -133,8 +133,8 @@ fn star(sites: &Sites, grid: &SiteGrid, center: SiteIdx, spacing: f64) -> (Vec<u
     (around, true)
 }
 
-/// Returns the sites of the same sheet within `reach` of the center. They are projected so that their distance to the
-/// center equals the distance in space.
+/// Returns the sites of the same sheet within `reach` of the center, projected to its tangent plane. Projected
+/// positions are scaled so that their distance to the center equals the distance in space.
 fn within(sites: &Sites, grid: &SiteGrid, center: SiteIdx, reach: f64) -> Vec<Near> {
     let [position, normal] =
         [sites.positions(), sites.normals()].map(|of: &[DVec3]| of[center.index()]);

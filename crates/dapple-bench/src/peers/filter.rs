@@ -5,7 +5,7 @@ use texture_synthesis::image::{ImageBuffer, Luma, imageops};
 /// A gray image.
 pub(crate) type Gray = ImageBuffer<Luma<f32>, Vec<f32>>;
 
-/// Makes a square image of gray values, row by row.
+/// Creates a square gray image from its values, row by row.
 pub(crate) fn image<'a>(side: u32, values: impl Iterator<Item = &'a f32>) -> Gray {
     let mut values = values.copied();
     Gray::from_fn(side, side, |_, _| Luma([values.next().unwrap_or(0.0)]))

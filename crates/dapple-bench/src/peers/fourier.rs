@@ -17,7 +17,7 @@ pub(crate) struct FourierProjection {
     side: usize,
     forward: Arc<dyn Fft<f32>>,
     backward: Arc<dyn Fft<f32>>,
-    /// `C` and `H / n` for each frequency.
+    /// `C` for each frequency, as defined in the header. The field `up` holds `H / n`.
     down: Vec<Complex<f32>>,
     up: Vec<Complex<f32>>,
     line: Vec<Complex<f32>>,

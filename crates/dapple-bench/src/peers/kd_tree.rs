@@ -22,7 +22,7 @@ const N_ITERATIONS: usize = 60;
 /// Number of nearest projected points that determine the search radius.
 const FIRST: NonZero<usize> = NonZero::new(4).unwrap();
 
-/// A few orthogonal unit vectors, stored by dimension: each dimension has its component along every vector.
+/// A few orthogonal unit vectors. They are stored by dimension: for each dimension, its component along every vector.
 pub(crate) struct Directions<const N: usize> {
     mean: Vec<f32>,
     parts: Vec<[f32; N]>,
@@ -83,7 +83,7 @@ impl<'a, const N: usize> KdTree<'a, N> {
 }
 
 impl<const N: usize> Directions<N> {
-    /// Returns the directions along which the rows vary most.
+    /// Returns the directions in which the rows vary most.
     pub(crate) fn principal(dims: usize, rows: &[f32]) -> Self {
         let n_rows = rows.len() / dims;
         let sample: Vec<&[f32]> = rows
@@ -118,7 +118,7 @@ impl<const N: usize> Directions<N> {
         }
     }
 
-    /// Projects a row to the directions.
+    /// Returns the projection of a row to the directions.
     #[inline]
     fn along(&self, row: &[f32]) -> [f32; N] {
         let mut sums = [0.0; N];
@@ -131,7 +131,7 @@ impl<const N: usize> Directions<N> {
     }
 }
 
-/// Returns approximate eigenvectors for the largest eigenvalues.
+/// Returns approximate eigenvectors of a matrix for its largest eigenvalues.
 fn iterate<const N: usize>(dims: usize, matrix: &[f64]) -> Vec<Vec<f64>> {
     // Start with rows of the matrix, which are all different.
     let mut vectors: Vec<Vec<f64>> = (0..N)

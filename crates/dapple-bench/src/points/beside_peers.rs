@@ -62,7 +62,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
 struct Peer<P> {
     /// Radius on the unit torus, the same as our side's.
     radius: f64,
-    /// Generates the points.
+    /// Generates the points of the peer.
     make: Box<dyn Fn() -> Vec<P> + Sync>,
     /// Converts a point of the peer to a position.
     position: fn(&P) -> DVec2,
@@ -97,7 +97,7 @@ fn row<P: Send>(bench: &mut Bench, case: &Case, turns: u32, peer: &Peer<P>) -> R
     })
 }
 
-/// Returns the crate `bluenoise` as a peer. It works on a torus of any side in single precision; its radius here is 1.
+/// Returns the crate `bluenoise` as a peer. It works on a torus of any side in single precision; its radius is 1 here.
 fn bluenoise(n_points: u32) -> Peer<[f32; 2]> {
     let radius = sets::radius_of(n_points);
     let side = (1.0 / radius) as f32;

@@ -54,7 +54,7 @@ const TWO_THREADS: Case = Case {
 /// Width and height, in pixels, of the image for two threads: large enough for a job of at least 100 ms.
 const TWO_THREADS_SIDE: u32 = 8192;
 
-/// Row stride of the naive evaluation, which runs only on rows whose index is a multiple of this.
+/// Row stride of the naive evaluation: only rows whose index is a multiple of it are evaluated.
 const NAIVE_STRIDE: usize = 25;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {

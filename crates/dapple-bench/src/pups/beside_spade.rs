@@ -142,7 +142,7 @@ fn whole_chain(bench: &mut Bench, spade: &ScanlineSpade) -> Result<()> {
     )
 }
 
-/// Runs the whole chain from a seed to the pixels.
+/// Runs the entire chain from a seed to the pixels, and returns the points.
 fn seed_to_image(seed: Seed, window: &Window, image: &mut Raster<f32>) -> Result<PointSet> {
     let points = sets::poisson_disk_from(seed, 700)?;
     let texture = Pups::delaunay(&points)?.texture(sets::values(points.len()))?;

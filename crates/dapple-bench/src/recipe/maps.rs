@@ -66,7 +66,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// The job with the highest cost relative to a reference job.
+/// The job with the highest cost relative to the reference job, a bake of all maps.
 struct Costliest {
     /// Times of the job and of the reference job, in seconds.
     times: [f64; 2],
@@ -91,7 +91,7 @@ impl Costliest {
     }
 }
 
-/// Returns the minimum processor time of `job` on one thread, in seconds.
+/// Returns the minimum processor time of `job` over several runs on one thread, in seconds.
 fn fastest(bench: &Bench, job: impl Fn() -> Result<(), RecipeError> + Sync) -> Result<f64> {
     let mut least = f64::INFINITY;
     for _ in 0..RUNS {

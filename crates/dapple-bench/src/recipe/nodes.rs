@@ -59,7 +59,7 @@ const SIDE: u32 = 1024;
 /// Number of turns per row.
 const TURNS: u32 = 21;
 
-/// Amplitude of the warp, in units of the plane. Positions shift by this number times their coordinates.
+/// Amplitude of the warp, in units of the plane. Positions are displaced by their coordinates times this number.
 const AMOUNT: f64 = 0.37;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -83,7 +83,7 @@ struct Single {
     field: NodeField,
 }
 
-/// Builds the single-node recipe for the node called `name`.
+/// Builds a recipe from `nodes`, its TOML, and prepares the node called `name` for rendering.
 fn single(nodes: &str, name: &str) -> Result<Single> {
     let text = format!("dapple = 1\n{nodes}\n[material]\nheight = 0.5\n");
     let recipe = Recipe::from_toml(&text).context(text)?;
@@ -103,7 +103,7 @@ fn side(node: &Single) -> Result<Side<'_, Raster<f32>>> {
     }))
 }
 
-/// Checks an image against evaluations at individual positions.
+/// Checks that pixels of an image equal evaluations at single positions. Returns the number of pixels.
 fn confirm(node: &Single, image: &Raster<f32>) -> Result<usize> {
     let window = node.plan.window([SIDE; 2])?;
     for index in (0..SIDE * SIDE).step_by(1009) {

@@ -25,8 +25,8 @@ const COLORS: Case = Case {
     note: "",
 };
 
-/// An exemplar and its rows. The exemplar is a photograph, or a drawing that replaces it if the file is missing. The
-/// rows compare the colors and patches of a texture synthesized by a sweep, and of an endless texture.
+/// An exemplar and its rows. The exemplar is a photograph, or a drawing if the file of the photograph is missing. The
+/// rows compare the colors and patches of two textures: one synthesized by a sweep, and an endless one.
 struct Subject {
     file: &'static str,
     drawing: Drawing,
@@ -123,7 +123,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// Returns the distances from an exemplar to three images: ours by a sweep, our endless one, and the peer's.
+/// Returns the distances from an exemplar to three images: ours by a sweep, our endless texture, and the peer's.
 fn likenesses(picture: &Picture) -> Result<[Likeness; 3]> {
     let exemplar = picture.exemplar()?;
     let sweep = synthesize_plane(&exemplar, [SIDE; 2], [Edges::Cut; 2], &Options::default())?;

@@ -50,7 +50,7 @@ const ENDLESS: Case = Case {
     ..EXACT
 };
 
-/// The peer here is our older method, on the same exemplar.
+/// Row that compares our endless synthesis with our older method on the same exemplar.
 const ENDLESS_BESIDE_SWEEP: Case = Case {
     peer: "plane 512×512, default options",
     must: Goal::CostAtMost(1.2),
@@ -63,21 +63,22 @@ const LARGE: Case = Case {
     ..EXACT
 };
 
-/// The threshold is the result of a prototype with the same search.
+/// Row whose threshold is the result of a prototype with the same search.
 const LARGE_EXACT: Case = Case {
     case: "synthesis, 262,144 sites, 4 levels, 256² exemplar, exact search",
     must: Goal::CostAtMost(1.3),
     ..EXACT
 };
 
-/// The number of sites of `dapple synth --mesh`: the exemplar repeats five times, or as often as 400,000 sites allow.
+/// Row with the number of sites that `dapple synth --mesh` uses: enough for the exemplar to repeat five times, but at
+/// most 400,000.
 const DEFAULT_SITES: Case = Case {
     case: "synthesis, default number of sites, 256² exemplar, default options",
     must: Goal::CostAtMost(1.6),
     ..EXACT
 };
 
-/// A row's job: produces an output and returns the number of its elements.
+/// The measured job of a row. Returns the number of elements of its output.
 type Job<'a> = Box<dyn Fn() -> Result<usize> + Sync + 'a>;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -195,7 +196,7 @@ fn default_sites(bench: &mut Bench) -> Result<()> {
     beside(bench, 3, &picture, vec![(DEFAULT_SITES, job)], &note)
 }
 
-/// Measures all selected rows against the flat image.
+/// Measures all selected rows of our synthesis against the peer's flat image.
 fn beside(
     bench: &mut Bench,
     turns: u32,

@@ -165,7 +165,8 @@ struct Nearest {
     gap: f64,
 }
 
-/// Returns the nearest of `n`×`n` points, each displaced by up to `jitter` from the center of its cell.
+/// Returns the nearest of `n`×`n` points on the unit torus. Each is displaced from the center of its cell by up to half
+/// of `jitter` along each axis, in cells.
 fn nearest(at: DVec2, n: i64, jitter: f64) -> Nearest {
     let scaled = at * n as f64;
     let mut found: [(f64, [i64; 2]); 2] = [(f64::INFINITY, [0; 2]); 2];
@@ -190,7 +191,7 @@ fn nearest(at: DVec2, n: i64, jitter: f64) -> Nearest {
     }
 }
 
-/// Returns a random number from 0 to 1 for `cell`; each `index` gives a different one.
+/// Returns a random number from 0 to 1 for a cell. Different values of `index` give independent numbers.
 fn roll(cell: [i64; 2], index: u32) -> f64 {
     unit_f64(hash2(SEED.child("bench drawings", 0), cell, index))
 }

@@ -56,14 +56,14 @@ const SIDE: u32 = 192;
 /// Number of turns per row.
 const TURNS: usize = 3;
 
-/// Function that a row measures on our side and on the peer's.
+/// Function that a row measures on our side. `Theirs` is the peer's.
 type Ours = fn(&Inputs) -> Result<Raster<LinearRgb>>;
 type Theirs = fn(&Inputs) -> SessionBuilder<'_>;
 
 struct Inputs {
     scales: Raster<LinearRgb>,
     bricks: Raster<LinearRgb>,
-    /// Lightness map: a disk in the middle of the image, and its surroundings.
+    /// Guide with lightness values: a disk in the middle of the image, and its surroundings.
     target: Raster<f32>,
     /// Mask of the pixels to repair.
     hole: Raster<bool>,
@@ -116,7 +116,7 @@ impl Inputs {
     }
 }
 
-/// Synthesizes an endless texture from adjacent exemplars.
+/// Synthesizes an endless texture from several exemplars, placed side by side in `layout`.
 fn of_layout(layout: &SideBySide, images: &[&Raster<LinearRgb>]) -> Result<Raster<LinearRgb>> {
     let joined = layout.join(images, LinearRgb::default())?;
     let exemplar = Exemplar::new(&joined, Edges::Cut)?.with_mask(&layout.mask()?)?;

@@ -40,7 +40,7 @@ const MAP_SIDE: u32 = 2048;
 /// Number of runs of each side; the fastest one counts.
 const RUNS: u32 = 2;
 
-/// Function that lays out an atlas whose side is given in texels.
+/// Function that builds an atlas. The number is the side of the atlas in texels.
 type Layout = fn(&Surface, u32) -> Result<Atlas, SynthError>;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -75,7 +75,7 @@ fn charts(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// Measures loose squares with the default options compared with the paper's options.
+/// Measures a mesh of loose squares, with the default options and with the paper's options.
 fn loose(bench: &mut Bench) -> Result<()> {
     let mesh = loose_squares()?;
     let picture = leaves(64)?;

@@ -42,7 +42,7 @@ struct Setting {
     /// Width and height of the exemplar in pixels.
     side: u32,
     plain: Case,
-    /// Query strides for our side, for a peer, and for the plain loop: every n-th query is timed.
+    /// Strides of the timed queries, for our side, for a peer, and for the plain loop: every n-th query is timed.
     timed: [usize; 3],
 }
 
@@ -62,7 +62,7 @@ const SETTINGS: [Setting; 2] = [
 /// Width and height in pixels of the tile whose neighborhoods are the queries.
 const TILE: u32 = 320;
 
-/// Number of queries compared with a block of rows while the block is in the cache.
+/// Number of queries that are compared with a block of rows while the block is in the cache.
 const CONFIRMED_AT_ONCE: usize = 512;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -110,7 +110,7 @@ struct Recorded {
     matcher: Matcher,
 }
 
-/// State of our side: the scratch memory of the matcher and the rows found.
+/// State of our side: scratch memory of the matcher, and the indices of the found rows.
 #[derive(Default)]
 struct Found {
     memory: MatcherMemory,
@@ -162,7 +162,7 @@ impl Recorded {
         })
     }
 
-    /// Returns the nearest row, found by comparing all rows term by term.
+    /// Returns the index of the nearest row, found by comparing all rows component by component.
     fn plain_loop(&self, query: &[f32]) -> u32 {
         let (mut least, mut nearest) = (f32::INFINITY, 0);
         for (index, row) in self.rows.chunks_exact(self.dims).enumerate() {
@@ -203,8 +203,8 @@ impl Recorded {
         Ok(())
     }
 
-    /// Returns the number of queries that each side searched, where our side searched every `ours`-th and the other
-    /// side every `theirs`-th query. Fails if the other side's rows are not as near as ours.
+    /// Returns the number of queries that each side searched: every `ours`-th query on our side, and every `theirs`-th
+    /// on the other one. Fails if the other side's rows are farther than ours.
     fn done(&self, [ours, theirs]: [usize; 2], found: &[u32], others: &[u32]) -> Result<Done> {
         let row = |row: u32| &self.rows[row as usize * self.dims..][..self.dims];
         let compared = found.iter().step_by(theirs / ours).zip(others);
@@ -220,7 +220,8 @@ impl Recorded {
     }
 }
 
-/// Returns the length of a neighborhood, and the concatenated neighborhoods of `image` that `pass` compares.
+/// Returns the number of components of a neighborhood, and the concatenated neighborhoods of `image` that `pass`
+/// compares.
 fn neighborhoods(image: &Exemplar, pass: &Pass) -> Result<(usize, Vec<f32>)> {
     let candidates = Candidates::new(&image.pyramid(2)?, pass, CoarserCenter::Exact)?;
     let rows = (0..candidates.len()).flat_map(|row| candidates.row(row).iter().copied());

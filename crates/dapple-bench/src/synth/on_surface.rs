@@ -37,8 +37,8 @@ const JUMPS: Case = Case {
 /// Distance from an edge at which colors are compared, in multiples of the site spacing.
 const ASIDE: f64 = 0.01;
 
-/// Rounding error of colors, which are sums of about five `f32` values from 0 to 1, each rounded by up to 2^-24 a few
-/// times.
+/// Maximum rounding error of colors. They are sums of about five `f32` values from 0 to 1, each rounded a few times by
+/// up to 2^-24.
 const ROUNDING: f64 = 1e-6;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -76,16 +76,16 @@ fn stripes() -> Result<Exemplar> {
     Ok(Exemplar::new(&image, Edges::Wrap)?)
 }
 
-/// A surface covered with stripes.
+/// A surface with a texture of stripes.
 struct Striped<'a> {
     synthesizer: &'a Synthesizer,
-    /// sRGB code of each site.
+    /// sRGB code of each site, from 0 to 1.
     values: Vec<f32>,
 }
 
 impl Striped<'_> {
-    /// Returns the gradient that best fits the differences to the neighbors of a site. A sum over edges would be
-    /// biased if neighbors are unevenly spread.
+    /// Returns the gradient of the color at a site that best fits the differences to its neighbors. A sum over edges
+    /// would be biased where neighbors are unevenly distributed.
     fn gradient(&self, site: SiteIdx) -> DVec3 {
         let hierarchy = self.synthesizer.hierarchy();
         let sites = hierarchy.sites();
@@ -108,7 +108,7 @@ impl Striped<'_> {
         right * gradient.x + down * gradient.y
     }
 
-    /// Returns the angle between the field and the direction of least change, in degrees.
+    /// Returns the angle between the field and the direction of least change at a site, in degrees.
     fn turn(&self, site: SiteIdx, gradients: &[DVec3]) -> f64 {
         let hierarchy = self.synthesizer.hierarchy();
         let (sites, level) = (hierarchy.sites(), &hierarchy.levels()[0]);
@@ -128,8 +128,7 @@ impl Striped<'_> {
         (0.5 * libm::atan2(2.0 * xy, xx - yy)).abs().to_degrees()
     }
 
-    /// Returns the difference in sRGB codes at the edge where it is largest relative to its bound, together with that
-    /// bound.
+    /// Returns the difference in sRGB codes across the edge where it is largest relative to its bound, and this bound.
     fn largest_jump(&self) -> Result<[f64; 2]> {
         let surface = self.synthesizer.surface();
         let (mut largest, mut n_edges) = ([0.0, f64::INFINITY], 0);
@@ -149,7 +148,7 @@ impl Striped<'_> {
         Ok(largest)
     }
 
-    /// Returns the difference in sRGB codes between the two sides of an edge, and its bound.
+    /// Returns the difference in sRGB codes across an edge, and its bound.
     fn jump(&self, here: FaceEdge, there: FaceIdx) -> Result<[f64; 2]> {
         let (surface, hierarchy) = (self.synthesizer.surface(), self.synthesizer.hierarchy());
         let corners = surface.mesh().corners(here.face);
@@ -169,8 +168,8 @@ impl Striped<'_> {
         Ok([(color - other).abs(), self.bound([here, there], color)])
     }
 
-    /// Returns a bound for how much a mean changes between two positions, given that the mean is `color` at one of
-    /// them.
+    /// Returns an upper bound for the change of the interpolated color between two positions. `color` is the
+    /// interpolated color at one of them.
     fn bound(&self, [here, there]: [DVec3; 2], color: f64) -> f64 {
         let hierarchy = self.synthesizer.hierarchy();
         let (sites, level) = (hierarchy.sites(), &hierarchy.levels()[0]);

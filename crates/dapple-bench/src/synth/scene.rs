@@ -43,7 +43,7 @@ pub(super) fn endless(exemplar: &Exemplar) -> Result<PlaneTexture, SynthError> {
     texture.window([0; 2], [SIDE; 2], |_| ControlFlow::Continue(()))
 }
 
-/// Returns the real model if its file exists, and a procedural one otherwise.
+/// Returns the real model if its file exists; otherwise a procedural one.
 pub(super) fn model() -> Result<Model> {
     let path = data("meshes/spot.obj");
     #[expect(clippy::disallowed_methods, reason = "the model is not of the library")]
@@ -76,7 +76,7 @@ pub(super) fn model() -> Result<Model> {
     })
 }
 
-/// Returns the photograph of leaves, 64 or 256 pixels wide, if its file exists, and a drawing otherwise.
+/// Returns the photograph of leaves if its file exists; otherwise a drawing. `side` is its width, 64 or 256 pixels.
 pub(super) fn leaves(side: u32) -> Result<Picture> {
     picture(
         &format!("exemplars/leaves_cc0_{side}.png"),
@@ -85,7 +85,7 @@ pub(super) fn leaves(side: u32) -> Result<Picture> {
     )
 }
 
-/// Returns a photograph if its file exists, and a drawing otherwise.
+/// Returns a photograph if its file exists; otherwise a drawing of `side` pixels.
 pub(super) fn picture(file: &str, drawing: Drawing, side: u32) -> Result<Picture> {
     let path = data(file);
     if !path.is_file() {
@@ -110,7 +110,7 @@ pub(super) fn picture(file: &str, drawing: Drawing, side: u32) -> Result<Picture
 }
 
 impl Picture {
-    /// Returns the exemplar for matching. Its image is not continued past its edges.
+    /// Returns the exemplar for matching. Its edges are cut: it does not repeat.
     pub(super) fn exemplar(&self) -> Result<Exemplar> {
         Ok(Exemplar::new(&self.image, Edges::Cut)?)
     }
@@ -125,7 +125,7 @@ impl Picture {
     }
 }
 
-/// Returns options for the paper's exact search, which compares colors and takes the minimum distance.
+/// Returns options for the paper's search: an exact search that compares colors and takes the minimum distance.
 pub(super) fn exact(n_levels: usize) -> Options {
     Options {
         n_levels,

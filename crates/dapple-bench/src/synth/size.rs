@@ -68,7 +68,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// Runs this program with [`synthesize_here`] in a new process.
+/// Calls [`synthesize_here`] in a new process of this program, and returns the measurements.
 fn in_process(n_sites: usize) -> Result<Took> {
     let program = std::env::current_exe()?;
     let output = Command::new(&program)

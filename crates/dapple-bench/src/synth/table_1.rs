@@ -16,11 +16,11 @@ use dapple_models::{self as models, ModelError};
 use dapple_synth::{Direction, Edges, Exemplar, HierarchyOptions, Synthesizer};
 use glam::DVec3;
 
-/// A row of the table.
+/// A row of table 1.
 pub(super) struct Row {
     case: Case,
     model: fn(usize) -> Result<Mesh, ModelError>,
-    /// Pairs of a position and the direction there.
+    /// Texture directions on the model, as pairs of a position and a direction.
     directions: &'static [[DVec3; 2]],
     n_sites: usize,
     n_levels: usize,
@@ -89,7 +89,7 @@ const BUNNY: Row = Row {
     ..OCTOPUS
 };
 
-/// Row whose model is also used by the rows for single steps.
+/// Row for the tori. The rows for single steps use its model, too.
 pub(super) const TORI: Row = Row {
     case: Case {
         case: "table 1: tori, 256,000 sites, 4 levels, 64² exemplar",

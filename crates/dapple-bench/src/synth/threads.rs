@@ -28,7 +28,7 @@ const ENDLESS: Case = Case {
     ..SYNTHESIS
 };
 
-/// Time spent on a row; exceeded if three turns take longer.
+/// Time for measuring a row. It is exceeded if three turns take longer.
 const BUDGET: Duration = Duration::from_secs(20);
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {

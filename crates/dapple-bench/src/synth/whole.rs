@@ -1,4 +1,4 @@
-//! Measures a whole run, from an OBJ file in memory to a GLB file with a texture map.
+//! Measures an entire run, from an OBJ file in memory to a GLB file with a texture map.
 
 use super::scene::{self, Model, N_SITES};
 use anyhow::Result;

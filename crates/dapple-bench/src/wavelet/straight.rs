@@ -11,8 +11,8 @@ const HALF: usize = 16;
 #[derive(Clone, Debug)]
 pub(crate) struct Straight {
     side: usize,
-    /// The tap `a` shared by pixels `k + 1` and `-k`, for `k` from 0. The filter is symmetric about the midpoint
-    /// between two pixels.
+    /// The filter's taps. Tap `k` applies to the pixels `k + 1` and `-k`, since the filter is symmetric about the
+    /// midpoint between two pixels.
     taps: [f32; HALF],
     even: Vec<f32>,
     odd: Vec<f32>,
@@ -121,14 +121,14 @@ impl Straight {
     }
 }
 
-/// Adds the sum of two rows, times their common tap, to a third row.
+/// Adds `tap * (after + before)` to the row `out`.
 fn add_pairs(out: &mut [f32], after: &[f32], before: &[f32], tap: f32) {
     for ((out, after), before) in out.iter_mut().zip(after).zip(before) {
         *out += tap * (after + before);
     }
 }
 
-/// Returns the taps `a` of pixels 1, 2, … 16, from the inverse Gram filter and `q`.
+/// Returns the taps of pixels 1 to 16: the inverse Gram filter, convolved with the kernel `q`.
 fn taps() -> [f32; HALF] {
     // `g` is the inverse of the Gram matrix, which has two poles.
     let inverse = |n: i32| {

@@ -91,9 +91,9 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     )
 }
 
-/// A peer that computes grids with `N` axes, and its known properties.
+/// A peer that computes grids with `N` axes, and the known properties of its values.
 struct Peer<const N: usize> {
-    /// Computes the grid. The arguments are its size in pixels and the number of cells per pixel.
+    /// Computes the grid. Takes its size in pixels, and the number of cells per pixel.
     make: fn([usize; N], f32) -> noise::Grid,
     /// Range of the grid's values.
     range: RangeInclusive<f32>,

@@ -211,7 +211,7 @@ where
     })
 }
 
-/// Checks the features of all positions against single evaluations, and the mean of F1.
+/// Checks that the features at all positions equal those of single evaluations. Also checks the mean of F1.
 fn confirm<const N: usize, const K: usize>(
     worley: &Worley<N>,
     mean: f64,

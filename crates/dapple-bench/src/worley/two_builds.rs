@@ -101,7 +101,7 @@ fn build(directory: &str, flags: Option<&str>) -> Result<PathBuf> {
     Ok(target.join("release").join(name))
 }
 
-/// Runs the program, collects the seconds of its runs, and returns the hash of the rendered bits.
+/// Runs the program, appends the times of its runs in seconds, and returns the hash of the rendered bits.
 fn run_program(program: &Path, px_per_cell: u32, seconds: &mut Vec<f64>) -> Result<u64> {
     let arguments = [SEED.0, PLANE[0].into(), px_per_cell.into(), RUNS.into()];
     let output = Command::new(program)

@@ -12,7 +12,7 @@ const KIDDO: Case = Case {
     ..PLAIN_SMALL
 };
 
-/// Returns the rows of a setting, with 8 and with 16 directions.
+/// Returns the rows of a setting: one for each number of directions, 8 and 16.
 pub(super) fn cases(setting: &Setting) -> [Case; 2] {
     ["kiddo, 8 directions", "kiddo, 16 directions"].map(|peer| Case {
         case: setting.plain.case,

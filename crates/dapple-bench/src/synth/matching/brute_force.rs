@@ -1,8 +1,8 @@
-//! Verifies nearest rows: every row is compared with every query, independently of the matcher.
+//! Verifies the nearest rows that the matcher found: compares every row with every query, independently of the matcher.
 //!
-//! A row is rejected as soon as its partial sum exceeds the total distance of the row found. The few remaining rows
-//! are compared by `distance_sq` itself. Sixteen rows at a time are compared term by term, so that the compiler uses
-//! vector registers, and blocks of rows stay in the cache while all queries are compared with them.
+//! A row is rejected as soon as its partial squared distance exceeds that of the matcher's row. The few remaining rows
+//! are compared by `distance_sq` itself. Sixteen rows at a time are compared component by component, so that the
+//! compiler uses vector registers. Blocks of rows stay in the cache while all queries are compared with them.
 
 use dapple_synth::distance_sq;
 
@@ -12,20 +12,21 @@ const LANES: usize = 16;
 /// Number of row groups in a block: 176 KB for rows of 171 numbers.
 const BLOCK: usize = 16;
 
-/// Number of partial sums; rows can be rejected after each of them.
+/// Number of partial sums of a squared distance. After each of them, rows can be rejected.
 const PARTS: usize = 16;
 
 /// Sums of up to 1000 `f32` terms in two different orders differ by less than this factor: each term is rounded at
 /// most 1003 times by 2^-24.
 const MARGIN: f32 = 1.0 - 1.3e-4;
 
-/// The rows, arranged for comparison in groups.
+/// The rows to search, arranged in groups for comparison.
 pub(super) struct BruteForce<'a> {
     dims: usize,
     rows: &'a [f32],
-    /// The numbers of each group of rows, in the order of `terms`; infinite past the last row.
+    /// The components of each group of rows, in the order of `terms`. Components past the last row are infinite.
     groups: Vec<[f32; LANES]>,
-    /// Order of the terms, in steps of sixteen, so that the first terms sample the whole neighborhood.
+    /// Order in which components are compared, in steps of sixteen, so that the first ones sample the whole
+    /// neighborhood.
     terms: Vec<usize>,
 }
 
@@ -51,8 +52,8 @@ impl<'a> BruteForce<'a> {
         }
     }
 
-    /// Returns the number of queries for which some row is nearer than the one found, or equally near with a lower
-    /// index.
+    /// Returns the number of queries for which the matcher's row is wrong: another row is nearer, or equally near with
+    /// a lower index.
     pub(super) fn n_wrong(&self, queries: &[&[f32]], found: &[u32]) -> usize {
         let limits: Vec<f32> = queries
             .iter()
@@ -78,7 +79,8 @@ impl<'a> BruteForce<'a> {
         is_wrong.into_iter().filter(|&is_wrong| is_wrong).count()
     }
 
-    /// Returns whether a row is nearer than the one found, or equally near with a lower index.
+    /// Returns whether a row is better than the row that was found: nearer, or equally near with a lower index. `limit`
+    /// is the squared distance of the found row.
     fn is_before(&self, query: &[f32], row: u32, (limit, found): (f32, u32)) -> bool {
         let distance_sq = distance_sq(query, self.row(row));
         distance_sq < limit || distance_sq == limit && row < found
@@ -88,13 +90,13 @@ impl<'a> BruteForce<'a> {
         &self.rows[row as usize * self.dims..][..self.dims]
     }
 
-    /// Returns the query's numbers in the order of `terms`.
+    /// Returns the components of a query in the order of `terms`.
     fn sorted(&self, query: &[f32]) -> Vec<f32> {
         self.terms.iter().map(|&term| query[term]).collect()
     }
 }
 
-/// Returns the squared distances of a group of rows, or `None` if partial sums exceed the limit in all rows.
+/// Returns the squared distances of a group of rows; `None` if the partial sums of all rows exceed the limit.
 fn compare(query: &[f32], rows: &[[f32; LANES]], limit: f32) -> Option<[f32; LANES]> {
     let mut sums = [0.0_f32; LANES];
     let part = query.len().div_ceil(PARTS).max(1);
