@@ -1,4 +1,4 @@
-//! A device that runs one compute shader at a time.
+//! A GPU device that runs one compute shader at a time.
 
 /// Number of invocations in a workgroup of the shaders.
 const WORKGROUP: usize = 64;
@@ -54,8 +54,9 @@ impl Gpu {
         self.name.starts_with("llvmpipe")
     }
 
-    /// Runs the entry point of `shader`, with workgroups of 64, at least `n` times. It writes `words` words each time. The
-    /// inputs are storage buffers, bound from binding 0 on; the results are bound after them.
+    /// Runs the entry point of `shader` for at least `n` invocations, in workgroups of 64. Each invocation writes
+    /// `words` words. The inputs are storage buffers with bindings from 0; the buffer of results has the next binding.
+    /// Returns the results.
     ///
     /// # Panics
     ///
@@ -65,8 +66,8 @@ impl Gpu {
         self.compute_with_data(shader, inputs, &[], n, words)
     }
 
-    /// Does the same as [`compute`](Self::compute), with a texture `data` that is bound after the results: texels of four
-    /// words, 1024 in a row. Without words, it is not bound.
+    /// Runs a shader like [`compute`](Self::compute), with a texture `data` that has the binding after the results:
+    /// texels of four words, 1024 in a row. If `data` is empty, no texture is bound.
     ///
     /// # Panics
     ///
@@ -144,7 +145,7 @@ impl Gpu {
             })
     }
 
-    /// Uploads words as texels of the format rgba32uint.
+    /// Creates a texture of the format rgba32uint from words.
     fn texture(&self, data: &[u32]) -> wgpu::TextureView {
         let mut bytes: Vec<u8> = data.iter().flat_map(|word| word.to_le_bytes()).collect();
         let row = 16 * DATA_WIDTH as usize;

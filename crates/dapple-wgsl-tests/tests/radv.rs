@@ -1,7 +1,7 @@
-//! Reads the machine code that Mesa's driver for AMD's GPUs makes of the shaders. The driver compiles for a GPU that is
-//! not there, if `RADV_FORCE_FAMILY` names one.
+//! Reads the machine code that Mesa's driver for AMD GPUs generates from the shaders. If `RADV_FORCE_FAMILY` names a
+//! GPU, the driver compiles for it even if it is not installed.
 //!
-//! A product and a sum in one instruction are rounded once, where the CPU rounds twice.
+//! A product and a sum that are fused to one instruction are rounded once, but the CPU rounds twice.
 
 use ash::vk;
 use dapple_wgsl::Module;
@@ -10,16 +10,16 @@ use std::path::Path;
 use std::process::Command;
 use wgpu::naga;
 
-/// Mesa's description of its driver for the loader.
+/// Path of Mesa's description of the driver, for the Vulkan loader.
 const DRIVER: &str = "/usr/share/vulkan/icd.d/radeon_icd.x86_64.json";
 
-/// Set in the process that compiles, to the number of the shader.
+/// Environment variable that is set in the child process, which compiles a shader: the index of the shader.
 const CHILD: &str = "DAPPLE_RADV";
 
-/// The name of the shader without a barrier, in which the driver fuses a product and a sum.
+/// Name of the shader without a barrier. The driver fuses its product and sum, so the test can fail.
 const BROKEN: &str = "without a barrier";
 
-/// The name of the only test, which starts itself.
+/// Name of the only test. It starts itself as a child process.
 const TEST: &str = "no_product_and_sum_are_one_instruction";
 
 #[test]
@@ -87,7 +87,7 @@ fn worley(module: Module, axes: usize) -> String {
     shader(module, axes, "Worley", &value)
 }
 
-/// Returns a shader that writes a value at every place.
+/// Returns a shader that writes a value at every position.
 fn shader(module: Module, axes: usize, parameters: &str, value: &str) -> String {
     let swizzle = &"xyzw"[..axes];
     module.source()
@@ -109,7 +109,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
         )
 }
 
-/// Compiles a shader in a separate process, and returns the output of the driver.
+/// Compiles a shader in a child process, and returns the machine code that the driver prints.
 fn machine_code(number: usize) -> String {
     let output = Command::new(std::env::current_exe().expect("this program"))
         .args([TEST, "--exact", "--nocapture"])
@@ -136,7 +136,7 @@ fn spir_v(shader: &str) -> Vec<u32> {
     naga::back::spv::write_vec(&module, &info, &options, None).expect("SPIR-V")
 }
 
-/// Creates a pipeline of the entry point `main`, so that the driver prints its code.
+/// Creates a compute pipeline with the entry point `main`, so that the driver prints its machine code.
 #[expect(unsafe_code, reason = "wgpu refuses the driver without a GPU")]
 fn compile(spir_v: &[u32]) {
     const MAIN: &CStr = c"main";

@@ -1,4 +1,4 @@
-//! Fields that are composed in Rust, as functions of the position.
+//! Tests of fields that are composed in Rust, as WGSL functions of the position.
 
 use super::{Place, differing, places, words};
 use dapple_hash::Seed;
@@ -9,10 +9,10 @@ use dapple_wavelet::WaveletNoise2;
 use dapple_wgsl_tests::Gpu;
 use dapple_worley::{Combination, Worley2};
 
-/// Number of random positions of a field, near and as many far.
+/// Number of random positions of each field near the origin; the same number of positions is far from it.
 const RANDOM: usize = 1 << 14;
 
-/// Returns the entry point, which evaluates the field at every place.
+/// Returns the WGSL entry point, which evaluates the field at every position.
 fn entry_point(data: &str) -> String {
     format!(
         "
@@ -29,7 +29,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
     )
 }
 
-/// Compares a field with its shader, near and far.
+/// Compares a field with its shader, at positions near the origin and far from it.
 fn compare(gpu: &Gpu, name: &str, field: &dyn Field) {
     let mut all: Vec<Place<2>> = Vec::new();
     for bits in [4, 17] {

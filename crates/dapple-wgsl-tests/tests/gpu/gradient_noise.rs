@@ -1,4 +1,4 @@
-//! Gradient noise and its fractal sums.
+//! Tests of gradient noise and its fractal sums.
 
 use super::{N, differing, places, without_barrier, words};
 use dapple_hash::Seed;
@@ -8,7 +8,7 @@ use dapple_raster::{Field, Fractal, FractalShape};
 use dapple_wgsl::{Module, source};
 use dapple_wgsl_tests::Gpu;
 
-/// Bindings of all entry points here, and a function that reads a place of `D` axes.
+/// Returns the bindings of all entry points, and a function that reads a position with `axes` axes.
 fn bindings(axes: usize) -> String {
     let swizzle = &"xyzw"[..axes];
     format!(
@@ -26,7 +26,7 @@ fn read_place(index: u32) -> Place{axes}d {{
     )
 }
 
-/// Returns a shader that computes the value at every place.
+/// Returns a shader that computes the noise value at every position.
 fn values(axes: usize, module: Module) -> String {
     module.source()
         + &bindings(axes)
@@ -39,7 +39,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
         )
 }
 
-/// Compares the values of noise with several seeds and periods, near and far.
+/// Compares the noise of several seeds and periods with the CPU, near the origin and far from it.
 fn compare_values<const D: usize>(module: Module, new: impl Fn(Seed) -> GradientNoise<D>) {
     let Some(gpu) = Gpu::new() else { return };
     let shader = values(D, module);
@@ -72,7 +72,7 @@ fn compare_values<const D: usize>(module: Module, new: impl Fn(Seed) -> Gradient
     }
 }
 
-/// Compares values with derivatives, also of an octave, which has an offset.
+/// Compares values and derivatives with the CPU. Also compares an octave, whose positions have an offset.
 fn compare_gradients<const D: usize>(module: Module, new: impl Fn(Seed) -> GradientNoise<D>) {
     let Some(gpu) = Gpu::new() else { return };
     let words_out = D + 1;
@@ -111,7 +111,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
     }
 }
 
-/// Compares fractal sums, near and so far that the last octave still has cells of 32 bits.
+/// Compares fractal sums with the CPU, near the origin and at the largest positions for which the cells of the last
+/// octave fit in 32 bits.
 fn compare_sums<const D: usize>(module: Module, new: impl Fn(Seed) -> GradientNoise<D>) {
     let Some(gpu) = Gpu::new() else { return };
     let shapes = [
@@ -169,7 +170,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
     }
 }
 
-/// Compares the split of positions in a small world, with the values there.
+/// Compares the noise at positions that the shader splits from `f32` coordinates with the CPU.
 fn compare_positions<const D: usize>(module: Module, new: impl Fn(Seed) -> GradientNoise<D>) {
     let Some(gpu) = Gpu::new() else { return };
     let noise = new(Seed(3));

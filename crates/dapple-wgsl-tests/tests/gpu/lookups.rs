@@ -1,4 +1,4 @@
-//! Noise that looks up words in a texture: wavelet noise and textures of control points.
+//! Tests of noise that looks up words in a texture: wavelet noise and textures of control points.
 
 use super::{Place, differing, places, without_barrier, words};
 use dapple_hash::Seed;
@@ -13,7 +13,7 @@ use dapple_wgsl::Module;
 use dapple_wgsl_tests::Gpu;
 use std::sync::Arc;
 
-/// Positions of each texture, near the origin and far from it.
+/// Returns random positions near the origin and far from it.
 fn everywhere(seed: u64, n: usize) -> Vec<Place<2>> {
     let near_and_far = [2, 17].map(|bits| places::<2>(seed, bits));
     let all = near_and_far.into_iter().flat_map(|mut places| {
@@ -23,7 +23,8 @@ fn everywhere(seed: u64, n: usize) -> Vec<Place<2>> {
     all.collect()
 }
 
-/// Appends the call for each position to a module. The words of its texture start at the texel `first`.
+/// Returns the source of a module with an entry point that evaluates `call` at each position. The words of a position's
+/// texture start at the texel `first`.
 fn shader(module: Module, call: &str) -> String {
     module.source()
         + &format!(
@@ -43,7 +44,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
         )
 }
 
-/// The textures of a test: all words, and for each position its texel and the value on the CPU.
+/// Inputs of a test with several textures: the words of all textures; and for each position, the first texel of its
+/// texture and the value on the CPU.
 #[derive(Default)]
 struct Textures {
     data: Vec<u32>,
@@ -65,7 +67,7 @@ impl Textures {
         self.places.extend(places);
     }
 
-    /// Returns the number of values that differ.
+    /// Returns the number of values that differ between CPU and GPU.
     fn differing(&self, gpu: &Gpu, shader: &str) -> usize {
         let inputs = [&[0][..], &words(&self.places), &self.texels];
         let on_gpu = gpu.compute_with_data(shader, &inputs, &self.data, self.places.len(), 1);
@@ -101,7 +103,7 @@ fn wavelet_noise_has_the_bits_of_the_cpu() {
     assert!(textures.differing(&gpu, &other) > textures.places.len() / 100);
 }
 
-/// Returns textures of all weights, with and without orientations and fading axes, that repeat or not.
+/// Returns textures with all axial weights, with and without orientations and fading axes, some of which repeat.
 fn nets() -> Vec<Arc<dyn NetField>> {
     let domain = |wrap| Domain {
         origin: DVec2::new(0.3, -7.0),

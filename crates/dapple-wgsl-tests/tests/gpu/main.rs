@@ -1,4 +1,4 @@
-//! The shaders of `dapple-wgsl` against the CPU: all bits are equal.
+//! Tests that the shaders of `dapple-wgsl` have the same bits as the CPU.
 
 mod fields;
 mod gradient_noise;
@@ -12,10 +12,10 @@ use dapple_hash::Seed;
 use dapple_hash::rand_core::Rng;
 use dapple_wgsl_tests::Gpu;
 
-/// Positions per run.
+/// Number of positions per run.
 const N: usize = 1 << 18;
 
-/// A position as a shader has it: cells, and fractions as multiples of 2^-24.
+/// A position as a shader reads it: integer cells, and fractions as multiples of 2^-24.
 #[derive(Clone, Copy)]
 struct Place<const D: usize> {
     cell: [i32; D],
@@ -23,14 +23,14 @@ struct Place<const D: usize> {
 }
 
 impl<const D: usize> Place<D> {
-    /// Returns the position in cells, which is exact below 2^29 cells.
+    /// Returns the position in cells. It is exact if the cell is below 2^29.
     fn position(&self) -> [f64; D] {
         std::array::from_fn(|axis| {
             f64::from(self.cell[axis]) + f64::from(self.fraction[axis]) / f64::from(1 << 24)
         })
     }
 
-    /// Splits a position, whose coordinates must be multiples of 2^-24.
+    /// Splits a position into cells and fractions. Its coordinates must be multiples of 2^-24.
     fn of(position: [f64; D]) -> Self {
         let place = Self {
             cell: position.map(|part| part.floor() as i32),
@@ -40,7 +40,7 @@ impl<const D: usize> Place<D> {
         place
     }
 
-    /// Returns four words for the cell and four for the fraction.
+    /// Returns the words that a shader reads: four for the cell and four for the fraction.
     fn words(&self) -> [u32; 8] {
         let mut words = [0; 8];
         for axis in 0..D {
@@ -52,8 +52,8 @@ impl<const D: usize> Place<D> {
     }
 }
 
-/// Returns random positions whose cells have at most `bits` bits and a sign. A quarter of the fractions are at or next to
-/// a side of the cell or its center.
+/// Returns random positions whose cells have at most `bits` bits and a sign. A quarter of the fractions are at, or next
+/// to, a side or the center of the cell.
 fn places<const D: usize>(seed: u64, bits: u32) -> Vec<Place<D>> {
     let mut stream = Seed(seed).child("places", u64::from(bits)).stream();
     let mut place = || {
@@ -78,14 +78,14 @@ fn words<const D: usize>(places: &[Place<D>]) -> Vec<u32> {
     places.iter().flat_map(Place::words).collect()
 }
 
-/// Returns the shader without its barrier.
+/// Returns the shader's source with its barrier removed.
 fn without_barrier(source: &str) -> String {
     let barrier = "return bitcast<vec4<f32>>(bitcast<vec4<u32>>(x) ^ vec4(zero));";
     assert_eq!(source.matches(barrier).count(), 1, "one barrier");
     source.replace(barrier, "return x;")
 }
 
-/// Counts the results whose bits differ, and prints the first.
+/// Returns the number of results whose bits differ, and prints the first such result.
 #[expect(clippy::print_stdout, reason = "it is shown if a test fails")]
 fn differing(on_cpu: &[u32], on_gpu: &[u32]) -> usize {
     assert_eq!(on_cpu.len(), on_gpu.len(), "number of results");

@@ -1,4 +1,4 @@
-//! The modules for `naga_oil`, composed by `naga_oil`.
+//! Tests of the modules for `naga_oil`, composed by `naga_oil`.
 
 use dapple_wgsl::Module;
 use naga_oil::compose::{ComposableModuleDescriptor, Composer, NagaModuleDescriptor};

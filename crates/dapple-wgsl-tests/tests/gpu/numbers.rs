@@ -1,4 +1,4 @@
-//! Arithmetic of the shaders: quotients, powers and numbers of 64 bits.
+//! Tests of the shaders' arithmetic: quotients, powers and 64-bit floats.
 
 use super::{N, differing};
 use dapple_hash::rand_core::Rng;
@@ -6,7 +6,8 @@ use dapple_hash::{Pcg32, Seed};
 use dapple_wgsl::{Module, source};
 use dapple_wgsl_tests::Gpu;
 
-/// Runs `body` for each chunk of `width` input words. It sets `out[base]` and so on, for `words` words.
+/// Runs `body` once for each `width` words of the input. It must set `words` words of `out`, starting at `out[base]`.
+/// Returns the output.
 fn run(
     gpu: &Gpu,
     modules: &[Module],
@@ -31,7 +32,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
     gpu.compute(&shader, &[&[0], input], input.len() / width, words)
 }
 
-/// Returns a normal number whose exponent is from `-range` to `range`. Some mantissas are near a power of two.
+/// Returns a random normal number whose exponent is from `-range` to `range`. Some mantissas are near a power of two.
 fn number(stream: &mut Pcg32, range: u32) -> f32 {
     let draw = stream.next_u32();
     let mantissa = match draw % 8 {
@@ -113,7 +114,7 @@ fn powers_have_the_bits_of_libm() {
     assert_eq!(differing(&on_cpu, &on_gpu), 0);
 }
 
-/// Returns a number of 64 bits whose exponent is from `-range` to `range`.
+/// Returns a random 64-bit float whose exponent is from `-range` to `range`.
 fn double(stream: &mut Pcg32, range: u64) -> f64 {
     let draw = stream.next_u64();
     let mantissa = match draw % 8 {
@@ -127,7 +128,7 @@ fn double(stream: &mut Pcg32, range: u64) -> f64 {
     f64::from_bits(draw & 1 << 63 | exponent << 52 | mantissa)
 }
 
-/// Returns the upper and the lower word.
+/// Returns the upper and the lower word of a number's bits.
 fn words(x: f64) -> [u32; 2] {
     [(x.to_bits() >> 32) as u32, x.to_bits() as u32]
 }

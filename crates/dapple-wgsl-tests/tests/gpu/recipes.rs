@@ -1,17 +1,17 @@
-//! Materials of recipes, as functions of the position.
+//! Tests of the materials of recipes, as WGSL functions of the position.
 
 use super::{Place, differing, places, words};
 use dapple_raster::{Field, Window};
 use dapple_recipe::{Images, Input, Material, Plan, Recipe, RecipeErrorKind, ShaderOptions};
 use dapple_wgsl_tests::Gpu;
 
-/// Number of random positions of a recipe, near and far.
+/// Number of random positions per recipe, near the origin and far from it.
 const RANDOM: usize = 1 << 8;
 
 /// Number of pixels along each side of a window.
 const SIDE: u32 = 96;
 
-/// Positions at which a material is compared.
+/// Positions at which a material is compared: single positions, or the pixels of a window.
 enum At {
     Places(Vec<Place<2>>),
     Window(Window),
@@ -29,7 +29,7 @@ impl At {
         }
     }
 
-    /// Returns the numbers of an input on the CPU.
+    /// Returns the values of a scalar input at these positions, computed on the CPU.
     fn numbers(&self, plan: &Plan, input: &Input) -> Vec<f32> {
         let node = match input {
             Input::Node(node) => node,
@@ -48,7 +48,7 @@ impl At {
         }
     }
 
-    /// Returns the linear colors of an input on the CPU; numbers are grays.
+    /// Returns the linear colors of an input at these positions, computed on the CPU. Numbers become grays.
     fn colors(&self, plan: &Plan, input: &Input) -> Vec<[f32; 3]> {
         let node = match input {
             Input::Node(node) => node,
@@ -75,7 +75,7 @@ impl At {
     }
 }
 
-/// Numbers of a material, then the components of its colors.
+/// Members of the WGSL material: the scalars, followed by the components of the colors.
 const MEMBERS: [&str; WORDS] = [
     "height",
     "roughness",
@@ -91,10 +91,10 @@ const MEMBERS: [&str; WORDS] = [
     "emission.z",
 ];
 
-/// Number of words of a material.
+/// Number of words of a material in the output.
 const WORDS: usize = 12;
 
-/// Returns the inputs of the numbers of a material.
+/// Returns the inputs of a material's scalars, in the order of [`MEMBERS`].
 fn numbers_of(material: &Material) -> [Input; 6] {
     let or = |input: &Option<Input>, default| input.clone().unwrap_or(Input::Number(default));
     [
@@ -107,22 +107,23 @@ fn numbers_of(material: &Material) -> [Input; 6] {
     ]
 }
 
-/// Returns the inputs of the colors of a material.
+/// Returns the inputs of a material's colors, in the order of [`MEMBERS`].
 fn colors_of(material: &Material) -> [Input; 2] {
     let albedo = material.albedo.as_ref().unwrap_or(&material.height);
     let black = Input::Number(0.0);
     [albedo.clone(), material.emission.clone().unwrap_or(black)]
 }
 
-/// Results of a comparison: how many numbers differ, and how many components of colors.
+/// Result of a comparison: the number of different scalars, and the number of different color components.
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Difference {
     numbers: usize,
     colors: usize,
 }
 
-/// Returns the entry point, which evaluates the material at every place. `width` is the number of words of the textures at
-/// a place, and `textures` the arguments with the texture of data and their values.
+/// Returns the WGSL entry point, which evaluates the material at every position. `width` is the number of words per
+/// position that are read from textures. `textures` are the arguments of the call for the `data` texture and these
+/// words.
 fn entry_point(width: usize, textures: &str) -> String {
     format!(
         "
@@ -144,7 +145,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
     )
 }
 
-/// Compares a material with its plan. The values of nodes without a shader come from the plan.
+/// Compares a material's shader with its plan. The values of nodes without a shader come from the plan.
 fn compare(gpu: &Gpu, recipe: &Recipe, plan: &Plan, at: &[At]) -> Difference {
     let options = ShaderOptions { textures: true };
     let shader = recipe.to_wgsl(&Images::new(), &options).expect("a shader");
@@ -201,7 +202,7 @@ fn compare(gpu: &Gpu, recipe: &Recipe, plan: &Plan, at: &[At]) -> Difference {
     difference
 }
 
-/// Returns positions near and far: pixels of windows, and random ones.
+/// Returns positions near the origin and far from it: pixels of windows, and random ones.
 fn everywhere() -> Vec<At> {
     let window = |origin: [f64; 2], pixel: f64| {
         let side = pixel * f64::from(SIDE);
@@ -219,7 +220,8 @@ fn everywhere() -> Vec<At> {
     random.into_iter().chain(windows).collect()
 }
 
-/// Returns whether the material, and the nodes that its shader takes as textures, have values at single positions.
+/// Returns whether values at single positions exist: of the material, and of the nodes that its shader reads from
+/// textures.
 fn has_single_positions(plan: &Plan, recipe: &Recipe) -> bool {
     let numbers = numbers_of(&recipe.material).into_iter();
     let inputs = numbers.chain(colors_of(&recipe.material));
@@ -242,8 +244,8 @@ fn has_single_positions(plan: &Plan, recipe: &Recipe) -> bool {
         })
 }
 
-/// Returns the built-in recipes that are compared: all of them with `DAPPLE_ALL_RECIPES=1`, or else a few, since lavapipe
-/// takes many seconds to compile the shader of one.
+/// Returns the names of the built-in recipes to compare: all of them with `DAPPLE_ALL_RECIPES=1`, otherwise a few,
+/// since lavapipe takes many seconds to compile each shader.
 fn builtin_names() -> impl Iterator<Item = &'static str> {
     let all = std::env::var_os("DAPPLE_ALL_RECIPES").is_some();
     Recipe::builtin_names().step_by(if all { 1 } else { 12 })
@@ -323,7 +325,7 @@ fn stamps_and_gabor_noise_have_a_shader_where_the_recipe_repeats() {
     }
 }
 
-/// All nodes with a shader, with options that the built-in recipes do not use.
+/// A recipe of all nodes that have a shader, with options that the built-in recipes do not use.
 const NODES: &str = r##"
     dapple = 1
     extent = [5.0, 3.0]
@@ -392,7 +394,7 @@ const NODES: &str = r##"
     metallic = 1.0
 "##;
 
-/// Nodes that evaluate others elsewhere, that compare and that choose.
+/// A recipe of nodes that evaluate their input at other positions, compare, or select.
 const FOLDS: &str = r##"
     dapple = 1
     extent = [5.0, 3.0]
@@ -427,7 +429,7 @@ const FOLDS: &str = r##"
     albedo = "tint"
 "##;
 
-/// Compares all nodes of a recipe, three at a time, and its color.
+/// Compares all nodes of a recipe with the CPU, three per shader, and its color.
 fn compare_nodes(gpu: &Gpu, text: &str, at: &[At]) {
     let mut recipe = Recipe::from_toml(text).expect("a recipe");
     let plan = Plan::new(&recipe, &Images::new(), 0.0).expect("a plan");
@@ -457,7 +459,7 @@ fn nodes_that_fold_compare_and_choose_have_the_bits_of_the_cpu() {
     compare_nodes(&gpu, FOLDS, &everywhere());
 }
 
-/// Values of the bricks of a bond and of the threads of a draft.
+/// Nodes with several outputs, bricks and weaves, each with options for a bond or a draft.
 const VALUES: &[(&str, &str)] = &[
     (
         "bricks",
@@ -545,7 +547,7 @@ fn bricks_and_weaves_have_the_bits_of_the_cpu() {
     }
 }
 
-/// Shapes, each with all of its values.
+/// Options of the node `shape`, one for each kind.
 const SHAPES: &[&str] = &[
     "kind = 'circle', center = [0.3, 1.1], size = 0.4, onion = 0.3, frequency = [1.2, 0.7]",
     "kind = 'box', size = 0.7, rotation = 25.0, rounding = 0.2, frequency = 1.0",
@@ -557,7 +559,7 @@ const SHAPES: &[&str] = &[
     "kind = 'heart', size = 0.8, rounding = 0.2, rotation = 200.0, frequency = [1.0, 1.2]",
 ];
 
-/// Stamps. All shapes and overlaps occur.
+/// Options of the node `scatter`, which together have all shapes and overlaps.
 const STAMPS: &[&str] = &[
     "shape = 'dome', overlap = 'highest'",
     "shape = 'cone', overlap = 'add', density = 2.5, size = [0.5, 2.5]",
@@ -572,13 +574,13 @@ const STAMPS: &[&str] = &[
     "shape = 'flake', overlap = 'order', size = [0.3, 1.8]",
 ];
 
-/// Gabor noise.
+/// Options of the node `gabor`.
 const GABOR: &[&str] = &[
     "frequency = [0.8, 2.0], angle = 30.0",
     "waves = 5.0, impulses = 3, spread = 180.0, angle = -200.0",
 ];
 
-/// Compares values of a node with options, three at a time, in a tile that repeats along both axes.
+/// Compares the outputs `values` of a node with the CPU, three per shader, on a tile that repeats along both axes.
 fn compare_values(gpu: &Gpu, kind: &str, options: &str, values: &[&str], at: &[At]) {
     let outputs = values.iter();
     let outputs =
@@ -651,7 +653,7 @@ fn gabor_noise_has_the_bits_of_the_cpu() {
     }
 }
 
-/// Nodes of colors in sRGB, and blends of layers.
+/// A recipe of nodes that compute with sRGB colors, and of blends of layers.
 const COLORS: &str = r##"
     dapple = 1
     extent = [5.0, 3.0]

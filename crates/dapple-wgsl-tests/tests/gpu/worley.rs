@@ -1,4 +1,4 @@
-//! Worley's basis: distances, vectors and ids of the nearest feature points, and distances to edges.
+//! Tests of Worley's basis: distances, vectors and ids of the nearest feature points, and distances to cell borders.
 
 use super::{N, Place, differing, places, words};
 use dapple_hash::Seed;
@@ -9,8 +9,8 @@ use dapple_worley::{
     Dimensions, Feature, Metric, Scatter, Space, Vector, Worley, Worley2, Worley3, Worley4,
 };
 
-/// Returns a shader that writes distance, vector and id of the `n` nearest points. `count` is the argument with their
-/// number, if there is one.
+/// Returns a shader that writes distance, vector and id of the `n` nearest feature points. `count` is the argument for
+/// the number of points, or empty if the function has no such argument.
 fn shader(axes: usize, module: Module, n: usize, count: &str) -> String {
     let swizzle = &"xyzw"[..axes];
     module.source()
@@ -61,7 +61,8 @@ where
     on_cpu
 }
 
-/// Compares all scatters, several periods and metrics, near and far, at `n` places each.
+/// Compares all scatters, several periods and metrics with the CPU, near the origin and far from it, at `n` positions
+/// each.
 fn compare<const D: usize, const NEAREST: usize>(
     module: Module,
     count: &str,
