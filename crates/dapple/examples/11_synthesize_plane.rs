@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Returns an image of cells with one color each. It does not repeat.
+/// Returns an image of cells, each in a single color. The image does not repeat.
 fn example() -> Result<Raster<LinearRgb>, Box<dyn std::error::Error>> {
     let window = Window::new(DVec2::ZERO, DVec2::splat(0.9), [56, 56])?;
     let cells = cells(&CellsOptions::default(), Seed(7))?;

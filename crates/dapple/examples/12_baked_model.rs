@@ -23,7 +23,7 @@ use dapple::synth::{
 };
 use std::f64::consts::TAU;
 
-/// Returns a torus around the y axis with radii of 0.7 and 0.28, built from 48 by 24 squares.
+/// Returns a torus around the y axis with radii of 0.7 and 0.28, with 48 by 24 quadrilaterals.
 fn ring() -> Result<mesh::Mesh, MeshError> {
     let [columns, rows] = [48, 24];
     let turn = |part: u32, of: u32| TAU * f64::from(part) / f64::from(of);

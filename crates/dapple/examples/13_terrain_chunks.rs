@@ -14,7 +14,7 @@ use dapple::points::{EndlessPoint, EndlessPoissonDisk};
 use dapple::raster::{Field, FieldExt, FractalShape, Raster, Window, glam::DVec2};
 use dapple::worley::Worley2;
 
-/// Side of a chunk in meters and in pixels.
+/// Side of a chunk, in meters and in pixels.
 const CHUNK: u32 = 64;
 
 /// Number of chunks along a side of the image.
@@ -55,7 +55,7 @@ fn world(seed: Seed) -> Result<World<impl Field, impl Field>> {
 }
 
 impl<H: Field, B: Field> World<H, B> {
-    /// Returns a square of `size` × `size` chunks as one chunk, whose first chunk is at the given column and row.
+    /// Returns a square of `size` × `size` chunks as a single chunk. `[column, row]` is its first chunk.
     fn chunk(&self, [column, row]: [i64; 2], size: u32) -> Result<Chunk> {
         let side = i64::from(CHUNK);
         let window = self

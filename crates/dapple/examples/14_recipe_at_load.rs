@@ -22,9 +22,9 @@ use std::thread;
 /// Maps of a material.
 type Maps = Vec<(MapKind, MapRows)>;
 
-/// A material that is being baked.
+/// A material that is being baked on another thread.
 struct Loading {
-    /// Completed fraction of the work, from 0 to 1, sent whenever it grows.
+    /// Receives the completed fraction of the work, from 0 to 1, whenever it grows.
     parts: mpsc::Receiver<f64>,
     /// Whether the work has been cancelled.
     is_over: Arc<AtomicBool>,
@@ -61,7 +61,7 @@ impl Loading {
         }
     }
 
-    /// Shows the progress up to the fraction `end` of the work. Returns the maps, or an error if the work was
+    /// Shows the progress until the fraction `end` of the work is done. Returns the maps, or an error if the work was
     /// cancelled.
     fn until(self, end: f64) -> Result<Maps, RecipeError> {
         let mut shown = 0;

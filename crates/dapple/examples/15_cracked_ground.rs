@@ -17,7 +17,7 @@ use dapple::worley::{Combination, Worley2};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-/// Returns the heights of ground that repeats after one unit of the plane.
+/// Returns the heights of ground that repeats with a period of one unit.
 fn ground(seed: Seed) -> Result<impl Field> {
     let plates = Worley2::new(seed.child("plates", 0)).with_period([Some(6); 2])?;
     // 0 in the cracks between plates and 1 inside the plates.

@@ -21,7 +21,7 @@ fn regions(seed: Seed) -> Result<Voronoi> {
     Ok(Voronoi::new(&poisson_disk(domain, 0.08, seed)?)?)
 }
 
-/// Draws each region with a brightness that depends on its area. Borders are dark.
+/// Renders each region with a brightness that depends on its area, and dark borders.
 fn draw(regions: &Voronoi, size: u32) -> Result<Raster<LinearRgb>> {
     let n_cells = regions.n_cells() as f64;
     let window = Window::unit([size; 2])?;

@@ -1,4 +1,4 @@
-//! Synthesizes a larger texture from a small one, and replaces a scratch with texture.
+//! Synthesizes a larger texture from a small image, and replaces a scratch in the image with texture.
 //!
 //! ```sh
 //! cargo run -p dapple --example 18_grow_and_repair
@@ -16,7 +16,7 @@ use dapple::synth::{Edges, Exemplar, Options, PlaneTexture, synthesize_plane};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-/// Returns a drawn photograph with a scratch, and a mask of its clean pixels.
+/// Returns a drawn substitute for a photograph with a scratch, and a mask of its clean pixels.
 fn photo() -> Result<(Raster<LinearRgb>, Raster<bool>)> {
     let window = Window::new([0.0; 2], [8.0; 2], [64, 64])?;
     let rock = GradientNoise2::new(Seed(7)).fractal(3, 0.5, 2.0, FractalShape::Ridged)?;
@@ -31,7 +31,7 @@ fn photo() -> Result<(Raster<LinearRgb>, Raster<bool>)> {
     Ok((photo, clean))
 }
 
-/// Returns the photograph without its scratch. All clean pixels stay unchanged.
+/// Returns the photograph without its scratch. All clean pixels are unchanged.
 fn repair(photo: &Raster<LinearRgb>, clean: &Raster<bool>) -> Result<Raster<LinearRgb>> {
     let exemplar = Exemplar::new(photo, Edges::Cut)?.with_mask(clean)?;
     let hole = clean.map(|is_clean| !is_clean);
@@ -44,7 +44,7 @@ fn repair(photo: &Raster<LinearRgb>, clean: &Raster<bool>) -> Result<Raster<Line
     Ok(texture.transfer(photo)?)
 }
 
-/// Returns a tile that resembles the photograph.
+/// Returns a tile that resembles the photograph, with `size` pixels along each side.
 fn grow(photo: &Raster<LinearRgb>, size: u32) -> Result<Raster<LinearRgb>> {
     let exemplar = Exemplar::new(photo, Edges::Cut)?;
     let texture = synthesize_plane(&exemplar, [size; 2], [Edges::Wrap; 2], &Options::default())?;

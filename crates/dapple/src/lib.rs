@@ -43,7 +43,7 @@
 //! | files: PNG and OpenEXR | [`image`] | [`write_color_png`](image::write_color_png), [`read_image`](image::read_image) |
 //! | meshes | [`mesh`] | [`Mesh`](mesh::Mesh), [`Surface`](mesh::Surface) |
 //! | mesh files: OBJ, PLY, glTF, OFF, STL | [`mesh_io`] | [`read_model`](mesh_io::read_model), [`write_model`](mesh_io::write_model) |
-//! | a lit image of a texture on a thing | [`preview`] | [`Scene`](preview::Scene) |
+//! | a lit image of a textured object | [`preview`] | [`Scene`](preview::Scene) |
 //!
 //! Each module links to the documentation of its crate, which has the costs, the limits, and a search of its own. All
 //! of them use the types of [`raster`] (pixels, and their positions) and [`hash`] (seeds). Vectors are those of `glam`,
@@ -87,11 +87,10 @@
 //!
 //! * The same seed gives the same bits on every machine, with every set of vector instructions and any number of
 //!   threads.
-//! * What a generator repeats, it repeats exactly, along each axis on its own; a window is, bit for bit, a crop of the
-//!   whole.
+//! * Periods are exact, and independent for each axis. A window is, bit for bit, a crop of the whole image.
 //! * Row 0 is the top, x goes right and y down. Positions are `f64`, values `f32`, and colors linear until a file has 8
 //!   or 16 bits per channel.
-//! * Bad input is an error that names the limit and the value, and never a panic.
+//! * Invalid input is an error that states the limit and the value, never a panic.
 //! * A raster has at most 2^31 pixels. Larger images are made window by window.
 //! * Nothing runs on a GPU, and no file is downloaded.
 //!
@@ -105,8 +104,8 @@
 //! | `json` | on | seam reports and directions as JSON |
 //! | `schema` | off | recipes as JSON Schema, and a reference of all options |
 //!
-//! A program that needs cells alone uses `default-features = false, features = ["worley"]`, or depends on
-//! `dapple-worley`, which is the same code. Use one of the crates for one purpose, and this one for several.
+//! A program that needs only cells uses `default-features = false, features = ["worley"]`, or depends on
+//! `dapple-worley`, which is the same code. Depend on a single crate for one purpose, and on this one for several.
 //!
 //! # Without std
 //!
@@ -118,15 +117,15 @@
 //! * A texture that repeats needs a sampler that repeats; the default of most engines clamps.
 //! * Color is sRGB (`rgba8unorm-srgb`), and normals, heights and roughness are not (`rgba8unorm`, `r8unorm`, or 16
 //!   bits).
-//! * Normals point up in green, as in OpenGL, glTF, Godot, Blender, Unity and Bevy; `NormalY::DirectX` turns it over
+//! * Green points up in normal maps, as in OpenGL, glTF, Godot, Blender, Unity and Bevy; `NormalY::DirectX` flips it
 //!   for Unreal.
-//! * Mip levels are yours to make: [`TextureRaster::mip_levels`](color::TextureRaster::mip_levels) does it, in linear
+//! * Generate mip levels with [`TextureRaster::mip_levels`](color::TextureRaster::mip_levels), which averages in linear
 //!   light.
-//! * A world in chunks: windows of one grid fit to the last bit, and so do [endless
+//! * For a world in chunks, adjacent windows of one grid have the same bits as a single image. So do [endless
 //!   points](points::EndlessPoissonDisk).
 //!
-//! The folder `examples/` of this crate goes from one line to a baked model, a terrain in chunks and a material that is
-//! made while a game loads. Its README lists them.
+//! The examples of this crate, in the folder `examples/`, range from one line to a baked model, a terrain in chunks and a
+//! material that is baked while a game loads. The README lists them.
 
 #![forbid(unsafe_code)]
 
@@ -142,11 +141,12 @@ pub use dapple_raster as raster;
 #[cfg(feature = "color")]
 pub use dapple_color as color;
 
-/// Blurs, gradients, dilation, distances and regions of rasters, part by part.
+/// Filters of rasters: blurs, gradients, dilation, distances to a mask, connected regions. Large rasters can be
+/// filtered window by window.
 #[cfg(feature = "filter")]
 pub use dapple_filter as filter;
 
-/// Points that keep their distance, on domains that wrap.
+/// Point sets with a minimum distance between points, on domains that may wrap.
 #[cfg(feature = "points")]
 pub use dapple_points as points;
 
@@ -158,11 +158,11 @@ pub use dapple_graph as graph;
 #[cfg(feature = "pups")]
 pub use dapple_pups as pups;
 
-/// Worley's cells: F1 to F4 in 2-D, 3-D and 4-D.
+/// Worley's cellular basis: F1 to F4 in 2-D, 3-D and 4-D.
 #[cfg(feature = "worley")]
 pub use dapple_worley as worley;
 
-/// Gradient noise: Perlin's, with exact periods.
+/// Perlin's gradient noise, with exact periods.
 #[cfg(feature = "noise")]
 pub use dapple_noise as noise;
 
@@ -170,19 +170,19 @@ pub use dapple_noise as noise;
 #[cfg(feature = "pattern")]
 pub use dapple_pattern as pattern;
 
-/// Spline wavelets: rasters halved and doubled exactly, and wavelet noise.
+/// Spline wavelets: exact filters that halve and double rasters, and wavelet noise.
 #[cfg(feature = "wavelet")]
 pub use dapple_wavelet as wavelet;
 
-/// Images made to repeat, seam reports, and blending of materials.
+/// Seamless tiles from images, seam reports, and blending of materials.
 #[cfg(feature = "tile")]
 pub use dapple_tile as tile;
 
-/// Recipes and materials as text, and the maps that are baked from them.
+/// Recipes, which are materials as text, and the maps that are baked from them.
 #[cfg(feature = "recipe")]
 pub use dapple_recipe as recipe;
 
-/// Triangle meshes: repair, walking, nearest points.
+/// Triangle meshes: repair, straight paths, nearest points.
 #[cfg(feature = "mesh")]
 pub use dapple_mesh as mesh;
 
@@ -190,14 +190,14 @@ pub use dapple_mesh as mesh;
 #[cfg(feature = "mesh-io")]
 pub use dapple_mesh_io as mesh_io;
 
-/// Textures from an example image, on meshes and in the plane.
+/// Texture synthesis from an example image, on meshes and in the plane.
 #[cfg(feature = "synth")]
 pub use dapple_synth as synth;
 
-/// Lit pictures of textures on objects.
+/// Lit previews of textures on objects.
 #[cfg(feature = "preview")]
 pub use dapple_preview as preview;
 
-/// Image files: PNG and OpenEXR.
+/// Image files: PNG, OpenEXR and JPEG.
 #[cfg(feature = "image")]
 pub use dapple_image as image;
