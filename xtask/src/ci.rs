@@ -126,7 +126,8 @@ fn run(shell: &Shell, step: Step) -> anyhow::Result<()> {
     Ok(command.run()?)
 }
 
-/// Common search terms that are not names in the crates. The front page of `dapple` lists the items that cover them.
+/// Search terms that are not names in the crates. The documentation search must find them; they are aliases of items on
+/// the front page of `dapple`.
 const LOOKED_FOR: [&str; 12] = [
     "blue noise",
     "cellular noise",
@@ -218,7 +219,8 @@ fn feature_sets(member: &Member) -> Vec<String> {
     sets
 }
 
-/// Returns whether a feature only enables features of other crates, so that it does not affect the crate's own code.
+/// Returns whether a feature only enables features of other crates. Such a feature does not affect the crate's own
+/// code.
 fn is_passed_on(parts: &[String]) -> bool {
     parts.iter().all(|part| part.contains('/'))
 }

@@ -68,7 +68,8 @@ pub(crate) fn licenses(shell: &Shell, check: bool) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Returns the license file for packages. It has each license text once, preceded by the crates that use it.
+/// Returns the text of the license file for these packages. It has each license text once, preceded by the names of the
+/// crates that use it.
 fn texts(shell: &Shell, shipped: &[&Value]) -> anyhow::Result<String> {
     let mut texts: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for package in shipped {
@@ -182,7 +183,8 @@ fn name(path: &Path) -> String {
     name.to_string_lossy().to_lowercase()
 }
 
-/// Normalizes line endings and trailing white space, which differ between systems and editors.
+/// Returns a text with normalized line endings and without trailing white space, which differ between systems and
+/// editors.
 fn plain(text: &str) -> String {
     let lines: Vec<_> = text
         .trim_start_matches('\u{feff}')

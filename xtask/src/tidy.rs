@@ -12,7 +12,7 @@ use anyhow::bail;
 use workspace::Workspace;
 use xshell::Shell;
 
-/// A rule, as its statement and the function that finds violations.
+/// A rule: its statement, and the function that returns all violations.
 type Rule = (&'static str, fn(&Workspace) -> Vec<String>);
 
 /// All rules.

@@ -80,9 +80,9 @@ assert array.flags['C_CONTIGUOUS'] and numpy.isfinite(array).all() and array.std
 print('NumPy:', array.shape, array.dtype)
 ";
 
-/// A program that validates a file.
+/// A program that checks a file.
 struct Judge {
-    /// The requirements of the program, for messages.
+    /// Description of the program's requirements, for messages.
     needs: &'static str,
     /// The program and its arguments, without the code.
     program: Vec<String>,
@@ -92,7 +92,7 @@ struct Judge {
     file: &'static str,
 }
 
-/// Bakes a material for each installed judge and runs its check.
+/// Bakes a material for each installed checker, and runs the check.
 pub(super) fn exchange(shell: &Shell) -> anyhow::Result<()> {
     let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let python = || vec![python.clone(), "-c".to_owned()];

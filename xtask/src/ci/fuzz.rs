@@ -10,7 +10,7 @@ use xshell::{Cmd, Shell, cmd};
 /// Number of targets that run in parallel.
 const AT_ONCE: usize = 2;
 
-/// The running time of each target, in seconds.
+/// Running time of each target, in seconds.
 const SECONDS: &str = "10";
 
 /// Time limit per input, in seconds. Most inputs take less than a thousandth of it.

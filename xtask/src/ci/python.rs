@@ -109,7 +109,7 @@ fn wheel(shell: &Shell, bin: &Path, folder: &Path) -> anyhow::Result<PathBuf> {
     files.into_iter().next().context("maturin made no wheel")
 }
 
-/// Returns the search path (`PATH`) with a folder in front.
+/// Returns the value of `PATH` with a folder added at its front.
 fn with_first(folder: &Path) -> anyhow::Result<std::ffi::OsString> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let folders = [folder.to_owned()].into_iter();

@@ -7,7 +7,7 @@ use super::works;
 use crate::web::{MISSING, has_target};
 use xshell::{Shell, cmd};
 
-/// Builds and tests the site.
+/// Builds and tests the static site of the studio.
 pub(super) fn web(shell: &Shell) -> anyhow::Result<()> {
     let npm = crate::run::NPM;
     if !works(cmd!(shell, "{npm} --version").ignore_stdout()) {

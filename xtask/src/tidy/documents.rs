@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 const FIGURES: &str = "crates/dapple-gallery/src/figures/";
 const LOCK: &str = "crates/dapple-gallery/figures.lock";
 
-/// Checks that every crate is listed in the code map.
+/// Checks that the code map of ARCHITECTURE.md lists every crate.
 pub(super) fn architecture(workspace: &Workspace) -> Vec<String> {
     let named = |name: &str| workspace.architecture.contains(&format!("`{name}`"));
     let missing = workspace

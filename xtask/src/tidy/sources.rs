@@ -1,4 +1,4 @@
-//! Rules about source files: headers, lengths, escapes from lints and tests, references.
+//! Rules about source files: headers, lengths, lint exceptions, ignored tests and references.
 
 use super::workspace::{Text, Workspace};
 
@@ -93,7 +93,7 @@ fn is_of_library(workspace: &Workspace, source: &Text) -> bool {
     layer.is_some_and(|layer| ALGORITHM_LAYERS.contains(layer))
 }
 
-/// Returns the file and its parent modules: `src/a/b.rs`, then `src/a.rs`. For tests of a whole crate, also
+/// Returns the paths of a file and its parent modules: `src/a/b.rs`, then `src/a.rs`. For tests of a whole crate, also
 /// `src/lib.rs`.
 fn modules(source: &Text) -> impl Iterator<Item = String> {
     let parent = |path: &String| match path.rsplit_once('/')? {
