@@ -17,7 +17,7 @@ use dapple::pups::{NoiseOptions, noise};
 use dapple::raster::{Field, Raster, Window};
 use upload::{Format, Upload};
 
-/// A shader that samples the top row, two pictures further right and one further up.
+/// A shader that samples the top row of a repeating texture, shifted by two periods along x and one along y.
 const SHADER: &str = "
 @group(0) @binding(0) var picture: texture_2d<f32>;
 @group(0) @binding(1) var repeating: sampler;
@@ -72,7 +72,7 @@ fn a_repeating_sampler_sees_the_linear_colors_of_the_raster() {
     }
 }
 
-/// A height map of noise from 0 to 1 over the unit square.
+/// Returns a height map of noise from 0 to 1, over the unit square.
 fn height(size: [u32; 2]) -> Raster<f32> {
     let window = Window::unit(size).expect("a window");
     let noise = noise(&NoiseOptions::default(), Seed(7)).expect("noise");
@@ -103,7 +103,7 @@ impl Gpu {
         Some(Self { device, queue })
     }
 
-    /// Creates the texture with all of its levels.
+    /// Creates the GPU texture with all of its mip levels.
     fn texture(&self, upload: &Upload) -> wgpu::Texture {
         let texture = self.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
@@ -129,7 +129,7 @@ impl Gpu {
         texture
     }
 
-    /// Reads the bytes of a level, with padded rows.
+    /// Reads back the bytes of a mip level, with padded rows.
     fn read(&self, texture: &wgpu::Texture, mip_level: u32, bytes_per_row: usize) -> Vec<u8> {
         let [width, height] = [texture.width(), texture.height()].map(|side| side >> mip_level);
         let size = [width.max(1), height.max(1)];
@@ -151,7 +151,7 @@ impl Gpu {
         self.mapped(&buffer)
     }
 
-    /// Returns the colors that a repeating sampler reads in the top row.
+    /// Returns the colors that a repeating sampler reads along the top row.
     fn sampled_row(&self, texture: &wgpu::Texture, width: u32) -> Vec<[f32; 3]> {
         let pipeline = self.pipeline();
         let sampler = self.device.create_sampler(&wgpu::SamplerDescriptor {
@@ -230,7 +230,7 @@ impl Gpu {
         })
     }
 
-    /// Returns the bytes of a buffer after all work is done.
+    /// Returns the bytes of a buffer, after all submitted work is done.
     fn mapped(&self, buffer: &wgpu::Buffer) -> Vec<u8> {
         buffer.map_async(wgpu::MapMode::Read, .., |mapped| {
             mapped.expect("a mapped buffer");

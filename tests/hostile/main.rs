@@ -13,7 +13,7 @@ use mutate::Mutator;
 use std::panic::catch_unwind;
 use targets::TARGETS;
 
-/// Runs a target on its seed inputs, and on `rounds` mutated copies of each.
+/// Runs a target on its seed inputs and on `rounds` mutated copies of each.
 fn try_out(target: &str, rounds: u64) {
     let found = TARGETS.into_iter().find(|(name, ..)| *name == target);
     let (name, run, seeds) = found.expect("the name of a target");
@@ -84,8 +84,8 @@ fn broken_lists_are_read_or_refused() {
     try_out("directions", 500);
 }
 
-/// Writes the seed inputs to the folder `DAPPLE_FUZZ_SEEDS`, if it is set: `cargo xtask ci fuzz` passes them to
-/// libFuzzer.
+/// Writes the seed inputs to the folder named by `DAPPLE_FUZZ_SEEDS`, if it is set. `cargo xtask ci fuzz` passes them
+/// to libFuzzer.
 #[test]
 #[expect(
     clippy::disallowed_methods,

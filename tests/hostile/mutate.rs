@@ -1,4 +1,4 @@
-//! Applies random mutations that leave much of an input valid. They are the same in every run.
+//! Applies random mutations that preserve much of an input. They are the same in every run.
 
 use dapple::hash::{Seed, rand_core::Rng};
 
@@ -52,7 +52,7 @@ impl Mutator {
         ((self.random)() % n as u64) as usize
     }
 
-    /// Returns a copy of the bytes with one to four mutations. Some of them insert parts of other inputs.
+    /// Returns a copy of the bytes with one to four mutations. Some mutations insert bytes of `others`.
     pub(crate) fn changed(&mut self, bytes: &[u8], others: &[Vec<u8>]) -> Vec<u8> {
         let mut bytes = bytes.to_vec();
         for _ in 0..=self.below(4) {
@@ -83,7 +83,7 @@ impl Mutator {
         bytes
     }
 
-    /// Inserts 1 to 40 bytes of `other` at position `at`. They replace at most as many bytes.
+    /// Inserts 1 to 40 bytes of `other` at position `at`, in place of at most as many bytes.
     fn splice(&mut self, bytes: &mut Vec<u8>, at: usize, other: &[u8]) {
         if other.is_empty() {
             return;

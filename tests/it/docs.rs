@@ -19,7 +19,8 @@ fn folder(documented: &Documented, name: &str) -> PathBuf {
     root.join(documented.folder).join(name)
 }
 
-/// Iterates over the crates. The workspace itself is left out, since its folder `docs` may have other files.
+/// Iterates over the crates that have images. The workspace's own folder `docs` is left out, since it may contain other
+/// files.
 fn crates() -> impl Iterator<Item = &'static Documented> {
     documented()
         .iter()

@@ -68,8 +68,8 @@ fn figures_have_names_of_their_own_captions_and_numbers() {
     }
 }
 
-/// Renders every fifth figure, so that each kind is included. [`Figure::render`](dapple_gallery::Figure::render)
-/// returns an error if an image does not have the requested size.
+/// Renders every fifth figure, which includes each kind. [`Figure::render`](dapple_gallery::Figure::render) returns an
+/// error if an image does not have the requested size.
 #[test]
 fn figures_keep_their_shape_at_another_size() {
     for figure in figures().step_by(5) {

@@ -190,7 +190,7 @@ fn pups_noise() -> anyhow::Result<Vec<u8>> {
     gray(&noise.to_raster(&window()?)?)
 }
 
-/// Generates a jittered grid: one random point in each of 6 × 6 cells of the unit torus.
+/// Returns the points of a jittered grid: a random point in each of 6 × 6 cells of the unit torus.
 fn jittered_points() -> anyhow::Result<PointSet> {
     let jitter = |cell, axis| unit_f64(hash2(Seed(1), cell, axis));
     let position = |cell: [i64; 2]| {
@@ -201,7 +201,8 @@ fn jittered_points() -> anyhow::Result<PointSet> {
     Ok(PointSet::new(unit_torus(), positions.collect())?)
 }
 
-/// Draws corner tiles with random corner colors, built from two source tiles of cracks, one finer than the other.
+/// Renders corner tiles with random corner colors. They are built from two source tiles of cracks, one finer than the
+/// other.
 fn tile_corner_tiles() -> anyhow::Result<Vec<u8>> {
     let cracks = |cells: u16| {
         let period = Some(u32::from(cells));
@@ -218,7 +219,7 @@ fn tile_corner_tiles() -> anyhow::Result<Vec<u8>> {
     gray(map)
 }
 
-/// Draws black and white blended by a noise tile, with more white to the right.
+/// Renders black and white, blended by a noise tile, with more white to the right.
 fn tile_mask() -> anyhow::Result<Vec<u8>> {
     let tile = rank_equalize(&wavelet_tile([32; 2], &[0.0, 0.5, 1.0], Seed(5))?)?;
     let tile = repeat(&tile, [SIZE; 2])?;
@@ -239,7 +240,7 @@ fn tile_mask() -> anyhow::Result<Vec<u8>> {
     }
 }
 
-/// Draws two by two copies of a crop of cells that does not repeat, made seamless by a soft cut.
+/// Renders two by two copies of a tile: a crop of cells that does not repeat, made seamless by a soft cut.
 fn tile_soft_cut() -> anyhow::Result<Vec<u8>> {
     let cells = Worley2::new(Seed(6)).combine(Combination::F1);
     let crop = Window::new(DVec2::ZERO, DVec2::splat(4.0), [64; 2])?;
@@ -251,14 +252,14 @@ fn tile_soft_cut() -> anyhow::Result<Vec<u8>> {
     gray(&repeat(&tile, [SIZE; 2])?)
 }
 
-/// Draws three bands of a noise tile of eight cells, repeated one and a half times.
+/// Renders three bands of a noise tile of eight cells, repeated one and a half times.
 fn wavelet_noise() -> anyhow::Result<Vec<u8>> {
     let noise = WaveletNoise2::new(8, Seed(7))?.with_weights(&[0.2, 0.05, 0.01])?;
     let window = Window::new(DVec2::ZERO, DVec2::splat(12.0), [SIZE; 2])?;
     gray(&noise.to_raster(&window)?.map(|value| 0.5 + value))
 }
 
-/// Draws Manhattan cells with a period of four, colored by their ids.
+/// Renders Manhattan cells with a period of four, colored by their ids.
 fn worley_cells() -> anyhow::Result<Vec<u8>> {
     let period = [Some(4), Some(4)];
     let worley = Worley2::new(Seed(3)).with_metric(Metric::Manhattan)?;
@@ -270,7 +271,7 @@ fn worley_cells() -> anyhow::Result<Vec<u8>> {
     color(&cells)
 }
 
-/// Draws F1 at the top and F2 - F1 at the bottom, a single octave on the left and fractal on the right.
+/// Renders F1 at the top and F2 - F1 at the bottom; single octaves on the left and fractal sums on the right.
 fn worley_combinations() -> anyhow::Result<Vec<u8>> {
     let worley = Worley3::new(Seed(5));
     let half = SIZE / 2;
@@ -319,7 +320,7 @@ fn unit_torus() -> Domain {
     Domain::torus(DVec2::ZERO, DVec2::ONE)
 }
 
-/// Returns a window of the whole torus of the paper on partition-of-unity parametrics.
+/// Returns the window of the whole torus used in the paper on partition-of-unity parametrics.
 fn paper_window() -> anyhow::Result<Window> {
     let Domain { origin, size, .. } = Domain::paper_torus();
     Ok(Window::new(origin, size, [SIZE; 2])?)

@@ -1,5 +1,5 @@
-//! Checks the section "How to add" of CONTRIBUTING.md: each row names the few files that a new item of its kind
-//! touches.
+//! Tests the section "How to add" of CONTRIBUTING.md: each row must name the few files that a new item of its kind
+//! changes.
 
 #![expect(clippy::disallowed_methods, reason = "sources are files")]
 
@@ -10,11 +10,11 @@ use std::path::Path;
 
 const CONTRIBUTING: &str = include_str!("../../CONTRIBUTING.md");
 
-/// An existing item of one kind, whose files are counted.
+/// An existing item of a kind, whose files are counted.
 struct Example {
-    /// Start of the kind's row in the section.
+    /// Start of the row in the section that describes the kind.
     row: &'static str,
-    /// Words that name the item in code. Files that contain any of them are counted.
+    /// Words that stand for the item in code. Files that contain any of them are counted.
     words: &'static [&'static str],
     /// Text that replaces `NAME` in the row's file names.
     file: &'static str,

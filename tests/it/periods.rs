@@ -1,4 +1,4 @@
-//! Checks that every field of the workspace repeats after its stated period.
+//! Tests that every field of the workspace repeats with its stated period.
 
 use anyhow::Result;
 use dapple_hash::Seed;

@@ -1,4 +1,4 @@
-//! Checks the README's statements about the workspace.
+//! Tests of the README's statements about the workspace.
 #![expect(clippy::disallowed_methods, reason = "the workspace is made of files")]
 
 use dapple_gallery::papers;

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 const README: &str = include_str!("../../crates/dapple-recipe/README.md");
 
-/// A recipe to which the README's example nodes are added. `a` and `b` are scalars, `c` is a color.
+/// Recipe to which the README's example nodes are added. The nodes `a` and `b` are scalars; `c` is a color.
 const AROUND: &str = r##"
 dapple = 1
 extent = [8.0, 8.0]
@@ -27,7 +27,7 @@ c = { ramp = { input = "a", palette = "lagoon" } }
 wall = { bricks = {} }
 "##;
 
-/// Iterates over the rows of the README's node tables, as the kind of node and its example.
+/// Returns the rows of the README's tables of nodes, as pairs of the node's kind and its example.
 fn rows() -> impl Iterator<Item = (&'static str, &'static str)> {
     README.lines().filter_map(|line| {
         let (kind, rest) = line.strip_prefix("| `")?.split_once('`')?;

@@ -1,4 +1,4 @@
-//! Checks that the seams of tiles that repeat by construction look like any other boundary.
+//! Tests that the seams of tiles that repeat by construction look like any other boundary.
 //!
 //! Every periodic generator of the workspace draws one period of 32 × 32 units, with 8 or 16 pixels per unit, for
 //! each of 50 seeds. On average and at every scale, the step across the seam must equal the step across inner
@@ -95,7 +95,7 @@ impl Generator {
     }
 }
 
-/// Returns the mean ratios over all periodic axes, at 1, 2, 4 and 8 pixels.
+/// Returns the mean ratios over all axes that repeat, at widths of 1, 2, 4 and 8 pixels.
 fn ratios(reports: &[SeamReport]) -> [Ratio; 4] {
     core::array::from_fn(|index| {
         let both = reports.iter().filter_map(|report| report.seams[index].both);

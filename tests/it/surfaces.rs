@@ -14,7 +14,8 @@ use dapple_synth::{
 };
 use std::path::{Path, PathBuf};
 
-/// Builds vertical stripes with a period of `width` pixels. The texture changes only along P.
+/// Returns an exemplar of vertical stripes with a period of `width` pixels. It changes only along the neighborhood's
+/// axis P.
 fn stripes(width: u32) -> Exemplar {
     let image = Raster::from_fn([4 * width, 32], |x, _| {
         let turns = f64::from(x % width) / f64::from(width);
@@ -24,8 +25,8 @@ fn stripes(width: u32) -> Exemplar {
     Exemplar::new(&image.unwrap(), Edges::Wrap).unwrap()
 }
 
-/// Returns the median angle between the orientation field and the direction of the texture, in degrees. The texture's
-/// direction is the direction of least change according to the structure tensor (Bigün and Granlund 1987).
+/// Returns the median angle, in degrees, between the orientation field and the direction of the texture. The latter is
+/// the direction of least change, from the structure tensor (Bigün and Granlund 1987).
 ///
 /// The tensor is summed over the gradients in a ball whose diameter is the period of the stripes, which is `stripe`
 /// site spacings, so that it always contains an edge of a stripe.
@@ -88,7 +89,7 @@ fn gradient(hierarchy: &Hierarchy, site: SiteIdx, values: &[f64]) -> DVec3 {
     right * along_right + down * ((xx * of_y - xy * of_x) / determinant)
 }
 
-/// Returns a synthesizer for each set of directions, all with the same sites on the mesh.
+/// Returns a synthesizer for each set of directions. All have the same sites on the mesh.
 fn with_fields(mesh: Mesh, fields: &[&[[DVec3; 2]]]) -> Vec<Synthesizer> {
     let surface = Surface::new(mesh).unwrap();
     let hierarchy = Hierarchy::new(&surface, &sites(40_000, 3)).unwrap();

@@ -1,4 +1,4 @@
-//! Checks that images made tileable have no seam and preserve their detail.
+//! Tests that images made tileable have no seam and preserve their detail.
 //!
 //! Fractal noise and gravel are generated. Photographs are read from `shared/data/exemplars`, next to the workspace,
 //! and are skipped if they do not exist.
@@ -26,15 +26,15 @@ const PHOTOGRAPHS: [&str; 6] = [
     "rock023_cc0_256.png",
 ];
 
-/// Mean values from the reports on all crops of an image.
+/// Means of the seam reports of all crops of an image.
 #[derive(Debug, Default)]
 struct Means {
     seam_at_1: f64,
     seam_at_4: f64,
     top_octave: f64,
-    /// Maximum deviation of the top octave's ratio from 1.
+    /// Maximum deviation of the finest octave's ratio from 1.
     furthest: f64,
-    /// Minimum local detail, as a multiple of the source's local detail.
+    /// Minimum local detail, relative to the local detail of the source.
     local: f64,
 }
 
@@ -99,8 +99,8 @@ fn gravel() -> Result<Raster<f32>> {
     Ok(texture.to_raster(&window)?)
 }
 
-/// Returns the means over all crops of an image. Crops are made tileable with `method`; if it is `None`, they are
-/// unchanged.
+/// Returns the means over all crops of an image. Crops are made tileable with `method`; if it is `None`, they are not
+/// changed.
 fn means(image: &Raster<f32>, method: Option<Method>) -> Result<Means> {
     let [columns, rows] = image.size().map(|side| side / CROP);
     let n = f64::from(columns * rows);

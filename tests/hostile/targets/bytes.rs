@@ -1,6 +1,6 @@
 //! Converts the bytes of an input to numbers.
 
-/// The bytes that have not been consumed yet. After the last byte, zeros follow.
+/// The remaining bytes of an input. After the last byte, zeros follow.
 pub(super) struct Bytes<'a>(pub(super) &'a [u8]);
 
 impl Bytes<'_> {
@@ -9,7 +9,7 @@ impl Bytes<'_> {
         byte
     }
 
-    /// Returns an arbitrary number, often a special value at which code may branch.
+    /// Returns an arbitrary number. Special values, at which code may branch, are frequent.
     pub(super) fn number(&mut self) -> f64 {
         const SPECIAL: [f64; 16] = [
             0.0,

@@ -13,8 +13,7 @@ const LIMITS: Limits = Limits {
     bytes: 1 << 22,
 };
 
-/// Decodes an image. Either it is rejected, or it is within the limits and unchanged after it is written and read
-/// again.
+/// Decodes an image. It must be rejected, or be within the limits and equal after it is written and read again.
 pub fn image(bytes: &[u8]) {
     let Some(image) = accepted(decode_image(bytes, &LIMITS)) else {
         return;

@@ -12,7 +12,7 @@ use dapple::synth::{
     Synthesizer, bake_values,
 };
 
-/// Maximum number of vertices; the constants below limit faces and sites.
+/// Maximum number of vertices. The constants below limit the numbers of faces and sites.
 const MOST_VERTICES: u8 = 8;
 const MOST_FACES: u8 = 12;
 const MOST_SITES: u8 = 64;
@@ -20,8 +20,8 @@ const MOST_SITES: u8 = 64;
 const SIDE: u32 = 16;
 const MAP_SIDE: u32 = 64;
 
-/// Synthesizes a texture on a mesh from an image or from the mesh's own texture, or repairs that texture. Either the
-/// input is rejected, or all baked values are within the range of the example.
+/// Synthesizes a texture on a mesh from an image or from the mesh's own texture, or repairs that texture. The input
+/// must be rejected, or all baked values must be within the range of the example.
 pub fn lift(bytes: &[u8]) {
     let mut bytes = Bytes(bytes);
     let choice = bytes.byte();

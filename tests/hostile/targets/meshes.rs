@@ -6,8 +6,8 @@ use dapple::mesh::glam::{DVec2, DVec3};
 use dapple::mesh::{EncodedImage, Mesh, Model, Surface};
 use dapple::mesh_io::{self as io, MeshIoError};
 
-/// Reads OBJ. A model is rejected, or it can be repaired, used as a surface and written, and is unchanged when read
-/// again.
+/// Reads an OBJ file. The model must be rejected, or be repairable, usable as a surface, and equal after it is written
+/// and read again.
 pub fn obj(bytes: &[u8]) {
     // The file also serves as its own material library and texture.
     check(
@@ -23,8 +23,8 @@ pub fn obj(bytes: &[u8]) {
     );
 }
 
-/// Reads PLY. A model is rejected, or it can be repaired, used as a surface and written, in binary and as text, and is
-/// unchanged when read again.
+/// Reads a PLY file. The model must be rejected, or be repairable, usable as a surface, and equal after it is written,
+/// in binary and as text, and read again.
 pub fn ply(bytes: &[u8]) {
     check(io::ply::read(bytes), |model| {
         io::ply::read(&io::ply::write(model)?)
@@ -34,8 +34,8 @@ pub fn ply(bytes: &[u8]) {
     });
 }
 
-/// Reads glTF or GLB. A model is rejected, or it can be repaired, used as a surface and written, and is unchanged when
-/// read again.
+/// Reads a glTF or GLB file. The model must be rejected, or be repairable, usable as a surface, and equal after it is
+/// written and read again.
 pub fn gltf(bytes: &[u8]) {
     check(
         io::gltf::read_with(bytes, &mut |_| Some(bytes.to_vec())),
@@ -43,13 +43,13 @@ pub fn gltf(bytes: &[u8]) {
     );
 }
 
-/// Reads OFF. A model is rejected, or it can be repaired and used as a surface. OFF cannot be written.
+/// Reads an OFF file. The model must be rejected, or be repairable and usable as a surface. OFF cannot be written.
 pub fn off(bytes: &[u8]) {
     check(io::off::read(bytes), |model| Ok(model.clone()));
 }
 
-/// Reads STL. A model is rejected, or it can be repaired, used as a surface and written, and is unchanged when read
-/// again.
+/// Reads an STL file. The model must be rejected, or be repairable, usable as a surface, and equal after it is written
+/// and read again.
 pub fn stl(bytes: &[u8]) {
     check(io::stl::read(bytes), |model| {
         io::stl::read(&io::stl::write(model)?)

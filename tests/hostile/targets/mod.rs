@@ -1,4 +1,4 @@
-//! Checks properties that must hold for any bytes: one function for each kind of input, and seed inputs.
+//! Checks properties that must hold for any bytes. There is one function for each kind of input, with seed inputs.
 //!
 //! The test `hostile` passes mutated copies of the seed inputs to the functions, and `tests/fuzz` passes inputs from
 //! libFuzzer. A function must return soon and use little memory. A panic is a failure.

@@ -9,7 +9,7 @@ use dapple::points::{Domain, PointSet, SpectrumOptions, spectrum};
 /// Maximum number of points. It is small, since some steps take time proportional to its square.
 const MOST_POINTS: usize = 32;
 
-/// Builds a point set. Either it is rejected, or its statistics and its graph are computed or rejected.
+/// Builds a point set. It must be rejected, or its statistics and its graph must be computed or rejected.
 pub fn points(bytes: &[u8]) {
     let mut bytes = Bytes(bytes);
     let choice = bytes.byte();

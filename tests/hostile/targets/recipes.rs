@@ -16,8 +16,8 @@ const LIMITS: PlanLimits = PlanLimits {
     pixels: 1 << 12,
 };
 
-/// Reads a recipe. Either it is rejected, or it is unchanged when written and read again, and its bake is within the
-/// limits or rejected.
+/// Reads a recipe. It must be rejected, or be equal after it is written and read again, and its bake must be rejected
+/// or within the limits.
 pub fn recipe(bytes: &[u8]) {
     let Ok(text) = core::str::from_utf8(bytes) else {
         return;
@@ -102,7 +102,7 @@ fn check_bake(recipe: &Recipe) {
     }
 }
 
-/// A recipe to which the README's example nodes are added. `a` and `b` are scalars, `c` is a color.
+/// Recipe to which the README's example nodes are added. The nodes `a` and `b` are scalars; `c` is a color.
 const AROUND: &str = r##"
 dapple = 1
 seed = 3

@@ -23,20 +23,20 @@ use dapple_worley::{
     Worley2, Worley3, Worley4,
 };
 
-/// Options for textures with a lattice that has one cell, or two half-unit cells, per unit. Cell boundaries may
-/// differ from other boundaries.
+/// Seam options for textures with a lattice of one cell per unit, or two per unit. Cell boundaries may differ from
+/// other boundaries.
 const CELLS: SeamOptions = SeamOptions {
     axes: [true; 2],
     lattice: [UNIT; 2],
 };
 
-/// Options for a map of a sphere, which has cells and repeats only along x.
+/// Seam options for a map of a sphere, which has cells and repeats only along x.
 const AROUND: SeamOptions = SeamOptions {
     axes: [true, false],
     ..CELLS
 };
 
-/// Options for textures without a lattice, whose statistics are the same everywhere.
+/// Seam options for textures without a lattice, whose statistics are the same everywhere.
 const ANYWHERE: SeamOptions = SeamOptions {
     axes: [true; 2],
     lattice: [1; 2],
@@ -93,7 +93,7 @@ impl Generator {
         }
     }
 
-    /// Doubles the number of pixels per unit. Use it for patches, whose edges vary more than smooth fields.
+    /// Returns the generator with twice as many pixels per unit, for patches, whose edges vary more than smooth fields.
     const fn twice_as_fine(self) -> Self {
         Self {
             unit: 2 * UNIT,
@@ -104,10 +104,10 @@ impl Generator {
 
 // Worley's cellular basis.
 
-/// Distance over which the nearest feature points are smoothed, in cells.
+/// Distance over which the nearest feature points are blended, in cells.
 const SMOOTH: f32 = 0.25;
 
-/// Returns the 2-D basis with a period.
+/// Returns the 2-D cellular basis with the period of the tiles.
 fn worley(seed: Seed) -> Result<Worley2> {
     Ok(Worley2::new(seed).with_period([Some(PERIOD); 2])?)
 }
@@ -211,7 +211,7 @@ fn cell_values(seed: Seed, window: &Window) -> Result<Raster<f32>> {
     Ok(Raster::from_window(window, value)?)
 }
 
-/// Draws a map of the unit sphere by azimuth and polar angle, with one square cell per unit.
+/// Renders a map of the unit sphere by azimuth and polar angle, with one square cell per unit.
 fn radial(seed: Seed, window: &Window) -> Result<Raster<f32>> {
     let cells = RadialCells {
         around: PERIOD,
@@ -349,7 +349,7 @@ fn ridged_noise(seed: Seed, window: &Window) -> Result<Raster<f32>> {
 /// Weights of the wavelet noise bands; the first band has two cells per unit.
 const WEIGHTS: [f32; 2] = [1.0, 0.5];
 
-/// Converts a window from units to wavelet noise cells. A period has `2 * PERIOD` cells.
+/// Converts a window in units to a window in cells of wavelet noise. A period has `2 * PERIOD` cells.
 fn in_half_units(window: &Window) -> Result<Window> {
     let extent = DVec2::new(f64::from(window.size[0]), f64::from(window.size[1]));
     Ok(Window::new(
@@ -369,7 +369,7 @@ fn wavelet_noise_in_space(seed: Seed, window: &Window) -> Result<Raster<f32>> {
     Ok(noise.slice([4.625]).to_raster(&in_half_units(window)?)?)
 }
 
-/// Draws a tile with three bands, whose lattice cells are 2^3 pixels wide.
+/// Renders a tile with three bands, whose lattice cells are 2^3 pixels wide.
 fn tile_of_wavelets(seed: Seed, window: &Window) -> Result<Raster<f32>> {
     let tile = wavelet_tile([PERIOD * UNIT; 2], &[0.5, 1.0, 1.0], seed)?;
     Ok(tile.crop([0; 2], window.size)?)
