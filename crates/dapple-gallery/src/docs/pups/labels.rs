@@ -1,4 +1,4 @@
-//! Strips about recipes with labels, which have edges.
+//! Rows of documentation images about recipes with labels, which have edges.
 
 use super::labels;
 use crate::Panel;

@@ -1,4 +1,4 @@
-//! Strips about control points and their weights.
+//! Rows of documentation images about control points and their weights.
 
 use super::{labels, values};
 use crate::Panel;

@@ -1,4 +1,4 @@
-//! Strips about recipes whose values change smoothly, and about their sums.
+//! Rows of documentation images about recipes whose values change smoothly, and about their sums.
 
 use super::{labels, values};
 use crate::docs::Strip;

@@ -1,4 +1,4 @@
-//! Strips about blend maps, and about blending two textures along a ramp.
+//! Rows of documentation images about blend maps, and about blending two textures along a ramp.
 
 use super::pebbles;
 use crate::Panel;

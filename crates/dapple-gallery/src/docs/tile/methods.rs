@@ -1,4 +1,4 @@
-//! Strips that show each method of `Seamless` next to its source.
+//! Rows of documentation images that show each method of `Seamless` next to its source.
 
 use super::pebbles;
 use crate::Panel;

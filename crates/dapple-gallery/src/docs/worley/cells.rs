@@ -1,4 +1,4 @@
-//! Strips about the nearest feature point, its Voronoi cell, and profiles.
+//! Rows of documentation images about the nearest feature point, its Voronoi cell, and profiles.
 
 use super::{basis, color_of, color_with_edges, gray, gray_with_edges};
 use crate::docs::Strip;

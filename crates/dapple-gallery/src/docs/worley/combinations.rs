@@ -1,4 +1,4 @@
-//! Strips about combinations of F1 to F4, metrics, ranges and gradients.
+//! Rows of documentation images about combinations of F1 to F4, metrics, ranges and gradients.
 
 use super::{N_POSITIONS, basis, color_of, color_with_edges, gray, gray_with_edges, ranged};
 use crate::Panel;

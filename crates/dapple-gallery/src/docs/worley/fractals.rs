@@ -1,4 +1,4 @@
-//! Strips about fractal sums.
+//! Rows of documentation images about fractal sums.
 
 use super::{N_POSITIONS, SHADES, SIDE, basis, shaded};
 use crate::Panel;

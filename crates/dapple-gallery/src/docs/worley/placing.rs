@@ -1,4 +1,4 @@
-//! Strips about radial cells, and about feature points placed by the caller.
+//! Rows of documentation images about radial cells, and about feature points placed by the caller.
 
 use super::{SAMPLES, fine, gray_with_edges, shaded};
 use crate::Panel;

@@ -1,4 +1,4 @@
-//! Strips about the scatter of feature points: seeds, densities, jitter, periods.
+//! Rows of documentation images about the scatter of feature points: seeds, densities, jitter, periods.
 
 use super::{SIDE, basis, flat, gray_with_edges};
 use crate::Panel;

@@ -1,4 +1,4 @@
-//! Strips about textures with two, three and four axes, and 2-D slices through them.
+//! Rows of documentation images about textures with two, three and four axes, and 2-D slices through them.
 
 use super::{SHADES, SIDE, basis, gray, ranged, shaded, square};
 use crate::Panel;

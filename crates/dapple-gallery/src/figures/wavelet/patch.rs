@@ -11,7 +11,7 @@ use dapple_points::hash::{CellHash, Seed, unit_f64};
 use dapple_raster::{Raster, RasterError, Window, Wrap};
 use glam::{DVec2, DVec3};
 
-/// Side of an image, in parts.
+/// Side of an image, in parts (1/256 of the image side).
 const SIDE: f64 = 256.0;
 
 /// Behavior at the edges of an image when two copies are placed next to each other.
@@ -77,12 +77,12 @@ impl Patch {
         })
     }
 
-    /// Returns the side of a pixel, in parts.
+    /// Returns the side of a pixel, in parts (1/256 of the image side).
     pub(super) fn pixel(&self) -> f64 {
         self.window.pixel[0]
     }
 
-    /// Returns the side of the torus, in parts.
+    /// Returns the side of the torus, in parts (1/256 of the image side).
     pub(super) fn period(&self) -> f64 {
         self.domain.size.x
     }

@@ -5,7 +5,7 @@ use super::patch::{Dice, Edges, Material, Patch, Spot};
 use dapple_color::{ColorRamp, LinearRgb};
 use dapple_points::hash::Seed;
 
-/// Depth of the relief, in parts.
+/// Depth of the relief, in parts (1/256 of the image side).
 const DEPTH: f64 = 14.0;
 
 /// Layers from the lowest to the highest: fine crumbs everywhere, coarser ones on top of them.

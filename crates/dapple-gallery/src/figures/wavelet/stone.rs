@@ -14,15 +14,15 @@ use dapple_worley::FeatureSet;
 use glam::DVec2;
 use std::sync::Arc;
 
-/// Minimum and maximum distance between the centers of adjacent stones, in parts.
+/// Minimum and maximum distance between the centers of adjacent stones, in parts (1/256 of the image side).
 const SPACING: [f64; 2] = [22.0, 42.0];
-/// Distance by which the warp moves the outlines, in parts.
+/// Distance by which the warp moves the outlines, in parts (1/256 of the image side).
 const WARP: f64 = 22.0;
-/// Minimum and maximum width of the cracks, in parts.
+/// Minimum and maximum width of the cracks, in parts (1/256 of the image side).
 const CRACK: [f64; 2] = [3.0, 5.5];
-/// Width of the rounded edge of a stone, in parts.
+/// Width of the rounded edge of a stone, in parts (1/256 of the image side).
 const ROUNDING: f64 = 9.0;
-/// Depth of the relief, in parts.
+/// Depth of the relief, in parts (1/256 of the image side).
 const DEPTH: f64 = 13.0;
 
 /// Draws stones, `size` pixels wide.
