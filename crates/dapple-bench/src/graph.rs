@@ -9,7 +9,7 @@
 use crate::harness::Bench;
 use anyhow::Result;
 
-/// Measures this group's rows.
+/// Measures all benchmark rows of this group.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     #[cfg(feature = "peers")]
     beside_spade::run(bench)?;

@@ -7,7 +7,7 @@ mod stars;
 use crate::harness::Bench;
 use anyhow::Result;
 
-/// Measures this group's rows.
+/// Measures all benchmark rows of this group.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     evenness::run(bench)?;
     #[cfg(feature = "peers")]

@@ -92,7 +92,7 @@ const SIDE: u32 = 1024;
 /// Number of positions per run.
 const N_POSITIONS: usize = 1 << 16;
 
-/// Measures this group's rows.
+/// Measures all benchmark rows of this group.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     picture(bench, &COARSE, 64)?;
     picture(bench, &FINE, 8)?;

@@ -58,14 +58,14 @@ const DISTANCE: Case = Case {
 /// Width and height of the images in pixels.
 const SIDE: u32 = 1024;
 
-/// Number of turns per row.
+/// Number of turns per row. Each turn runs both sides.
 const TURNS: u32 = 11;
 
 /// Standard deviation of the blur, and the largest distance, in pixels.
 const DEVIATION: f64 = 4.0;
 const REACH: u32 = 16;
 
-/// Measures this group's rows.
+/// Measures all benchmark rows of this group.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     let bricks = Bricks::new(SEED, BrickOptions::default())?.field(BrickValue::Height);
     let octaves =

@@ -15,7 +15,7 @@ use anyhow::{Context as _, Result, ensure};
 use dapple_points::PointSet;
 use std::ops::RangeInclusive;
 
-/// Measures this group's rows.
+/// Measures all benchmark rows of this group.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     #[cfg(feature = "peers")]
     beside_peers::run(bench)?;

@@ -18,7 +18,7 @@ use dapple_points::PointSet;
 use dapple_pups::{Pups, PupsOptions, Texture};
 use dapple_raster::{Raster, Window};
 
-/// Measures this group's rows.
+/// Measures all benchmark rows of this group.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     #[cfg(feature = "peers")]
     beside_spade::run(bench)?;

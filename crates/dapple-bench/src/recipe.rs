@@ -7,7 +7,7 @@ mod nodes;
 use crate::harness::Bench;
 use anyhow::Result;
 
-/// Measures this group's rows.
+/// Measures all benchmark rows of this group.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     maps::run(bench)?;
     nodes::run(bench)

@@ -25,7 +25,7 @@ mod whole;
 use crate::harness::Bench;
 use anyhow::Result;
 
-/// Measures this group's rows.
+/// Measures all benchmark rows of this group.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     #[cfg(feature = "peers")]
     beside_flat::run(bench)?;

@@ -33,7 +33,7 @@ const FEATURES: Case = Case {
     note: MEMORY,
 };
 
-/// Measures this group's rows.
+/// Measures all benchmark rows of this group.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     #[cfg(feature = "peers")]
     beside_peers::run(bench)?;

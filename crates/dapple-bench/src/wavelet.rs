@@ -16,7 +16,7 @@ use dapple_hash::{hash2, unit_f32};
 use dapple_raster::Raster;
 use dapple_wavelet::{Border, FilterMemory, SplineFilter};
 
-/// Measures this group's rows.
+/// Measures all benchmark rows of this group.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     alone::run(bench)?;
     #[cfg(feature = "peers")]

@@ -25,7 +25,7 @@ use dapple_raster::{Raster, Window};
 use dapple_worley::{Cellular, Combination, Dimensions, Plane, Space, Vector, Worley};
 use glam::DVec2;
 
-/// Measures this group's rows.
+/// Measures all benchmark rows of this group.
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     #[cfg(feature = "peers")]
     {

@@ -56,7 +56,7 @@ const WARPED: Case = Case {
 /// Width and height of the tile in pixels.
 const SIDE: u32 = 1024;
 
-/// Number of turns per row.
+/// Number of turns per row. Each turn runs both sides.
 const TURNS: u32 = 21;
 
 /// Amplitude of the warp, in units of the plane. Positions are displaced by their coordinates times this number.

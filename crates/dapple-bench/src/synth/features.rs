@@ -53,7 +53,7 @@ const REPAIR: Case = Case {
 const EXEMPLAR: u32 = 128;
 const SIDE: u32 = 192;
 
-/// Number of turns per row.
+/// Number of turns per row. Each turn runs both sides.
 const TURNS: usize = 3;
 
 /// Function that a row measures on our side. `Theirs` is the peer's.

@@ -69,7 +69,7 @@ const BESIDE_SIMPLEX_IN_SPACE: Case = Case {
     ..BESIDE_SIMPLEX
 };
 
-/// Number of turns per row.
+/// Number of turns per row. Each turn runs both sides.
 const TURNS: u32 = 25;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {

@@ -27,7 +27,7 @@ const AT_256: Case = Case {
     ..AT_64
 };
 
-/// Number of turns per row.
+/// Number of turns per row. Each turn runs both sides.
 const TURNS: u32 = 31;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {

@@ -86,7 +86,7 @@ const N_POSITIONS: usize = 1 << 16;
 /// Number of cells along each axis.
 const N_CELLS: f64 = 1000.0;
 
-/// Number of turns per row.
+/// Number of turns per row. Each turn runs both sides.
 const TURNS: u32 = 41;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {

@@ -29,7 +29,7 @@ const DEFAULT_4: Case = Case {
     ..DEFAULT_64
 };
 
-/// Number of turns per row.
+/// Number of turns per row. Each turn runs both sides.
 const TURNS: u32 = 9;
 
 /// Number of runs of each program per turn.
