@@ -68,8 +68,8 @@ pub enum Shadows {
     /// Hard shadows, with one ray.
     #[default]
     Hard,
-    /// Soft shadows, with rays to a disk. The pattern of rays is the same at every point, so a small number of rays
-    /// is visible as steps.
+    /// Soft shadows, with rays to a disk. The pattern of rays is the same at every point, so with few rays, the edges of
+    /// shadows have visible steps.
     Soft {
         /// The radius of the disk. For a point light, in units of the world. For a directional light, the disk is at
         /// distance 1, so the radius is the tangent of an angle.

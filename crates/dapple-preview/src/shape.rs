@@ -53,8 +53,8 @@ impl Shape {
         Self::Sphere { radius }
     }
 
-    /// Creates a torus around the y axis. `major_radius` is the radius of the circle along the middle of the tube,
-    /// `minor_radius` that of the tube.
+    /// Creates a torus around the y axis. `major_radius` is the radius of the circle along the middle of the tube;
+    /// `minor_radius` is the radius of the tube.
     #[must_use]
     pub fn torus(major_radius: f64, minor_radius: f64) -> Self {
         Self::Torus {
