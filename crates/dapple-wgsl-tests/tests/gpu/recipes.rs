@@ -547,7 +547,7 @@ fn bricks_and_weaves_have_the_bits_of_the_cpu() {
     }
 }
 
-/// Options of the node `shape`, one for each kind.
+/// Options of the node `shape`, for all kinds of shapes.
 const SHAPES: &[&str] = &[
     "kind = 'circle', center = [0.3, 1.1], size = 0.4, onion = 0.3, frequency = [1.2, 0.7]",
     "kind = 'box', size = 0.7, rotation = 25.0, rounding = 0.2, frequency = 1.0",
