@@ -25,7 +25,7 @@ pub enum Request {
     Doc {
         /// The text's revision number, counted by the page.
         rev: u64,
-        /// The text.
+        /// The whole text of the recipe.
         text: String,
     },
     /// A small edit to the recipe.
@@ -42,7 +42,7 @@ pub enum Request {
     View(View),
     /// Acknowledges an image, which releases the next image of the map.
     Ack {
-        /// The generation of the image.
+        /// Generation of the image, as in [`Picture::generation`](crate::Picture::generation).
         generation: u32,
         /// The code of the map, see [`Shown::code`](crate::Shown::code).
         map: u16,
@@ -69,12 +69,12 @@ pub enum Request {
     },
     /// Requests the control points of a node.
     Points {
-        /// The node.
+        /// Name of the node.
         node: String,
     },
     /// Requests the recipe as a program or as text.
     Code {
-        /// The language.
+        /// The language of the program or text.
         kind: CodeKind,
         /// Columns and rows of the tile.
         size: Option<[u32; 2]>,
@@ -87,9 +87,9 @@ pub enum Request {
     Stop,
     /// Writes the recipe into its folder.
     Save {
-        /// The text.
+        /// Text of the recipe.
         text: String,
-        /// The name of the file.
+        /// Name of the file in the recipe's folder.
         file: String,
         /// Whether to replace a file that has changed on disk.
         #[serde(default)]
@@ -222,7 +222,7 @@ pub enum Reply {
     Document {
         /// Revision of the text, always 0.
         rev: u64,
-        /// The text.
+        /// Text of the recipe.
         text: String,
         /// The name of the recipe.
         name: String,
@@ -249,14 +249,14 @@ pub enum Reply {
     Diagnostics {
         /// Revision of the text.
         rev: u64,
-        /// The errors.
+        /// The errors; empty if the recipe is valid.
         items: Vec<Diagnostic>,
     },
     /// The nodes of a recipe.
     Graph {
         /// Revision of the text.
         rev: u64,
-        /// The graph.
+        /// The nodes and their inputs.
         #[serde(flatten)]
         graph: Graph,
     },
@@ -264,12 +264,12 @@ pub enum Reply {
     Values {
         /// Revision of the text.
         rev: u64,
-        /// The data.
+        /// The recipe as JSON.
         recipe: Json,
     },
     /// Announces that the images of a new generation follow.
     Began {
-        /// The generation.
+        /// Number of the generation, counted by the session.
         generation: u32,
         /// Columns and rows of the whole tile.
         size: [u32; 2],
@@ -284,7 +284,7 @@ pub enum Reply {
     },
     /// All images of a generation, or all drafts of it, have been sent.
     Rendered {
-        /// The generation.
+        /// Number of the generation.
         generation: u32,
         /// Revision of the text.
         rev: u64,
@@ -297,28 +297,28 @@ pub enum Reply {
     },
     /// Seam reports of the maps.
     Seams {
-        /// The reports.
+        /// The reports, one per map.
         maps: Vec<MapSeams>,
     },
     /// The control points of a node.
     Points(Box<Points>),
     /// The recipe as a program or as text.
     Code {
-        /// The language.
+        /// The language of the program or text.
         kind: CodeKind,
-        /// The text.
+        /// The program or text.
         text: String,
     },
     /// The files of a finished export.
     Exported {
         /// The id of the export, the first part of the download addresses.
         id: String,
-        /// The files.
+        /// Names and lengths of the files.
         files: Vec<FileSize>,
     },
     /// A recipe was written.
     Saved {
-        /// The file.
+        /// Name of the file.
         file: String,
         /// The hash of the file.
         hash: String,
@@ -329,12 +329,12 @@ pub enum Reply {
         text: String,
         /// The hash of the file.
         hash: String,
-        /// The name of the file.
+        /// Name of the file.
         file: String,
     },
     /// A request was refused.
     Refused {
-        /// The type of the request.
+        /// The type of the refused request, such as `save`.
         what: String,
         /// The reason, as a sentence.
         message: String,
@@ -391,9 +391,9 @@ pub enum Mode {
 /// A name with a one-sentence description.
 #[derive(Clone, Debug, Serialize)]
 pub struct Named {
-    /// The name.
+    /// The name of the recipe, map or preset.
     pub name: String,
-    /// The description.
+    /// The description, one sentence.
     pub about: String,
 }
 
@@ -473,7 +473,7 @@ fn about(kind: MapKind) -> &'static str {
 /// The rendering time of a node's thumbnail.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NodeTime {
-    /// The node.
+    /// Name of the node.
     pub name: String,
     /// Rendering time of the thumbnail in milliseconds, without the node's inputs.
     pub ms: f64,
@@ -484,7 +484,7 @@ pub struct NodeTime {
 /// The seam report of a map.
 #[derive(Clone, Debug, Serialize)]
 pub struct MapSeams {
-    /// The map.
+    /// Name of the map.
     pub name: String,
     /// The report as a table.
     pub text: String,
@@ -513,9 +513,9 @@ pub struct Points {
 /// A file and its length.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct FileSize {
-    /// The name of the file.
+    /// Name of the file.
     pub name: String,
-    /// The length in bytes.
+    /// Length of the file, in bytes.
     pub bytes: usize,
 }
 

@@ -42,7 +42,7 @@ pub enum Op {
     Set {
         /// The path from the root.
         path: Vec<Part>,
-        /// The value.
+        /// The new value.
         value: Json,
     },
     /// Removes an entry or an element.
@@ -56,7 +56,7 @@ pub enum Op {
         path: Vec<Part>,
         /// The index of the new element.
         index: usize,
-        /// The element.
+        /// The new element.
         value: Json,
     },
     /// Adds a node after all other nodes.
@@ -76,9 +76,9 @@ pub enum Op {
     /// Renames a node and the inputs that refer to it. Random streams derived from the old name are preserved,
     /// including the node's own.
     RenameNode {
-        /// The current name.
+        /// Current name of the node.
         name: String,
-        /// The new name.
+        /// New name of the node.
         to: String,
     },
     /// Adds a copy of a node. If the node has a seed, the copy uses the random stream of the original.
@@ -90,7 +90,7 @@ pub enum Op {
     },
     /// Connects an input of a node.
     Connect {
-        /// The node.
+        /// Name of the node.
         node: String,
         /// The path of the input within the node, starting at its kind, such as `["mix", "by"]`.
         input: Vec<Part>,
@@ -104,7 +104,7 @@ pub enum Op {
     },
     /// Converts a PUPs texture to one whose control points are part of the text. The image stays the same.
     MakePoints {
-        /// The node.
+        /// Name of the node.
         node: String,
         /// The options of the converted texture, filled in by a [`Session`](crate::Session).
         #[serde(skip)]
