@@ -32,9 +32,9 @@ struct Content {
 /// A position in the text of a recipe. Line and column count from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// The line number.
+    /// Line number, starting at 1.
     pub line: usize,
-    /// The position in the line, counted in characters.
+    /// Position in the line, in characters, starting at 1.
     pub column: usize,
 }
 
@@ -54,7 +54,7 @@ pub enum RecipeErrorKind {
     },
     /// No built-in recipe has this name.
     UnknownRecipe {
-        /// The name.
+        /// The requested name of a recipe.
         name: String,
     },
     /// An option refers to a parameter that the recipe does not have.
@@ -75,17 +75,17 @@ pub enum RecipeErrorKind {
         name: String,
         /// The path of the option.
         option: String,
-        /// The reason.
+        /// The reason why the value does not fit.
         message: String,
     },
     /// No node has this name.
     UnknownNode {
-        /// The name.
+        /// The unknown name.
         name: String,
     },
     /// The name of a node or a parameter does not begin with a letter, or has characters other than letters, digits, `_` and `-`.
     Name {
-        /// The name.
+        /// The invalid name.
         name: String,
     },
     /// A node depends on itself, directly or through other nodes.
@@ -95,7 +95,7 @@ pub enum RecipeErrorKind {
     },
     /// The number of nodes or other items is out of range.
     Count {
-        /// The name of the items.
+        /// Name of the counted items, for the message.
         what: &'static str,
         /// The actual number of items.
         count: usize,
@@ -109,16 +109,16 @@ pub enum RecipeErrorKind {
     },
     /// A number is out of range.
     Range {
-        /// The name of the number.
+        /// Name of the quantity, for the message.
         what: &'static str,
-        /// The number.
+        /// The value that is out of range.
         value: f64,
         /// The allowed range, as text.
         range: &'static str,
     },
     /// The recipe, up to this node, exceeds a limit on work: see [`PlanLimits`](crate::PlanLimits).
     TooMuch {
-        /// The name of the counted items.
+        /// Name of the counted items, for the message.
         what: &'static str,
         /// The estimated number of items.
         value: f64,
@@ -132,7 +132,7 @@ pub enum RecipeErrorKind {
     },
     /// A node has no value of this name.
     UnknownOutput {
-        /// The name.
+        /// The unknown name of a value.
         value: String,
         /// The names of the node's values.
         outputs: &'static [&'static str],

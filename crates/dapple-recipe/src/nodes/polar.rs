@@ -1,4 +1,4 @@
-//! Bends a node around a center.
+//! Polar coordinates: bends a node around a center.
 
 use super::{NodeKind, distance, inputs};
 use crate::plan::{Builder, Step};
