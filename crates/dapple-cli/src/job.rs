@@ -25,7 +25,7 @@ pub(crate) struct Context {
     pub(crate) progress: Style,
     /// Number of threads; 0 means one per core.
     pub(crate) threads: u16,
-    /// The command line.
+    /// The command line of this process, one entry per argument.
     pub(crate) arguments: Vec<String>,
     /// The options that were given on the command line, for error messages.
     pub(crate) options: Vec<GivenOption>,

@@ -16,7 +16,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 static PATHS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// The locked registry.
+/// A lock on the registry, with access to its paths.
 pub(super) type Held = MutexGuard<'static, Vec<PathBuf>>;
 
 /// Locks the registry. Other threads wait until the guard is dropped.

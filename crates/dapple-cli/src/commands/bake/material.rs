@@ -16,7 +16,7 @@ use serde::Serialize;
 use std::fmt;
 use std::str::FromStr;
 
-/// The default maps.
+/// The maps that are baked by default for every material.
 const USUAL: [MapKind; 5] = [
     MapKind::Height,
     MapKind::Normal,

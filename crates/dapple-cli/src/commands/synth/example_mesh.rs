@@ -31,7 +31,7 @@ pub(super) struct ExampleMesh {
     pub(super) uvs: Vec<[DVec2; 3]>,
     /// The layout of the textures of UDIM tiles in one image; `None` for a mesh with a single texture.
     pub(super) sheet: Option<Sheet>,
-    /// The texture.
+    /// The base color texture of the mesh.
     pub(super) base: Loaded,
     /// The material's maps that were not given with `--map`, each with the name it has in `--map`.
     pub(super) maps: Vec<(String, Loaded)>,
