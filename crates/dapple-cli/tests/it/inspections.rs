@@ -58,6 +58,29 @@ fn images_past_the_limit_are_described_by_their_headers() {
     assert!(stdout(&output).contains("deviation"), "{}", stdout(&output));
 }
 
+/// Large numbers, such as light and terrain heights in meters, keep the columns of the table apart and below their titles.
+#[test]
+fn columns_of_large_numbers_stay_below_their_titles() {
+    let folder = Folder::new("columns");
+    let values = vec![-123_456.78, 98_765.43, 1.0e7, -1.0e9, 3.0e38, 0.0];
+    let heights = Raster::from_vec([3, 2], values).unwrap();
+    write_gray_exr(folder.path("a.exr"), &heights).unwrap();
+    let text = stdout(&run(&folder, "info a.exr"));
+    let mut lines = text.lines().skip(1);
+    let (titles, row) = (lines.next().unwrap(), lines.next().unwrap());
+    let end = |title: &str| titles.find(title).expect(title) + title.len();
+    let mut start = end("min") - " ".len() - 11;
+    for title in ["min", "max", "mean", "deviation"] {
+        let number = row[start..end(title)].trim();
+        assert!(
+            number.parse::<f64>().is_ok(),
+            "{title}: {number:?} in\n{text}"
+        );
+        assert_eq!(row.as_bytes()[start], b' ', "{title} in\n{text}");
+        start = end(title);
+    }
+}
+
 #[test]
 fn regions_of_images_past_the_limit_are_read_by_rows() {
     let folder = Folder::new("rows");
