@@ -1,7 +1,7 @@
 //! The verdict on a tile: its faults, derived from the measurements of its report.
 //!
-//! The limits were set on 2 × 2 copies of photographs, which several methods made repeat, and which were first judged
-//! visually. The README states how far the verdict agrees with visual judgment on other photographs.
+//! The limits were set on 2 × 2 copies of tiles that several methods made from photographs. Three judges had labeled
+//! the copies first. The README states how far the verdict agrees with these judges on other photographs.
 
 use super::{DetailKept, SeamReport};
 use core::fmt;
@@ -10,7 +10,7 @@ use core::fmt;
 const STANDS_OUT: f64 = 2.5;
 
 /// Minimum detail of the softest band, as a fraction of the detail of the source's softest band.
-const SOFTEST: f64 = 0.85;
+const SOFTEST: f64 = 0.9;
 
 /// Minimum power in the third octave, as a fraction of the source's. The mean of two images has half of it.
 const THIRD_OCTAVE: f64 = 0.65;
@@ -20,10 +20,10 @@ const THIRD_OCTAVE: f64 = 0.65;
 const CONTRAST: f64 = 0.9;
 
 /// Maximum [`strangeness`](DetailKept::strangeness) of a tile that passes.
-const STRANGEST: f64 = 0.88;
+const STRANGEST: f64 = 0.6;
 
 /// Maximum [`coarse_strangeness`](DetailKept::coarse_strangeness) of a tile that passes.
-const COARSE_STRANGEST: f64 = 0.97;
+const COARSE_STRANGEST: f64 = 0.75;
 
 /// Maximum share of clipped samples of a tile that passes.
 const CLIPPED: f64 = 0.04;
