@@ -291,6 +291,7 @@ pub(crate) fn measure_range<const N: usize>(
     };
     let mut values: Vec<_> = (0..n).map(|index| value(position(index))).collect();
     values.sort_by(f32::total_cmp);
+    // Worley normalizes by a measured range, too. Without its extremes, it depends little on the positions.
     let left_out = (n / 1000) as usize;
     Ok([values[left_out], values[values.len() - 1 - left_out]])
 }

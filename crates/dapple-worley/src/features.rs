@@ -194,6 +194,7 @@ impl Tone {
         let mut sum = [0.0; N];
         for (&vector, coefficient) in vectors.iter().zip(self.weights.coefficients()) {
             if coefficient != 0.0 {
+                // The gradient of a combination is the combination of the gradients of F1 to F4.
                 let gradient = metric.gradient(vector);
                 for axis in 0..N {
                     sum[axis] += coefficient * gradient[axis];

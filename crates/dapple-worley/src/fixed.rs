@@ -69,6 +69,7 @@ fn split_near(mut coordinate: f64) -> (i64, i32) {
     if coordinate < 0.0 && coordinate > -0.5 {
         coordinate = (coordinate + 1.0) - 1.0;
     }
+    // Scaling by a power of two is exact.
     let steps = coordinate * f64::from(STEPS);
     // Round to the nearest integer, then down.
     let nearest = steps + WHOLE;

@@ -159,6 +159,7 @@ where
             "a whole number if there is a period",
         )?;
         let mut sum = Vec::new();
+        // Octave i has the frequency lacunarity^i and the amplitude gain^i; the paper's sum has 2^i and 2^-i.
         let (mut frequency, mut weight) = (1.0, 1.0);
         for index in 0..count {
             let mut worley = match seeds {
@@ -169,6 +170,7 @@ where
                     .with_seed(self.worley.seed.child("octave", u64::from(index))),
             };
             for period in &mut worley.lattice.period {
+                // A higher octave has more cells in the same period; with a whole lacunarity, their number is whole.
                 let cells = f64::from(*period) * frequency;
                 WorleyError::check(
                     cells <= f64::from(u32::MAX),
@@ -231,6 +233,7 @@ where
             let Some(place) = octave.place(position) else {
                 return Vector::<N>::from([f64::NAN; N]);
             };
+            // Chain rule: the derivative along the coordinates of the octave is multiplied by its frequency.
             let gradient = self.tone.gradient_at(&octave.worley, &place);
             let slope =
                 f64::from(octave.weight * self.range.weights.coefficients()[0]) * octave.frequency;
@@ -336,6 +339,7 @@ where
         for octave in &self.octaves {
             let scaled = positions.iter().map(|&position| octave.scaled(position));
             let scaled: Vec<_> = scaled.collect();
+            // Octaves are added in the order of `value`, so that the bits agree.
             octave.worley.tones(&self.tone, &scaled, &mut tones);
             for (value, tone) in values.iter_mut().zip(&tones) {
                 *value += tone * octave.weight;

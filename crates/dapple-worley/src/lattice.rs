@@ -110,6 +110,7 @@ impl Lattice {
         if period == 0 {
             return [cell, cell + nearer, cell - nearer];
         }
+        // The neighbors leave the period by at most one cell, so a comparison wraps them without another division.
         let own = cell.rem_euclid(period);
         let wrapped = |cell: i64| match cell {
             -1 => period - 1,
@@ -124,6 +125,7 @@ impl Lattice {
         let mut periods = self.period[..self.n_axes]
             .iter()
             .map(|&period| i64::from(period));
+        // The rings up to `ring` span 2 · ring + 1 cells along each axis.
         periods.all(|period| period > 0 && period <= 2 * ring + 1)
     }
 
@@ -174,6 +176,7 @@ impl Lattice {
     #[inline]
     pub(crate) fn count(&self, cell: &[i64], word: u32) -> u32 {
         match &self.density {
+            // As in the paper, a random number selects the count from the cumulative Poisson probabilities.
             None => self.counts.count(mix32(word)),
             Some(density) => poisson_count(self.density_at(density, cell), mix32(word)),
         }
@@ -193,6 +196,7 @@ impl Lattice {
         for (axis, (middle, &cell)) in middle.iter_mut().zip(cell).enumerate() {
             *middle += self.wrap(axis, cell) as f64;
         }
+        // One density holds for the whole cell, so its points do not depend on the position that is searched.
         let density = (density.of)(middle);
         if density.is_nan() {
             return *DENSITIES.start();
@@ -382,6 +386,8 @@ impl<W> Word for W where
 pub(crate) fn steps<W: Word, const N: usize>([high, low]: [W; 2], jitter: u32) -> [W; N] {
     let mut steps = [high; N];
     for (axis, steps) in steps.iter_mut().enumerate() {
+        // The first two axes take the upper 21 bits of a word each. The third one takes 11 and 10 of the bits below.
+        // With four axes, each has 16 bits, centered in its interval of 32 steps.
         *steps = match (N, axis) {
             (2 | 3, 0) => high >> (32 - STEP_BITS),
             (2 | 3, 1) => low >> (32 - STEP_BITS),

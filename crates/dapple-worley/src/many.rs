@@ -255,9 +255,11 @@ impl<const N: usize> Group<N> {
                     .exact
                     .accumulate(gaps[axis][digit(neighbor, axis)], gap);
             }
+            // Setting all bits of the code rounds the key up, so no neighbor with a nearer point is skipped.
             let reach = (found.best[K - 1] | search.code_mask).bitcast::<f32x16<S>>();
             let matters = gap.simd_le(reach);
             if neighbor & FARTHER != 0 {
+                // Few lanes need a farther neighbor. Collect the visits until they fill registers.
                 self.visits.push(numbers << PLACE_SHIFT | neighbor, matters);
                 continue;
             }
@@ -365,6 +367,7 @@ impl<const N: usize> Group<N> {
             for best in &best {
                 self.insert::<K>(place, best[lane]);
             }
+            // The smallest key that is not among the nearest decides whether the last rank is known, so insert it, too.
             self.insert::<K>(place, next[lane]);
             matters &= matters - 1;
         }
@@ -397,6 +400,7 @@ impl<const N: usize> Group<N> {
             } else {
                 &self.next
             };
+            // Keys that differ only in their codes become equal here, and their order is unknown.
             let best = load(simd, &self.best[rank], register) | mask;
             holds &= best.simd_lt(load(simd, after, register) | mask);
         }
@@ -460,6 +464,7 @@ impl<const N: usize> Points<N> {
             first.store_slice(&mut self.vectors[axis][from..middle]);
             second.store_slice(&mut self.vectors[axis][middle..to]);
         }
+        // Scaling by a step, a power of two, is exact. So these keys equal the keys of the search for one position.
         exact
             .distances(exact.keys(vector))
             .store_slice(&mut self.distances[from..to]);
@@ -555,6 +560,7 @@ impl<S: Simd, const K: usize> Found<S, K> {
             let coded = (key.bitcast::<u32x16<S>>() & !search.code_mask) | (codes | index);
             let is_there = points.counts.simd_gt(index);
             let mut coded = is_there.select(coded, u32x16::splat(simd, NOTHING));
+            // At each rank, the smaller key stays and the larger one moves to the next rank. This needs no branch.
             for best in &mut self.best {
                 let larger = best.max(coded);
                 *best = best.min(coded);
@@ -591,6 +597,7 @@ fn gaps<S: Simd, const N: usize>(
     for axis in 0..N {
         let below = places.steps[axis];
         let above = i32x16::splat(simd, STEPS) - below;
+        // The distance to the own cell is 0; its terms stay zero.
         let [near, far] = [below.min(above).to_float(), below.max(above).to_float()];
         [gaps[axis][1], gaps[axis][2]] = exact.terms([near, far]);
     }
@@ -600,6 +607,7 @@ fn gaps<S: Simd, const N: usize>(
 /// Returns a lower bound on the keys of all points beyond the neighboring cells. Lengths are in steps.
 #[inline(always)]
 fn border<S: Simd, const N: usize>(simd: S, exact: Exact, places: &Places<S, N>) -> f32x16<S> {
+    // Cells beyond the neighbors begin a whole cell past the nearest side.
     let mut nearest = i32x16::splat(simd, STEPS);
     for axis in 0..N {
         let above = i32x16::splat(simd, STEPS) - places.steps[axis];

@@ -78,6 +78,7 @@ impl Metric {
             return [0.0; N];
         }
         match self {
+            // The unit vector from the feature point to the position, as in the paper.
             Self::Euclidean => vector.map(|part| part / length),
             Self::Manhattan => vector.map(sign),
             Self::Chebyshev => {
@@ -91,6 +92,7 @@ impl Metric {
                 })
             }
             Self::Minkowski(p) => {
+                // ∂|v| / ∂vᵢ = sign(vᵢ) · (|vᵢ| / |v|)^(p − 1)
                 vector.map(|part| sign(part) * libm::powf(part.abs() / length, p - 1.0))
             }
         }

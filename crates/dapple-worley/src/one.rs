@@ -77,6 +77,7 @@ impl<const N: usize> Around<N> {
             let below = place.steps[axis];
             let above = STEPS - below;
             let nearer = if below < above { -1 } else { 1 };
+            // Order the neighbors by distance: the codes 1 and 2 are the nearer and the farther one.
             around.cells[axis] = lattice.cells_around(axis, place.cell[axis], nearer.into());
             around.origins[axis] = [below, below - nearer * STEPS, below + nearer * STEPS];
         }
@@ -130,6 +131,7 @@ impl<const N: usize> Around<N> {
                     words[3 * axis + which] = self.cells[axis][which] as u32;
                 }
             }
+            // Mix the coordinates of all axes for both words in one pair of registers.
             let words = u32x16::from_slice(simd, &words);
             let [keys, more_keys] = &lattice.lane_keys;
             let keys = [
@@ -142,6 +144,7 @@ impl<const N: usize> Around<N> {
         } else {
             for axis in 0..N {
                 for which in 0..3 {
+                    // Coordinates beyond 32 bits need a second mixing, of their high words.
                     let [first, second] = lattice.parts(axis, self.cells[axis][which]);
                     parts[0][3 * axis + which] = first;
                     parts[1][3 * axis + which] = second;
@@ -165,6 +168,7 @@ impl<const N: usize> Around<N> {
         // Compare the points of all visited cells.
         for register in 0..C {
             let numbers = u32x16::from_slice(simd, &const { numbers() }[register]);
+            // Lanes without a visited cell have no points.
             let cells = &mut lanes.cells[register];
             let zero = u32x16::splat(simd, 0);
             cells.counts = is_visited::<S, N>(simd, register).select(cells.counts, zero);
@@ -227,6 +231,7 @@ impl<const N: usize> Sides<N> {
     /// Returns a lower bound on the keys of all points in cells that are not visited.
     #[inline(always)]
     fn border(&self, metric: Metric) -> f32 {
+        // Cells that are not visited are beyond the neighbors, or among the few neighbors that are left out.
         let mut border = self.outer_border(metric);
         for &neighbor in &cells_by_distance::<N>()[n_visited(N)..] {
             border = border.min(self.gap(metric, neighbor));
@@ -266,6 +271,7 @@ fn visit_rest<const N: usize>(search: Search<'_>, place: &Place<N>, hits: &mut [
         ranking.add(hit, PointId::id);
     }
     for &neighbor in &cells_by_distance::<N>()[n_visited(N)..] {
+        // A cell exactly at the reach counts: its point may have an equal key and a smaller id.
         if sides.gap(exact.0, neighbor) <= ranking.reach() {
             let mut cell = [0; N];
             for axis in 0..N {
@@ -307,6 +313,7 @@ impl<S: Simd, const N: usize> Lanes<S, N, 1> {
             let cell = shift + i32x16::splat(simd, place.cell[axis] as i32);
             let cell = cell.bitcast::<u32x16<S>>();
             coordinates[axis] = [cell ^ first.key(axis), cell ^ second.key(axis)];
+            // Count the position from the corner of the shifted cell.
             origins[0][axis] = i32x16::splat(simd, below) - (shift << STEP_BITS);
         }
         let mut words = [[u32x16::splat(simd, 0); 2]; 1];
@@ -433,6 +440,7 @@ fn search_by_axes<S: Simd, const N: usize, const K: usize>(
         (2, _) => around().search_several::<S, K, 1>(simd, search, hits),
         _ => around().search_several::<S, K, 2>(simd, search, hits),
     };
+    // The result is certain if no cell that is not visited can contain a point as near as the last one.
     let reach = hits.last().map_or(0.0, |hit| hit.key);
     is_certain
         && (reach < Sides::new(place).border(search.exact.0) || visit_rest(search, place, hits))

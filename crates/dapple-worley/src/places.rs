@@ -104,6 +104,8 @@ impl<S: Simd, const N: usize> Places<S, N> {
     pub(crate) fn shifted(&self, lattice: &Lattice, axis: usize, shift: i32x16<S>) -> Words<S> {
         let [low, high] = self.cells[axis];
         let moved = low + shift.bitcast::<u32x16<S>>();
+        // Add 64-bit numbers in two words: the high word adds the sign extension of the shift and the carry of the low
+        // word, which overflows if the sum is below the summand.
         let sign = (shift >> 31).bitcast::<u32x16<S>>();
         let carries = moved.simd_lt(shift.bitcast::<u32x16<S>>());
         let high = high + sign;
@@ -166,6 +168,7 @@ pub(crate) fn store<S: Simd>(lanes: u32x16<S>, words: &mut [u32], register: usiz
 #[inline(always)]
 fn split_lanes<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x16<S>, u64) {
     let halves = [&coordinates[..8], &coordinates[8..]].map(|half| f64x8::from_slice(simd, half));
+    // Integers below a quarter of `WHOLE` can be read from the bits of a sum. The comparison is false for NaN.
     let is_near = |half: f64x8<S>| half.abs().simd_lt(WHOLE / 4.0).all_true();
     if !(is_near(halves[0]) && is_near(halves[1])) {
         return split_each(simd, coordinates);
@@ -227,6 +230,7 @@ fn next<S: Simd>([low, high]: Words<S>) -> Words<S> {
 #[inline(never)]
 fn wrap<S: Simd>(lattice: &Lattice, axis: usize, [mut low, mut high]: Words<S>) -> Words<S> {
     for lane in 0..LANES {
+        // No SIMD level has a 64-bit remainder, so wrap lane by lane.
         let cell = i64::from(high[lane].cast_signed()) << 32 | i64::from(low[lane]);
         let cell = lattice.wrap(axis, cell);
         (low[lane], high[lane]) = (cell as u32, (cell >> 32) as u32);
@@ -265,6 +269,7 @@ const fn sorted_cells<const LEN: usize>(n_axes: u32) -> [u8; LEN] {
             let mut distance = 0;
             let mut axis = 0;
             while axis < n_axes {
+                // Code 3 does not occur; its weight exceeds every sum that is looked for.
                 distance += [0, 1, 7, 1000][(cell >> (2 * axis) & 3) as usize];
                 axis += 1;
             }

@@ -52,6 +52,7 @@ where
     /// Returns the plane that contains a window of space.
     pub(crate) fn of_window(window: &Window<N>) -> Self {
         let mut origin = window.position(0, 0);
+        // Positions in the window have their own coordinates along the first two axes.
         origin[..2].fill(0.0);
         Self::slice(origin.into())
     }

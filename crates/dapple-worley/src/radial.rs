@@ -130,6 +130,7 @@ impl Radial {
         let mut gradient = DVec3::ZERO;
         // Add the derivatives of the azimuth and of the polar angle, which are defined except on the axis.
         if axial_sq > 0.0 {
+            // ∂φ = (−y, x, 0) / (x² + y²), and ∂θ = (xz/ρ, yz/ρ, −ρ) / r² with the distance ρ from the axis.
             let azimuth = DVec3::new(-at.y, at.x, 0.0) / axial_sq;
             gradient += azimuth * (of_cells.x * f64::from(around) / TAU);
             let axial = libm::sqrt(axial_sq);

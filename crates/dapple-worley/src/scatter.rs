@@ -116,6 +116,7 @@ impl Scatter {
             Self::Unclamped { density } => (density, 0..=u32::MAX),
             Self::Jittered { jitter } => {
                 WorleyError::check_in(JITTER_RANGE, "jitter", jitter)?;
+                // Clamping to 1 gives one point per cell, whatever the density.
                 (1.0, 1..=1)
             }
         };

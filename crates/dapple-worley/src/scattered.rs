@@ -69,6 +69,7 @@ where
         positions: &[impl Copy + Into<[f64; N]>],
         values: &mut [f32],
     ) {
+        // Combinations share two loops, for two and for four points, since each takes long to compile.
         let depth = if tone.depth() <= 2 { 2 } else { MAX_NEAREST };
         self.each_group(depth, positions, |range, holds, points| {
             for (place, index) in range.enumerate() {
@@ -116,6 +117,7 @@ where
         let mut group = Group::new(depth);
         for (index, positions) in positions.chunks(GROUP).enumerate() {
             group.len = positions.len();
+            // Transpose the positions to one array for each axis.
             for (place, &position) in positions.iter().enumerate() {
                 let position: [f64; N] = position.into();
                 for axis in 0..N {

@@ -76,6 +76,7 @@ pub(crate) fn by_rings<const N: usize>(
     let mut ranking = Ranking::new(n);
     for ring in 0.. {
         let border = visit(ring, &mut ranking);
+        // Stop only if the bound is strictly larger: a point with an equal key and a smaller id would still enter.
         if border == f32::INFINITY || ranking.reach * metric.rounding_slack() < border {
             break;
         }
@@ -126,6 +127,7 @@ pub(crate) fn within<const N: usize>(
     distance: f32,
 ) -> Vec<Hit<N>> {
     let mut hits = Vec::new();
+    // Rounding of Minkowski's powers may put the bound of a cell above the keys of its points; the slack covers it.
     let key = metric.term(distance) * metric.rounding_slack();
     let search = Search {
         lattice,
@@ -187,6 +189,7 @@ impl<const N: usize> Ranking<N> {
     #[inline]
     fn insert(&mut self, hit: Hit<N>, id: impl Fn(PointId) -> u64) {
         let hits = &mut self.hits[..self.len];
+        // Insertion sort, as in the paper: farther points move down one rank, and the last one drops out.
         let mut at = hits.len();
         while at > 0 && order(&hit, &hits[at - 1], &id).is_lt() {
             if at < hits.len() {
@@ -196,6 +199,7 @@ impl<const N: usize> Ranking<N> {
         }
         if at < hits.len() {
             hits[at] = hit;
+            // Empty ranks have infinite keys, so the reach is finite only if `len` points are known.
             self.reach = hits[hits.len() - 1].key;
         }
     }
@@ -256,6 +260,7 @@ impl<const N: usize> Around<N> {
             let below = place.steps[axis];
             let above = STEPS - below;
             let nearer = if below < above { -1 } else { 1 };
+            // All points of a neighbor are beyond the side that it shares with the own cell.
             let shifts = [0, nearer, -nearer];
             let sides = [0, below.min(above), below.max(above)];
             around.cells[axis] =
@@ -295,6 +300,7 @@ impl<const N: usize> Search<'_, N> {
         let mut batch = [0; BATCH];
         let mut n = 0;
         for &neighbor in cells_by_distance::<N>() {
+            // Skip cells that are too far away to contribute. The paper tests whole rows of cubes in this way.
             if around.gap(self.metric, neighbor) > ranking.reach * rounding_slack {
                 continue;
             }
@@ -314,12 +320,14 @@ impl<const N: usize> Search<'_, N> {
     fn batch(&self, around: &Around<N>, neighbors: &[u8], ranking: &mut Ranking<N>) {
         let rounding_slack = self.metric.rounding_slack();
         for &neighbor in neighbors {
+            // Test again: cells earlier in the batch may have reduced the reach.
             if around.gap(self.metric, neighbor) > ranking.reach * rounding_slack {
                 continue;
             }
             let digit = |axis| digit(neighbor.into(), axis);
             let cell: [i64; N] = core::array::from_fn(|axis| around.cells[axis][digit(axis)]);
             let origin: [i32; N] = core::array::from_fn(|axis| around.origins[axis][digit(axis)]);
+            // Combine the hash parts that are shared by the cells of a row.
             let words = (0..N).fold([0; 2], |words, axis| {
                 both(words, around.parts[axis][digit(axis)])
             });
@@ -347,6 +355,7 @@ impl<const N: usize> Search<'_, N> {
     fn hit(&self, shift: [i64; N], steps: [i32; N], name: PointId) -> Hit<N> {
         let mut vector = [0.0; N];
         for axis in 0..N {
+            // Subtract in integers, so that the only rounding is the conversion to `f32`.
             let ahead = i64::from(self.place.steps[axis]) - i64::from(steps[axis]);
             vector[axis] = cells(ahead - shift[axis] * i64::from(STEPS));
         }
@@ -398,6 +407,7 @@ impl<const N: usize> Search<'_, N> {
         let mut gap = [0.0; N];
         for axis in 0..N {
             let inside = i64::from(self.place.steps[axis]);
+            // Count the steps to the nearest side of the cell; 0 if the cell contains the coordinate.
             let near = match shift[axis] {
                 0 => 0,
                 1.. => shift[axis] * i64::from(STEPS) - inside,
@@ -410,6 +420,8 @@ impl<const N: usize> Search<'_, N> {
 
     /// Returns a lower bound on the keys of all points beyond `ring` rings.
     fn border(&self, ring: i64) -> f32 {
+        // A point beyond the ring is beyond one of its sides. The key of a vector is at least the term of each
+        // component, so the term of the smallest distance to a side is a lower bound.
         let sides = self.place.steps.map(|steps| steps.min(STEPS - steps));
         let nearest = sides.into_iter().fold(STEPS, i32::min);
         self.metric

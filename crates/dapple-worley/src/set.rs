@@ -206,6 +206,7 @@ where
         for (point, index) in &self.points[range] {
             let mut vector = [0.0; N];
             for axis in 0..N {
+                // Move the point to the repeat of the period that contains the bin.
                 let shift = turns[axis] as f64 * bins.period(axis);
                 vector[axis] = (position[axis] - (point[axis] + shift)) as f32;
             }
@@ -240,6 +241,8 @@ impl<const N: usize> Bins<N> {
         let wanted = (points.len() as f64 / POINTS_PER_BIN).max(1.0);
         let longest = extent.iter().copied().fold(0.0, f64::max);
         let mut side = longest;
+        // Shrink the side of the bins until there are enough; the number of steps is fixed, since a grid without extent
+        // never gets more bins.
         for _ in 0..64 {
             let n_bins: f64 = extent
                 .iter()
@@ -306,6 +309,7 @@ impl<const N: usize> Bins<N> {
         let mut border = f64::INFINITY;
         for axis in 0..N {
             let edge = |bin: i64| self.origin[axis] + bin as f64 * self.size[axis];
+            // Along an axis that does not wrap, there are no points beyond the grid.
             if self.wraps[axis] || first[axis] > 0 {
                 border = border.min(position[axis] - edge(first[axis]));
             }

@@ -61,6 +61,7 @@ impl Tone {
         let mut sum = self.shift;
         for (&weight, &distance) in self.weights.coefficients().iter().zip(distances) {
             if weight != 0.0 {
+                // Skip unused distances, which may be infinite: their product with zero would be NaN.
                 sum += distance * weight;
             }
         }

@@ -123,6 +123,7 @@ fn smooth_minimum(distances: &[f64], radius: f64) -> f64 {
     for _ in 0..64 {
         let [mut sum, mut slope] = [0.0; 2];
         for distance in distances {
+            // Points farther away than s + radius contribute nothing to the sum and its derivative.
             let part = (1.0 + (s - distance) / radius).max(0.0);
             sum += part * part * part;
             slope += 3.0 * part * part / radius;

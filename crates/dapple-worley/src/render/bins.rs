@@ -352,6 +352,7 @@ impl Bins {
                 let ahead = i32x4::from_slice(simd, &columns[tile * TILE..][..TILE]) - column;
                 places[tile] = ahead.to_float::<f32x4<S>>() * STEP;
             }
+            // The column terms are the same in all rows, so they are computed once for each point.
             let terms = measure.terms(places);
             for tile in 0..TILES {
                 terms[tile].store_slice(&mut point.terms[tile]);

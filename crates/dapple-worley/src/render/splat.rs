@@ -172,6 +172,7 @@ impl Splat {
     /// Returns the box of cells whose points are within reach of the block.
     fn cells(&self, block: &Block<'_>, cells: &CellBox, memory: &Memory) -> CellBox {
         let pixels = memory.pixel_box(&block.all());
+        // The conversion truncates, so add a step.
         let reach = (self.reach / STEP) as i32 + 1;
         let mut near = *cells;
         for axis in 0..cells.n_axes {
