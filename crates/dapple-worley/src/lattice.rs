@@ -141,6 +141,7 @@ impl Lattice {
     /// of the cell.
     #[inline]
     pub(crate) fn steps<const N: usize>(&self, words: [u32; 2], index: u32) -> [i32; N] {
+        // Each point adds a multiple of an odd stride, so the points of a cell get different words.
         let word = |which: usize| {
             let stride = STRIDES[which].wrapping_mul(index + 1);
             mix32(words[which].wrapping_add(stride))

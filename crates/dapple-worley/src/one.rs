@@ -41,6 +41,7 @@ fn finds<const N: usize>(
     place: &Place<N>,
     hits: &mut [Hit<N>],
 ) -> bool {
+    // Powers gain nothing from registers, and the counts of a varying density are not in a table.
     if metric.is_slow() || lattice.density.is_some() {
         return false;
     }
@@ -189,6 +190,7 @@ impl<const N: usize> Around<N> {
                 return false;
             }
             let code = coded & code_mask;
+            // The remainder proves to the compiler that the index is in range.
             let number = (code >> index_bits) as usize % n_visited(N);
             let index = code & ((1 << index_bits) - 1);
             let neighbor = cells_by_distance::<N>()[number];

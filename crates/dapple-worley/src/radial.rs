@@ -102,6 +102,7 @@ impl Radial {
             radial,
         } = self.cells;
         let axial = libm::sqrt(at.x * at.x + at.y * at.y);
+        // Azimuth in turns; negative ones are moved up by a turn below.
         let turn = libm::atan2(at.y, at.x) / TAU;
         DVec3::new(
             (if turn < 0.0 { turn + 1.0 } else { turn }) * f64::from(around),

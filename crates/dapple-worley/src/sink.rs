@@ -91,6 +91,7 @@ impl Values {
             self.tone.of(&distances)
         });
         *out = match self.weight {
+            // A sum could change the bits of NaN.
             Some(_) if value.is_nan() => f32::NAN,
             Some(weight) => *out + value * weight,
             None => value,

@@ -104,6 +104,7 @@ where
         if first == f32::INFINITY {
             return Ok(first);
         }
+        // Points farther away contribute nothing; the margin covers the rounding of distances.
         let reach = (first + radius) * 1.000_01;
         let mut hits = Dimensions::within(self.metric, &self.lattice, &place, reach);
         hits.sort_by(|a, b| order(a, b, PointId::id));
