@@ -338,6 +338,7 @@ impl<'a> Appearance<'a> {
             }
             // Raise the costs of parts that are used too often.
             if self.evenness > 0.0 {
+                // Costs are in units of the mean score of the first pass.
                 let scale = *scale.get_or_insert(sum / places.len().max(1) as f64) as f32;
                 let shares = costs.shares(places.iter().map(|&place| narrow(pixel(place))));
                 costs.change(&shares, &wanted, self.evenness * STEP * scale);

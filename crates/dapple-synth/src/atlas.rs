@@ -256,6 +256,7 @@ impl Atlas {
 
 /// Returns the barycentric weights of the position `at` in the triangle `a`, `b`, `c`.
 fn weights([a, b, c]: [DVec2; 3], at: DVec2) -> [f64; 3] {
+    // A weight is the area of the triangle opposite to the corner, relative to the whole triangle.
     let area = (b - a).perp_dot(c - a);
     let of_b = (at - a).perp_dot(c - a) / area;
     let of_c = (b - a).perp_dot(at - a) / area;

@@ -105,6 +105,7 @@ pub(crate) fn bake_with<'a, const N: usize>(
         let values = baker.bake_rows(first..(first + BLOCK).min(size[1]));
         values.as_chunks::<N>().0.to_vec()
     };
+    // A texel depends on the sites alone, so bands of rows are independent.
     let bands = parallel::map(size[1].div_ceil(BLOCK) as usize, band);
     Ok(Raster::from_vec(size, bands.concat())?)
 }
@@ -177,6 +178,7 @@ impl Baker<'_, '_> {
             .map(|at| at.distance_squared(center))
             .fold(0.0, f64::max);
         let spacing = self.hierarchy.levels()[0].spacing();
+        // The ball of the texels, extended by the reach, contains the balls around all texels.
         let reach = far_sq.sqrt() + REACH * spacing;
         let group = Group {
             surface,
@@ -206,6 +208,7 @@ impl Paint for Mixed<'_> {
             .line_up(group.surface, group.points, group.center);
         self.samples.values.resize(values.len(), 0.0);
         self.samples.nearest.resize(group.points.len(), 0);
+        // Equation 1 at each texel, on the sites that the group shares.
         let target = (self.colors, &mut self.samples);
         interpolate(
             simd::level(),

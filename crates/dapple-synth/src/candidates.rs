@@ -179,6 +179,7 @@ impl Candidates {
         let mut area_of = vec![NO_AREA; level.size[0] as usize * level.size[1] as usize];
         for (number, readers) in readers.iter().enumerate() {
             let (within, pixels) = pixels_of_area(pyramid, pass, center, few, number, readers);
+            // Without a mask there is a single image, and its candidates form a rectangle.
             if level.usable.is_none() {
                 inner = within;
             }
@@ -217,6 +218,7 @@ impl Candidates {
                 reader.read(halves, &mut samples, &mut candidates.rows);
             }
             let guides = level.guides.of(pixel as usize).iter();
+            // The factor makes a guide count as much as a channel that differs at every pixel.
             let guides = guides.map(|value| value * guide_scale);
             candidates.rows.extend(guides);
         }
@@ -297,6 +299,7 @@ impl Candidates {
     #[inline]
     pub(crate) fn row_beside(&self, pixel: u32, [i, j]: [i32; 2]) -> Option<u32> {
         if let Some(Beside(beside)) = &self.beside {
+            // On a surface, the adjacent pixel is the site nearest to the end of the step (i, j).
             let beside = beside[pixel as usize][(3 * (j + 1) + i + 1) as usize];
             return self.row_of_pixel([beside.into(), 0]);
         }
@@ -348,6 +351,7 @@ pub(crate) fn guide_scale(pass: &Pass) -> f32 {
 pub(crate) fn halves(pixel: [u32; 2], reads: Reads, center: CoarserCenter) -> [i64; 2] {
     pixel.map(|at| match (reads, center) {
         (Reads::Same, _) => 2 * i64::from(at),
+        // Half of a coordinate is as many half pixels as the coordinate has pixels.
         (Reads::Coarser, CoarserCenter::Exact) => i64::from(at),
         (Reads::Coarser, CoarserCenter::Floor) => i64::from(at / 2 * 2),
     })

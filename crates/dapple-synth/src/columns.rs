@@ -33,6 +33,7 @@ pub(crate) fn sum(n_rows: usize, row: impl Fn(usize) -> f64 + Sync) -> f64 {
         }
         sum
     };
+    // The blocks have a fixed size, so the order of additions does not depend on the number of cores.
     let sums = parallel::map(n_rows.div_ceil(BLOCK), block);
     sums.into_iter().sum()
 }

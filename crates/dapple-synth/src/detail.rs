@@ -62,6 +62,7 @@ impl<const N: usize> Detail<N> {
             Edges::Wrap => Wrap::Repeat,
         };
         let mut levels = vec![map];
+        // Halve down to a single pixel, so that there is a level for every footprint.
         while let Some(last) = levels.last()
             && last.size().iter().any(|&side| side > 1)
         {
@@ -84,6 +85,7 @@ impl<const N: usize> Detail<N> {
             return self.cubic(0, place, SHARPENING * (width / SHARP).min(1.0));
         }
         // Minification: interpolate between the two nearest levels.
+        // A pixel of level i is 2^i pixels of the map wide, so the level is the logarithm of the width.
         let level = libm::log2f(width).min((self.levels.len() - 1) as f32);
         let fine = level as usize;
         let coarse = (fine + 1).min(self.levels.len() - 1);
@@ -125,6 +127,7 @@ impl<const N: usize> Detail<N> {
         }
         core::array::from_fn(|channel| {
             let [low, high] = range[channel];
+            // The outer weights are negative, so sums can overshoot the pixels.
             sum[channel].max(low).min(high)
         })
     }
@@ -143,6 +146,7 @@ impl<const N: usize> Detail<N> {
 #[inline]
 fn weights(t: f32, sharpening: f32) -> [f32; 4] {
     let s = 1.0 - t;
+    // Weights of a Catmull-Rom spline, at distances of 1 + t and t.
     let outer = |t: f32, s: f32| -0.5 * t * s * s;
     let inner = |t: f32| (1.5 * t - 2.5) * t * t + 1.0;
     // Subtract the interpolated second differences around the two inner pixels. The square keeps the slope at pixels.

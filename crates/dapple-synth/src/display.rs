@@ -110,6 +110,7 @@ pub fn textured_model(
             needed: "as many as the mesh has",
         }));
     }
+    // Faces that are not in the map have NaN, which files do not allow.
     let placed = |uv: DVec2| if uv.is_finite() { uv } else { DVec2::ZERO };
     let mut model = Model::from(surface.mesh().clone());
     model.uvs = Some(uvs.into_iter().map(|face| face.map(placed)).collect());

@@ -149,6 +149,7 @@ impl Endless {
         let wanted = Wanted::new(is_cancelled);
         // Choose the number of levels.
         let side = exemplar.size[0].min(exemplar.size[1]);
+        // The coarsest level needs at least one pixel along each side.
         let most = side
             .checked_ilog2()
             .map_or(0, |levels| (levels + 1).min(MAX_LEVELS));
@@ -161,6 +162,7 @@ impl Endless {
         let holds = (1..=most).contains(&n_levels);
         SynthError::check(holds, "number of levels", n_levels.into(), range)?;
         for period in options.period.into_iter().flatten() {
+            // Periods must be even on all levels, because subpasses alternate between even and odd pixels.
             if period == 0 || period % (1 << n_levels) != 0 {
                 return Err(SynthError::new(SynthErrorKind::Period { period, n_levels }));
             }

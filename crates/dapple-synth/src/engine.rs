@@ -194,6 +194,7 @@ fn first_sources<G: SynthesisDomain>(
     let start = domain.start(pass.level);
     let reads_itself = pass.parts.iter().any(|part| part.reads == Reads::Same);
     let mut first = if reads_itself || start.is_some() {
+        // Section 5.2: start from random pixels of the same level of the pyramid.
         random_pixels(n_sites, pyramid, candidates, pass.level, options.seed)
     } else {
         // The pass reads only the coarser level, so these values are never read.
@@ -231,6 +232,7 @@ fn go_on_with<G: SynthesisDomain>(
     for ((site, source), _) in sites.filter(|(_, is_kept)| !**is_kept) {
         let pixel = domain.parent(level, site).and_then(|(parent, quarter)| {
             let coarser = coarser.pixels.get(parent as usize)?;
+            // Of the four children of the coarser pixel, take the one at the site's place under its parent.
             let pixel = grid::over(coarser.load(Ordering::Relaxed), wider.size[0], quarter);
             let pixel = finer.pixel_at(pixel);
             pixel.filter(|&pixel| finer.is_usable(pixel))

@@ -91,6 +91,7 @@ impl Area {
     /// Returns the five positions along an axis that are averaged for position `at` of the coarser level.
     fn taps(self, axis: usize, at: u32, wrap: Wrap) -> [usize; 5] {
         let [first, end] = [self.first, self.end].map(|corner| corner[axis]);
+        // Pixel (i, j) of the coarser level is centered on pixel (2i, 2j).
         let center = 2 * i64::from(at) - i64::from(first);
         [-2, -1, 0, 1, 2].map(|step| (first + wrap.index(center + step, end - first)) as usize)
     }
@@ -200,6 +201,7 @@ impl Exemplar {
                 }));
             }
         }
+        // Values times the root of the weight have squared differences times the weight.
         let root = roots(&[weight])?[0];
         let counts = [self.n_channels, other.n_channels];
         let mut pixels = Vec::with_capacity(self.pixels.len() + other.pixels.len());
@@ -339,6 +341,7 @@ impl Exemplar {
                 .areas
                 .iter()
                 .map(|area| Area {
+                    // Keep the squares that are entirely within the image.
                     first: area.first.map(|at| at.div_ceil(factor)),
                     end: area.end.map(|at| at / factor),
                 })
@@ -429,6 +432,7 @@ impl Exemplar {
         let [wrap_x, wrap_y] = self.grid().wrap;
         let mixed = |from: &[f32], at: usize, steps: [usize; 2], offset: usize| {
             let [a, b] = steps.map(|step| from[step * n + offset]);
+            // Add differences, so that a constant image does not change in a single bit.
             let own = from[at * n + offset];
             own + blur * ((a - own) + (b - own))
         };
@@ -459,6 +463,7 @@ impl Exemplar {
     /// Returns this exemplar reduced to the next coarser level of the pyramid.
     fn halved(&self) -> Self {
         let half = self.size.map(|side| side.div_ceil(2));
+        // An odd side is not a whole number of coarser pixels, so the coarser level cannot wrap.
         let odd = self.size.iter().any(|side| side % 2 == 1);
         let grid = self.grid();
         let areas = self.areas();

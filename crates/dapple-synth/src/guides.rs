@@ -106,6 +106,7 @@ impl Targets {
         let mut levels = Vec::new();
         for &size in sizes {
             let [first, end] = [[0; 2], size];
+            // Reduce the guide by the filter of the exemplar's pyramid, so that both have the same resolution.
             let coarser = guide.halved(size, wrap, &[Area { first, end }]);
             levels.push(core::mem::replace(&mut guide, coarser).values);
         }

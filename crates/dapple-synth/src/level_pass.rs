@@ -371,9 +371,11 @@ impl<'a, G: SynthesisDomain> LevelPass<'a, G> {
                 continue;
             }
             if self.quarters_of(center.site, nearest, painted) != center.quarters {
+                // A neighbor continues its piece of the exemplar only under the piece's own rotation.
                 continue;
             }
             let source = painted.source(nearest as usize);
+            // The neighbor at (i, j) has `source`, so `source` minus (i, j) continues its piece here (Ashikhmin).
             add_coherent(self.candidates.row_beside(source, [-i, -j]), coherent);
         }
     }
@@ -394,6 +396,7 @@ impl<'a, G: SynthesisDomain> LevelPass<'a, G> {
         }
         let source = painted.source(nearest as usize);
         for offset in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+            // Four pixels share a parent; each of them could continue the coarser piece.
             let row = self
                 .candidates
                 .row_under(source, self.coarser_width, offset);

@@ -106,6 +106,7 @@ impl MeshExemplar {
     ) -> Result<Self, SynthError> {
         let origin = Origin::new(source, uvs, texture.edges)?;
         let n_levels = origin.hierarchy().levels().len();
+        // The finest level samples the texture; each coarser one is low-pass filtered, as in a Gaussian pyramid.
         let mut levels = vec![reading::at_sites(&origin, texture)];
         for level in 1..n_levels {
             let coarser = coarser(origin.hierarchy(), level - 1, &levels[level - 1])?;
@@ -160,6 +161,7 @@ impl MeshExemplar {
         let levels = engine::run_with(domain, &pyramid, &passes, &candidates, options, callback)?;
         let (sources, quarters) = Sources::pixels_and_quarters(levels);
         let finest = sources.first().map_or(&[][..], Vec::as_slice);
+        // Find positions between the source's sites, from which texels are sampled.
         let frames = Frames::new(target, &quarters);
         let places = LiftedPlaces::new(target.hierarchy(), &frames, &self.origin, finest, options);
         let mut texture = SurfaceTexture::new(&pyramid, sources, None);
@@ -207,6 +209,7 @@ fn coarser(hierarchy: &Hierarchy, level: usize, finer: &Exemplar) -> Result<Exem
         let mut pixels = vec![0.0; n_sites * n];
         for channel in 0..n {
             let column: Vec<f32> = values.iter().skip(channel).step_by(n).copied().collect();
+            // Section 3.2: blur the channel, and drop the sites of the finer level.
             let column = hierarchy.downsample(level, &column)?;
             for (pixel, value) in pixels.chunks_exact_mut(n).zip(column) {
                 pixel[channel] = value;

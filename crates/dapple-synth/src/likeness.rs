@@ -121,6 +121,7 @@ fn distance(images: &[Planes; 2], side: usize) -> f64 {
     for number in 0..N_DIRECTIONS {
         let direction = direction(number, dims);
         let [a, b] = [0, 1].map(|image: usize| images[image].project(side, &direction));
+        // Sorted projections are quantile functions; the area between them is W1.
         sum += area_between(&a, &b);
     }
     sum / N_DIRECTIONS as f64

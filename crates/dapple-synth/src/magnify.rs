@@ -84,6 +84,7 @@ pub(crate) fn footprints(
         let [ua, ub, uc] = uvs.map(|uv| uv * size);
         let texels = (ub - ua).perp_dot(uc - ua).abs();
         let area = (b - a).cross(c - a).length();
+        // The ratio of the areas is the area of a texel on the surface.
         let side = (area / texels).sqrt() / spacing;
         // The side is not finite if the face has no area in the atlas; no texel shows such a face.
         if side.is_finite() { side as f32 } else { 0.0 }
@@ -165,6 +166,7 @@ impl<P: Sourced> Magnified<'_, P> {
             // Add the site to the first piece that agrees, or start a new one.
             if let Some(piece) = pieces.iter_mut().find(agrees) {
                 piece.off += self.places.difference(place, piece.place) * weight;
+                // Axes have the length 1 / (spacing · scale). Times the scale, those of all sites have equal lengths.
                 piece.right += frame.right * (weight * frame.scale);
                 piece.down += frame.down * (weight * frame.scale);
                 piece.scale += weight * frame.scale;
@@ -184,6 +186,7 @@ impl<P: Sourced> Magnified<'_, P> {
 
     /// Writes the channels of the piece with the largest weight, or a mixture of several pieces at a seam.
     fn mix(&self, memory: &mut Pieces<P::Place>, footprint: f32, mixed: &mut [f32]) {
+        // Shares are relative to the heaviest piece, so at least one piece has a share of 1.
         let most = memory
             .pieces
             .iter()

@@ -119,6 +119,7 @@ impl Matcher {
     #[must_use]
     pub fn new(dims: usize, rows: &[f32]) -> Self {
         let rows = whole_rows(dims, rows);
+        // The first of equal rows is always returned, so the others need no place in the tree.
         Self::of(dims, rows, tree::distinct_rows(dims, rows))
     }
 
@@ -197,6 +198,7 @@ impl Matcher {
         dispatch!(level, simd => {
             memory.query.clear();
             distance::pad(query.values, &mut memory.query);
+            // Without an index, the naive comparison gives the same result.
             self.search(simd, query, memory)
                 .unwrap_or_else(|| self.compare(simd, query, 0..self.rows.len() as u32, memory))
         })
@@ -252,6 +254,7 @@ impl Matcher {
                 distance_sq *= factors[row as usize];
             }
             let least = best.map_or(query.below, |best| best.distance_sq);
+            // Equally near rows are ordered by index, so the order of comparisons has no effect.
             let is_first = |best: Match| distance_sq == best.distance_sq && row < best.row;
             if distance_sq < least || best.is_some_and(is_first) {
                 best = Some(Match { row, distance_sq });
@@ -286,6 +289,7 @@ impl Index {
     /// longer than [`margin::LONGEST`].
     #[inline(always)]
     fn place<S: Simd>(&self, simd: S, query: &[f32], memory: &mut MatcherMemory) -> Option<f64> {
+        // Center in `f32`, as the rows were; the margin covers this rounding.
         self.basis.center(query, &mut memory.centered);
         let length = margin::length(&memory.centered);
         // False for NaN.

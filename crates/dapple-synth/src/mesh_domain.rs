@@ -101,6 +101,7 @@ impl MeshDomain<'_> {
         } else {
             1.0
         };
+        // The sample at a corner of the square is the farthest, and interpolates within the radius around it.
         let spacings = core::f64::consts::SQRT_2 * f64::from(half) * largest + radius(largest);
         let spacing = self.hierarchy.levels()[reads].spacing();
         Neighborhoods::new(

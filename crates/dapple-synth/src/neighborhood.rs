@@ -96,6 +96,8 @@ impl Part {
         for j in -half..=half {
             for i in -half..=half {
                 let center = [i, j] == [0, 0];
+                // Figure 4 of the paper: (a) is `Full`, (b) is `Causal`, and (c) is `Half`. On the level itself the
+                // center is left out, since its color is not known yet.
                 let within = match self.shape {
                     Shape::Full => !center || self.reads == Reads::Coarser,
                     Shape::Half => j < 0,
@@ -155,6 +157,7 @@ impl Schedule {
     #[must_use]
     pub fn paper(n_levels: usize) -> Self {
         let coarsest = n_levels.saturating_sub(1);
+        // H(7, 0) is the only pass that reads no coarser level. It compares the rows that the sweep has filled before.
         let mut passes = vec![Pass {
             level: coarsest,
             parts: vec![Part::new(Shape::Half, 7, Reads::Same)],

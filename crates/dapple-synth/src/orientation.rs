@@ -108,6 +108,7 @@ impl Orientation {
         axis: DVec3,
     ) -> Result<Self, SynthError> {
         let axis = checked(axis)?;
+        // Section 4.1: pull the directions up to the coarsest level, and push the field down from there.
         let pulled = pull::pull(
             hierarchy,
             pull::known(hierarchy, directions, Symmetry::One)?,
@@ -140,6 +141,7 @@ impl Orientation {
         }
         let axis = checked(axis)?;
         let known = pull::known(hierarchy, directions, symmetry)?;
+        // Equivalent directions cannot be blurred, since they could cancel. Pull each to its nearest site instead.
         let pulled = pull::pull_nearest(hierarchy, known, symmetry);
         Ok(Self {
             vectors: push::push(hierarchy, &pulled, axis, symmetry),
@@ -228,6 +230,7 @@ fn tangent(vector: DVec3, normal: DVec3) -> Option<DVec3> {
 /// Returns the unit tangent along a unit axis, or along a perpendicular axis if the first one is normal to the plane.
 /// Never fails.
 fn axis_tangent(axis: DVec3, normal: DVec3) -> DVec3 {
+    // The axis and a vector perpendicular to it cannot both be normal to the plane.
     let across = axis.any_orthonormal_vector();
     tangent(axis, normal)
         .or_else(|| tangent(across, normal))
@@ -236,6 +239,7 @@ fn axis_tangent(axis: DVec3, normal: DVec3) -> DVec3 {
 
 /// Returns the unit vector along a vector, computed without overflow. `None` if the vector is zero or not finite.
 fn unit(vector: DVec3) -> Option<DVec3> {
+    // Divide by the largest component, so that squares neither overflow nor underflow.
     let most = vector.abs().max_element();
     (vector.is_finite() && most > 0.0).then(|| (vector / most).normalize())
 }

@@ -77,10 +77,12 @@ impl Parents {
             if distance < nearest.0 {
                 nearest = (distance, parent);
             }
+            // Equation 1. Beyond the radius, the weight is w(1) = 0.
             let x = (distance / radius).min(1.0);
             self.weights[parent] = weight(x);
             sum += self.weights[parent];
         }
+        // No parent is within the radius, so take the nearest one.
         if sum < 1e-9 && self.count > 0 {
             self.weights[nearest.1] = 1.0;
         }

@@ -107,6 +107,7 @@ impl Sourced for Places {
         if self.edges == Edges::Cut || way.abs().cmplt(0.5 * size).all() {
             return way;
         }
+        // On a torus, take the shortest of the equivalent offsets.
         way - (way / size).round() * size
     }
 
@@ -130,6 +131,7 @@ pub(crate) fn averaged<P: Sourced>(
     for &neighbor in graph.neighbors(SiteIdx(site as u32)) {
         let way = (positions[site] - positions[neighbor.index()]).as_vec3();
         let other = &frames.of_site[neighbor.index()];
+        // This neighbor shows the exemplar under another rotation, and cannot predict the source.
         if frames.differ(frame.down, other) {
             continue;
         }
@@ -143,6 +145,7 @@ pub(crate) fn averaged<P: Sourced>(
             count += 1.0;
         }
     }
+    // The source itself counts as one prediction, so a site without agreeing neighbors stays.
     places.moved(own, sum / count)
 }
 

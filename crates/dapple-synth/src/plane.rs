@@ -358,6 +358,7 @@ impl SynthesisDomain for PlaneDomain {
     fn parent(&self, level: usize, site: u32) -> Option<(u32, [i64; 2])> {
         let [coarser_width, _] = *self.sizes.get(level + 1)?;
         let [column, row] = self.pixel(level, site);
+        // The parent of G_k(i, j) is G_k+1(i / 2, j / 2) (section 3).
         let parent = row / 2 * coarser_width + column / 2;
         Some((parent, [column, row].map(|at| i64::from(at % 2))))
     }
@@ -373,6 +374,7 @@ impl SynthesisDomain for PlaneDomain {
             return (0..n_sites).collect();
         }
         // Slanted wavefronts: sites on the same line do not read each other.
+        // They are `SLANT` columns apart per row, which a neighborhood of 7 × 7 pixels does not reach.
         let line = |site| {
             let [column, row] = self.pixel(level, site);
             u64::from(column) + u64::from(SLANT) * u64::from(row)
@@ -390,6 +392,7 @@ impl SynthesisDomain for PlaneDomain {
         let size = self.sizes[level];
         let side = 2 * half as usize + 1;
         let latest = |site, marks: &[u32]| {
+            // Centers of squares are in half pixels.
             let at = self.pixel(level, site).map(|at| 2 * i64::from(at));
             let [columns, rows] = grid::square(at, half, size, self.wrap);
             let mut latest = 0;

@@ -98,6 +98,7 @@ pub fn synthesize_plane_along(
     let hierarchy = Hierarchy::new(&surface, &sites(size, options))?;
     let orientation = Orientation::from_fn(&hierarchy, |at, _| {
         let (sin, cos) = libm::sincos(f64::from(*pixel(directions, at)));
+        // An angle of 0 is down in the image, toward -y; positive angles turn to the right.
         DVec3::new(sin, -cos, 0.0)
     });
     let synthesizer = Synthesizer::from_parts(surface, hierarchy, orientation, None)?;

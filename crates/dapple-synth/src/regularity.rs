@@ -73,6 +73,7 @@ impl Exemplar {
             (true, true) => 1.0 - nearest.get() / any.get(),
             // All neighborhoods are equal.
             (true, false) => 1.0,
+            // No two neighborhoods are far enough apart to be compared.
             (false, _) => 0.0,
         }
     }
@@ -171,6 +172,7 @@ impl Details {
                 Edges::Cut => step,
                 Edges::Wrap => self.size[axis] - step,
             };
+            // On an exemplar that wraps, the shorter way counts.
             step.min(around) >= APART
         })
     }

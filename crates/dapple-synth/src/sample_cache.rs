@@ -53,6 +53,7 @@ impl SampleCache {
     /// copied.
     pub(crate) fn paste(&self, site: u32, square: &Square, samples: &mut Samples) -> bool {
         let n = self.side * self.side;
+        // The previous pass retained no squares, or none of this size.
         if self.side != square.side() {
             return false;
         }

@@ -99,6 +99,7 @@ impl SideBySide {
                 first,
                 size,
             });
+            // Leave a column between images, which the mask excludes.
             first += size[0] + 1;
         }
         let height = sizes.iter().map(|size| size[1]).max().unwrap_or(0);

@@ -120,6 +120,7 @@ impl Sweep {
             distances,
             components,
         } = &self.levels[level];
+        // Pack component, distance and site into one integer that sorts in this order.
         let mut keys: Vec<u128> = (0..)
             .zip(components.iter().zip(distances))
             .map(|(site, (&component, &distance))| {
@@ -170,6 +171,7 @@ fn coarse_anchor(hierarchy: &Hierarchy, level: usize, anchor: Option<SiteIdx>) -
     is_found[found[0].index()] = true;
     let mut at = 0;
     while at < found.len() {
+        // The sites of a coarser level are the first ones of the hierarchy.
         if found[at].index() < n_sites {
             return Some(found[at]);
         }
@@ -187,6 +189,7 @@ fn coarse_anchor(hierarchy: &Hierarchy, level: usize, anchor: Option<SiteIdx>) -
 /// Maps a distance to an integer with the same order; both zeros map to the same integer.
 fn rising(distance: f64) -> u64 {
     let bits = (distance + 0.0).to_bits();
+    // Negative numbers sort backward by their bits, so flip all of them; otherwise set the sign bit.
     if bits >> 63 == 1 {
         !bits
     } else {

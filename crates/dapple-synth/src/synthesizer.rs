@@ -279,6 +279,7 @@ impl Synthesizer {
         // Convert positions in the exemplar to pixels of each level.
         let pixels = |(level, places): (usize, Vec<[u32; 2]>)| {
             let width = pyramid.levels()[level].size[0];
+            // Positions are in pixels of the finest level; each coarser level halves them.
             let pixel = |[column, row]: [u32; 2]| (row >> level) * width + (column >> level);
             places.into_iter().map(pixel).collect()
         };

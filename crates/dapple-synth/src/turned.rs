@@ -57,6 +57,7 @@ impl Turn {
     /// Returns the pixel of the original image that is shown at a pixel of the rotated one. `[width, height]` is the
     /// size of the original.
     pub(crate) fn pixel(self, [x, y]: [u32; 2], [width, height]: [u32; 2]) -> [u32; 2] {
+        // Invert the turn: undo the rotation, then the reflection.
         let [column, row] = match self.quarters {
             0 => [x, y],
             1 => [y, height - 1 - x],
@@ -71,6 +72,7 @@ impl Turn {
 
     /// Rotates and mirrors a normal. Green points up.
     pub(crate) fn normal(self, Normal { x, y, z }: Normal) -> Normal {
+        // Reflect, then rotate.
         let x = if self.is_mirrored { -x } else { x };
         let [x, y] = match self.quarters {
             0 => [x, y],

@@ -37,6 +37,7 @@ impl Usage {
         if evenness == 0.0 {
             return Self::default();
         }
+        // Mean number of uses of a row. At this number, the factor is 1 + evenness.
         let n_uses = f64::from(N_PIXELS) * n_sites.max(1) as f64 / n_rows as f64;
         Self {
             cost: f64::from(evenness) / n_uses,

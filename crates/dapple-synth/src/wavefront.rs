@@ -45,6 +45,7 @@ impl WavefrontSchedule {
         place: impl Fn(u32) -> usize,
         latest: impl Fn(u32, &[u32]) -> u32,
     ) -> Self {
+        // A mark is one more than the generation of the last site at a position, and 0 before the first site.
         let mut marks = vec![0; n_places];
         // Generation of each site: one more than the latest generation it waits for.
         let generations: Vec<u32> = order
@@ -146,6 +147,7 @@ impl WavefrontProgress {
 
     /// Waits until all turns before `until` are finished.
     pub(crate) fn wait(&self, until: usize) {
+        // Each thread takes its turns in ascending order, so its current turn is its first unfinished one.
         for shown in &self.turns {
             let mut looks = 0;
             while shown.load(Ordering::SeqCst) < until {

@@ -201,6 +201,7 @@ fn around(hierarchy: &Hierarchy, level: usize, site: SiteIdx, scale: f32) -> (Ve
 
 /// Adds the neighbors of the sites in `found`, removes `site` and duplicates, and sorts by index.
 fn add_ring(graph: &SiteGraph, site: SiteIdx, found: &mut Vec<SiteIdx>) {
+    // The length is read once, so this adds a single ring.
     for at in 0..found.len() {
         found.extend(graph.neighbors(found[at]));
     }
@@ -233,6 +234,7 @@ fn classes(hierarchy: &Hierarchy, level: usize) -> Vec<Vec<u32>> {
         let lower = graph.neighbors(SiteIdx(site)).iter();
         let lower = lower.take_while(|other| other.0 < site);
         let taken = lower.fold(0_u64, |taken, other| taken | 1 << class_of[other.index()]);
+        // Greedy graph coloring: take the first class that no neighbor has so far.
         let class = taken.trailing_ones().min(MAX_CLASSES);
         class_of[site as usize] = class;
         if classes.len() <= class as usize {

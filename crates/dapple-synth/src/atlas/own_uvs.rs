@@ -55,6 +55,7 @@ pub(super) fn covered(
 /// Converts the texture coordinates of a face to texels, and translates them by whole units so that the centroid is in
 /// the unit square. NaN for a face that has no area or is too far away.
 fn place(uvs: [DVec2; 3], scale: DVec2) -> [DVec2; 3] {
+    // Move the face to the unit square of its centroid.
     let turns = ((uvs[0] + uvs[1] + uvs[2]) / 3.0).floor();
     let corners = uvs.map(|uv| (uv - turns) * scale);
     let area = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]);
@@ -75,6 +76,7 @@ fn cover(faces: &mut Raster<u32>, face: u32, corners: &[DVec2; 3]) {
     // Range of texels whose centers are between two positions along an axis.
     let texels = |low: f64, high: f64, length: u32| {
         let last = f64::from(length);
+        // The center of texel i is at i + 0.5.
         let [from, until] = [(low - 0.5).ceil(), (high - 0.5).floor() + 1.0];
         from.clamp(0.0, last) as u32..until.clamp(0.0, last) as u32
     };

@@ -89,6 +89,7 @@ fn stretch(atlas: &Atlas, surface: &Surface) -> f64 {
     let (mut sum, mut area) = (0.0, 0.0);
     for (face, stretch) in (0..).map(FaceIdx).zip(stretches(atlas, surface)) {
         if stretch.is_finite() {
+            // The stretch of a mesh is the root mean square over its area.
             sum += stretch * stretch * surface.face_area(face);
             area += surface.face_area(face);
         }
@@ -128,5 +129,6 @@ fn reach(surface: &Surface, face: FaceIdx, [a, b, c]: [DVec2; 3]) -> f64 {
     // The derivatives of the position along u and v.
     let area = b.perp_dot(c);
     let [along_u, along_v] = [pb * c.y - pc * b.y, pc * b.x - pb * c.x].map(|along| along / area);
+    // L2 stretch of a triangle: sqrt((|∂p/∂u|² + |∂p/∂v|²) / 2).
     (0.5 * (along_u.length_squared() + along_v.length_squared())).sqrt()
 }

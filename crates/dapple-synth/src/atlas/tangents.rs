@@ -43,6 +43,7 @@ impl Tangents {
                 // Adding zero turns -0 into 0.
                 let place = (places[corner] + 0.0).to_array().map(f64::to_bits);
                 let normal = (normal + 0.0).to_array().map(f64::to_bits);
+                // Mikkelsen: weight the projected tangent by the angle of the face at the corner.
                 let share = flat * angle(corners, corner);
                 let key = (vertices[corner].0, place, normal, is_mirrored);
                 shares.push((key, face, corner, share));
@@ -76,6 +77,7 @@ impl Tangents {
         let tangent = flat_part(mixed, normal).normalize_or(normal.any_orthonormal_vector());
         let up = normal.cross(tangent);
         let is_mirrored = self.is_mirrored[face.index()];
+        // A mirrored face has the opposite handedness.
         [tangent, if is_mirrored { -up } else { up }]
     }
 }
@@ -109,6 +111,7 @@ fn face_tangent([a, b, c]: [DVec3; 3], [ua, ub, uc]: [DVec2; 3]) -> (DVec3, bool
     let (b, c, ub, uc) = (b - a, c - a, ub - ua, uc - ua);
     // Rows go down: a face that is counterclockwise from outside and not mirrored has a negative product.
     let is_mirrored = ub.perp_dot(uc) > 0.0;
+    // The derivative of the position along u, times the determinant `ub × uc`, whose sign is removed below.
     let along = b * uc.y - c * ub.y;
     let tangent = if is_mirrored { along } else { -along };
     (tangent.normalize_or_zero(), is_mirrored)

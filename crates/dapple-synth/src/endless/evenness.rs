@@ -137,6 +137,8 @@ impl Endless {
                 wanted.check()?;
                 self.stages[level].costs = costs.clone();
                 let made = self.area(level, coarser.as_ref(), [-half..half, -half..half]);
+                // Costs are relative to the distances of the first trial, so they do not depend on the exemplar's
+                // contrast.
                 let scale = *scale.get_or_insert_with(|| made.mean_sq(&self.stages[level]));
                 // At larger distances, an exemplar that wraps would count as repeated where it continues past its edge.
                 if 2 * READS * spacing <= i64::from(size[0].min(size[1])) {
@@ -156,6 +158,7 @@ impl Endless {
                     STEP * scale / (1.0 + trial as f32 / HALF_STEP),
                 );
             }
+            // The trials of the next level start from the piece of the most even trial.
             (_, self.stages[level].costs, coarser) = best;
         }
         Ok(())

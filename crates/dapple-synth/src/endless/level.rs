@@ -203,6 +203,7 @@ fn features(
     let basis = Basis::with_most(N_FEATURES, dims, &sample.concat());
     let level = simd::level();
     // Project the windows of all pixels.
+    // All rotations share one basis, so that their features can be compared.
     let turned = |quarters: u8| {
         let rows = parallel::map(height as usize, |row| {
             if wanted.is_over() {
@@ -284,6 +285,7 @@ fn inner(edges: Edges, side: usize, reach: i64, holds: impl Fn(usize) -> bool) -
     let mut inner = Vec::with_capacity(side as usize);
     for at in 0..side {
         run = if holds_at(at + reach) { run + 1 } else { 0 };
+        // The window from `at - reach` to `at + reach` has 2 · reach + 1 positions.
         inner.push(run > 2 * reach);
     }
     inner
@@ -386,6 +388,7 @@ impl AppearanceLevel {
         let pixel = row as usize * self.size[0] as usize + column as usize;
         let own = &self.guides[pixel * wanted.len()..][..wanted.len()];
         let squares = own.iter().zip(wanted).map(|(a, b)| (a - b) * (a - b));
+        // Count the guides once for each diagonal, as the features are.
         DIAGONALS.len() as f32 * squares.sum::<f32>()
     }
 

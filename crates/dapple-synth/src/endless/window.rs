@@ -76,6 +76,7 @@ impl Endless {
         let mut needs = vec![[columns.clone(), rows.clone()]];
         for level in 1..self.stages.len() {
             let reach = reach(N_PASSES);
+            // A pixel depends on pixels up to `reach` away, which are upsampled from their parents.
             let parents = |range: Range<i64>| {
                 (range.start - reach).div_euclid(2)..(range.end + reach - 1).div_euclid(2) + 1
             };
@@ -266,6 +267,7 @@ impl Area {
         for &quarter in quarters {
             let first = turns.len();
             for row in odd_or_even(rows, quarter[1]) {
+                // Rows ascend, so the turns to wait for are the first ones of the previous subpass.
                 let is_near = |turn: &Turn| turn.row <= row + READS;
                 let wait = before.start + turns[before.clone()].partition_point(is_near);
                 turns.push(Turn { quarter, row, wait });

@@ -64,6 +64,7 @@ impl Origin {
             SynthError::check(holds, "texture coordinate", part, "from -1e6 to 1e6")?;
         }
         let place = |uvs: &[DVec2; 3]| {
+            // Move the face to the unit square of its centroid.
             let turns = ((uvs[0] + uvs[1] + uvs[2]) / 3.0).floor();
             uvs.map(|uv| uv - turns)
         };
@@ -93,6 +94,7 @@ impl Origin {
             .flatten(point.face, orientation)
             .normalize_or(DVec2::X);
         let off = place.off.as_dvec2();
+        // The paper's P (right) is O (down) rotated by a quarter turn counterclockwise.
         let way = down.perp() * off.x + down * off.y;
         let length = way.length();
         if length == 0.0 {
@@ -147,6 +149,7 @@ impl Origin {
     fn way(&self, to: Place, from: Place) -> Vec3 {
         let positions = self.hierarchy().sites().positions();
         let [to_at, from_at] = [to, from].map(|place| positions[place.site as usize]);
+        // The axes of a frame have the length 1 / spacing, and a pixel has the length of a spacing.
         let scale = self.spacing * self.spacing;
         let [to_off, from_off] = [to, from].map(|Place { site, off }| {
             let frame = &self.frames[site as usize];
@@ -176,6 +179,7 @@ impl LiftedPlaces {
             is_mixed: options.sources == Sources::Pixel,
         };
         if !lifted.is_mixed {
+            // All positions move at once (Jacobi iteration), so the order of the sites has no effect.
             for _ in 0..places::N_STEPS {
                 let averaged = |site: usize| places::averaged(&lifted, hierarchy, frames, site);
                 lifted.of_site = columns::column(sources.len(), averaged);

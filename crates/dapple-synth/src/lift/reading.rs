@@ -70,6 +70,7 @@ impl Reader<'_> {
     /// for each face.
     fn site(&self, site: u32, texels: &[f32]) -> Site {
         let point = self.origin.hierarchy().sites().points()[site as usize];
+        // Take about one sample for each texel, up to the limit.
         let side = texels[point.face.index()].ceil();
         let n = (side as u32).clamp(1, POINTS_MAX);
         let n_values = self.texture.n_channels + self.texture.n_guides();
@@ -91,6 +92,7 @@ impl Reader<'_> {
     fn add(&self, uv: DVec2, part: f32, mean: &mut Site) {
         let Exemplar { size, usable, .. } = self.texture;
         let colors = self.texture.plain();
+        // The center of texel i is at i + 0.5.
         let at = uv * DVec2::from(size.map(f64::from)) - 0.5;
         let first = at.floor();
         let after = (at - first).as_vec2();

@@ -99,6 +99,7 @@ impl MeshExemplar {
 pub(crate) fn order(start: &Start, graph: &SiteGraph, mut order: Vec<u32>) -> Vec<u32> {
     let rings = rings(graph, &start.is_kept);
     order.retain(|&site| !start.is_kept[site as usize]);
+    // The sort is stable, so a ring stays in the order of the sweep.
     order.sort_by_key(|&site| rings[site as usize]);
     order
 }
@@ -112,6 +113,7 @@ fn rings(graph: &SiteGraph, is_kept: &[bool]) -> Vec<u32> {
     let sites = 0..is_kept.len() as u32;
     let mut reached: Vec<u32> = sites.filter(|&site| is_kept[site as usize]).collect();
     let mut at = 0;
+    // Search breadth first from all kept sites at once, so that the first visit of a site is along a shortest path.
     while let Some(&site) = reached.get(at) {
         for &near in graph.neighbors(SiteIdx(site)) {
             if rings[near.index()] == u32::MAX {
@@ -250,10 +252,12 @@ impl Filler<'_> {
             let squares = own.iter().zip(other);
             let squares = squares.map(|(a, b)| f64::from(a - b) * f64::from(a - b));
             distance += squares.sum::<f64>();
+            // The sum only grows, so this piece cannot become the best.
             if distance >= limit {
                 return None;
             }
         }
+        // The piece also needs a kept site for each site of the hole.
         let mut sites = hole.sites.iter();
         let is_whole = sites.all(|&(_, way)| self.site_at(first, way).is_some());
         is_whole.then_some(distance)

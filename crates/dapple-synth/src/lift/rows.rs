@@ -145,6 +145,7 @@ impl Reader<'_> {
         samples.make_room(square.side(), colors.n_channels);
         self.domain
             .read(square, &self.prepared, colors, samples, memory);
+        // At a border or a sharp fold, walks end early or bend back, and adjacent samples come close.
         memory.is_spread(LEAST * self.domain.hierarchy.levels()[reads].spacing())
     }
 
@@ -177,6 +178,7 @@ impl Reader<'_> {
             .read(square, &self.beside, colors, &mut samples, memory);
         let mut beside = [site; 9];
         beside.copy_from_slice(&samples.nearest);
+        // The center is the site itself, even where another site is at the same position.
         beside[4] = site;
         beside
     }

@@ -174,6 +174,7 @@ fn rotate_group<S: Simd>(simd: S, values: &[f32], factors: &[[f32; LANES]]) -> f
             sums[i] += f32x16::simd_from(simd, factors[i]) * values[i];
         }
     }
+    // Add the remaining terms. The order of additions is fixed, so all SIMD levels give the same bits.
     for ((sum, &value), &factors) in sums.iter_mut().zip(values).zip(factors) {
         *sum += f32x16::simd_from(simd, factors) * value;
     }
@@ -236,6 +237,7 @@ fn add_products(dims: usize, first: usize, sample: &[f64], sums: &mut [f64]) {
     for row in sample.chunks_exact(dims) {
         let row = &row[first..];
         for (&factor, sums) in row.iter().zip(sums.chunks_exact_mut(dims)) {
+            // Columns before the band are in the lower triangle, which is mirrored later.
             for (sum, value) in sums[first..].iter_mut().zip(row) {
                 *sum += factor * value;
             }
@@ -252,6 +254,7 @@ fn principal(dims: usize, n_directions: usize, matrix: &[f64], n_steps: usize) -
         .collect();
     // Orthogonal iteration.
     for _ in 0..n_steps {
+        // A product stretches directions toward eigenvectors with large eigenvalues; orthonormalization separates them.
         directions = times(dims, &directions, matrix);
         orthonormalize(dims, &mut directions);
     }
@@ -292,6 +295,7 @@ fn norm_sq(dims: usize, groups: &[[f32; LANES]]) -> f64 {
             directions.extend(group.iter().map(|factors| f64::from(factors[lane])));
         }
     }
+    // By Gershgorin's theorem, no eigenvalue of W Wᵀ is larger than its largest row sum of magnitudes.
     let mut largest = 0.0_f64;
     for direction in directions.chunks_exact(dims) {
         let products = directions

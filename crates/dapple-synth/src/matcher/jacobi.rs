@@ -27,6 +27,7 @@ pub(crate) fn eigen(n: usize, mut matrix: Vec<f64>) -> (Vec<f64>, Vec<f64>) {
                 if sin != 0.0 {
                     rotate_lines(&mut matrix, n, [p, q], [cos, sin]);
                     rotate_columns(&mut matrix, n, [p, q], [cos, sin]);
+                    // Accumulate the rotations; their product has the eigenvectors as rows.
                     rotate_lines(&mut vectors, n, [p, q], [cos, sin]);
                 }
             }
@@ -44,6 +45,7 @@ fn rotation(matrix: &[f64], n: usize, p: usize, q: usize) -> (f64, f64) {
     }
     let tau = (matrix[q * n + q] - matrix[p * n + p]) / (2.0 * off);
     let root = (1.0 + tau * tau).sqrt();
+    // Of the roots of tan² + 2 tau tan - 1 = 0, the smaller one rotates by at most an eighth of a turn.
     let tan = if tau < 0.0 {
         -1.0 / (root - tau)
     } else {

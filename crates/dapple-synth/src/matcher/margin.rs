@@ -83,6 +83,7 @@ impl Margin {
     /// Returns T: the maximum P of a row with D <= `distance_sq`. If `distance_sq` is infinite, T is `i32::MAX`.
     #[inline(always)]
     pub(crate) fn threshold(&self, distance_sq: f32, error: f64) -> i32 {
+        // Step 1 bounds |x - q| by D, and step 4 adds the errors E of steps 2 and 3.
         let distance_sq = (f64::from(distance_sq) + self.distance_underflow) * self.units_sq;
         let distance = distance_sq.sqrt() + error;
         // The cast rounds down, which is right for integer sums, and saturates.
@@ -95,6 +96,7 @@ impl Margin {
 pub(crate) fn length(values: &[f32]) -> f64 {
     let mut sums = [0.0_f64; 8];
     let (values_8, values) = values.as_chunks::<8>();
+    // Squares of `f32` are exact in `f64`, and the slack covers the rounding of their sums.
     for values in values_8 {
         for lane in 0..8 {
             sums[lane] += f64::from(values[lane]) * f64::from(values[lane]);

@@ -53,6 +53,7 @@ impl<S: Simd> Search<'_, S> {
         // Visit them in order of distance.
         order.sort_unstable();
         for &entry in order.iter() {
+            // All later groups are at least as far away, and the threshold never rises.
             if (entry >> 32) as i32 > self.threshold {
                 break;
             }
@@ -68,6 +69,7 @@ impl<S: Simd> Search<'_, S> {
             distance_sq *= factors[row as usize];
         }
         let is_first = |best: Match| distance_sq == best.distance_sq && row < best.row;
+        // A tie goes to the lower index, as in the naive comparison.
         if distance_sq < self.below || self.best.is_some_and(is_first) {
             self.best = Some(Match { row, distance_sq });
             self.below = distance_sq;
@@ -163,6 +165,7 @@ impl<S: Simd> Search<'_, S> {
             let placed = i16x32::simd_from(self.simd, self.placed[0][i]);
             let below = i16x32::simd_from(self.simd, boxes.low[i]) - placed;
             let above = placed - i16x32::simd_from(self.simd, boxes.high[i]);
+            // The distance from the box along a direction, 0 inside of it, is at most that of each row in the box.
             let outside = below.max(above).max(0);
             sums += outside.pairwise_dot_product(outside);
         }

@@ -142,6 +142,7 @@ pub(crate) fn distinct_rows(dims: usize, rows: &[f32]) -> Vec<u32> {
         let row = &rows[row as usize * dims..][..dims];
         row.iter().map(|value| value.to_bits())
     };
+    // Equal rows become adjacent, the lowest index first.
     order.sort_unstable_by(|&a, &b| bits(a).cmp(bits(b)).then(a.cmp(&b)));
     order.dedup_by(|later, first| bits(*later).eq(bits(*first)));
     order

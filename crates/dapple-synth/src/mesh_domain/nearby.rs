@@ -127,6 +127,7 @@ impl Neighborhoods {
         let cell = self.cells.of_site(site);
         let numbers = &mut nearby.numbers;
         dispatch!(level, simd => self.collect_ball(simd, cell, center, numbers));
+        // Every sample needs a color: if no site is in reach, the nearest one stands in.
         if numbers.is_empty() {
             numbers.extend(self.nearest(center));
         }
@@ -231,6 +232,7 @@ impl NeighborScratch {
         let sites = hierarchy.sites();
         let mut reach = reach;
         self.records.clear();
+        // Double the reach until a site is found; on a level without sites it ends at infinity.
         while self.records.is_empty() && reach.is_finite() {
             let reach_sq = reach * reach;
             hierarchy.levels()[level]

@@ -65,6 +65,7 @@ fn means(mut given: Vec<(usize, DVec3)>, normals: &[DVec3], symmetry: Symmetry) 
     given.sort_by_key(|&(site, _)| site);
     let mean = |group: &[(usize, DVec3)]| {
         let (site, first) = group[0];
+        // Rotate equivalent directions toward the first one before adding them.
         let turns = group
             .iter()
             .map(|&(_, vector)| symmetry.nearest(vector, normals[site], first));
@@ -123,6 +124,7 @@ fn down(hierarchy: &Hierarchy, [finer, coarser]: [&Level; 2], known: &[Known]) -
     let mut kept: Vec<Known> = Vec::new();
     for (&site, (vector, weight)) in near.sites.iter().zip(near.blur(known)) {
         let weight = weight * THINNING;
+        // Retain the sites of the coarser level, which come first, if enough weight has reached them.
         if site < coarser.n_sites() && weight >= LEAST_WEIGHT {
             let vector = flat_part(vector, hierarchy.sites().normals()[site]);
             kept.extend(summed(site, vector * THINNING, weight));
@@ -212,6 +214,7 @@ fn step(values: &[(DVec3, f64)], at: usize, edges: &[(usize, f64)]) -> (DVec3, f
         vector += values[place].0 * part;
         weight += values[place].1 * part;
     }
+    // Equation 3 with weights that sum to 1: v + t Σ wᵢ (vᵢ - v) = (1 - t) v + t Σ wᵢ vᵢ.
     let kept = 1.0 - BLUR_STRENGTH;
     (
         values[at].0 * kept + vector * BLUR_STRENGTH,
@@ -231,6 +234,7 @@ fn nearest_site(hierarchy: &Hierarchy, level: usize, at: DVec3) -> Option<usize>
             nearest = found;
         }
     };
+    // If the ball has a site, all sites outside of it are farther away.
     let radius = SEARCH_RADIUS * level.spacing();
     level.grid().visit(at, radius, &mut visit);
     if nearest.0 > radius {

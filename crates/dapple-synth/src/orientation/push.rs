@@ -35,6 +35,7 @@ pub(super) fn push(
             axis,
             symmetry,
         };
+        // Solve on the coarsest level, and refine the result on all others.
         if level + 1 == pulled.len() {
             vectors = match symmetry {
                 Symmetry::One => field.diffuse(known),
@@ -168,6 +169,7 @@ impl Field<'_> {
         if sum == 0.0 {
             return vectors[site];
         }
+        // Equation 4 with α = 1 - strength, and the βᵢ as the normalized weights times the strength.
         let average = self.average(site, vectors) * (SWEEP_STRENGTH / sum);
         self.unit(site, vectors[site] * (1.0 - SWEEP_STRENGTH) + average)
     }
@@ -250,6 +252,7 @@ impl System<DVec3> for Diffusion<'_> {
         if self.is_fixed[row] {
             return DVec3::ZERO;
         }
+        // Equation 4 at rest, with the projection of section 4.1: Σ wᵢ v is the projected Σ wᵢ vᵢ.
         let average = self.field.average(row, column);
         column[row] * self.field.links.sums()[row] - flat_part(average, self.field.normals[row])
     }

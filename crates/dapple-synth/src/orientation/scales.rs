@@ -133,6 +133,7 @@ impl System<f64> for Growth<'_> {
     }
 
     fn right(&self, row: usize) -> f64 {
+        // Where the sum of squares is least, Σ w_ij (u_i - u_j) = -Σ w_ij g_ij at each site i.
         let steps = self.steps[self.links.row(row)].iter();
         let steps = steps.zip(self.links.weights(row));
         -steps.map(|(step, weight)| weight * step).sum::<f64>()

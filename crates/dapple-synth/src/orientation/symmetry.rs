@@ -36,6 +36,7 @@ impl Symmetry {
         if self == Self::One {
             return 0;
         }
+        // Components of `other` along the direction and along its quarter turn.
         let right = normal.cross(direction);
         self.quarters_to(DVec2::new(direction.dot(other), right.dot(other)))
     }
@@ -68,6 +69,7 @@ impl Symmetry {
     pub(crate) fn power(self, number: DVec2) -> DVec2 {
         match self {
             Self::One => number,
+            // Squaring doubles the angle, so opposite directions become equal.
             Self::Two => number.rotate(number),
             Self::Four => Self::Two.power(number.rotate(number)),
         }

@@ -32,6 +32,7 @@ impl PlaneTexture {
             }
             open.push(first);
             while let Some(place) = open.pop() {
+                // A pixel can be pushed several times. Only its first visit counts, so each pixel is expanded once.
                 if pieces[index(place)] == NONE {
                     pieces[index(place)] = n_pieces;
                     let steps = [[1, 0], [0, 1], [-1, 0], [0, -1]];

@@ -222,6 +222,7 @@ fn coarser(
 ) -> Result<(Raster<[u32; 2]>, Raster<bool>), SynthError> {
     let size = sources.size();
     let half = size.map(|side| side.div_ceil(2));
+    // The coarser pixel (x, y) is centered on the finer pixel (2x, 2y), in the texture as in the exemplar.
     let halved = |column: u32, row: u32| sources.row(2 * row)[2 * column as usize].map(|at| at / 2);
     let all_kept = |column, row| {
         let columns = taps(column, size[0], domain.wrap[0]);
@@ -348,6 +349,7 @@ impl Hole {
                     .zip(*color)
                     .map(|(a, b)| f64::from(a - b) * f64::from(a - b));
                 sum += squares.sum::<f64>();
+                // The sum only grows, so this piece cannot become the best.
                 if sum >= limit {
                     return None;
                 }

@@ -43,6 +43,7 @@ pub fn tile_plane(
         exemplar_size: exemplar.size,
         exemplar_edges: exemplar.edges,
     };
+    // Outside the strips the tile remains a copy of the exemplar.
     let mask = Raster::from_fn(size, |x, y| columns.is_made(x) || rows.is_made(y))?;
     texture.repair(exemplar, &mask, options, callback)
 }
@@ -111,6 +112,7 @@ impl Strip {
 
     /// Returns the column or row of the exemplar that a column or row of the tile is taken from.
     fn source(&self, at: u32) -> u32 {
+        // The image continues across the borders of the tile; its two ends meet inside, at the seam.
         if at < self.seam { at + self.side } else { at }
     }
 

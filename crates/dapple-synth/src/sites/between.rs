@@ -117,6 +117,7 @@ impl Star {
         for arm in &self.arms {
             if arm.other > self.site && self.has_empty_circle(arm, CENTER_REACH * spacing) {
                 let (length, direction) = (arm.length, arm.flat / arm.length);
+                // Find the midpoint on the surface; the straight edge leaves a curved one.
                 let middle = surface.walk(from, direction, 0.5 * length).point;
                 edges.push(Edge {
                     from,
@@ -142,6 +143,7 @@ impl Star {
             if other.other == arm.other {
                 continue;
             }
+            // For p outside of the circle, |p - center|² >= |center|², or p · (p - flat) >= 2 t p · perp(flat).
             let side = 2.0 * other.flat.dot(across);
             let outside = other.flat.dot(other.flat - arm.flat);
             if side > 0.0 {
@@ -168,6 +170,7 @@ fn remove_clashes(surface: &Surface, edges: &mut Vec<Edge>, clash: f64) {
     let mut kept = vec![true; edges.len()];
     for edge in 0..edges.len() {
         let others = near.chunk(edge / CHUNK).row(edge % CHUNK);
+        // Edges that were dropped do not drop others.
         kept[edge] = !others
             .iter()
             .any(|other| other.index() < edge && kept[other.index()]);

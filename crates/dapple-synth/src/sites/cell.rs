@@ -306,6 +306,7 @@ impl Corner {
         }
         let turn = a.at.perp_dot(b.at);
         let product = (a.length_sq * b.length_sq).sqrt();
+        // Divide by a lower bound of the cross product, so that the diameter is an upper bound.
         let least = turn - ROUNDING * product;
         let diameter_sq = if least > 0.0 {
             a.length_sq * b.length_sq * a.at.distance_squared(b.at) / (least * least)

@@ -142,6 +142,7 @@ impl Stars {
         let mut others = one_sided.iter().peekable();
         let graph = SiteGraph::from_rows(self.len(), n_neighbors, |site, row| {
             row.extend(self.star(site).iter().map(|spoke| spoke.to));
+            // Connect sites that disagree: add those that have this site in their stars (section 3.1).
             while let Some([_, other]) = others.next_if(|[end, _]| *end == site) {
                 row.push(*other);
             }

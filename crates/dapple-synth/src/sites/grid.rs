@@ -74,6 +74,7 @@ impl SiteGrid {
             .copied()
             .fold(DVec3::NEG_INFINITY, DVec3::max);
         let widest = (high - low).max_element().max(0.0);
+        // Cells must be large enough for cell coordinates of 21 bits.
         let least = (widest / f64::from((1_u32 << BITS) - 2)).max(f64::MIN_POSITIVE);
         let mut side = if side > least { side } else { least };
         let most = (positions.len() / SITES_PER_BRICK).clamp(BRICKS_LEAST, BRICKS_MOST);
@@ -184,6 +185,7 @@ impl SiteGrid {
     /// Fills the table, and returns for each site the index of its cell among the cells of all bricks. `None` if there
     /// are more than `most` bricks.
     fn find_bricks(&mut self, positions: &[DVec3], most: usize) -> Option<Vec<u32>> {
+        // At most half of the slots are used, so a probe soon meets its key or an empty slot.
         let slots = (2 * most.min(positions.len()) + 2).next_power_of_two();
         self.table = vec![
             Slot {
@@ -216,6 +218,7 @@ impl SiteGrid {
     /// Returns the slot of the brick with the key `key`, and adds the brick if it is new.
     fn find_or_add(&mut self, key: u64) -> Slot {
         let mut at = self.slot(key);
+        // Linear probing: advance until the key or an empty slot is found.
         while self.table[at].key != key {
             if self.table[at].key == EMPTY {
                 let brick = self.bricks.len() as u32;
@@ -230,6 +233,7 @@ impl SiteGrid {
 
     /// Renumbers the bricks from order of insertion to order of keys.
     fn number_by_key(&mut self, places: &mut [u32]) {
+        // In the order of keys, visits do not depend on the order in which the sites are given.
         let found = core::mem::take(&mut self.bricks);
         self.bricks.clone_from(&found);
         self.bricks.sort_unstable();
@@ -302,6 +306,7 @@ impl SiteGrid {
         let last = [0, 1, 2].map(|axis| high[axis].min(((at[axis] + 1) << BRICK_BITS) - 1));
         for z in first[2]..=last[2] {
             for y in first[1]..=last[1] {
+                // Cells of a row have consecutive indices, so their sites are one range of members.
                 let from = place(brick, [first[0], y, z]) as usize;
                 let until = from + (last[0] - first[0]) as usize + 1;
                 visit(self.starts[from] as usize..self.starts[until] as usize);

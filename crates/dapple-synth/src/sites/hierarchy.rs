@@ -87,6 +87,7 @@ impl HierarchyOptions {
         if self.iterations > ITERATIONS_MAX {
             return refuse("iterations", self.iterations, "at most 10000");
         }
+        // A level has a quarter of the sites of the finer one, as in a Gaussian pyramid (section 3).
         let coarser = |&count: &usize| Some(count.div_ceil(4));
         // Reserve the memory and release it at once, so that too many sites cause an error instead of an abort.
         let bytes = self.n_sites.saturating_mul(BYTES_PER_SITE);
@@ -127,6 +128,7 @@ impl Hierarchy {
         options.check(surface)?;
         let counts = options.counts()?;
         let ascending: Vec<usize> = counts.iter().rev().copied().collect();
+        // Section 3.1: place the coarsest level first, then add the points of each finer level around it.
         let points = nested_points(surface, &ascending, options.seed, options.iterations);
         let sites = Sites::new(surface, points);
         let levels = counts
@@ -135,6 +137,7 @@ impl Hierarchy {
                 let spacing = hexagonal_spacing(surface.area(), n_sites);
                 let positions = &sites.positions()[..n_sites];
                 let grid = SiteGrid::new(positions, 2.0 * spacing);
+                // Connect each level by Delaunay triangulations in tangent planes (section 3.1).
                 let connected = Connected::among(&Oriented {
                     positions,
                     normals: &sites.normals()[..n_sites],
@@ -237,6 +240,7 @@ pub fn repeats_of_sites(surface: &Surface, size: [u32; 2], n_sites: usize) -> f6
     let low = positions.clone().fold(DVec3::INFINITY, DVec3::min);
     let high = positions.fold(DVec3::NEG_INFINITY, DVec3::max);
     let [width, height] = size.map(f64::from);
+    // A repeat covers one site spacing for each pixel; the geometric mean stands for both sides.
     let side = (width * height).sqrt() * hexagonal_spacing(surface.area(), n_sites);
     (high - low).max_element() / side
 }

@@ -36,6 +36,7 @@ pub(crate) fn weight(x: f64) -> f64 {
 /// radius; weights are 0 at one radius or more.
 #[inline(always)]
 pub(crate) fn weights<S: Simd>(simd: S, x_sq: f32x8<S>) -> f32x8<S> {
+    // w(x) = 2x³ - 3x² + 1 = (2x - 3) x² + 1
     let weights = (x_sq.sqrt() * 2.0 - 3.0) * x_sq + 1.0;
     x_sq.simd_lt(1.0).select(weights, f32x8::splat(simd, 0.0))
 }
@@ -60,6 +61,7 @@ impl Oriented<'_> {
             if x < 1.0 && self.is_on_side(site, normal) {
                 let weight = weight(x);
                 let value = column[site.index()];
+                // Equation 1, rearranged: base + Σ wᵢ (Cᵢ - base) / Σ wᵢ.
                 let base = *base.get_or_insert(value);
                 sum = sum.add_scaled(value.add_scaled(base, -1.0), weight);
                 weights += weight;
@@ -78,6 +80,7 @@ impl Oriented<'_> {
     #[cold]
     fn nearest(&self, position: DVec3, normal: DVec3) -> Option<SiteIdx> {
         for reach in NEAREST_REACHES {
+            // Grow the ball until it has a site; all sites outside of the ball are farther away.
             let radius = reach * INTERPOLATION_RADIUS * self.spacing;
             let mut nearest = Nearest::within(radius);
             self.grid.visit(position, radius, |site| {

@@ -135,6 +135,7 @@ impl<'a> LowPass<'a> {
                     let difference = from[neighbor.index()].add_scaled(value, -1.0);
                     change = change.add_scaled(difference, weight);
                 }
+                // Equation 3: C' = C + t Σ wᵢ (Cᵢ - C)
                 *new = value.add_scaled(change, t);
             }
         });

@@ -176,6 +176,7 @@ fn split_edges<'a>(
     missing: usize,
     points: &mut Vec<SurfacePoint>,
 ) {
+    // If there are fewer edges than missing points, the longest ones get two points each.
     let n_thirds = missing.saturating_sub(edges.len()).min(edges.len());
     for edge in edges.by_ref().take(n_thirds) {
         points.extend(edge.thirds(surface));
@@ -219,6 +220,7 @@ fn morton(cell: DVec3) -> u64 {
 
 /// Moves bit i of the lower 21 bits to bit 3i.
 fn spread(bits: u64) -> u64 {
+    // Insert two zeros after each bit by splitting the bits into ever smaller groups.
     let mut bits = bits & 0x1F_FFFF;
     bits = (bits | bits << 32) & 0x001F_0000_0000_FFFF;
     bits = (bits | bits << 16) & 0x001F_0000_FF00_00FF;

@@ -67,6 +67,7 @@ impl Hierarchy {
         let mut column = column.to_vec();
         self.low_pass(level)?
             .apply(&mut column, DOWNSAMPLE_T, DOWNSAMPLE_STEPS)?;
+        // The sites of the coarser level are the first ones; they inherit their blurred values (section 3.2).
         column.truncate(n_sites);
         Ok(column)
     }
@@ -110,6 +111,7 @@ impl Hierarchy {
                         .nearest_of_all(position)
                         .map(|site| column[site.index()])
                 };
+                // Equation 1 on the coarser level, at the position of the finer site.
                 if let Some(new) = sites.interpolate(column, position, normal).or_else(nearest) {
                     *value = new;
                 }

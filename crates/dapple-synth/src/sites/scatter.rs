@@ -63,6 +63,7 @@ impl Scatter {
         let hash = CellHash::new(seed, [number.cast_signed()]);
         let [place, s, t] = [0, 1, 2].map(|counter| unit_f64(hash.at(counter)));
         let place = place * self.area();
+        // Search the cumulative areas, so that faces are chosen in proportion to their area.
         let face = self.ends.partition_point(|&end| end <= place);
         // By rounding, the position may be the end of the last face.
         let face = *self.faces.get(face).or(self.faces.last())?;

@@ -83,6 +83,7 @@ impl StarFinder {
             let reach_sq = reach * reach;
             self.look(sites, &tangent, window, [seen_sq, reach_sq]);
             self.clip(sites, &tangent, window);
+            // All further sites are outside of the circles through the corners, so no bisector reaches the cell.
             if self.cell.diameter_sq() <= reach_sq {
                 break;
             }
@@ -194,6 +195,7 @@ impl Tangent {
     fn new(sites: &Oriented<'_>, center: SiteIdx) -> Self {
         let normal = sites.normals[center.index()];
         let (x, y) = normal.any_orthonormal_pair();
+        // Axes with the length of an inverse spacing map positions to multiples of the spacing.
         let scale = 1.0 / sites.spacing;
         Self {
             position: sites.positions[center.index()],
@@ -209,6 +211,7 @@ impl Tangent {
     fn map(&self, away: DVec3, distance_sq: f64) -> Option<DVec2> {
         let projected = DVec2::new(away.dot(self.axes[0]), away.dot(self.axes[1]));
         let projected_sq = projected.length_squared();
+        // Restore the distance in space, which the projection shortens on slopes.
         (projected_sq > 0.0).then(|| projected * (distance_sq / projected_sq).sqrt())
     }
 }

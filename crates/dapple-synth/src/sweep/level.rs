@@ -150,6 +150,7 @@ impl<'a> LevelSweep<'a> {
         };
         self.links.fill(assigned, distances, opinion);
         if self.orientation.symmetry() == Symmetry::One {
+            // Without cuts, links connect all sites of a component to an assigned one.
             return;
         }
         for site in 0..assigned.len() {
@@ -208,6 +209,7 @@ impl<'a> LevelSweep<'a> {
                     vector + vectors[other],
                     normal + normals[other],
                 );
+                // Iteratively reweighted least squares: edges that the last solution violates count less.
                 *weight *= trust(distances[site] - distances[other] - step, spacing);
                 sum += step * *weight;
             }
@@ -222,6 +224,7 @@ impl<'a> LevelSweep<'a> {
         if sum == 0.0 {
             return distances[site];
         }
+        // Equation 5: the weighted mean of s(w) + Δ over the neighbors w.
         let average = (self.neighbors_sum(site, distances) + self.ahead[site]) / sum;
         distances[site] * (1.0 - SWEEP_STRENGTH) + average * SWEEP_STRENGTH
     }
@@ -295,6 +298,7 @@ pub(super) fn step(way: DVec3, sum: DVec3, normal: DVec3) -> f64 {
     } else {
         sum
     };
+    // The paper's Δ: the component of the offset along the consensus orientation, which has unit length.
     let length = consensus.length();
     if length > 1e-9 {
         way.dot(consensus) / length
@@ -320,6 +324,7 @@ fn lowest_sites(components: &[u32]) -> impl Iterator<Item = (usize, u32)> {
 impl System<f64> for LevelSweep<'_> {
     #[inline]
     fn row(&self, column: &[f64], row: usize) -> f64 {
+        // A row of the graph Laplacian. With the leads on the right-hand side, the solution satisfies equation 5.
         column[row] * self.links.sums()[row] - self.neighbors_sum(row, column)
     }
 
