@@ -47,6 +47,7 @@ impl Texture {
             let instance = &net.instances[instances[record] as usize];
             // Recompute the weight in double precision, together with its gradient.
             let (weight, gradient) = weight_and_gradient(net, instance, local);
+            // Equation 3, differentiated: ∇T = Σ (T_i − T) ∇W_i / Σ W_i.
             let rise = f64::from(values[instance.point as usize]) - value;
             (total + weight, sum + gradient * rise)
         };

@@ -174,6 +174,7 @@ impl Orientation {
         // Project the unit vector to the plane, and scale it by ε.
         let shift = vector.truncate() * (self.strength / vector.length());
         let length = shift.length();
+        // K of equation 4 must stay above -1, where the exponent 1 / (1 + K) is unbounded.
         let shorten = if length > Self::LONGEST_SHIFT {
             Self::LONGEST_SHIFT / length
         } else {

@@ -45,6 +45,7 @@ pub(crate) fn powers<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
     for i in 0..N {
         let bits = bases[i].to_bits() + (ONE - SQRT_HALF);
         x[i] = V::from_bits((bits & 0x007F_FFFF) + SQRT_HALF) - 1.0;
+        // An integer in the low bits of 2^23 is a float; subtract 2^23 and the exponent's bias.
         scaled[i] = V::from_bits((bits >> 23) | WHOLE) - (8_388_608.0 + 127.0);
     }
     // Compute `e · log₂ w`, and split it into the nearest integer and a fraction.
@@ -53,6 +54,7 @@ pub(crate) fn powers<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
     for i in 0..N {
         scaled[i] = (scaled[i] + x[i] * logarithms[i]) * exponents[i];
         scaled[i] = scaled[i].max(V::splat(simd, LEAST_EXPONENT));
+        // Adding 1.5 · 2^23 rounds to an integer, which is then in the low bits.
         rounded[i] = scaled[i] + ROUND;
         scaled[i] -= rounded[i] - ROUND;
     }

@@ -212,6 +212,7 @@ impl Values {
         if total < LEAST_TOTAL {
             mean.copy_from_slice(self.of_point(net.nearest(position)));
         } else {
+            // Equation 3: Σ T_i W_i / Σ W_i.
             mean.iter_mut().for_each(|sum| *sum /= total);
         }
     }

@@ -90,6 +90,7 @@ impl ControlNet {
     pub fn shared_labels(&self) -> Option<(&[u32], &[f32])> {
         match &self.values {
             NetValues::Labels { labels, values } => {
+                // If every point has its own label, labels are only indices of values.
                 let is_own = labels.iter().zip(0..).all(|(&label, index)| label == index);
                 (!is_own).then_some((labels, values))
             }

@@ -67,6 +67,7 @@ pub fn cow(options: &CowOptions, seed: Seed) -> Result<LabelTexture, PupsError> 
     let points = options
         .net
         .points(&options.spacing, options.domain, seed.child("points", 0))?;
+    // Section 3.2: each point gets one of two labels at random.
     let labels = biased_labels(&points, &options.probability, seed.child("label", 0))?;
     let pups = options.net.pups(&points, seed)?;
     LabelTexture::new(pups, labels, options.values.to_vec())

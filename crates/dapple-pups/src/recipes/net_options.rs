@@ -116,6 +116,7 @@ impl NetOptions {
         seed: Seed,
     ) -> Result<Pups, PupsError> {
         let orientation = self.orientation(points, seed)?;
+        // The given graph is for points at rest. Moved points are triangulated again.
         match self.moved(points, graph, seed)? {
             Some(moved) => self.net(&moved, &*self.delaunay(&moved)?, orientation),
             None => {
@@ -242,6 +243,7 @@ impl NetOptions {
 
     /// Returns the options for points that have already been moved. Axes fade as for moving points.
     pub(crate) fn after_motion(&self) -> Self {
+        // The points have moved already, but their axes still fade.
         let PupsOptions { fade, .. } = self.pups_options(None);
         Self {
             fade,

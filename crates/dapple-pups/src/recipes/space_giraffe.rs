@@ -180,6 +180,7 @@ impl SpaceGiraffeOptions {
     fn place_spots(&self, centers: &PointSet, seed: Seed) -> Result<Vec<Spot>, PupsError> {
         let graph = self.net.delaunay(centers)?;
         let place = |(center, _): (PointIdx, DVec2)| {
+            // Section 3.2: half the distance to the nearest center, so that no two spots overlap.
             let radius = radius(&graph, center)?;
             let spot = Spot::random(radius, self, seed, center);
             Ok(match self.spots {
