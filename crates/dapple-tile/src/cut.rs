@@ -66,6 +66,7 @@ impl Cut {
         }
         // Find the path with the lowest total cost, among the columns in which the ramp fits into the band.
         let costs = costs(&differences, half_width)?;
+        // Paths are relative to the columns at which the whole ramp fits into the band.
         let first = band.first + inset(half_width);
         let mut columns = match ends {
             Ends::Free => open_path(&costs),

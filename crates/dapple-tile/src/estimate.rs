@@ -248,6 +248,7 @@ fn height(
     let coarsest = &octaves[octaves.len() - 1];
     let mut height = Raster::filled(coarsest.size(), 0.0)?;
     for (octave, pair) in octaves.windows(2).enumerate().rev() {
+        // A band of the Laplacian pyramid is the difference from the enlarged coarser octave.
         let [fine, coarse] = [&pair[0], &resized(&pair[1], pair[0].size())?];
         let band = fine.zip_map(coarse, |fine, coarse| fine - coarse)?;
         let form = match toward {
@@ -257,6 +258,7 @@ fn height(
                 band.zip_map(&slope, |band, slope| DIFFUSE * band + slope)?
             }
         };
+        // Of two equally dark pits, the wider one is deeper (Glencross et al.).
         let weight = libm::exp2(coarseness * octave as f64) as f32;
         let under = resized(&height, fine.size())?;
         height = under.zip_map(&form, |under, form| under + weight * form)?;
@@ -342,6 +344,7 @@ fn shading(
     ];
     let slopes = x.zip_map(&y, |&x, &y| DVec2::new(x.into(), y.into()) * relief)?;
     let lit = slopes.map(|slope| {
+        // Lambert's cosine of the normal (-slope, 1) and the light (toward, 1), relative to level ground.
         let cosine = (1.0 - slope.dot(toward)) / (1.0 + slope.length_squared()).sqrt();
         cosine.max(0.0) as f32
     });
@@ -365,6 +368,7 @@ fn delit(
     })?;
     let mean = |colors: &Raster<LinearRgb>| colors.map(|color| color.luminance()).statistics().mean;
     let [before, after] = [colors, &divided].map(mean);
+    // The division brightens the image; restore its mean luminance.
     let scale = if after > 0.0 { before / after } else { 1.0 };
     Ok(divided.par_map(|&color| color * scale as f32))
 }

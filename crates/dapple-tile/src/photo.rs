@@ -73,6 +73,7 @@ fn even_plane(plane: &Raster<f32>, radius: f64, is_color: bool) -> Result<Raster
             let (at, share) = columns.place(column as f64 + 0.5);
             let light = across[at] + (across[at + 1] - across[at]) * share;
             let value = f64::from(*pixel);
+            // Light multiplies colors; other values only drift.
             *pixel = match is_color {
                 true if mean > 0.0 => value * (mean / light.max(mean * LEAST_LIGHT)),
                 true => value,
@@ -254,6 +255,7 @@ pub fn resample_with_alpha(
     alpha: &Raster<f32>,
     resample: impl Fn(&Map) -> Result<Map, TileError>,
 ) -> Result<(Raster<LinearRgb>, Raster<f32>), TileError> {
+    // Resample premultiplied colors, so that hidden colors do not bleed into visible pixels.
     let weighted = colors.zip_map(alpha, |&color, &alpha| color * alpha)?;
     let planes = |map: &Map| Ok::<_, TileError>(resample(map)?.planes());
     let sums = color_from_planes(planes(&Map::Color(weighted))?)?;

@@ -106,6 +106,7 @@ impl Perspective {
         }
         let [p0, p1, p2, p3] = corners;
         let (along_right, along_bottom) = (p1 - p2, p3 - p2);
+        // Heckbert's closed form. For a parallelogram the sum is 0, and the map is affine.
         let sum = p0 - p1 + p2 - p3;
         // The denominator is the turn at the third corner, which is not 0.
         let scale = along_right.perp_dot(along_bottom);

@@ -262,6 +262,7 @@ fn quotient(part: f64, whole: f64) -> f64 {
     if part == whole {
         1.0
     } else {
+        // Equal parts are handled above, so 0 / 0 does not occur.
         (part / whole).min(SeamReport::MOST)
     }
 }

@@ -121,6 +121,7 @@ impl SeamReports {
     pub fn worst(&self) -> Option<&ChannelReport> {
         let worse =
             |a: &'_ ChannelReport, b: &'_ ChannelReport| b.report.badness() > a.report.badness();
+        // Of equally bad channels, the first is the worst.
         self.channels
             .iter()
             .reduce(|worst, of| if worse(worst, of) { of } else { worst })

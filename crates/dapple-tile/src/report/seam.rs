@@ -184,6 +184,7 @@ pub(super) fn boundaries(n: usize, width: usize, lattice: usize) -> Vec<[usize; 
     let last = n.saturating_sub(width);
     let inside = (lattice..=last).step_by(lattice);
     let inside = inside.filter(|&at| at >= width).map(|at| [at - width, at]);
+    // The first pair is the wrap: the last `width` pixels and the first ones.
     let mut all = vec![[last, 0]];
     all.extend(inside);
     if all.len() > 1 { all } else { Vec::new() }
@@ -196,6 +197,7 @@ pub(super) fn boundaries(n: usize, width: usize, lattice: usize) -> Vec<[usize; 
 fn double(sums: &mut Vec<f64>, half: usize) {
     let n = sums.len().saturating_sub(half);
     for at in 0..n {
+        // Two adjacent sums of half the width are a sum of the whole width.
         sums[at] += sums[at + half];
     }
     sums.truncate(n);

@@ -158,6 +158,7 @@ impl SplineProject {
                 // Double the coefficients level by level (equation 13).
                 let (filter, borders) = (self.filter(degree), borders(axes));
                 let mut fine = self.coefficients(&filter, coarse, borders)?;
+                // From the coarsest level up: each step doubles the grid to the size that it was halved from.
                 for &size in sizes[..self.levels as usize].iter().rev() {
                     fine = filter.up(&fine, size, borders)?;
                 }
