@@ -285,7 +285,7 @@ impl<'a> Appearance<'a> {
                     let own = pixel(*place);
                     let off = stage.guides_distance_sq(wanted, own);
                     let around = around(stage, links, site, &before);
-                    // Search only if the squared distance of the guides is a large fraction of that of the features.
+                    // Search only if the guides differ much, compared with the features.
                     if off <= MISFIT * distance_sq(stage, &around, own) {
                         continue;
                     }

@@ -7,8 +7,8 @@
 //!
 //! A row holds the pixels of a neighborhood in a fixed order: part after part, the offsets of a part row by row from
 //! the top, and all channels of a pixel. Each value is multiplied by the square root of the part's weight, so the
-//! squared distance of two rows is the weighted distance. If the exemplar has guides, those of the center pixel are
-//! appended.
+//! squared distance of two rows is the weighted distance. If the exemplar has guides, the guides of the center pixel
+//! are appended.
 //!
 //! Pixels whose neighborhoods reach past an edge are not candidates, as in the paper. The paper does not cover small
 //! levels, where few or none remain: of 8 × 8 pixels, only ten have a complete neighborhood H(7, 0). Here, if fewer

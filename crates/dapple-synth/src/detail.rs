@@ -17,10 +17,10 @@ use glam::Vec2;
 /// Sharpening gain: fraction of the second difference added back halfway between two pixels.
 ///
 /// Any mean of pixels has less contrast than the pixels. The gain was measured on flat textures of photographs with one
-/// texel per pixel, averaged over eight seeds. On leaves, rock, grass and bricks, standard deviations are 0.95 to 1.00
-/// times those of the photographs; at the sites they are 0.93 to 0.98. Gradient lengths are 0.93 to 1.01 times those of
-/// the photographs. Without sharpening, the ranges are 0.85 to 0.96 and 0.79 to 0.91. A larger gain makes the borders
-/// of pieces in noise more than a tenth steeper.
+/// texel per pixel, averaged over eight seeds. On leaves, rock, grass and bricks, the standard deviation relative to
+/// the photograph is 0.95 to 1.00 (0.93 to 0.98 at the sites), and the length of gradients 0.93 to 1.01. Without
+/// sharpening, the ranges are 0.85 to 0.96 and 0.79 to 0.91. A larger gain makes the borders of pieces in noise more
+/// than a tenth steeper.
 const SHARPENING: f32 = 0.65;
 
 /// Footprint, in pixels, at and above which the full gain applies. With smaller footprints it would show as beads along
@@ -36,7 +36,7 @@ pub(crate) struct Detail<const N: usize> {
     factor: f32,
 }
 
-/// Returns the integer factor by which a map is larger than an exemplar, along both axes.
+/// Returns the ratio between the sizes of a map and an exemplar, an integer.
 ///
 /// # Errors
 ///

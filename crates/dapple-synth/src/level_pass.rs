@@ -229,7 +229,7 @@ impl<'a, G: SynthesisDomain> LevelPass<'a, G> {
         for term in self.terms.iter().filter(|term| term.is_beside()) {
             add(&state.here, worker.same.nearest[term.samples[0]]);
         }
-        // There is no neighbor but the site itself: use its own rotation.
+        // Without neighbors, use the site's own rotation.
         if found == [false; 4] {
             found[usize::from(state.here.quarters(site as usize))] = true;
         }

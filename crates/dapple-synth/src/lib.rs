@@ -130,7 +130,7 @@
 //! | 6 | a texture map of right triangles, or of charts | [`Atlas`], [`bake()`], [`textured_model`] |
 //! | 8 | patterns from other surfaces, their colors, bumps and ridges | [`MeshExemplar`] |
 //!
-//! # What the paper leaves open
+//! # Choices that the paper leaves open
 //!
 //! [`Options::paper`] follows the paper literally and documents its departures. The defaults differ where another
 //! choice measured better:

@@ -166,7 +166,7 @@ impl<P: Sourced> Magnified<'_, P> {
             // Add the site to the first piece that agrees, or start a new one.
             if let Some(piece) = pieces.iter_mut().find(agrees) {
                 piece.off += self.places.difference(place, piece.place) * weight;
-                // Axes have the length 1 / (spacing · scale). Times the scale, those of all sites have equal lengths.
+                // Axes have the length 1 / (spacing · scale). Times the scale, the axes of all sites are equally long.
                 piece.right += frame.right * (weight * frame.scale);
                 piece.down += frame.down * (weight * frame.scale);
                 piece.scale += weight * frame.scale;

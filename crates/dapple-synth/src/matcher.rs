@@ -143,8 +143,8 @@ impl Matcher {
     /// is returned.
     ///
     /// `below` is a squared distance; infinity means no limit. `hint` is the index of a row that is likely near; it
-    /// saves time and does not change the result. Returns `None` for a query that is not finite or not as long as the
-    /// rows.
+    /// saves time and does not change the result. Returns `None` for a query that is not finite or has another length
+    /// than the rows.
     #[must_use]
     pub fn nearest(
         &self,
@@ -185,7 +185,7 @@ impl Matcher {
         })
     }
 
-    /// Returns whether the query is as long as the rows and has at least one factor per row.
+    /// Returns whether the query has the length of a row, and at least one factor per row.
     fn can_find(&self, query: Query<'_>) -> bool {
         let enough = |factors: &[f32]| factors.len() >= self.rows.len();
         query.values.len() == self.dims && query.factors.is_none_or(enough)

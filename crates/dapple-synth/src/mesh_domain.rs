@@ -101,7 +101,7 @@ impl MeshDomain<'_> {
         } else {
             1.0
         };
-        // The sample at a corner of the square is the farthest, and interpolates within the radius around it.
+        // Samples at the corners of the square are farthest away, and interpolate within the radius around them.
         let spacings = core::f64::consts::SQRT_2 * f64::from(half) * largest + radius(largest);
         let spacing = self.hierarchy.levels()[reads].spacing();
         Neighborhoods::new(

@@ -164,7 +164,7 @@ impl Orientation {
         }
     }
 
-    /// Returns the symmetry of the field: the number of equivalent directions at each site, of which one is stored.
+    /// Returns the symmetry of the field: the number of equivalent directions at each site. One of them is stored.
     #[must_use]
     pub fn symmetry(&self) -> Symmetry {
         self.symmetry
@@ -177,8 +177,8 @@ impl Orientation {
             .nearest(self.vectors[site], normals[site], vector)
     }
 
-    /// Returns the number of quarter turns by which the direction of `site` must be rotated to be nearest to the
-    /// direction of `other`, which is itself rotated by `quarters`.
+    /// Returns the rotation, in quarter turns, that brings the direction of `site` nearest to the direction of `other`
+    /// rotated by `quarters`.
     #[inline]
     pub(crate) fn quarters_toward(
         &self,

@@ -107,16 +107,16 @@ pub fn synthesize_plane_with(
 }
 
 /// Synthesizes a texture like [`synthesize_plane_with`], controlled by guides: planes that match parts of the texture
-/// with parts of the exemplar. There must be as many as the exemplar has [guides](Exemplar::with_guides). The texture
-/// is the same size as the planes.
+/// with parts of the exemplar. The exemplar must have the same number of [guides](Exemplar::with_guides). The texture
+/// has the size of the planes.
 ///
 /// [`Options::evenness`] has no effect.
 ///
 /// # Errors
 ///
-/// Same as [`synthesize_plane_with`]; [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) if there are no guides or
-/// not as many as the exemplar has; [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) if guides have different
-/// sizes; and [`SynthErrorKind::NotFinite`](crate::SynthErrorKind::NotFinite) if a value is not finite.
+/// Same as [`synthesize_plane_with`]; [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) if there are no guides,
+/// or if their number differs from the exemplar's; [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) if their
+/// sizes differ; and [`SynthErrorKind::NotFinite`](crate::SynthErrorKind::NotFinite) if a value is not finite.
 ///
 /// # Examples
 ///

@@ -149,7 +149,7 @@ impl Sweep {
         }
         let of_finest = finest.components.clone();
         for level in &mut self.levels {
-            // Each component of a level has one shift: that of the finest component that contains its lowest site.
+            // Shift each component of a level like the finest component that contains its lowest site.
             let mut shifts: Vec<f64> = Vec::new();
             for (site, &component) in level.components.iter().enumerate() {
                 if component as usize == shifts.len() {

@@ -378,8 +378,8 @@ impl AppearanceLevel {
         ((a + e) + (c + g)) + ((b + f) + (d + h))
     }
 
-    /// Returns the squared distance between the guides `wanted` and those of an exemplar pixel, times the number of
-    /// diagonals, because a guide counts as a channel that differs on every diagonal.
+    /// Returns the squared distance between the guides `wanted` and the guides of an exemplar pixel, times the number
+    /// of diagonals, because a guide counts as a channel that differs on every diagonal.
     #[inline]
     pub(crate) fn guides_distance_sq(&self, wanted: &[f32], [column, row]: [i64; 2]) -> f32 {
         if wanted.is_empty() {

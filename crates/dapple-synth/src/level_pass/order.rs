@@ -4,7 +4,7 @@
 //!
 //! - A pass that reads only the coarser level visits sites in any order, on all threads ([`LevelPass::visit_freely`]).
 //! - A pass that reads its own level follows the sweep in a wavefront schedule ([`WavefrontSchedule`]): a site runs after every
-//!   earlier site that it reads. The result is the same as that of a sequential sweep.
+//!   earlier site that it reads. The result equals a sequential sweep.
 //! - A pass that counts usage ([`Usage`]) is sequential, because each site depends on all earlier ones.
 
 use super::{LevelPass, State, Worker};

@@ -3,7 +3,7 @@
 //! A stain or a scar is replaced by texture from the rest of the surface, by lifting the surface onto itself. As in a
 //! repair in the plane, all sites have a source before any is visited, and each compares its full neighborhood, several
 //! times. Fixed sites are their own sources. On the coarsest level a hole starts as the piece of the surface that fits
-//! its surroundings best. Where no piece is as large as the hole, it starts with random sites. A pass proceeds from the
+//! its surroundings best. A hole larger than every piece starts with random sites. A pass proceeds from the
 //! rim of a hole inward.
 //!
 //! Reference: our own. The passes are those of [`Schedule::repair_on_mesh`].
@@ -216,7 +216,7 @@ struct Filler<'a> {
 
 impl Filler<'_> {
     /// Returns the middle site of the piece whose ring is most similar to the ring of `hole`. Among equal pieces the
-    /// first wins. `None` if no piece is as large as the hole.
+    /// first wins. `None` if the hole is larger than every piece.
     fn best(&self, hole: &Hole) -> Option<u32> {
         const CHUNK: usize = 64;
         let n_sites = self.is_kept.len();

@@ -165,7 +165,7 @@ impl<S: Simd> Search<'_, S> {
             let placed = i16x32::simd_from(self.simd, self.placed[0][i]);
             let below = i16x32::simd_from(self.simd, boxes.low[i]) - placed;
             let above = placed - i16x32::simd_from(self.simd, boxes.high[i]);
-            // The distance from the box along a direction, 0 inside of it, is at most that of each row in the box.
+            // The distance from the box along a direction, 0 inside of it, is a lower bound for the rows in the box.
             let outside = below.max(above).max(0);
             sums += outside.pairwise_dot_product(outside);
         }

@@ -65,7 +65,7 @@ impl Orientation {
     }
 }
 
-/// Returns the offset to add to the values of each component so that as many as possible are from `least` to `most`.
+/// Returns, for each component, the offset that brings the maximum number of its values between `least` and `most`.
 fn shifts(components: &[u32], values: &[f64], [least, most]: [f64; 2]) -> Vec<f64> {
     let n_components = components.iter().max().map_or(0, |&last| last as usize + 1);
     let mut of_components = vec![Vec::new(); n_components];

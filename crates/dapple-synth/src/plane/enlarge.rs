@@ -12,7 +12,7 @@ use dapple_raster::{Raster, Wrap};
 /// between others is not outvoted.
 const RADIUS: f64 = 1.25;
 
-/// A texture and the integer factor by which it is enlarged.
+/// A texture and its magnification, an integer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Enlarged<'a> {
     pub(super) sources: &'a Raster<[u32; 2]>,

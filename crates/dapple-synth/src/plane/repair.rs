@@ -95,9 +95,8 @@ const DITHER: [[u8; STRIDE as usize]; STRIDE as usize] =
 /// Width of the ring around a hole that is compared with the exemplar, in pixels; equal to the reach of a neighborhood.
 const RING: i64 = 3;
 
-/// Penalty factor on the squared differences of a piece that lacks part of its ring. Such a piece wins only if its
-/// deviation is less than half that of a complete one. By chance, part of a ring is rarely that much more similar than
-/// the whole.
+/// Penalty factor on the squared differences of a piece that lacks part of its ring. Such a piece wins against a
+/// complete one only with less than half the deviation. Part of a ring rarely is that much more similar by chance.
 const PARTIAL: f64 = 4.0;
 
 impl PlaneTexture {
@@ -292,7 +291,7 @@ fn square([column, row]: [i64; 2], reach: i64) -> impl Iterator<Item = [i64; 2]>
 
 impl Hole {
     /// Fills the sites with the piece of the exemplar whose ring is most similar to the ring of the hole; of equally
-    /// similar pieces, with the first in row-major order. If no piece is as large as the hole, the sites remain
+    /// similar pieces, with the first in row-major order. If the hole is larger than every piece, the sites remain
     /// unknown.
     ///
     /// On the coarsest level of a small image, a piece may lack part of its ring, which reaches past an edge or into

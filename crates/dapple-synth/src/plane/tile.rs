@@ -15,7 +15,7 @@ use dapple_raster::{Raster, parallel};
 ///
 /// `width` is the width of the strip in pixels. Along each repeating axis, the side of the tile is a multiple of
 /// 2^(number of levels - 1), from half the exemplar's side to the exemplar's side minus half of `width`. Along other
-/// axes the tile is as long as the exemplar.
+/// axes the tile has the exemplar's side.
 ///
 /// # Errors
 ///

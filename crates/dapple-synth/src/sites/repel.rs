@@ -23,8 +23,8 @@ use dapple_mesh::{FaceEdge, FaceIdx, Surface, SurfacePoint};
 use dapple_raster::parallel;
 use glam::{DVec2, DVec3};
 
-/// Gain of the first step, as the fraction of the push by which a point moves. At 0.25, an even lattice oscillated in
-/// tests.
+/// Gain of the first step: displacement of a point, as a fraction of the push on it. At 0.25, an even lattice
+/// oscillated in tests.
 const GAIN_FIRST: f64 = 0.15;
 /// Gain of the last step.
 const GAIN_LAST: f64 = 0.045;

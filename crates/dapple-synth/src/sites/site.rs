@@ -16,7 +16,7 @@ impl SiteIdx {
     }
 }
 
-/// Surface points to which synthesis assigns colors, stored as columns indexed by [`SiteIdx`].
+/// Surface points that receive colors in a synthesis, stored as columns indexed by [`SiteIdx`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sites {
     points: Vec<SurfacePoint>,
