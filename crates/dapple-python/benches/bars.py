@@ -1,14 +1,14 @@
-"""What the package promises of time and memory: `python benches/bars.py [NAME…] [--dapple COMMAND]`.
+"""Measures the promises of the package about time and memory: `python benches/bars.py [NAME…] [--dapple COMMAND]`.
 
-    fields       F2 - F1 and PUPs at 1024 x 1024, nanoseconds per pixel, beside Rust's (`--rust NS,NS`, from `cargo xtask bench`)
-    shards       8192 x 8192 heights in shards of 1024 into Zarr: processor time beside the command's own bake
-    workers      two workers beside one, by the clock
+    fields       F2 - F1 and PUPs at 1024 x 1024, ns per pixel, relative to Rust (`--rust NS,NS`, from `cargo xtask bench`)
+    shards       8192 x 8192 heights in shards of 1024 into Zarr: processor time relative to `dapple bake`
+    workers      two workers relative to one, in wall-clock time
     memory       the largest memory of a worker
     kills        runs whose workers are killed at random moments, and whole clusters (`--runs N,N`)
     chunks       what a chunk costs beyond its pixels; `--many` with 100,000 shards
-    import       the time of the import beside NumPy's, and the size of the wheel
+    import       the time of the import relative to NumPy, and the size of the wheel
 
-Times are medians of runs, one after the other of what is compared. Run it when nothing else runs.
+Times are medians of sequential runs. Run it on an idle machine.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ def bake(workers, side, shard, planes=("height",), what=None):
 
     with tempfile.TemporaryDirectory() as folder, cluster(workers) as them, Client(them) as client:
         pids = list(client.run(os.getpid).values())
-        # Workers import what they need with their first shard.
+        # The first shard makes workers import their modules, which is not measured.
         bake_job(jobs.create(dp.constant(0), (2 * workers, 64), ["value"], f"{folder}/first.zarr", shard=(1, 64)), client=client)
         idle = [peak(pid) for pid in pids]
         before, mine, started = sum(map(cpu, pids)), cpu(), time.perf_counter()

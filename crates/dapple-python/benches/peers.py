@@ -1,10 +1,10 @@
-"""Noise of dapple-textures beside that of other packages, in one run: a table in Markdown, which docs/peers.md holds.
+"""Compares the noise of dapple-textures with other packages, and prints the Markdown table of docs/peers.md.
 
     python benches/peers.py [--write]
 
-All work on one thread, and their rounds alternate. The figure is the median of the CPU time of a round, so that other programs on
-the machine disturb little. What takes arrays gets arrays that were made before; what does not is called in a loop, on fewer
-pixels. A package that is not installed is left out. `--write` puts the figures into README.md, docs/index.md and docs/peers.md.
+All packages run on one thread, in alternating rounds. The result is the median CPU time of a round, which other programs
+hardly influence. Functions that take arrays get arrays allocated beforehand; others are called in a loop, on fewer pixels.
+Packages that are not installed are left out. `--write` writes the results to README.md, docs/index.md and docs/peers.md.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ import dapple_textures as dp
 SIDE = 1024
 #: Pixels of a cell, along an axis.
 CELL = 64
-#: The side of the picture where a package goes from pixel to pixel in Python.
+#: The side of the image for packages that are called once per pixel.
 SMALL = 64
 
 
 @dataclass
 class Entry:
-    """A call of a package that draws a picture of so many pixels."""
+    """A call of a package, and the number of pixels that it computes."""
 
     package: str
     call: Callable[[], Any]
@@ -52,7 +52,7 @@ def main() -> None:
     packages = ["dapple-textures", *filter(installed, ["pyfastnoiselite", "vnoise", "noise", "opensimplex"])]
     ratios = {}
     table = [
-        f"| one thread, 1024², 64 pixels per cell, ns/pixel | {' | '.join(packages)} | beside pyfastnoiselite |",
+        f"| one thread, 1024², 64 pixels per cell, ns/pixel | {' | '.join(packages)} | relative to pyfastnoiselite |",
         "|---|" + "---:|" * (len(packages) + 1),
     ]
     print("\n".join(table))
@@ -132,7 +132,7 @@ def kinds() -> dict[str, list[Entry]]:
         ],
         "gradient noise, 6 octaves, warped by two noises": [ours(warped()), fast_warped()],
         "gradient noise in 3-D": [ours(dp.gradient_noise(dims=3).slice(0.4)), fast("Perlin", axes=3)],
-        "an aside: partition of unity; simplex": [
+        "different kinds: partition of unity; simplex": [
             ours(partition()),
             fast("OpenSimplex2"),
             *simplex(),
@@ -178,7 +178,7 @@ def partition() -> dp.Field:
 
 
 def positions() -> np.ndarray[Any, np.dtype[np.float64]]:
-    """As many positions as a picture has pixels, in no order."""
+    """Returns random positions, one per pixel of an image, in no order."""
     return np.random.default_rng(1).uniform(0, SIDE / CELL, (SIDE * SIDE, 2))
 
 

@@ -1,9 +1,9 @@
 """Runs the code of a page, for the site and for the tests.
 
-The blocks of ```python of a page run in order, in one namespace and in a folder of their own, and so do comments that begin with
-`python`, which readers do not see, and blocks of shell that are marked `.run`. The pictures and models of the page are the files
-that its code has written; `<!-- output -->` becomes what the block before it has printed, and `<!-- output as markdown -->`
-likewise. A page shows the picture `a.png` of a page `b.md` beside it as `b-a.png`.
+The ```python blocks of a page run in order, in one namespace and one temporary folder. So do comments that begin with `python`,
+which are not shown, and shell blocks marked `.run`. The images and models of a page are files that its code writes.
+`<!-- output -->` is replaced by the output of the preceding block, and so is `<!-- output as markdown -->`. The image `a.png` of
+the page `b.md` is available to other pages of the folder as `b-a.png`.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def run(page: Path, folder: Path) -> Run:
     text = page.read_text(encoding="utf-8")
     here = os.getcwd()
     os.chdir(folder)
-    # Pages may use the modules beside this file.
+    # Pages may import the modules in the folder of this file.
     sys.path.insert(0, str(Path(__file__).parent))
     try:
         for block in _BLOCK.finditer(text):
@@ -79,7 +79,7 @@ def _run_block(block: re.Match[str], text: str, page: Path, names: dict[str, Any
         if done.returncode:
             raise RuntimeError(f"{page.name}: {block['code']}\n{done.stdout}{done.stderr}")
         return done.stdout
-    # Line numbers in tracebacks are those of the page.
+    # Line numbers in tracebacks match the page.
     line = text.count("\n", 0, block.start("code"))
     code = compile("\n" * line + block["code"], str(page), "exec")
     printed = io.StringIO()

@@ -1,4 +1,4 @@
-"""Bakes a built-in material into a folder: its maps as PNG files, and a picture of it in the light of a lamp.
+"""Bakes a built-in material into a folder: its maps as PNG files, and a preview lit by one lamp.
 
     python material.py flagstone out/ 1024
 """

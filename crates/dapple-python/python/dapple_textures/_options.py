@@ -36,7 +36,7 @@ def read(kind: type[_Options], name: str, given: _Options | Mapping[str, Any] | 
 
 
 def _unknown(name: str, key: str, known: list[str]) -> Exception:
-    """Returns the error for a key that is no field, with the nearest field."""
+    """Returns the error for a key that is not a field, with the nearest field."""
     near = get_close_matches(key, known, 1)
     message = f"{name}: `{key}` is not one of {', '.join(f'`{field}`' for field in known)}"
     error = refusal("options", message + "".join(f"; did you mean `{field}`?" for field in near))

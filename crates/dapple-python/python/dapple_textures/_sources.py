@@ -63,7 +63,7 @@ class Source(Protocol):
         """Returns the images of the source, by their SHA-256."""
 
     def attributes(self, plane: str) -> dict[str, Any]:
-        """Returns what a plane is made from, as attributes of an array."""
+        """Returns attributes of an array that describe the source of a plane, such as the recipe and its seed."""
 
     def coordinates(self, shape: tuple[int, ...]) -> list[Coordinate]:
         """Returns, for each axis of an array, what its coordinates are, and how they follow from the numbers of pixels."""
@@ -71,7 +71,7 @@ class Source(Protocol):
 
 @dataclass(frozen=True)
 class RecipeSource:
-    """The maps of a recipe. If the array has a third axis in front, it holds the pictures of a loop in time."""
+    """The maps of a recipe. Arrays with a third axis in front hold the frames of a loop in time."""
 
     recipe: str
     images: Packed
@@ -256,7 +256,7 @@ def _check_corners(shape: tuple[int, ...], samples: Samples) -> None:
 
 
 def _samples_data(samples: Samples) -> dict[str, str]:
-    """Returns the samples as data. The default is left out, so that the data of centers stay what they were."""
+    """Returns the samples as data. The default is left out, so that the data for centers don't change."""
     return {} if samples == "centers" else {"samples": samples}
 
 
