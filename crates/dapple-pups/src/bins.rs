@@ -13,7 +13,7 @@ use dapple_raster::Groups;
 use glam::DVec2;
 
 /// Number of bins for each instance. More bins mean fewer candidates in each, but more memory. With 3, a position has
-/// about 7 candidates, of which 4 have a nonzero weight. Most bins then hold all their candidates.
+/// about 7 candidates; 4 of them have a nonzero weight. Most bins then hold all their candidates.
 const BINS_PER_INSTANCE: f64 = 3.0;
 
 /// Maximum number of bins along one axis.

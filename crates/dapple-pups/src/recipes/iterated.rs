@@ -135,8 +135,8 @@ fn first_intensities(image: &ReferenceImage, points: &PointSet) -> Vec<f32> {
 }
 
 impl IteratedOptions {
-    /// Generates the points of each iteration: twice as many as before, with distances divided by the square root of
-    /// two.
+    /// Generates the points of each iteration. From one to the next, the number doubles, and distances are divided by
+    /// the square root of two.
     fn point_sets(&self, seed: Seed) -> Result<Vec<PointSet>, PupsError> {
         let factors = core::iter::successors(Some(1.0), |factor| Some(factor * SQRT_2));
         let factors = factors.take(self.iterations as usize);

@@ -135,7 +135,7 @@ pub fn octaves(options: &OctavesOptions, seed: Seed) -> Result<Layers<Octave>, P
                 .collect())
         }
     };
-    // Equation 5 with the gain in place of 1/2: Σ gain^i P_i(x).
+    // Equation 5 with the gain instead of 1/2: Σ gain^i P_i(x).
     Ok(Layers::geometric(octaves?, options.gain))
 }
 
