@@ -13,7 +13,7 @@
 pub(crate) struct Naive {
     centers: Vec<[f32; 2]>,
     values: Vec<f32>,
-    /// For each point, the index of its first axis in `axes`. A last entry is the number of axes.
+    /// For each point, the index of its first axis in `axes`; then one more entry, the total number of axes.
     first: Vec<u32>,
     /// For each axis `r`, the vector `r / |r|²`.
     axes: Vec<[f32; 2]>,

@@ -138,7 +138,8 @@ impl ColorRamp {
         Self::new(even_stops(colors))
     }
 
-    /// Creates a ramp through equally spaced colors from 0 to 1. At least one color is required, and all are finite.
+    /// Creates a ramp through equally spaced colors from 0 to 1. At least one color is required, and all must be
+    /// finite.
     pub(crate) fn even_unchecked(colors: &[LinearRgb]) -> Self {
         Self::unchecked(even_stops(colors))
     }

@@ -1,4 +1,4 @@
-//! Files of unencoded numbers (NumPy arrays and raw heights), written row by row and read at once.
+//! Files of unencoded numbers (NumPy arrays and raw heights), written row by row and read as a whole.
 //!
 //! Reference: NumPy Developers, "A Simple File Format for NumPy Arrays" (`numpy.lib.format`), version 1.0. Raw
 //! heights have no standard; the Unity and Unreal terrain importers call them RAW and r16. They are 16-bit codes,

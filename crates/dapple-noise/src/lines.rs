@@ -165,7 +165,7 @@ impl Run {
 }
 
 impl<const N: usize> Corners<N> {
-    /// Moves to the row of cells of `cell`, and reuses lines of corners that both rows share.
+    /// Moves to the row of cells that contains `cell`. Lines of corners that both rows share are reused.
     fn move_to(&mut self, mut cell: [i64; N], columns: &[i64], noise: &GradientNoise<N>) {
         cell[0] = 0;
         if self.cell == cell && !self.lines.is_empty() {

@@ -17,11 +17,11 @@ pub(crate) trait NearCells: Sync {
     /// Item type, such as a stamp.
     type Item: Copy;
 
-    /// Appends the items that may affect a box, given by its center and half of its size. The box and the items are
+    /// Appends the items that may affect a box, given by its center and half-size. The box and the items are
     /// relative to the corner of `cell`. The order of items does not depend on the box.
     fn near(&self, cell: [i64; 2], center: [f64; 2], half: [f64; 2], near: &mut Vec<Self::Item>);
 
-    /// Returns whether an item may affect a box, given by its center and half of its size.
+    /// Returns whether an item may affect a box, given by its center and half-size.
     fn meets(item: &Self::Item, center: [f64; 2], half: [f64; 2]) -> bool;
 
     /// Returns the value at a position, given the items near it in the order of [`near`](Self::near).

@@ -6,8 +6,9 @@ use fearless_simd::prelude::*;
 
 /// Incremental product of the axial weights of up to [`BLOCK`] axes, as two partial products `q` and `t`.
 ///
-/// An axis with `u = 1` does not change the bits of the result, so it may be included or left out. Axes are given as
-/// `−u`, in `[−1, 0]`, which saves one operation.
+/// The weight of an axis is a function of `u`, which is 1 at the control point and 0 at the end of the axis. An axis
+/// with `u = 1` does not change the bits of the result, so it may be included or left out. Axes are given as `−u`, in
+/// `[−1, 0]`, which saves one operation.
 pub(crate) trait Profile: Copy + Send + Sync {
     /// Starts the partial products with the first axis.
     fn first<V: Lane>(self, minus_u: V) -> (V, V);

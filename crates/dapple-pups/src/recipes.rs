@@ -96,11 +96,11 @@ pub trait PupsRecipe<Image = ()>: Clone + Default {
     /// small, and may be infinite.
     fn expected_points(&self) -> f64;
 
-    /// Builds the texture. Random values are from 0 to 1.
+    /// Builds the texture. Random values of its control points are in the range 0 to 1.
     ///
     /// # Errors
     ///
-    /// Same as the function that builds the texture.
+    /// Same as the constructor of the recipe's texture.
     fn build(&self, image: &Image, seed: Seed) -> Result<PupsField, PupsError>;
 }
 

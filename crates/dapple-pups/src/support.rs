@@ -140,8 +140,8 @@ fn walk_borders(axes: &[DVec2]) -> Option<Vec<f64>> {
     (0..axes.len()).map(border).collect()
 }
 
-/// Returns the border length of each axis, clipped by all other axes. A length is infinite where the cell is open, and
-/// zero for an axis without a border.
+/// Returns, for each axis, the length of the Voronoi edge perpendicular to it, clipped by all other axes. A length is
+/// infinite where the cell is open, and zero for an axis without a border.
 fn clip_borders(axes: &[DVec2]) -> Vec<f64> {
     let border = |(index, &axis): (usize, &DVec2)| {
         // The border is part of the bisector ½ v + t v⊥ of the axis v. Clip the interval of t by all other bisectors.

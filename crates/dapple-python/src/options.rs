@@ -1,4 +1,4 @@
-//! Reads option objects, which are dataclasses of the module `_options`. Only these declare defaults.
+//! Reads option objects, which are dataclasses of the module `_options`. Defaults are declared there and nowhere else.
 
 use crate::error::Result;
 use pyo3::conversion::FromPyObjectOwned;

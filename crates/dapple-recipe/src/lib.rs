@@ -1,8 +1,8 @@
 //! Materials as data: a recipe in TOML or JSON is a graph of named nodes, and its maps (height, normal, occlusion,
 //! albedo, roughness and more) are baked from it at any size.
 //!
-//! The format is described for writers of recipes in the README of this crate, `crates/dapple-recipe/README.md`. All
-//! options are in its `docs/reference.md`, and in the output of `dapple recipe --reference`.
+//! The crate's README, `crates/dapple-recipe/README.md`, describes the format for authors of recipes. All options are
+//! in its `docs/reference.md`, and in the output of `dapple recipe --reference`.
 //!
 //! ```
 //! use dapple_recipe::{Bake, BakeOptions, Images, MapKind, Plan, Recipe};

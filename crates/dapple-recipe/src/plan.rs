@@ -505,8 +505,8 @@ impl Plan {
     }
 
     /// Computes the values of the steps `wanted` at the pixels of a window, in the order of `wanted`. Runs on all cores
-    /// if the feature `rayon` is on. Nodes that the renderer supports are passed to it. `known` holds values that the
-    /// caller has computed already.
+    /// if the feature `rayon` is enabled. Nodes that the renderer supports are passed to it. `known` holds values that
+    /// the caller has already computed.
     pub(crate) fn values(
         &self,
         whole: &Whole,

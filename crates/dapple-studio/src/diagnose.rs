@@ -23,7 +23,7 @@ pub struct Diagnostic {
     pub hint: Option<String>,
 }
 
-/// Creates the diagnostic for a text that is not a valid recipe.
+/// Creates the diagnostic for source text that is not a valid recipe.
 pub(crate) fn of_text(document: &Document, error: &RecipeError) -> Diagnostic {
     let text = document.text();
     let bytes = match error.place() {

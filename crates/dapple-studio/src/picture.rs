@@ -56,7 +56,7 @@ pub struct Picture {
     pub size: [u32; 2],
     /// Factor by which the image is smaller than the requested size.
     pub scale: u16,
-    /// Whether the image is a draft, which a larger image follows.
+    /// Whether the image is a draft that will be followed by a larger image.
     pub is_draft: bool,
     /// Whether this is the last part.
     pub is_last: bool,

@@ -40,7 +40,8 @@ pub(crate) struct LevelPass<'a, G: SynthesisDomain> {
     /// Whether the pass is part of a repair. If so, a site keeps its pixel if its whole neighborhood continues one
     /// piece of the exemplar.
     is_repair: bool,
-    /// Preference for coherent rows: one wins if its squared distance is at most `1 + coherence` times the minimum.
+    /// Preference for coherent candidates: one is chosen if its squared distance is at most `1 + coherence` times the
+    /// minimum.
     coherence: f32,
     /// [`Options::evenness`]; 0 in passes that do not count usage.
     evenness: f32,
@@ -96,7 +97,8 @@ struct State<'a> {
 }
 
 impl<'a, G: SynthesisDomain> LevelPass<'a, G> {
-    /// Sets up a pass: builds the sampling tables, the search index over the candidates, and the terms of a query.
+    /// Sets up a pass: builds the sampling tables, the search index over the candidates, and the list of pixels that
+    /// make up a query.
     pub(crate) fn new(
         domain: &'a G,
         pyramid: &'a Pyramid,
@@ -380,7 +382,8 @@ impl<'a, G: SynthesisDomain> LevelPass<'a, G> {
         }
     }
 
-    /// Adds the coherent rows of the coarser level: the four children of the source of the middle sample.
+    /// Adds the coherent candidates of the coarser level: the four children of the pixel that the neighborhood's center
+    /// sample was copied from.
     fn continue_coarser(
         &self,
         center: Center,

@@ -104,8 +104,8 @@ impl Disturbance {
     ///
     /// # Errors
     ///
-    /// Same as [`render`](Self::render). Also [`TileErrorKind::Count`] without maps, and [`TileErrorKind::Raster`] if
-    /// their sizes differ.
+    /// Same as [`render`](Self::render). Also [`TileErrorKind::Count`] if no maps are given, and
+    /// [`TileErrorKind::Raster`] if their sizes differ.
     pub fn render_maps(
         &self,
         maps: &[Map],

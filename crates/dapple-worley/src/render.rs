@@ -64,7 +64,7 @@ const FEW_COLUMNS: usize = BLOCK_COLUMNS / 4;
 /// fit into a core's second-level cache.
 const MANY_CELLS: u128 = 1 << 12;
 
-/// A window of a plane through the basis, to be rendered.
+/// A window to render, in a plane that cuts through the cells of the basis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Picture<'a> {
     pub(crate) basis: &'a dyn Basis,

@@ -1,7 +1,7 @@
 //! The step `python`: builds the package of `crates/dapple-python` as a wheel, installs it and tests it.
 //!
 //! It needs Python 3.11 or newer, and a Python package index for the packages that the tests use. Without these, the
-//! step prints the error of pip and is skipped. With `DAPPLE_NO_SKIP=1`, it fails, and so do tests that would skip
+//! step prints pip's error and is skipped. With `DAPPLE_NO_SKIP=1`, it fails, and so do tests that would skip
 //! optional packages. Blender's module `bpy` needs an older NumPy than other packages, so its tests and its
 //! documentation page have a separate environment. They are skipped if the index has no `bpy` for this Python. All
 //! files are in `target/python`.

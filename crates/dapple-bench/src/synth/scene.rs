@@ -1,4 +1,4 @@
-//! Inputs of the synth group: a model, photographs or drawings of the same kind, and common options.
+//! Inputs of the synth group: a model, photographs (or drawings that stand in for them), and common options.
 
 use super::drawings::{self, Drawing, draw};
 use anyhow::{Result, ensure};

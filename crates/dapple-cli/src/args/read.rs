@@ -24,7 +24,7 @@ pub(crate) struct ReadArgs {
     pub(crate) finite: FiniteArgs,
 }
 
-/// The option of all subcommands that read images, their own or those of recipes.
+/// The option shared by all subcommands that read images, whether given on the command line or named in a recipe.
 #[derive(clap::Args, Clone, Copy, Debug, Default, Serialize)]
 #[group(skip)]
 pub(crate) struct FiniteArgs {

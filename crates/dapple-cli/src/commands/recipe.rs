@@ -171,7 +171,8 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     put_text(job, &recipe.name, ending, &text, args)
 }
 
-/// Writes a shader. If it reads a `data` texture, writes its words to a file next to it, with the extension `bin`.
+/// Writes a shader. The contents of its `data` texture, if it has one, go to a file next to it, with the extension
+/// `bin`.
 fn put_shader(
     args: &Args,
     context: &Context,

@@ -1,8 +1,8 @@
 //! OFF: the Object File Format of Geomview, as text.
 //!
-//! Reference: the manual of Geomview, `http://www.geomview.org/docs/html/OFF.html`.
+//! Reference: the Geomview manual, `http://www.geomview.org/docs/html/OFF.html`.
 //!
-//! All three-dimensional headers are read: `OFF` with the optional prefixes `ST`, `C` and `N`, in this order, for
+//! All three-dimensional headers are supported: `OFF` with the optional prefixes `ST`, `C` and `N`, in this order, for
 //! texture coordinates, colors and normals of the vertices. A missing header means `OFF`. The counts may follow the
 //! header on its line, even without a space. Colors are three or four numbers, from 0 to 255 if the vertex has only
 //! integers, else from 0 to 1. Face colors are omitted and listed in [`Model::left_out`]. A vertex is on one line; a

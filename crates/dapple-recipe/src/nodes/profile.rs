@@ -1,4 +1,4 @@
-//! Cross-sections of bumps, as functions of a number.
+//! Cross-section profiles of bumps, as functions of one variable.
 
 use super::{NodeKind, inputs};
 use crate::plan::{Builder, Step};

@@ -133,7 +133,7 @@ pub(crate) fn color_literal(color: LinearRgb) -> String {
     format!("vec4({r}, {g}, {b}, 0.0)")
 }
 
-/// Returns the mixture of two colors, `from * (1 - by) + to * by`.
+/// Returns an expression that mixes two colors linearly: `from * (1 - by) + to * by`.
 pub(crate) fn lerp(from: &str, to: &str, by: &str) -> String {
     let rest = format!("exact_sub(vec4(1.0), vec4({by}), zero)");
     let [from, to] = [(from, rest), (to, format!("vec4({by})"))]

@@ -17,7 +17,7 @@ const FINEST: f64 = 1e30;
 /// others span many units.
 const SPREADS: f64 = 4.0;
 
-/// Maximum error of a coordinate, in units: 0.5 from rounding, and less than 0.01 from the arithmetic.
+/// Maximum error of a coordinate, in lattice units: 0.5 from rounding, and less than 0.01 from the arithmetic.
 const ERROR: f64 = 0.51;
 
 /// Parameters of the quantization: the radius of the ball around the origin, and the number of units per input unit.

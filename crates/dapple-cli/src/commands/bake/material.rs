@@ -239,7 +239,7 @@ impl MaterialArgs {
         Ok(())
     }
 
-    /// Converts an error from a plan. If it is about the value of `--relief`, it is reported as wrong usage.
+    /// Converts an error from a plan. An error about the value of `--relief` becomes a usage error.
     pub(in crate::commands) fn blame(&self, error: RecipeError) -> Error {
         // Match the error by name, not by value: the given relief may be NaN, which equals nothing.
         let is_of_relief = matches!(error.kind(), RecipeErrorKind::Range { what: "relief", .. });

@@ -110,7 +110,7 @@ impl Sheet {
         [tile as u32 * width + BORDER, BORDER]
     }
 
-    /// Joins the textures of all tiles in one image.
+    /// Joins the textures of all tiles into one image.
     ///
     /// # Errors
     ///

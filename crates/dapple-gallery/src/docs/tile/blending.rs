@@ -1,4 +1,4 @@
-//! Rows of documentation images about blend maps, and about blending two textures along a ramp.
+//! Rows of documentation images that show blend maps, and two textures blended along a ramp.
 
 use super::pebbles;
 use crate::Panel;

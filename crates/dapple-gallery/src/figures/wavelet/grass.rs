@@ -12,7 +12,7 @@ use glam::DVec2;
 const AREA: f64 = 8.0;
 /// Number of straight segments per blade.
 const N_PIECES: u32 = 4;
-/// Depth of the relief, in parts (1/256 of the image side).
+/// Depth of the relief, in units of 1/256 of the image side.
 const DEPTH: f64 = 7.0;
 
 /// A blade of grass: a curve from the root over a bend to the tip, relative to the root.

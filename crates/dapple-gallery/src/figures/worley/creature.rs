@@ -37,7 +37,7 @@ const TRUNK: [Cone; 8] = [
     [[-3.80, 0.12, 2.00, 0.08], [-3.40, 0.08, 2.45, 0.03]],
 ];
 
-/// Cones that exist on both sides of the creature.
+/// Cones of one side of the creature, which are mirrored to the other.
 const SIDES: [Cone; 18] = [
     // Snout, nostril, cheek, lower jaw, brow.
     [[1.75, 1.16, 0.15, 0.27], [2.95, 1.30, 0.11, 0.15]],

@@ -12,7 +12,7 @@ fn noise(size: [u32; 2], gain: impl Fn(u32) -> f32) -> Raster<f32> {
     Raster::from_fn(size, |x, y| gain(x) * pixel(x, y)).unwrap()
 }
 
-/// Searches every band, by the definition.
+/// Evaluates the definition for every band by brute force.
 fn naive(image: &Raster<f32>, wrap: [Wrap; 2]) -> f64 {
     let [width, height] = image.size().map(i64::from);
     let at = |x, y| f64::from(*image.at(x, y, wrap));

@@ -1,5 +1,6 @@
-//! Tests that the squares on the ray's texture stay separate. They would merge at the start of the sweep if the minimum
-//! distance always won and the exemplar was sharper than the neighborhoods it is compared with.
+//! Tests that the squares of the texture synthesized on the stingray model stay separate. At the first sites of the
+//! sweep they would merge if the closest candidate were always chosen and the exemplar were sharper than the
+//! neighborhoods that it is compared with.
 
 use super::RAY;
 use dapple_synth::mesh::Surface;
