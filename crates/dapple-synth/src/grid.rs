@@ -7,7 +7,8 @@ use crate::domain::Colors;
 use core::ops::RangeInclusive;
 use dapple_raster::Wrap;
 
-/// Side of the largest square that can be read, in pixels, plus one for positions between two pixels.
+/// Side of the largest square that can be read, 15 pixels, plus one: a square at a position between two pixels
+/// touches one pixel more.
 pub(crate) const MAX_SIDE: usize = 16;
 
 /// Pixels stored row by row, with a wrapping rule past the edges for each axis.
@@ -22,7 +23,8 @@ impl<C: Colors> Grid<C> {
     /// Reads the square from `-half` to `half` pixels around a position into `target`, row by row. `half` is at most 7,
     /// and `halves` is the position in units of half a pixel.
     ///
-    /// Only the given `rows` are written, at the same offsets in `target` as if all rows were written.
+    /// Only the given `rows`, from `-half` to `half`, are written, at the same offsets in `target` as if all rows were
+    /// written.
     #[inline]
     pub(crate) fn read(
         &self,
@@ -71,8 +73,8 @@ impl<C: Colors> Grid<C> {
     }
 }
 
-/// Returns the column and row of one of the four finer pixels that `pixel` covers. `[i, j]` selects it (each is 0 or
-/// 1), and `width` is the width of the coarser level.
+/// Returns the column and row of one of the four finer pixels that were reduced to `pixel`, an index on the coarser
+/// level, whose width is `width`. `[i, j]` selects the finer pixel (each is 0 or 1).
 #[inline]
 pub(crate) fn over(pixel: u32, width: u32, [i, j]: [i64; 2]) -> [i64; 2] {
     let [column, row] = [pixel % width, pixel / width].map(i64::from);

@@ -2,8 +2,8 @@
 //!
 //! Input: the sites of a level. Output: for any site, the sites in a ball around it, in a fixed order.
 //!
-//! Sites are sorted by cells. Positions are `f32`, relative to the center of the bounding box of all sites: rounding is
-//! below 1e-4 of a spacing for a billion sites.
+//! Sites are sorted by cell. Positions are `f32`, relative to the center of the bounding box. A surface of 2^28 sites,
+//! the maximum, extends a few thousand spacings from there; rounding is then below 3e-4 of a spacing.
 
 use crate::cells::Cells;
 use crate::{Hierarchy, Sites};
@@ -23,16 +23,16 @@ pub(crate) struct Neighborhoods {
     cells: Cells,
     /// Index of the first record of each cell.
     first: Vec<u32>,
-    /// Sites that are read, sorted by cell; `columns` holds their positions, one array per coordinate, with one
-    /// register of padding at the end.
+    /// Sites that may be neighbors, sorted by cell.
     records: Vec<Record>,
+    /// Positions of the records, one array per coordinate, with one register of padding at the end.
     columns: [Vec<f32>; 3],
     /// Positions of the sites at the centers of neighborhoods.
     centers: Vec<Vec3>,
     reach_sq: f32,
 }
 
-/// A site that is read.
+/// A site that may be a neighbor.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Record {
     pub(crate) position: [f32; 3],
@@ -40,7 +40,7 @@ pub(crate) struct Record {
     pub(crate) site: u32,
 }
 
-/// Scratch memory: the sites near a position, in the order in which their colors are added up.
+/// Scratch memory: the sites near a position, in the order in which a caller sums their colors.
 #[derive(Debug, Default)]
 pub(crate) struct NeighborScratch {
     numbers: Vec<u32>,
@@ -59,8 +59,8 @@ pub(crate) struct NeighborhoodView<'a> {
 }
 
 impl Neighborhoods {
-    /// Builds the neighborhoods of the first `n_sites` sites, which consist of some of the first `n_reads` sites. These
-    /// are `spacing` apart.
+    /// Builds the neighborhoods of the first `n_sites` sites. Their neighbors are taken from the first `n_reads` sites,
+    /// which are those of the same level or of the next coarser one (`n_reads ≤ n_sites`), `spacing` apart.
     pub(crate) fn new(
         sites: &Sites,
         [n_sites, n_reads]: [usize; 2],
@@ -109,7 +109,7 @@ impl Neighborhoods {
         }
     }
 
-    /// Returns the cells, the unit of dependencies between sites.
+    /// Returns the cells. The parallel schedule of a pass processes the sites of a cell together (`WavefrontSchedule`).
     pub(crate) fn cells(&self) -> &Cells {
         &self.cells
     }
@@ -164,9 +164,10 @@ impl Neighborhoods {
                     load(z) - center[2],
                 ];
                 let near = (x * x + y * y + z * z).simd_lt(self.reach_sq).to_bitmask();
-                // The last register of a run of cells also holds sites of the next run.
+                // The last register of a run of cells also holds sites of the cells stored after it, or padding.
                 let near = near & ((1 << (until - first).min(LANES)) - 1);
-                // Compact without branches, because the lanes that are near are unpredictable.
+                // Compact without branches, because the lanes that are near are unpredictable. `n_near` is at most
+                // `lane`, so `% LANES` only saves a bounds check.
                 let room: &mut [u32] = &mut numbers[length..length + LANES];
                 let mut n_near = 0;
                 for lane in 0..LANES {

@@ -1,4 +1,9 @@
-//! Push: diffuses the known directions on the coarsest level, and refines the field from there to the finest level.
+//! Push: computes the field on the coarsest level from the known directions, and refines it from there to the finest
+//! level. Equations and sections are those of Turk's paper (see the parent module).
+//!
+//! With one direction per site, a field near its neighbors' average is found by diffusion, a linear system. With two or
+//! four equivalent directions, averages depend on which ones are chosen, so `smooth.rs` finds the smoothest field
+//! first, and `comb.rs` then chooses one direction per site.
 
 use super::comb::comb;
 use super::pull::Known;
@@ -45,7 +50,8 @@ pub(super) fn push(
             vectors = field.refine(hierarchy, level, &vectors, known);
         }
     }
-    // Orient components without a direction along the axis; their vectors are still zero.
+    // Orient components along the axis whose vectors are still zero: those without a known direction. The smoothest
+    // fields have oriented all components of the coarsest level, so only those without a site there remain.
     let normals = hierarchy.sites().normals();
     columns::update(&mut vectors, |site, vector| {
         if *vector == DVec3::ZERO {
@@ -102,7 +108,8 @@ impl Field<'_> {
         vectors
     }
 
-    /// Upsamples a field to a finer level. Returns unit vectors at the sites that are connected to a known site.
+    /// Upsamples a field to a finer level. Returns unit vectors at the sites that are connected to a site with a vector,
+    /// and zero elsewhere.
     fn refine(
         &self,
         hierarchy: &Hierarchy,

@@ -20,7 +20,7 @@ use dapple_mesh::{Surface, SurfacePoint};
 use dapple_raster::parallel;
 use glam::DVec3;
 
-/// Maximum number of points that start at random positions.
+/// Maximum size of the smallest hidden set, whose points all start at random positions.
 const RANDOM_MOST: usize = 256;
 /// Number of repulsion steps for random points. There are few such points, so the cost is negligible.
 const ITERATIONS_RANDOM: usize = 40;
@@ -30,7 +30,7 @@ const ITERATIONS_HIDDEN: usize = 4;
 const MORTON_BITS: u32 = 21;
 
 /// Returns nested sets of evenly spaced points, one for each of the ascending `counts`. The first `counts[0]` points
-/// are evenly spaced by themselves, so are the first `counts[1]` points, and so on.
+/// are evenly spaced by themselves, and so are the first `counts[1]` points, and so on.
 ///
 /// A ratio of four between consecutive counts gives the most even spacing. A count below the previous one adds no
 /// points. `iterations` is the number of repulsion steps for the new points of each count; 6 are enough. The points of
@@ -115,7 +115,8 @@ impl Nest<'_> {
     /// Adds points until there are `count`, and relaxes the points with index `n_fixed` or more.
     fn add_level(&mut self, count: usize, n_fixed: usize, iterations: usize, seed: Seed) {
         self.grow(count, seed);
-        // Sort before repulsion, which reads neighbors in every step, and again after it, for the later stages.
+        // Sort before repulsion, which reads neighbors in every step, and again after it, for the callers of this
+        // module.
         sort(self.surface, &mut self.points[n_fixed..]);
         self.relax(n_fixed, iterations, seed.child("stuck", 0));
         sort(self.surface, &mut self.points[n_fixed..]);
@@ -162,7 +163,7 @@ impl Nest<'_> {
     }
 }
 
-/// Returns the indices of `edges`, longest first, because the midpoints of long edges are farthest from other points.
+/// Returns the indices of `edges`, longest first. The midpoint of a long edge tends to be farther from other points.
 fn longest_first(edges: &[Edge]) -> Vec<u32> {
     // The bits of positive floats sort like their values; the complement reverses the order.
     sorted(edges.iter().map(|edge| !edge.length.to_bits()))
@@ -176,7 +177,6 @@ fn split_edges<'a>(
     missing: usize,
     points: &mut Vec<SurfacePoint>,
 ) {
-    // If there are fewer edges than missing points, the longest ones get two points each.
     let n_thirds = missing.saturating_sub(edges.len()).min(edges.len());
     for edge in edges.by_ref().take(n_thirds) {
         points.extend(edge.thirds(surface));

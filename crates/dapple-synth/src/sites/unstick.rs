@@ -1,9 +1,10 @@
-//! Moves points that are stuck between fixed points to an emptier position.
+//! Moves points that are stuck between earlier points to an emptier position.
 //!
-//! If the fixed points leave space for one new point but two are there, repulsion cannot push the second one out. This
-//! happens at a few positions on any curved surface. Stuck points are found by the distance to their nearest neighbor,
-//! and are moved to the emptiest of several random positions. This is Mitchell's best-candidate method (Don P.
-//! Mitchell, "Spectrally Optimal Sampling for Distribution Ray Tracing", SIGGRAPH 1991, doi 10.1145/122718.122736).
+//! If earlier points leave space for one new point but two are there, repulsion cannot push the second one out. This
+//! happens at a few positions on any curved surface, on which no regular lattice fits. Stuck points are found by the
+//! distance to their nearest neighbor, and are moved to the emptiest of several random positions. This is Mitchell's
+//! best-candidate method (Don P. Mitchell, "Spectrally Optimal Sampling for Distribution Ray Tracing", SIGGRAPH 1991,
+//! doi 10.1145/122718.122736).
 
 use super::evenness::hexagonal_spacing;
 use super::near::{CHUNK, Places};
@@ -19,7 +20,8 @@ use glam::DVec3;
 const STUCK: f64 = 0.72;
 /// Number of random candidate positions per stuck point.
 const N_PLACES: u64 = 256;
-/// Maximum number of points that are moved. If more are stuck, the surface itself is crowded.
+/// Maximum number of points that are moved: the first in Morton order. It bounds the time on surfaces that are crowded
+/// everywhere, such as a thin double wall, where moving points does not help.
 const MOVED_MOST: usize = 512;
 
 /// Moves each stuck point with index `n_fixed` or more to an emptier position on the same piece, if there is one.
