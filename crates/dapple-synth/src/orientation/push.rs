@@ -108,8 +108,8 @@ impl Field<'_> {
         vectors
     }
 
-    /// Upsamples a field to a finer level. Returns unit vectors at the sites that are connected to a site with a vector,
-    /// and zero elsewhere.
+    /// Upsamples a field to a finer level. Returns unit vectors at the sites that are connected to a site with a
+    /// vector, and zero elsewhere.
     fn refine(
         &self,
         hierarchy: &Hierarchy,
@@ -177,14 +177,14 @@ impl Field<'_> {
             return vectors[site];
         }
         // Equation 4 with α = 1 - strength, and the βᵢ as the normalized weights times the strength.
-        let average = self.average(site, vectors) * (SWEEP_STRENGTH / sum);
+        let average = self.neighbor_sum(site, vectors) * (SWEEP_STRENGTH / sum);
         self.unit(site, vectors[site] * (1.0 - SWEEP_STRENGTH) + average)
     }
 
     /// Returns the weighted sum of the neighbors' vectors, each rotated to the equivalent direction nearest to the
     /// site's vector.
     #[inline]
-    fn average(&self, site: usize, vectors: &[DVec3]) -> DVec3 {
+    fn neighbor_sum(&self, site: usize, vectors: &[DVec3]) -> DVec3 {
         let mut sum = DVec3::ZERO;
         for (other, weight) in self.near(site) {
             let vector = vectors[other];
@@ -260,8 +260,8 @@ impl System<DVec3> for Diffusion<'_> {
             return DVec3::ZERO;
         }
         // Equation 4 at rest, with the projection of section 4.1: Σ wᵢ v is the projected Σ wᵢ vᵢ.
-        let average = self.field.average(row, column);
-        column[row] * self.field.links.sums()[row] - flat_part(average, self.field.normals[row])
+        let sum = self.field.neighbor_sum(row, column);
+        column[row] * self.field.links.sums()[row] - flat_part(sum, self.field.normals[row])
     }
 
     fn right(&self, _row: usize) -> DVec3 {
