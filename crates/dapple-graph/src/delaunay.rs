@@ -16,15 +16,17 @@
 
 mod hull;
 mod images;
+mod line;
 mod order;
 mod patch;
 mod star;
 mod tiles;
 pub(crate) mod triangles;
+mod triangulate;
 
 pub use triangles::{Triangle, delaunay_triangles, delaunay_triangles_cancellable};
 
-use crate::grid::{LazyGrid, TooThin};
+use crate::grid::{Budget, LazyGrid, TooThin};
 use crate::lattice::{Lattice, check_distinct};
 use crate::{Graph, GraphError, GraphErrorKind, IsCancelled};
 use dapple_points::{PointIdx, PointSet};
@@ -32,6 +34,7 @@ use glam::DVec2;
 use images::Cover;
 use patch::{Patch, Rows};
 use tiles::Tiles;
+use triangulate::MANY;
 
 /// Creates the Delaunay graph of the points: two points are connected if some circle through both has no other point
 /// (or image of a point) on it or inside it.
@@ -67,9 +70,9 @@ pub fn delaunay(points: &PointSet) -> Result<Graph, GraphError> {
 
 /// Same as [`delaunay`], but fails if `is_cancelled` returns true.
 ///
-/// The callback is called about once per 8192 points, possibly from several threads. On domains that wrap along one axis
-/// alone, and for points that are collinear, on a circle or in few places, all points belong to a single triangulation,
-/// which cannot be canceled and takes about a second for a million points; the callback is called before and after it.
+/// The callback is called about once per 8192 points, possibly from several threads. Points are divided into tiles, which
+/// are triangulated at once. More than 50,000 points in one tile, such as points on a circle or in few places, are
+/// inserted one by one, which takes longer.
 ///
 /// # Errors
 ///
@@ -147,11 +150,17 @@ impl From<TooThin> for Refusal {
 
 /// Computes the axes of all points, in tiles if there are enough points.
 fn rows(lattice: &Lattice, sites: &[DVec2], is_cancelled: &IsCancelled) -> Result<Rows, Refusal> {
+    if let Some(rows) = line::rows(lattice, sites, is_cancelled)? {
+        return Ok(rows);
+    }
     let margin = MARGIN * (lattice.size.x * (lattice.size.y / sites.len().max(1) as f64)).sqrt();
+    if is_long_line(sites) {
+        return whole(lattice, sites, margin, is_cancelled);
+    }
     if let Some(tiles) = Tiles::new(lattice, sites.len(), margin) {
         match tiles.rows(sites, is_cancelled) {
-            // Without wrapping, one triangulation accepts all points.
-            Err(Refusal::Thin) if !lattice.wraps() => {}
+            // A single triangulation accepts all points that are not too thin.
+            Err(Refusal::Thin) => {}
             result => return result,
         }
     }
@@ -166,11 +175,28 @@ fn whole(
     is_cancelled: &IsCancelled,
 ) -> Result<Rows, Refusal> {
     check(is_cancelled)?;
+    let is_line = is_long_line(sites);
+    let margin = match lattice.wrap {
+        // Images beside a line of sites make most triangles correct.
+        [true, false] if is_line => lattice.size.x,
+        [false, true] if is_line => lattice.size.y,
+        _ if is_line => lattice.size.min_element(),
+        _ => margin,
+    };
     let cover = Cover::new(lattice, DVec2::ZERO, lattice.size, margin);
-    let images = cover.images(lattice, sites)?;
-    let mut patch = Patch::new(lattice, cover, &images, sites.len())?;
+    let mut images = cover.images(lattice, sites)?;
+    if is_line {
+        images.extend(cover.images_outside(lattice, sites[0]));
+    }
+    let mut patch = Patch::new(lattice, cover, &images, sites.len(), is_cancelled)?;
     check(is_cancelled)?;
-    Ok(patch.rows(&LazyGrid::new(lattice, sites), None)?)
+    let (grid, budget) = (LazyGrid::new(lattice, sites), Budget::new(sites.len()));
+    patch.rows(&grid, None, budget, is_cancelled)
+}
+
+/// Returns whether there are many sites, all on a straight line.
+fn is_long_line(sites: &[DVec2]) -> bool {
+    sites.len() > MANY && line::are_collinear(sites)
 }
 
 /// Initial margin of images around the domain, in multiples of the mean point spacing (the square root of the area
@@ -179,14 +205,16 @@ const MARGIN: f64 = 1.6;
 
 #[cfg(test)]
 mod tests {
-    use super::{MARGIN, Refusal, Tiles, delaunay_cancellable, rows, whole};
+    use super::{
+        MARGIN, Refusal, Tiles, delaunay_cancellable, delaunay_triangles_cancellable, rows, whole,
+    };
     use crate::GraphErrorKind;
     use crate::lattice::Lattice;
     use crate::{PointIdx, PointSet, delaunay};
     use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
     use dapple_points::Domain;
     use dapple_points::hash::{Seed, rand_core::Rng, unit_f64};
-    use glam::DVec2;
+    use glam::{DVec2, Vec2Swizzles};
 
     /// Returns random points; `power` above one concentrates them near the origin.
     fn random(n: usize, power: i32, size: DVec2) -> PointSet {
@@ -318,6 +346,123 @@ mod tests {
         let error = delaunay_cancellable(&flat.unwrap(), &cancel).unwrap_err();
         assert_eq!(error.kind(), &GraphErrorKind::Cancelled);
         assert_eq!(n_calls.load(Relaxed), 11);
+    }
+
+    /// Returns sets of points that are not divided into tiles of 8192: in one place, on lines, and on a circle, which only
+    /// the plane accepts within a short time.
+    fn undivided_sets() -> Vec<(&'static str, bool, Vec<DVec2>)> {
+        let on_circle = |i: i32| {
+            let t = f64::from(i) / 30_000.0 - 1.0;
+            0.5 + 0.4 * DVec2::new(1.0 - t * t, 2.0 * t) / (1.0 + t * t)
+        };
+        let uniform = random(60_000, 1, DVec2::ONE).positions().to_vec();
+        // Multiples of powers of two are exactly collinear.
+        let on_line = |i: i32| DVec2::new(f64::from(i * 7919 % 3000) / 4096.0, 0.5);
+        let line = || (0..3000).map(on_line);
+        let turned = line().map(|at| DVec2::new(at.y, at.x));
+        let beside = [DVec2::new(0.75, 0.9)];
+        vec![
+            (
+                "cluster",
+                true,
+                uniform.iter().map(|at| at / 64.0).collect(),
+            ),
+            ("level line", true, line().collect()),
+            (
+                "slanted line",
+                true,
+                line().map(|at| DVec2::splat(at.x)).collect(),
+            ),
+            ("line and a point", false, turned.chain(beside).collect()),
+            ("circle", false, (0..60_000).map(on_circle).collect()),
+        ]
+    }
+
+    #[test]
+    fn sets_that_are_not_divided_can_be_cancelled_on_every_domain() {
+        for (name, wraps, positions) in undivided_sets() {
+            for wrap in [[false; 2], [true, false], [false, true], [true; 2]] {
+                if !wraps && wrap != [false; 2] {
+                    continue;
+                }
+                let torus = Domain::torus(DVec2::ZERO, DVec2::ONE);
+                let points = PointSet::new(Domain { wrap, ..torus }, positions.clone()).unwrap();
+                let made_until = |last: usize| {
+                    let n_calls = AtomicUsize::new(0);
+                    let cancel = || n_calls.fetch_add(1, Relaxed) >= last;
+                    let made = delaunay_triangles_cancellable(&points, &cancel);
+                    (made.map(|triangles| triangles.len()), n_calls.into_inner())
+                };
+                let (made, n_calls) = made_until(usize::MAX);
+                let n_triangles = made.unwrap();
+                // Each 4096 of many points have a call.
+                let least = 3 + points.len().saturating_sub(3001) / 4096;
+                assert!(n_calls >= least, "{n_calls} calls, {name}, {wrap:?}");
+                for last in [0, n_calls / 2, n_calls - 1] {
+                    let error = made_until(last).0.unwrap_err();
+                    let message = format!("call {last} of {n_calls}, {name}, {wrap:?}");
+                    assert_eq!(error.kind(), &GraphErrorKind::Cancelled, "{message}");
+                }
+                match wrap {
+                    [true, true] => assert_eq!(n_triangles, 2 * points.len(), "{name}"),
+                    [false, false] if name.ends_with("line") => assert_eq!(n_triangles, 0),
+                    _ => assert!(n_triangles <= 2 * points.len(), "{name}, {wrap:?}"),
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn tiles_of_cylinders_and_thin_tori_equal_the_whole() {
+        let thin = DVec2::new(0.1, 10.0);
+        for (name, wrap, size) in [
+            ("uniform", [true, false], DVec2::ONE),
+            ("uniform", [false, true], DVec2::ONE),
+            ("uniform", [true, false], thin),
+            ("uniform", [true, true], thin),
+            ("uniform", [true, true], thin.yx()),
+            ("grid", [false, true], DVec2::ONE),
+            ("disc", [true, false], DVec2::ONE),
+        ] {
+            let set = flat_sets().into_iter().find(|set| set.0 == name);
+            let positions = set.unwrap().1.iter().map(|&at| at * size).collect();
+            let torus = Domain::torus(DVec2::ZERO, size);
+            let points = PointSet::new(Domain { wrap, ..torus }, positions).unwrap();
+            let lattice = Lattice::new(points.domain());
+            let sites = lattice.sites(&points);
+            let margin = MARGIN * (lattice.size.x * (lattice.size.y / sites.len() as f64)).sqrt();
+            let expected = whole(&lattice, &sites, margin, &|| false).unwrap();
+            let tiles = Tiles::new(&lattice, sites.len(), margin).unwrap();
+            let tiled = tiles.rows(&sites, &|| false).unwrap();
+            assert!(
+                tiled.offsets == expected.offsets && tiled.axes == expected.axes,
+                "{name}, {wrap:?}, {size}"
+            );
+        }
+    }
+
+    #[test]
+    fn lines_equal_the_triangulation_of_few_points() {
+        for n in 1..8 {
+            for (direction, wrap) in [
+                // Powers of two are exactly collinear.
+                (DVec2::new(0.125, 0.0625), [false; 2]),
+                (DVec2::new(0.0, 0.125), [false; 2]),
+                (DVec2::new(0.125, 0.0), [true, false]),
+                (DVec2::new(0.0, 0.125), [false, true]),
+            ] {
+                let torus = Domain::torus(DVec2::ZERO, DVec2::ONE);
+                let positions = (0..n).rev().map(|i| direction * f64::from(i + 1)).collect();
+                let points = PointSet::new(Domain { wrap, ..torus }, positions).unwrap();
+                let lattice = Lattice::new(points.domain());
+                let sites = lattice.sites(&points);
+                let expected = whole(&lattice, &sites, MARGIN, &|| false).unwrap();
+                let line = super::line::rows(&lattice, &sites, &|| false).unwrap();
+                let line = line.expect("the points are collinear");
+                assert_eq!(line.offsets, expected.offsets, "{n}, {direction}, {wrap:?}");
+                assert_eq!(line.axes, expected.axes, "{n}, {direction}, {wrap:?}");
+            }
+        }
     }
 
     #[test]

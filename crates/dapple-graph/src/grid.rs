@@ -14,7 +14,7 @@ pub(crate) struct TooThin;
 /// If the points of any domain are concentrated in one spot, the number of visits approaches the square of the number
 /// of points. On a square torus, up to 25 copies are within reach of a search that finds few points. On a domain that
 /// is thin relative to the distance of its points, the number of copies would be unbounded.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Budget {
     left: u64,
 }
@@ -33,9 +33,14 @@ impl Budget {
         (1 << 21) + 32_u64.saturating_mul(n.saturating_mul(n))
     }
 
-    /// Creates the budget for a tile of a set that does not wrap: a few milliseconds.
-    pub(crate) fn of_tile() -> Self {
-        Self { left: 1 << 20 }
+    /// Creates the budget for a tile of `n` points. Along axes that do not wrap, a few milliseconds or, on a cylinder, tens
+    /// of milliseconds are allowed, since a single triangulation is possible as well.
+    pub(crate) fn of_tile(wrap: [bool; 2], n: usize) -> Self {
+        match wrap {
+            [true, true] => Self::new(n),
+            [false, false] => Self { left: 1 << 20 },
+            _ => Self { left: 1 << 24 },
+        }
     }
 
     fn take(&mut self, images: u64) -> Result<(), TooThin> {

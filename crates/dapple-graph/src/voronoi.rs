@@ -111,7 +111,7 @@ impl Voronoi {
         let mut vertices = Vec::new();
         let (mut vertex_sites, mut first_sites) = (Vec::new(), vec![0]);
         let mut left = vec![(NONE, DVec2::ZERO); graph.n_axes()];
-        visit_faces(&graph, |first, face| {
+        visit_faces(&graph, &|| false, |first, face| {
             let number = vertices.len() as u32;
             // Track the vertex relative to the current corner while walking around the face.
             let mut offset = graph.lattice.vector(circumcenter(&graph, face));
@@ -128,7 +128,7 @@ impl Voronoi {
                 }
             }
             first_sites.push(vertex_sites.len() as u32);
-        });
+        })?;
         Ok(Self {
             graph,
             vertices,

@@ -5,7 +5,10 @@
 //! Information Processing Letters 9 (1979), after dropping the sites inside of an octagon: S. G. Akl and G. T.
 //! Toussaint, "A fast convex hull algorithm", Information Processing Letters 7 (1978).
 
+use super::Refusal;
 use super::images::key;
+use super::order::sort;
+use crate::IsCancelled;
 use glam::DVec2;
 use robust::{Coord, orient2d};
 use std::collections::BTreeMap;
@@ -22,10 +25,17 @@ pub(super) struct Hull {
 }
 
 impl Hull {
-    /// Computes the hull in a domain of the given size; `None` if all sites are collinear.
-    pub(super) fn new(sites: &[DVec2], size: DVec2) -> Option<Self> {
+    /// Computes the hull in a domain of the given size; `None` if all sites are collinear, or if there are more than `most`
+    /// corners.
+    pub(super) fn new(
+        sites: &[DVec2],
+        size: DVec2,
+        most: usize,
+        is_cancelled: &IsCancelled,
+    ) -> Result<Option<Self>, Refusal> {
         let mut candidates = outside_of_octagon(sites, size);
-        candidates.sort_unstable_by_key(|&index| key(sites[index as usize]));
+        let place = |&index: &u32| key(sites[index as usize]);
+        sort(&mut candidates, &place, is_cancelled)?;
         let turn = |corners: [u32; 3]| {
             let [a, b, c] = corners.map(|index| {
                 let at = sites[index as usize];
@@ -44,13 +54,15 @@ impl Hull {
         let is_corner =
             |&at: &usize| turn([(at + n - 1) % n, at, (at + 1) % n].map(|i| border[i])) > 0.0;
         let corners: Vec<u32> = (0..n).filter(is_corner).map(|at| border[at]).collect();
+        if !(3..=most).contains(&corners.len()) {
+            return Ok(None);
+        }
         let places = (0..n).map(|at| (key(sites[border[at] as usize]), at));
-        let places = places.collect();
-        (corners.len() >= 3).then_some(Self {
-            places,
+        Ok(Some(Self {
+            places: places.collect(),
             corners,
             border,
-        })
+        }))
     }
 
     /// Returns the previous and the next site on the border; `None` for a site inside the hull.

@@ -89,6 +89,21 @@ impl Cover {
         }
         Ok(images)
     }
+
+    /// Returns the nearest images of point 0 along the wrapped axes that are outside of the rectangle.
+    pub(super) fn images_outside(
+        &self,
+        lattice: &Lattice,
+        site: DVec2,
+    ) -> impl Iterator<Item = Image> {
+        let steps = [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y].map(|step| step * lattice.size);
+        let wraps = [0, 0, 1, 1].map(|axis| lattice.wrap[axis]);
+        let images = steps.into_iter().zip(wraps).filter(|(_, wraps)| *wraps);
+        images
+            .map(move |(step, _)| site + step)
+            .filter(|&at| self.depth(at) < 0.0)
+            .map(|at| Image::new(at, 0, Image::FOREIGN))
+    }
 }
 
 /// A search for the images that a patch lacks.
@@ -123,13 +138,10 @@ impl<'g, 'a> Missing<'g, 'a> {
         cover: Cover,
         grid: &'g LazyGrid<'a>,
         hull: Option<&'g Hull>,
+        budget: Budget,
     ) -> Self {
         let size = lattice.size;
         let corners = hull.into_iter().flat_map(|hull| &hull.corners);
-        let budget = match hull {
-            Some(_) => Budget::of_tile(),
-            None => Budget::new(grid.sites().len()),
-        };
         Self {
             lattice,
             cover,

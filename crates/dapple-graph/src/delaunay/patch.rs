@@ -1,13 +1,13 @@
 //! A patch: a triangulated part of the periodic plane, and the graph rows for the points inside it.
 
-use super::Refusal;
 use super::hull::Hull;
 use super::images::{Cover, Missing};
-use super::order::farthest_first;
 use super::star::Star;
-use crate::Axis;
-use crate::grid::{LazyGrid, TooThin};
+use super::triangulate::triangulate;
+use super::{Refusal, check};
+use crate::grid::{Budget, LazyGrid};
 use crate::lattice::Lattice;
+use crate::{Axis, IsCancelled};
 use glam::DVec2;
 use spade::handles::{FixedVertexHandle, VertexHandle};
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
@@ -53,6 +53,9 @@ pub(super) struct Rows {
     pub(super) axes: Vec<Axis>,
 }
 
+/// Number of stars that are read between two calls of the callback.
+const STARS_PER_CALL: u32 = 1 << 16;
+
 /// A triangulation of all images in a rectangle, and of some outside it.
 pub(super) struct Patch<'a> {
     lattice: &'a Lattice,
@@ -70,14 +73,9 @@ impl<'a> Patch<'a> {
         cover: Cover,
         images: &[Image],
         n_rows: usize,
+        is_cancelled: &IsCancelled,
     ) -> Result<Self, Refusal> {
-        let n_images = images.len();
-        // Sites are finite integers, which are always accepted.
-        let triangulation = DelaunayTriangulation::<Image>::bulk_load(farthest_first(images))
-            .map_err(|_| Refusal::Coincident)?;
-        if triangulation.num_vertices() < n_images {
-            return Err(Refusal::Coincident);
-        }
+        let triangulation = triangulate(images, is_cancelled)?;
         let mut vertices = vec![FixedVertexHandle::from_index(0); n_rows];
         for vertex in triangulation.vertices() {
             let row = vertex.data().row;
@@ -98,7 +96,9 @@ impl<'a> Patch<'a> {
         &mut self,
         grid: &LazyGrid<'a>,
         hull: Option<&Hull>,
-    ) -> Result<Rows, TooThin> {
+        budget: Budget,
+        is_cancelled: &IsCancelled,
+    ) -> Result<Rows, Refusal> {
         let mut star = Star::default();
         let mut rows = Rows {
             offsets: Vec::with_capacity(self.vertices.len() + 1),
@@ -107,7 +107,10 @@ impl<'a> Patch<'a> {
         };
         rows.offsets.push(0);
         let mut doubtful = Vec::new();
-        for (row, &vertex) in (0..).zip(&self.vertices) {
+        for (row, &vertex) in (0_u32..).zip(&self.vertices) {
+            if row.is_multiple_of(STARS_PER_CALL) {
+                check(is_cancelled)?;
+            }
             let vertex = self.triangulation.vertex(vertex);
             star.read(vertex, self.cover.depth(at(vertex)));
             if self.cover.is_bounded() && star.is_doubtful() {
@@ -116,7 +119,8 @@ impl<'a> Patch<'a> {
             star.push_axes(self.lattice, &mut rows.axes);
             rows.offsets.push(rows.axes.len() as u32);
         }
-        if self.complete(&doubtful, grid, hull)? {
+        let missing = Missing::new(self.lattice, self.cover, grid, hull, budget);
+        if self.complete(&doubtful, missing, is_cancelled)? {
             rows = self.replaced(&rows, &doubtful);
         }
         Ok(rows)
@@ -126,20 +130,27 @@ impl<'a> Patch<'a> {
     fn complete(
         &mut self,
         doubtful: &[u32],
-        grid: &LazyGrid<'a>,
-        hull: Option<&Hull>,
-    ) -> Result<bool, TooThin> {
+        mut missing: Missing<'_, 'a>,
+        is_cancelled: &IsCancelled,
+    ) -> Result<bool, Refusal> {
         let mut star = Star::default();
-        let mut missing = Missing::new(self.lattice, self.cover, grid, hull);
+        let mut is_over = false;
         let mut changed = false;
         let mut doubtful = doubtful.to_vec();
         loop {
             // A star whose circumcircles contain no missing image is correct, and no other image affects it.
             doubtful.retain(|&row| {
+                is_over = is_over || is_cancelled();
+                if is_over {
+                    return false;
+                }
                 let vertex = self.triangulation.vertex(self.vertices[row as usize]);
                 star.read(vertex, f64::INFINITY);
                 missing.search(row, at(vertex), &star)
             });
+            if is_over {
+                return Err(Refusal::Cancelled);
+            }
             let found = missing.take()?;
             if found.is_empty() {
                 return Ok(changed);

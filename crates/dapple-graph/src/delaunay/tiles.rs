@@ -2,13 +2,15 @@
 //!
 //! Without wrapping, each tile also triangulates the corners of the hull, so that the stars of its points have gaps
 //! only on the hull.
+//! A tile of a set that does not wrap has the corners of the hull as well, so that no star of it has a wrong gap. On a
+//! cylinder, gaps at the borders are filled as in a single triangulation.
 
 use super::hull::Hull;
 use super::images::Cover;
 use super::patch::{Image, Patch, Rows};
 use super::{Refusal, check};
 use crate::IsCancelled;
-use crate::grid::LazyGrid;
+use crate::grid::{Budget, LazyGrid};
 use crate::lattice::Lattice;
 use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use dapple_raster::parallel;
@@ -16,6 +18,9 @@ use glam::DVec2;
 
 /// Approximate number of points per tile.
 const POINTS_PER_TILE: f64 = 8192.0;
+
+/// Number of points that are assigned to tiles between two calls of the callback.
+const POINTS_PER_CALL: u32 = 1 << 18;
 
 /// The tiles of a domain.
 pub(super) struct Tiles<'a> {
@@ -34,18 +39,15 @@ struct Tile {
 }
 
 impl<'a> Tiles<'a> {
-    /// Creates tiles for `n` points; `None` if there are too few points, or if the domain wraps along one axis alone.
+    /// Creates tiles for `n` points; `None` if there are too few points, or if the domain is too thin.
     pub(super) fn new(lattice: &'a Lattice, n: usize, margin: f64) -> Option<Self> {
         let size = lattice.size;
         let edge = (size.x * (size.y * POINTS_PER_TILE / n.max(1) as f64)).sqrt();
         let counts = [size.x, size.y].map(|side| (side / edge).floor().max(1.0));
-        let has_tiles = match lattice.wrap {
-            [true, true] => counts[0].min(counts[1]) >= 2.0,
-            [false, false] => counts[0].max(counts[1]) >= 2.0,
-            _ => false,
-        };
         // Each tile must only need images from its eight neighbors.
-        let fits = has_tiles && 2.0 * margin < edge;
+        let is_wide = |axis: usize| !lattice.wrap[axis] || 2.0 * margin < size[axis];
+        let has_tiles = counts[0] * counts[1] >= 2.0;
+        let fits = has_tiles && 2.0 * margin < edge && is_wide(0) && is_wide(1);
         let starts = |axis: usize| {
             let count = counts[axis];
             let mut starts: Vec<f64> = (0..=count as u32)
@@ -73,9 +75,9 @@ impl<'a> Tiles<'a> {
         check(is_cancelled)?;
         let hull = match self.lattice.wraps() {
             true => None,
-            false => Some(self.hull(sites).ok_or(Refusal::Thin)?),
+            false => Some(self.hull(sites, is_cancelled)?),
         };
-        let tiles = self.fill(sites, hull.as_ref());
+        let tiles = self.fill(sites, hull.as_ref(), is_cancelled)?;
         check(is_cancelled)?;
         let grid = LazyGrid::new(self.lattice, sites);
         // After one tile without a result, the others are not worth their time.
@@ -91,22 +93,33 @@ impl<'a> Tiles<'a> {
                 |column: usize, row: usize| DVec2::new(self.starts[0][column], self.starts[1][row]);
             let (low, high) = (corner(column, row), corner(column + 1, row + 1));
             let cover = Cover::of_tile(low, high, self.margin);
-            let mut patch = Patch::new(self.lattice, cover, &tile.images, tile.points.len())?;
-            let rows = patch.rows(&grid, hull.as_ref());
+            let (n, budget) = (
+                tile.points.len(),
+                Budget::of_tile(self.lattice.wrap, sites.len()),
+            );
+            let patch = Patch::new(self.lattice, cover, &tile.images, n, is_cancelled);
+            let rows =
+                patch.and_then(|mut patch| patch.rows(&grid, hull.as_ref(), budget, is_cancelled));
             is_refused.fetch_or(rows.is_err(), Relaxed);
-            Ok::<Rows, Refusal>(rows?)
+            rows
         });
+        if parts
+            .iter()
+            .any(|part| matches!(part, Err(Refusal::Cancelled)))
+        {
+            return Err(Refusal::Cancelled);
+        }
         // After a refusal, the order of threads decides which error comes first. The caller looks for coincident sites
         // itself.
         let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
         Ok(merged(&tiles, &parts, sites.len()))
     }
 
-    /// Returns the hull of all sites, if it has few corners.
-    fn hull(&self, sites: &[DVec2]) -> Option<Hull> {
-        let hull = Hull::new(sites, self.lattice.size)?;
+    /// Returns the hull of all sites. Fails with [`Refusal::Thin`] if it has many corners.
+    fn hull(&self, sites: &[DVec2], is_cancelled: &IsCancelled) -> Result<Hull, Refusal> {
         let n_tiles = self.count(0) * self.count(1);
-        (hull.corners.len() * n_tiles <= sites.len() / 8).then_some(hull)
+        let most = sites.len() / 8 / n_tiles;
+        Hull::new(sites, self.lattice.size, most, is_cancelled)?.ok_or(Refusal::Thin)
     }
 
     fn count(&self, axis: usize) -> usize {
@@ -114,10 +127,18 @@ impl<'a> Tiles<'a> {
     }
 
     /// Assigns to each tile its points, the images within the margin, and the corners of the hull.
-    fn fill(&self, sites: &[DVec2], hull: Option<&Hull>) -> Vec<Tile> {
+    fn fill(
+        &self,
+        sites: &[DVec2],
+        hull: Option<&Hull>,
+        is_cancelled: &IsCancelled,
+    ) -> Result<Vec<Tile>, Refusal> {
         let mut tiles: Vec<Tile> = Vec::new();
         tiles.resize_with(self.count(0) * self.count(1), Tile::default);
-        for (point, &site) in (0..).zip(sites) {
+        for (point, &site) in (0_u32..).zip(sites) {
+            if point > 0 && point.is_multiple_of(POINTS_PER_CALL) {
+                check(is_cancelled)?;
+            }
             let [columns, rows] = [0, 1].map(|axis| self.near(axis, site[axis]));
             for (i, (row, shift_y)) in rows.into_iter().flatten().enumerate() {
                 for (j, &(column, shift_x)) in columns.iter().flatten().enumerate() {
@@ -146,7 +167,7 @@ impl<'a> Tiles<'a> {
                 }
             }
         }
-        tiles
+        Ok(tiles)
     }
 
     /// Returns the tile column (or row) that contains a coordinate, followed by the adjacent ones whose margin

@@ -6,7 +6,7 @@
 use super::delaunay_cancellable;
 use crate::IsCancelled;
 use crate::angle::turn;
-use crate::{Axis, Graph, GraphError};
+use crate::{Axis, Graph, GraphError, GraphErrorKind};
 use dapple_points::{PointIdx, PointSet};
 use glam::DVec2;
 
@@ -55,7 +55,7 @@ pub fn delaunay_triangles_cancellable(
     points: &PointSet,
     is_cancelled: &IsCancelled,
 ) -> Result<Vec<Triangle>, GraphError> {
-    delaunay_cancellable(points, is_cancelled)?.triangles()
+    delaunay_cancellable(points, is_cancelled)?.triangles_cancellable(is_cancelled)
 }
 
 impl Graph {
@@ -78,20 +78,34 @@ impl Graph {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn triangles(&self) -> Result<Vec<Triangle>, GraphError> {
+        self.triangles_cancellable(&|| false)
+    }
+
+    fn triangles_cancellable(
+        &self,
+        is_cancelled: &IsCancelled,
+    ) -> Result<Vec<Triangle>, GraphError> {
         self.check_delaunay()?;
         let mut triangles = Vec::with_capacity(2 * self.n_points());
-        visit_faces(self, |first, face| push_fan(first, face, &mut triangles));
+        visit_faces(self, is_cancelled, |first, face| {
+            push_fan(first, face, &mut triangles);
+        })?;
         Ok(triangles)
     }
 }
 
 /// Calls `visit` for every face that is inscribed in an empty circle, with its first point and the axes around it,
-/// counterclockwise (from the x axis toward the y axis). Skips the outer face.
-pub(crate) fn visit_faces(graph: &Graph, mut visit: impl FnMut(PointIdx, &[FaceAxis])) {
-    let next = next_around_faces(graph);
+/// counterclockwise (from the x axis toward the y axis). Skips the outer face. Calls the callback once per 65,536 points.
+pub(crate) fn visit_faces(
+    graph: &Graph,
+    is_cancelled: &IsCancelled,
+    mut visit: impl FnMut(PointIdx, &[FaceAxis]),
+) -> Result<(), GraphError> {
+    let next = next_around_faces(graph, is_cancelled)?;
     let mut is_walked = vec![false; graph.n_axes()];
     let mut face: Vec<FaceAxis> = Vec::new();
     for first in (0..graph.n_points() as u32).map(PointIdx) {
+        check_at(first, is_cancelled)?;
         let start = graph.offsets[first.index()] as usize;
         for index in start..start + graph.axes(first).len() {
             face.clear();
@@ -115,6 +129,15 @@ pub(crate) fn visit_faces(graph: &Graph, mut visit: impl FnMut(PointIdx, &[FaceA
             }
         }
     }
+    Ok(())
+}
+
+/// Fails if the caller's callback, which is called for one point of 65,536, cancels.
+fn check_at(point: PointIdx, is_cancelled: &IsCancelled) -> Result<(), GraphError> {
+    match point.0.is_multiple_of(1 << 16) && is_cancelled() {
+        true => Err(GraphError::new(GraphErrorKind::Cancelled)),
+        false => Ok(()),
+    }
 }
 
 /// An axis on the border of a face.
@@ -126,7 +149,7 @@ pub(crate) struct FaceAxis {
 }
 
 /// Returns, for each axis, the next axis around its face, counterclockwise (from the x axis toward the y axis).
-fn next_around_faces(graph: &Graph) -> Vec<u32> {
+fn next_around_faces(graph: &Graph, is_cancelled: &IsCancelled) -> Result<Vec<u32>, GraphError> {
     let next = |from: PointIdx, axis: &Axis| {
         let row = graph.axes(axis.to);
         let is_back = |back: &Axis| back.to == from && back.vector == -axis.vector;
@@ -134,9 +157,12 @@ fn next_around_faces(graph: &Graph) -> Vec<u32> {
         let back = row.iter().position(is_back).unwrap_or(0);
         graph.offsets[axis.to.index()] + ((back + row.len() - 1) % row.len()) as u32
     };
-    let points = (0..graph.n_points() as u32).map(PointIdx);
-    let axes = points.flat_map(|from| graph.axes(from).iter().map(move |axis| next(from, axis)));
-    axes.collect()
+    let mut around = Vec::with_capacity(graph.n_axes());
+    for from in (0..graph.n_points() as u32).map(PointIdx) {
+        check_at(from, is_cancelled)?;
+        around.extend(graph.axes(from).iter().map(|axis| next(from, axis)));
+    }
+    Ok(around)
 }
 
 /// Divides a face into triangles at its first corner.
