@@ -3,6 +3,7 @@
 use crate::parallel;
 use crate::window::check_size;
 use crate::{RasterError, RasterErrorKind, RasterView, RasterViewMut, Window, Wrap};
+use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use glam::DVec2;
 
 /// An image of `width × height` values, stored row by row from the top without gaps.
@@ -226,6 +227,9 @@ impl<T: Sync> Raster<T> {
 /// Number of pixels that are computed at a time, unless a single row has more.
 const BAND_PIXELS: usize = 4096;
 
+/// Number of pixels between two calls of a callback that cancels, unless a single row has more.
+const CANCEL_PIXELS: u32 = 1 << 16;
+
 impl<T: Send> Raster<T> {
     /// Computes `value` at the pixel centers of `window`, on all cores if the feature `rayon` is enabled.
     ///
@@ -263,13 +267,65 @@ impl<T: Send> Raster<T> {
     where
         I: IntoIterator<Item = T>,
     {
+        Self::until(size, &|_| false, row)
+    }
+
+    /// Creates a raster from independently computed rows like [`from_rows`](Self::from_rows), or returns `None` if
+    /// `is_cancelled` returns true. It is called once per 65,536 pixels, or for each row if a row has more; from any
+    /// thread, and not again after it has returned true.
+    ///
+    /// # Errors
+    ///
+    /// Same as [`from_rows`](Self::from_rows).
+    pub fn from_rows_cancellable<I>(
+        size: [u32; 2],
+        is_cancelled: &(dyn Fn() -> bool + Sync),
+        row: impl Fn(u32) -> I + Sync,
+    ) -> Result<Option<Self>, RasterError>
+    where
+        I: IntoIterator<Item = T>,
+    {
+        let n_rows = (CANCEL_PIXELS / size[0].max(1)).max(1);
+        let is_over = AtomicBool::new(false);
+        let made = Self::until(
+            size,
+            &|row| {
+                let asks = row.is_multiple_of(n_rows) && !is_over.load(Relaxed);
+                if asks && is_cancelled() {
+                    is_over.store(true, Relaxed);
+                }
+                is_over.load(Relaxed)
+            },
+            row,
+        );
+        // The rows that are missing are an error of the length.
+        match is_over.into_inner() {
+            true => Ok(None),
+            false => made.map(Some),
+        }
+    }
+
+    /// Creates a raster from rows. Stops at rows for which `is_over` is true.
+    fn until<I>(
+        size: [u32; 2],
+        is_over: &(dyn Fn(u32) -> bool + Sync),
+        row: impl Fn(u32) -> I + Sync,
+    ) -> Result<Self, RasterError>
+    where
+        I: IntoIterator<Item = T>,
+    {
         check_size(size)?;
         let width = size[0] as usize;
         // Group narrow rows into pieces.
         let n_rows = BAND_PIXELS / width;
         let data = parallel::map_parts(n_rows, size[1] as usize, &|rows| {
             let mut values = Vec::with_capacity(width * rows.len());
-            rows.for_each(|index| values.extend(row(index as u32).into_iter().take(width)));
+            for index in rows.map(|index| index as u32) {
+                if is_over(index) {
+                    break;
+                }
+                values.extend(row(index).into_iter().take(width));
+            }
             values
         });
         Self::from_vec(size, data)

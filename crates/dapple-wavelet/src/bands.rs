@@ -1,7 +1,8 @@
 //! Decomposes rasters into frequency bands, and reconstructs them.
 
+use crate::error::check;
 use crate::line::check_finite;
-use crate::{Border, SplineFilter, WaveletError};
+use crate::{Border, IsCancelled, SplineFilter, WaveletError};
 use dapple_raster::Raster;
 
 /// A raster's frequency bands: one detail raster per level, finest first, and the coarse remainder.
@@ -29,14 +30,31 @@ impl SplineFilter {
         levels: u32,
         borders: [Border; 2],
     ) -> Result<Bands, WaveletError> {
+        self.analyze_cancellable(raster, levels, borders, &|| false)
+    }
+
+    /// Decomposes a raster like [`analyze`](Self::analyze), but fails if `is_cancelled` returns true. It is called as in
+    /// [`project_cancellable`](Self::project_cancellable).
+    ///
+    /// # Errors
+    ///
+    /// Same as [`analyze`](Self::analyze), plus `Cancelled`.
+    pub fn analyze_cancellable(
+        &self,
+        raster: &Raster<f32>,
+        levels: u32,
+        borders: [Border; 2],
+        is_cancelled: &IsCancelled,
+    ) -> Result<Bands, WaveletError> {
         let sizes = self.sizes(raster.size(), levels, borders)?;
         check_finite(raster.pixels())?;
         let mut coarse = raster.clone();
         let mut details = Vec::with_capacity(levels as usize);
         for &size in &sizes[..levels as usize] {
             let fine = coarse;
-            coarse = self.down(&fine, borders)?;
-            let kept = self.up(&coarse, size, borders)?;
+            coarse = self.down_cancellable(&fine, borders, is_cancelled)?;
+            let kept = self.up_cancellable(&coarse, size, borders, is_cancelled)?;
+            check(is_cancelled)?;
             details.push(fine.zip_map(&kept, |fine, kept| fine - kept)?);
         }
         Ok(Bands { details, coarse })
@@ -52,11 +70,27 @@ impl SplineFilter {
         bands: &Bands,
         borders: [Border; 2],
     ) -> Result<Raster<f32>, WaveletError> {
+        self.synthesize_cancellable(bands, borders, &|| false)
+    }
+
+    /// Reconstructs a raster like [`synthesize`](Self::synthesize), but fails if `is_cancelled` returns true. It is
+    /// called as in [`up_cancellable`](Self::up_cancellable).
+    ///
+    /// # Errors
+    ///
+    /// Same as [`synthesize`](Self::synthesize), plus `Cancelled`.
+    pub fn synthesize_cancellable(
+        &self,
+        bands: &Bands,
+        borders: [Border; 2],
+        is_cancelled: &IsCancelled,
+    ) -> Result<Raster<f32>, WaveletError> {
         check_finite(bands.coarse.pixels())?;
         let mut raster = bands.coarse.clone();
         for detail in bands.details.iter().rev() {
             check_finite(detail.pixels())?;
-            raster = self.up(&raster, detail.size(), borders)?;
+            raster = self.up_cancellable(&raster, detail.size(), borders, is_cancelled)?;
+            check(is_cancelled)?;
             raster = raster.zip_map(detail, |kept, detail| kept + detail)?;
         }
         Ok(raster)

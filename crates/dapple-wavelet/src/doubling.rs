@@ -3,8 +3,9 @@
 //! A fine coefficient is a sum of up to three coarse ones, with weights that depend on the parity of its index.
 
 use crate::ends::{Halving, Line};
+use crate::error::check;
 use crate::kernel::two_scale;
-use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
+use crate::{Border, IsCancelled, SplineFilter, WaveletError, WaveletErrorKind};
 use dapple_raster::parallel;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, Simd};
@@ -29,6 +30,9 @@ struct Part {
 
 /// Number of coarse values by which a line is extended at each end, which is the filter's reach.
 const PAD: usize = 4;
+
+/// Number of fine values between two calls of the callback; enough work for all cores.
+pub(crate) const BLOCK: usize = 1 << 22;
 
 impl Doubling {
     /// Creates the filter that produces lines of length `fine_len` from the coarse lines that [`Halving`] defines for
@@ -68,11 +72,36 @@ impl Doubling {
     }
 
     /// Doubles a raster along both axes: columns with this filter, whose results are rounded to `f32`, then rows with
-    /// `along_rows`.
-    pub(crate) fn plane(&self, level: Level, along_rows: &Self, coarse: &[f32], fine: &mut [f32]) {
+    /// `along_rows`. The callback is called before each block of about [`BLOCK`] values.
+    pub(crate) fn plane(
+        &self,
+        level: Level,
+        along_rows: &Self,
+        coarse: &[f32],
+        fine: &mut [f32],
+        is_cancelled: &IsCancelled,
+    ) -> Result<(), WaveletError> {
+        let n_rows = (BLOCK / along_rows.fine.len).max(1);
+        let blocks = fine.chunks_mut(n_rows * along_rows.fine.len);
+        for (rows, first) in blocks.zip((0..).step_by(n_rows)) {
+            check(is_cancelled)?;
+            self.rows(level, along_rows, coarse, (first, rows));
+        }
+        Ok(())
+    }
+
+    /// Computes fine rows, starting at row `first`.
+    pub(crate) fn rows(
+        &self,
+        level: Level,
+        along_rows: &Self,
+        coarse: &[f32],
+        (first, rows): (usize, &mut [f32]),
+    ) {
         let width = along_rows.coarse.len;
         let scratch = || vec![0.0; width + 2 * PAD];
-        parallel::for_each_chunk_with(fine, along_rows.fine.len, scratch, |padded, row, fine| {
+        parallel::for_each_chunk_with(rows, along_rows.fine.len, scratch, |padded, row, fine| {
+            let row = first + row;
             dispatch!(level, simd => self.row(simd, along_rows, row, coarse, (padded, fine)));
         });
     }

@@ -2,6 +2,22 @@
 
 use dapple_raster::RasterError;
 
+/// Callback that returns whether the caller no longer needs the result. It may be called from any thread.
+pub type IsCancelled<'a> = dyn Fn() -> bool + Sync + 'a;
+
+/// Returns an error if the caller's callback cancels.
+pub(crate) fn check(is_cancelled: &IsCancelled) -> Result<(), WaveletError> {
+    match is_cancelled() {
+        true => Err(cancelled()),
+        false => Ok(()),
+    }
+}
+
+/// Creates the error for work that the caller's callback canceled.
+pub(crate) fn cancelled() -> WaveletError {
+    WaveletError::new(WaveletErrorKind::Cancelled)
+}
+
 dapple_raster::error! {
     /// An error from a filter or from wavelet noise.
     WaveletError,
@@ -35,6 +51,8 @@ dapple_raster::error! {
             /// The value.
             value: f64,
         } => "value {index} is {value}, but all must be finite";
+        /// Cancelled by the caller's callback.
+        Cancelled => "the callback asked to stop";
     }
     from {
         /// An error from creating or checking a raster.

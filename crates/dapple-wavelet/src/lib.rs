@@ -34,6 +34,7 @@
 //! | sample it with its gradient | [`WaveletNoise::sample_with_gradient`](WaveletNoise2::sample_with_gradient) | |
 //! | fill a window with noise | [`to_raster`](dapple_raster::Field::to_raster), [`render`](dapple_raster::Field::render) | |
 //! | make a seamless tile of noise | [`wavelet_tile`] | |
+//! | stop a long call | [`wavelet_tile_cancellable`], [`of_size_cancellable`](WaveletNoise2::of_size_cancellable), [`down_cancellable`](SplineFilter::down_cancellable) | |
 //! | halve or double a raster | [`down`](SplineFilter::down), [`up`](SplineFilter::up) | 2.04 ns/pixel for both at 2048 × 2048 |
 //! | reuse memory | [`down_into`](SplineFilter::down_into), [`up_into`](SplineFilter::up_into) with a [`FilterMemory`] | |
 //! | split into bands and back | [`analyze`](SplineFilter::analyze), [`synthesize`](SplineFilter::synthesize) | |
@@ -135,11 +136,11 @@ mod noise;
 mod noise_tile;
 
 pub use bands::Bands;
-pub use error::{WaveletError, WaveletErrorKind};
+pub use error::{IsCancelled, WaveletError, WaveletErrorKind};
 #[doc(alias("band-limited noise", "simplex"))]
 pub use noise::WaveletNoise;
 pub use noise::{WaveletNoise2, WaveletNoise3};
-pub use noise_tile::wavelet_tile;
+pub use noise_tile::{wavelet_tile, wavelet_tile_cancellable};
 pub use plane::FilterMemory;
 pub use spline::{Border, Degree, Fit, Phase, SplineFilter};
 

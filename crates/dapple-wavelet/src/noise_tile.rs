@@ -11,8 +11,9 @@
 //! Reference: Robert L. Cook and Tony DeRose, "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005),
 //! <https://doi.org/10.1145/1073204.1073264>, for the bands; summing them into a raster is an original addition.
 
+use crate::error::cancelled;
 use crate::noise::{LineSums, check_weights, white_raster};
-use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
+use crate::{Border, IsCancelled, SplineFilter, WaveletError, WaveletErrorKind};
 use dapple_hash::Seed;
 use dapple_raster::Raster;
 
@@ -50,6 +51,21 @@ pub fn wavelet_tile(
     weights: &[f32],
     seed: Seed,
 ) -> Result<Raster<f32>, WaveletError> {
+    wavelet_tile_cancellable(size, weights, seed, &|| false)
+}
+
+/// Same as [`wavelet_tile`], but fails if `is_cancelled` returns true. It is called before each batch of 256 lines and
+/// once per 65,536 pixels of each band, or more often.
+///
+/// # Errors
+///
+/// Same as [`wavelet_tile`], plus [`WaveletErrorKind::Cancelled`].
+pub fn wavelet_tile_cancellable(
+    size: [u32; 2],
+    weights: &[f32],
+    seed: Seed,
+    is_cancelled: &IsCancelled,
+) -> Result<Raster<f32>, WaveletError> {
     check_weights(weights)?;
     // There are at most 16 weights.
     let levels = weights.len() as u32;
@@ -58,12 +74,12 @@ pub fn wavelet_tile(
     for level in (0..levels).rev() {
         let size = size.map(|side| side >> level);
         if size != tile.size() {
-            tile = SplineFilter::default().up(&tile, size, PERIODIC)?;
+            tile = SplineFilter::default().up_cancellable(&tile, size, PERIODIC, is_cancelled)?;
         }
         // Skip bands with weight zero.
         let weight = weights[level as usize];
         if weight != 0.0 {
-            tile = add_band(&tile, weight, level, seed)?;
+            tile = add_band(&tile, weight, level, seed, is_cancelled)?;
         }
     }
     Ok(tile)
@@ -88,22 +104,23 @@ fn add_band(
     weight: f32,
     level: u32,
     seed: Seed,
+    is_cancelled: &IsCancelled,
 ) -> Result<Raster<f32>, WaveletError> {
     let size = raster.size();
     let words = seed.child("wavelet tile", level.into());
-    let white = white_raster(size, words)?;
-    let low = SplineFilter::default().project(&white, 1, PERIODIC)?;
+    let white = white_raster(size, words, is_cancelled)?;
+    let low = SplineFilter::default().project_cancellable(&white, 1, PERIODIC, is_cancelled)?;
     let [along_rows, along_columns] =
         size.map(|side| LineSums::of_coefficients(side as usize, level));
     let factor = f64::from(weight) * LineSums::factor([along_rows?, along_columns?]);
-    let sum = Raster::from_rows(size, |row| {
+    let sum = Raster::from_rows_cancellable(size, is_cancelled, |row| {
         let [coarser, white, low] = [raster, &white, &low].map(|part| part.row(row));
         (0..size[0] as usize).map(move |column| {
             let detail = f64::from(white[column]) - f64::from(low[column]);
             (f64::from(coarser[column]) + factor * detail) as f32
         })
     })?;
-    Ok(sum)
+    sum.ok_or_else(cancelled)
 }
 
 #[cfg(test)]

@@ -4,7 +4,9 @@
 //! a raster along both axes, three passes a volume along its three axes, and restore the order of the axes. No pass
 //! accesses single values with the stride of a row, which would cost more than the filter.
 
+use crate::error::check;
 use crate::recursion::{Lanes, LineFilter};
+use crate::{IsCancelled, WaveletError};
 use dapple_raster::simd::dispatch;
 use dapple_raster::{parallel, simd};
 use fearless_simd::{Level, f32x8, prelude::*};
@@ -21,20 +23,34 @@ const ROWS: usize = 8;
 
 /// Filters the lines of an array, rounding the results to `f32`. Value `i` of line `l` is at `i * lines + l` of the
 /// result.
-pub(crate) fn filter_lines(filter: &LineFilter, values: &[f32]) -> Vec<f32> {
+pub(crate) fn filter_lines(
+    filter: &LineFilter,
+    values: &[f32],
+    is_cancelled: &IsCancelled,
+) -> Result<Vec<f32>, WaveletError> {
     let mut result = vec![0.0; values.len() / filter.source.len * filter.target.len];
-    filter_lines_into(simd::level(), filter, values, &mut Vec::new(), &mut result);
-    result
+    let batch = &mut Vec::new();
+    filter_lines_into(
+        simd::level(),
+        filter,
+        values,
+        batch,
+        &mut result,
+        is_cancelled,
+    )?;
+    Ok(result)
 }
 
-/// Filters lines like [`filter_lines`], at a SIMD level, into an existing result. `batch` is scratch memory.
+/// Filters lines like [`filter_lines`], at a SIMD level, into an existing result. `batch` is scratch memory. The callback
+/// is called before each batch of lines.
 pub(crate) fn filter_lines_into(
     level: Level,
     filter: &LineFilter,
     values: &[f32],
     batch: &mut Vec<f32>,
     result: &mut [f32],
-) {
+    is_cancelled: &IsCancelled,
+) -> Result<(), WaveletError> {
     let [len, target_len] = [filter.source.len, filter.target.len];
     let n_lines = values.len() / len;
     let group_len = LANES * target_len;
@@ -43,6 +59,7 @@ pub(crate) fn filter_lines_into(
         .chunks(BATCH * LANES * len)
         .zip((0..n_lines).step_by(BATCH * LANES));
     for (values, first_line) in batches {
+        check(is_cancelled)?;
         let n_groups = (values.len() / len).div_ceil(LANES);
         let groups = &mut batch[..n_groups * group_len];
         // Filter the groups of a batch.
@@ -61,6 +78,7 @@ pub(crate) fn filter_lines_into(
             }
         });
     }
+    Ok(())
 }
 
 /// Filters up to `LANES` lines at a time, one in each lane, into `target`, where the lines are interleaved.

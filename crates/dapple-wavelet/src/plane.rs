@@ -11,7 +11,7 @@ use crate::ends::lengths;
 use crate::line::check_finite;
 use crate::pass::filter_lines_into;
 use crate::recursion::LineFilter;
-use crate::{Border, SplineFilter, WaveletError};
+use crate::{Border, IsCancelled, SplineFilter, WaveletError};
 use dapple_raster::{Raster, simd};
 use fearless_simd::Level;
 
@@ -37,9 +37,25 @@ impl SplineFilter {
         fine: &Raster<f32>,
         borders: [Border; 2],
     ) -> Result<Raster<f32>, WaveletError> {
-        let [width, height] = self.sizes(fine.size(), 1, borders)?[1];
-        let mut coarse = Raster::filled([width, height], 0.0)?;
-        self.down_into(fine, borders, &mut coarse, &mut FilterMemory::default())?;
+        self.down_cancellable(fine, borders, &|| false)
+    }
+
+    /// Halves a raster like [`down`](Self::down), but fails if `is_cancelled` returns true. It is called before each
+    /// batch of 256 lines.
+    ///
+    /// # Errors
+    ///
+    /// Same as [`down`](Self::down), plus `Cancelled`.
+    pub fn down_cancellable(
+        &self,
+        fine: &Raster<f32>,
+        borders: [Border; 2],
+        is_cancelled: &IsCancelled,
+    ) -> Result<Raster<f32>, WaveletError> {
+        let size = self.sizes(fine.size(), 1, borders)?[1];
+        let mut coarse = Raster::filled(size, 0.0)?;
+        let memory = &mut FilterMemory::default();
+        self.halve(fine, borders, &mut coarse, memory, is_cancelled)?;
         Ok(coarse)
     }
 
@@ -57,6 +73,17 @@ impl SplineFilter {
         coarse: &mut Raster<f32>,
         memory: &mut FilterMemory,
     ) -> Result<(), WaveletError> {
+        self.halve(fine, borders, coarse, memory, &|| false)
+    }
+
+    fn halve(
+        &self,
+        fine: &Raster<f32>,
+        borders: [Border; 2],
+        coarse: &mut Raster<f32>,
+        memory: &mut FilterMemory,
+        is_cancelled: &IsCancelled,
+    ) -> Result<(), WaveletError> {
         let [width, height] = fine.size().map(|side| side as usize);
         let along_rows = LineFilter::halving(*self, width, borders[0])?;
         let along_columns = LineFilter::halving(*self, height, borders[1])?;
@@ -68,8 +95,8 @@ impl SplineFilter {
             fine,
             [&along_rows, &along_columns],
             coarse.pixels_mut(),
-        );
-        Ok(())
+            is_cancelled,
+        )
     }
 
     /// Doubles a raster: represents the same function with `fine_size` pixels (equations 8 and 13).
@@ -83,6 +110,22 @@ impl SplineFilter {
         fine_size: [u32; 2],
         borders: [Border; 2],
     ) -> Result<Raster<f32>, WaveletError> {
+        self.up_cancellable(coarse, fine_size, borders, &|| false)
+    }
+
+    /// Doubles a raster like [`up`](Self::up), but fails if `is_cancelled` returns true. It is called once per 2^22
+    /// pixels.
+    ///
+    /// # Errors
+    ///
+    /// Same as [`up`](Self::up), plus `Cancelled`.
+    pub fn up_cancellable(
+        &self,
+        coarse: &Raster<f32>,
+        fine_size: [u32; 2],
+        borders: [Border; 2],
+        is_cancelled: &IsCancelled,
+    ) -> Result<Raster<f32>, WaveletError> {
         let doubled = |axis: usize| {
             self.doubling(coarse.size()[axis], fine_size[axis], borders[axis])
                 .map(drop)
@@ -90,7 +133,7 @@ impl SplineFilter {
         // Check the size before allocating memory.
         doubled(0).and(doubled(1))?;
         let mut fine = Raster::filled(fine_size, 0.0)?;
-        self.up_into(coarse, borders, &mut fine)?;
+        self.double(coarse, borders, &mut fine, is_cancelled)?;
         Ok(fine)
     }
 
@@ -105,6 +148,16 @@ impl SplineFilter {
         borders: [Border; 2],
         fine: &mut Raster<f32>,
     ) -> Result<(), WaveletError> {
+        self.double(coarse, borders, fine, &|| false)
+    }
+
+    fn double(
+        &self,
+        coarse: &Raster<f32>,
+        borders: [Border; 2],
+        fine: &mut Raster<f32>,
+        is_cancelled: &IsCancelled,
+    ) -> Result<(), WaveletError> {
         let doubling =
             |axis: usize| self.doubling(coarse.size()[axis], fine.size()[axis], borders[axis]);
         let [along_rows, along_columns] = [doubling(0)?, doubling(1)?];
@@ -114,8 +167,8 @@ impl SplineFilter {
             &along_rows,
             coarse.pixels(),
             fine.pixels_mut(),
-        );
-        Ok(())
+            is_cancelled,
+        )
     }
 
     fn doubling(&self, coarse: u32, fine: u32, border: Border) -> Result<Doubling, WaveletError> {
@@ -137,17 +190,33 @@ impl SplineFilter {
         levels: u32,
         borders: [Border; 2],
     ) -> Result<Raster<f32>, WaveletError> {
+        self.project_cancellable(fine, levels, borders, &|| false)
+    }
+
+    /// Projects a raster like [`project`](Self::project), but fails if `is_cancelled` returns true. It is called as in
+    /// [`down_cancellable`](Self::down_cancellable) and [`up_cancellable`](Self::up_cancellable).
+    ///
+    /// # Errors
+    ///
+    /// Same as [`project`](Self::project), plus `Cancelled`.
+    pub fn project_cancellable(
+        &self,
+        fine: &Raster<f32>,
+        levels: u32,
+        borders: [Border; 2],
+        is_cancelled: &IsCancelled,
+    ) -> Result<Raster<f32>, WaveletError> {
         let sizes = self.sizes(fine.size(), levels, borders)?;
         check_finite(fine.pixels())?;
         let mut memory = FilterMemory::default();
         let mut raster = fine.clone();
         for &size in &sizes[1..] {
             let mut coarse = Raster::filled(size, 0.0)?;
-            self.down_into(&raster, borders, &mut coarse, &mut memory)?;
+            self.halve(&raster, borders, &mut coarse, &mut memory, is_cancelled)?;
             raster = coarse;
         }
         for &size in sizes[..levels as usize].iter().rev() {
-            raster = self.up(&raster, size, borders)?;
+            raster = self.up_cancellable(&raster, size, borders, is_cancelled)?;
         }
         Ok(raster)
     }
@@ -176,11 +245,12 @@ impl SplineFilter {
 pub(crate) fn filter(
     raster: &Raster<f32>,
     filters: [&LineFilter; 2],
+    is_cancelled: &IsCancelled,
 ) -> Result<Raster<f32>, WaveletError> {
     let size = filters.map(|filter| filter.target.len as u32);
     let mut filtered = Raster::filled(size, 0.0)?;
     let pixels = filtered.pixels_mut();
-    FilterMemory::default().filter(simd::level(), raster, filters, pixels);
+    FilterMemory::default().filter(simd::level(), raster, filters, pixels, is_cancelled)?;
     Ok(filtered)
 }
 
@@ -192,7 +262,8 @@ impl FilterMemory {
         raster: &Raster<f32>,
         [along_rows, along_columns]: [&LineFilter; 2],
         filtered: &mut [f32],
-    ) {
+        is_cancelled: &IsCancelled,
+    ) -> Result<(), WaveletError> {
         let Self { columns, batch } = self;
         let n_values = along_rows.target.len * raster.height() as usize;
         if columns.len() < n_values {
@@ -200,8 +271,9 @@ impl FilterMemory {
             *columns = vec![0.0; n_values];
         }
         let columns = &mut columns[..n_values];
-        filter_lines_into(level, along_rows, raster.pixels(), batch, columns);
-        filter_lines_into(level, along_columns, columns, batch, filtered);
+        let rows = raster.pixels();
+        filter_lines_into(level, along_rows, rows, batch, columns, is_cancelled)?;
+        filter_lines_into(level, along_columns, columns, batch, filtered, is_cancelled)
     }
 }
 

@@ -12,7 +12,7 @@ use crate::kernel::Kernel;
 use crate::line::{check_finite, filter_line};
 use crate::plane::filter;
 use crate::recursion::LineFilter;
-use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
+use crate::{Border, IsCancelled, SplineFilter, WaveletError, WaveletErrorKind};
 use dapple_raster::Raster;
 
 impl SplineFilter {
@@ -96,7 +96,23 @@ impl SplineFilter {
         samples: &Raster<f32>,
         borders: [Border; 2],
     ) -> Result<Raster<f32>, WaveletError> {
-        self.filter_raster(&Kernel::coefficients(self.degree), samples, borders)
+        self.coefficients_cancellable(samples, borders, &|| false)
+    }
+
+    /// Computes coefficients like [`coefficients`](Self::coefficients), but fails if `is_cancelled` returns true. It is
+    /// called before each batch of 256 lines.
+    ///
+    /// # Errors
+    ///
+    /// Same as [`coefficients`](Self::coefficients), plus `Cancelled`.
+    pub fn coefficients_cancellable(
+        &self,
+        samples: &Raster<f32>,
+        borders: [Border; 2],
+        is_cancelled: &IsCancelled,
+    ) -> Result<Raster<f32>, WaveletError> {
+        let kernel = Kernel::coefficients(self.degree);
+        self.filter_raster(&kernel, samples, borders, is_cancelled)
     }
 
     /// Evaluates the spline with the given coefficients at all pixel centers.
@@ -109,7 +125,23 @@ impl SplineFilter {
         coefficients: &Raster<f32>,
         borders: [Border; 2],
     ) -> Result<Raster<f32>, WaveletError> {
-        self.filter_raster(&Kernel::samples(self.degree), coefficients, borders)
+        self.samples_cancellable(coefficients, borders, &|| false)
+    }
+
+    /// Evaluates a spline like [`samples`](Self::samples), but fails if `is_cancelled` returns true. It is called before
+    /// each batch of 256 lines.
+    ///
+    /// # Errors
+    ///
+    /// Same as [`samples`](Self::samples), plus `Cancelled`.
+    pub fn samples_cancellable(
+        &self,
+        coefficients: &Raster<f32>,
+        borders: [Border; 2],
+        is_cancelled: &IsCancelled,
+    ) -> Result<Raster<f32>, WaveletError> {
+        let kernel = Kernel::samples(self.degree);
+        self.filter_raster(&kernel, coefficients, borders, is_cancelled)
     }
 
     fn filter_samples(
@@ -128,6 +160,7 @@ impl SplineFilter {
         kernel: &Kernel,
         raster: &Raster<f32>,
         borders: [Border; 2],
+        is_cancelled: &IsCancelled,
     ) -> Result<Raster<f32>, WaveletError> {
         let along = |axis: usize| {
             let line = Line::new(*self, raster.size()[axis] as usize, borders[axis])?;
@@ -135,7 +168,7 @@ impl SplineFilter {
         };
         let [along_rows, along_columns] = [along(0)?, along(1)?];
         check_finite(raster.pixels())?;
-        filter(raster, [&along_rows, &along_columns])
+        filter(raster, [&along_rows, &along_columns], is_cancelled)
     }
 }
 

@@ -6,7 +6,8 @@ use super::scale::LineSums;
 use super::tile::Tile;
 use super::white::{white, white_raster};
 use super::{WaveletNoise, WaveletNoise2, WaveletNoise3};
-use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
+use crate::error::cancelled;
+use crate::{Border, IsCancelled, SplineFilter, WaveletError, WaveletErrorKind};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::Raster;
 
@@ -49,10 +50,25 @@ impl WaveletNoise2 {
     /// # Ok::<(), dapple_wavelet::WaveletError>(())
     /// ```
     pub fn of_size(size: [u32; 2], seed: Seed) -> Result<Self, WaveletError> {
+        Self::of_size_cancellable(size, seed, &|| false)
+    }
+
+    /// Same as [`of_size`](Self::of_size), but fails if `is_cancelled` returns true. It is called before each batch of
+    /// 256 lines and once per 65,536 cells, or more often.
+    ///
+    /// # Errors
+    ///
+    /// Same as [`of_size`](Self::of_size), plus [`WaveletErrorKind::Cancelled`].
+    pub fn of_size_cancellable(
+        size: [u32; 2],
+        seed: Seed,
+        is_cancelled: &IsCancelled,
+    ) -> Result<Self, WaveletError> {
         check_size(size)?;
-        let white = white_raster(size, white_words(seed))?;
-        let low = SplineFilter::default().project(&white, 1, [Border::Periodic; 2])?;
-        Self::from_white(size, seed, white.pixels(), low.pixels())
+        let white = white_raster(size, white_words(seed), is_cancelled)?;
+        let filter = SplineFilter::default();
+        let low = filter.project_cancellable(&white, 1, [Border::Periodic; 2], is_cancelled)?;
+        Self::from_white(size, seed, [&white, &low], is_cancelled)
     }
 }
 
@@ -78,18 +94,40 @@ impl WaveletNoise3 {
     /// [`WaveletErrorKind::Range`] for fewer than 4 cells along an axis or more than 2^27 cells in total,
     /// [`WaveletErrorKind::NotDivisible`] if a size is odd.
     pub fn of_size(size: [u32; 3], seed: Seed) -> Result<Self, WaveletError> {
+        Self::of_size_cancellable(size, seed, &|| false)
+    }
+
+    /// Same as [`of_size`](Self::of_size), but fails if `is_cancelled` returns true. It is called before each batch of
+    /// 256 lines and once per 65,536 cells, or more often.
+    ///
+    /// # Errors
+    ///
+    /// Same as [`of_size`](Self::of_size), plus [`WaveletErrorKind::Cancelled`].
+    pub fn of_size_cancellable(
+        size: [u32; 3],
+        seed: Seed,
+        is_cancelled: &IsCancelled,
+    ) -> Result<Self, WaveletError> {
         check_size(size)?;
         let [width, height, depth] = size;
         let words = white_words(seed);
         // Stack the slices vertically in one raster.
-        let white = Raster::from_rows([width, height * depth], |row| {
+        let rows = [width, height * depth];
+        let white = Raster::from_rows_cancellable(rows, is_cancelled, |row| {
             let [row, slice] = [row % height, row / height].map(i64::from);
             let row = CellHash::new(words, [row, slice]);
             (0..width).map(move |column| white(row, column))
         })?;
-        let filter = SplineFilter::default();
-        let low = filter.project_volume(white.pixels(), size, 1, [Border::Periodic; 3])?;
-        Self::from_white(size, seed, white.pixels(), &low)
+        let white = white.ok_or_else(cancelled)?;
+        let low = SplineFilter::default().project_volume_cancellable(
+            white.pixels(),
+            size,
+            1,
+            [Border::Periodic; 3],
+            is_cancelled,
+        )?;
+        let low = Raster::from_vec(rows, low)?;
+        Self::from_white(size, seed, [&white, &low], is_cancelled)
     }
 }
 
@@ -98,8 +136,8 @@ impl<const N: usize> WaveletNoise<N> {
     fn from_white(
         size: [u32; N],
         seed: Seed,
-        white: &[f32],
-        low: &[f32],
+        [white, low]: [&Raster<f32>; 2],
+        is_cancelled: &IsCancelled,
     ) -> Result<Self, WaveletError> {
         let cells = size.map(|cells| cells as usize);
         let mut sums = [LineSums::of_values(cells[0])?; N];
@@ -107,15 +145,16 @@ impl<const N: usize> WaveletNoise<N> {
             sums[axis] = LineSums::of_values(cells[axis])?;
         }
         let factor = LineSums::factor(sums);
-        let parts = white.iter().zip(low);
-        let coefficients: Vec<f32> = parts
-            .map(|(&white, &low)| ((f64::from(white) - f64::from(low)) * factor) as f32)
-            .collect();
+        let coefficients = Raster::from_rows_cancellable(white.size(), is_cancelled, |row| {
+            let parts = white.row(row).iter().zip(low.row(row));
+            parts.map(|(&white, &low)| ((f64::from(white) - f64::from(low)) * factor) as f32)
+        })?;
+        let coefficients = coefficients.ok_or_else(cancelled)?;
         Ok(Self {
             size,
             periods: size.map(Period::new),
             seed,
-            tile: Tile::new(cells, &coefficients),
+            tile: Tile::new(cells, coefficients.pixels(), is_cancelled)?,
             bands: Band::all(&[1.0], size, seed),
         })
     }

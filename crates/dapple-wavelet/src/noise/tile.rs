@@ -1,6 +1,9 @@
 //! A periodic tile of B-spline coefficients and its values.
 
 use super::place::Place;
+use crate::doubling::BLOCK;
+use crate::error::check;
+use crate::{IsCancelled, WaveletError};
 
 /// Periodic coefficients with a margin of one cell on each side along each axis. Evaluating a position reads three
 /// cells per axis, so with the margin no index needs wrapping.
@@ -16,11 +19,18 @@ const MORE: usize = 2;
 
 impl<const N: usize> Tile<N> {
     /// Creates a tile of `size` cells from its coefficients, in which the first axis varies fastest.
-    pub(super) fn new(size: [usize; N], coefficients: &[f32]) -> Self {
+    pub(super) fn new(
+        size: [usize; N],
+        coefficients: &[f32],
+        is_cancelled: &IsCancelled,
+    ) -> Result<Self, WaveletError> {
         let sides = size.map(|cells| cells + MORE);
         let n_rows: usize = sides[1..].iter().product();
         let mut padded = Vec::with_capacity(n_rows * sides[0]);
         for row in 0..n_rows {
+            if row % (BLOCK / sides[0]).max(1) == 0 {
+                check(is_cancelled)?;
+            }
             let source = (1..N).rev().fold(0, |source, axis| {
                 let below: usize = sides[1..axis].iter().product();
                 let at = row / below % sides[axis];
@@ -31,10 +41,10 @@ impl<const N: usize> Tile<N> {
             padded.extend_from_slice(cells);
             padded.push(cells[0]);
         }
-        Self {
+        Ok(Self {
             sides,
             coefficients: padded,
-        }
+        })
     }
 
     /// Returns all coefficients, with the margins.

@@ -4,16 +4,22 @@
 //! nearly normally distributed (its kurtosis is 2.7 instead of 3), at most 3.47 in absolute value, and computed
 //! without logarithms, whose bits would differ between platforms.
 
-use crate::WaveletError;
+use crate::error::cancelled;
+use crate::{IsCancelled, WaveletError};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::Raster;
 
 /// Creates a raster of white noise.
-pub(crate) fn white_raster(size: [u32; 2], words: Seed) -> Result<Raster<f32>, WaveletError> {
-    Ok(Raster::from_rows(size, |row| {
+pub(crate) fn white_raster(
+    size: [u32; 2],
+    words: Seed,
+    is_cancelled: &IsCancelled,
+) -> Result<Raster<f32>, WaveletError> {
+    let made = Raster::from_rows_cancellable(size, is_cancelled, |row| {
         let row = CellHash::new(words, [row.into()]);
         (0..size[0]).map(move |column| white(row, column))
-    })?)
+    })?;
+    made.ok_or_else(cancelled)
 }
 
 /// Returns the white noise value of a cell, from the hash of its row and its column.

@@ -1,7 +1,10 @@
 //! Tests of noise tiles: no seam, documented powers, value stability.
 
-use super::wavelet_tile;
-use crate::{Border, SplineFilter, WaveletErrorKind};
+use super::{wavelet_tile, wavelet_tile_cancellable};
+use crate::{
+    Border, IsCancelled, SplineFilter, WaveletError, WaveletErrorKind, WaveletNoise2, WaveletNoise3,
+};
+use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use dapple_hash::Seed;
 use dapple_raster::{Raster, RasterErrorKind};
 
@@ -146,4 +149,76 @@ fn value_stability_wavelet_tile() {
         tile.row(3)[4..8],
         [1.5378956, -1.085114, 0.890169, 0.47323287]
     );
+}
+
+/// Checks that cancellation at each call gives the typed error, and that the result is unchanged without cancellation.
+/// Returns the number of calls.
+fn check_cancel<T: PartialEq>(
+    made: &T,
+    make: impl Fn(&IsCancelled) -> Result<T, WaveletError>,
+) -> usize {
+    let made_until = |last: usize| {
+        let n_calls = AtomicUsize::new(0);
+        let made = make(&|| n_calls.fetch_add(1, Relaxed) >= last);
+        (made, n_calls.into_inner())
+    };
+    let (whole, n_calls) = made_until(usize::MAX);
+    assert!(whole.is_ok_and(|whole| whole == *made));
+    for last in 0..n_calls {
+        let error = made_until(last).0.err().map(|error| error.kind().clone());
+        assert_eq!(error, Some(WaveletErrorKind::Cancelled), "at call {last}");
+    }
+    n_calls
+}
+
+#[test]
+fn tiles_and_noise_can_be_cancelled_at_every_call() {
+    let (size, weights) = ([256, 512], [0.5, 1.0]);
+    let made = wavelet_tile(size, &weights, Seed(7)).unwrap();
+    let n_calls = check_cancel(&made, |stop| {
+        wavelet_tile_cancellable(size, &weights, Seed(7), stop)
+    });
+    // The fine band makes two calls each for the noise, its rows and the sum, and one each for its columns and both
+    // doublings; the coarse band makes a call for each of the five.
+    assert_eq!(n_calls, 2 + 2 + 2 + 1 + 1 + 1 + 5);
+
+    let made = WaveletNoise2::of_size(size, Seed(7)).unwrap();
+    let n_calls = check_cancel(&made, |stop| {
+        WaveletNoise2::of_size_cancellable(size, Seed(7), stop)
+    });
+    assert_eq!(n_calls, 2 + (2 + 1) + 1 + 2 + 1, "of noise in the plane");
+
+    let size = [32, 64, 64];
+    let made = WaveletNoise3::of_size(size, Seed(7)).unwrap();
+    let n_calls = check_cancel(&made, |stop| {
+        WaveletNoise3::of_size_cancellable(size, Seed(7), stop)
+    });
+    // Halving goes through 4096, 1024 and 512 lines, 256 at a time.
+    assert_eq!(n_calls, 2 + (16 + 4 + 2) + 1 + 2 + 1, "of noise in space");
+}
+
+#[test]
+fn filters_can_be_cancelled_at_every_call() {
+    let (filter, borders) = (SplineFilter::default(), [Border::Mirror; 2]);
+    let image = Raster::from_fn([300, 70], |x, y| (x * y % 7) as f32).unwrap();
+    let made = filter.analyze(&image, 2, borders).unwrap();
+    let n_calls = check_cancel(&made, |stop| {
+        filter.analyze_cancellable(&image, 2, borders, stop)
+    });
+    assert_eq!(n_calls, 2 * 4, "for rows, columns, doubling and difference");
+    let whole = filter.synthesize(&made, borders).unwrap();
+    let n_calls = check_cancel(&whole, |stop| {
+        filter.synthesize_cancellable(&made, borders, stop)
+    });
+    assert_eq!(n_calls, 2 * 2, "for doubling and sum");
+    let made = filter.coefficients(&image, borders).unwrap();
+    let n_calls = check_cancel(&made, |stop| {
+        filter.coefficients_cancellable(&image, borders, stop)
+    });
+    assert_eq!(n_calls, 1 + 2, "for rows and columns");
+    let made = filter.samples(&image, borders).unwrap();
+    let n_calls = check_cancel(&made, |stop| {
+        filter.samples_cancellable(&image, borders, stop)
+    });
+    assert_eq!(n_calls, 1 + 2, "for rows and columns");
 }

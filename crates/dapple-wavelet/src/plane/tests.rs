@@ -94,10 +94,15 @@ fn every_simd_level_gives_the_same_bits() {
             simd::for_every_level(|level| {
                 let mut halved = vec![f32::NAN; coarse.pixels().len()];
                 let filters = [&halving[0], &halving[1]];
-                FilterMemory::default().filter(level, &fine, filters, &mut halved);
+                let mut memory = FilterMemory::default();
+                let made = memory.filter(level, &fine, filters, &mut halved, &|| false);
+                made.expect("nobody cancels");
                 assert_eq!(halved, coarse.pixels(), "down, {filter:?}, {level:?}");
                 let mut doubled = vec![f32::NAN; fine.pixels().len()];
-                doubling[1].plane(level, &doubling[0], coarse.pixels(), &mut doubled);
+                let [along_rows, along_columns] = &doubling;
+                let coarse = coarse.pixels();
+                let made = along_columns.plane(level, along_rows, coarse, &mut doubled, &|| false);
+                made.expect("nobody cancels");
                 assert_eq!(doubled, again.pixels(), "up, {filter:?}, {level:?}");
             });
         }
