@@ -8,8 +8,9 @@ use crate::maps::per_axis;
 use crate::pictures::{Pixels, array_of_planes};
 use crate::seed::SeedArgument;
 use crate::threads;
+use crate::watch;
 use dapple::raster::Raster;
-use dapple::wavelet::{Bands, Border, SplineFilter, WaveletError};
+use dapple::wavelet::{Bands, Border, SplineFilter, WaveletError, wavelet_tile_cancellable};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -295,8 +296,8 @@ pub(crate) fn wavelet_tile<'py>(
     seed: SeedArgument,
 ) -> Result<Bound<'py, PyAny>> {
     let size = self::size(size)?;
-    let tile = threads::run(py, move || {
-        dapple::wavelet::wavelet_tile(size, &weights, seed.0)
+    let tile = watch::run(py, None, move |_, stop| {
+        wavelet_tile_cancellable(size, &weights, seed.0, &|| stop.is_set())
     })??;
     arrays::numbers(py, tile)
 }

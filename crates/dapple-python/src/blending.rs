@@ -5,11 +5,10 @@ use crate::data;
 use crate::error::{Error, Result};
 use crate::maps::per_axis;
 use crate::pictures::{self, Content, Layout, numbers};
-use crate::threads;
 use crate::watch;
 use dapple::color::LinearRgb;
 use dapple::raster::{Raster, Wrap};
-use dapple::tile::{Blend, BlendMap, Layer, Map, TileError};
+use dapple::tile::{Blend, BlendMap, Layer, Map, TileError, blend_cancellable};
 use pyo3::prelude::*;
 
 /// Computes a blend tile from a texture, (rows, columns): low in cracks, high on raised or bright parts (after Du,
@@ -143,27 +142,28 @@ pub(crate) fn blend<'py>(
         mixing: data::options_or("mixing", mixing, Default::default())?,
     };
     let kinds = layout.clone();
-    let maps = threads::run(py, move || -> core::result::Result<Vec<Map>, TileError> {
-        for maps in &mut layers {
-            multiply(&kinds, maps, |color, alpha| color * alpha)?;
-        }
-        let layers = layers.iter().zip(&weights).zip(&heights);
-        let layers = layers.map(|((maps, weight), height)| Layer {
-            maps,
-            weight: weight.as_ref().unwrap_or(&full),
-            height: height.as_ref(),
-        });
-        let layers: Vec<_> = layers.collect();
-        let mut maps = match &tile {
-            Some(tile) => dapple::tile::blend_by_tile(&layers, tile, &how)?,
-            None => dapple::tile::blend(&layers, &how)?,
-        };
-        multiply(&kinds, &mut maps, |color, alpha| match alpha > 0.0 {
-            true => LinearRgb::from(color.to_array().map(|part| part / alpha)),
-            false => LinearRgb::BLACK,
-        })?;
-        Ok(maps)
-    })??;
+    let maps = watch::run(
+        py,
+        None,
+        move |_, stop| -> core::result::Result<Vec<Map>, TileError> {
+            for maps in &mut layers {
+                multiply(&kinds, maps, |color, alpha| color * alpha)?;
+            }
+            let layers = layers.iter().zip(&weights).zip(&heights);
+            let layers = layers.map(|((maps, weight), height)| Layer {
+                maps,
+                weight: weight.as_ref().unwrap_or(&full),
+                height: height.as_ref(),
+            });
+            let layers: Vec<_> = layers.collect();
+            let mut maps = blend_cancellable(&layers, tile.as_ref(), &how, &|| stop.is_set())?;
+            multiply(&kinds, &mut maps, |color, alpha| match alpha > 0.0 {
+                true => LinearRgb::from(color.to_array().map(|part| part / alpha)),
+                false => LinearRgb::BLACK,
+            })?;
+            Ok(maps)
+        },
+    )??;
     layout.python(py, maps)
 }
 

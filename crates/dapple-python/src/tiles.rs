@@ -165,7 +165,9 @@ pub(crate) fn make_tile<'py>(
         method: self::method(method, options)?,
         axes: flags(axes, true)?,
     };
-    let tile = threads::run(py, move || seamless.apply_maps(&maps))??;
+    let tile = watch::run(py, None, move |_, stop| {
+        seamless.apply_maps_cancellable(&maps, &|| stop.is_set())
+    })??;
     layout.python(py, tile)
 }
 

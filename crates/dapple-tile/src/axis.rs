@@ -2,7 +2,8 @@
 //!
 //! A function for rows is applied to columns by transposing the planes before and after it.
 
-use crate::TileError;
+use crate::error::check;
+use crate::{IsCancelled, TileError};
 use dapple_raster::Raster;
 
 /// An axis of an image. The x axis is processed before the y axis.
@@ -18,6 +19,7 @@ pub(crate) enum Axis {
 pub(crate) fn each_axis(
     planes: &[Raster<f32>],
     axes: [bool; 2],
+    is_cancelled: &IsCancelled,
     along_rows: impl Fn(&[Raster<f32>], Axis) -> Result<Vec<Raster<f32>>, TileError>,
 ) -> Result<Vec<Raster<f32>>, TileError> {
     let mut planes = planes.to_vec();
@@ -25,14 +27,21 @@ pub(crate) fn each_axis(
         planes = along_rows(&planes, Axis::X)?;
     }
     if axes[1] {
-        let columns = along_rows(&transpose_all(&planes)?, Axis::Y)?;
-        planes = transpose_all(&columns)?;
+        let columns = along_rows(&transpose_all(&planes, is_cancelled)?, Axis::Y)?;
+        planes = transpose_all(&columns, is_cancelled)?;
     }
     Ok(planes)
 }
 
-fn transpose_all(planes: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
-    planes.iter().map(transpose).collect()
+/// Transposes all planes. The callback is called before each strip of rows.
+pub(crate) fn transpose_all(
+    planes: &[Raster<f32>],
+    is_cancelled: &IsCancelled,
+) -> Result<Vec<Raster<f32>>, TileError> {
+    let transposed = planes
+        .iter()
+        .map(|plane| transpose_cancellable(plane, is_cancelled));
+    transposed.collect()
 }
 
 /// Side length of the blocks that are transposed at a time, in pixels. Source and target of a block fit into the cache.
@@ -40,11 +49,19 @@ const BLOCK: usize = 32;
 
 /// Exchanges the rows and columns of a raster.
 pub(crate) fn transpose(raster: &Raster<f32>) -> Result<Raster<f32>, TileError> {
+    transpose_cancellable(raster, &|| false)
+}
+
+fn transpose_cancellable(
+    raster: &Raster<f32>,
+    is_cancelled: &IsCancelled,
+) -> Result<Raster<f32>, TileError> {
     let [width, height] = raster.size().map(|side| side as usize);
     let from = raster.pixels();
     let mut to = vec![0.0; from.len()];
     // Transpose in square blocks.
     for top in (0..height).step_by(BLOCK) {
+        check(is_cancelled)?;
         for left in (0..width).step_by(BLOCK) {
             for y in top..(top + BLOCK).min(height) {
                 for x in left..(left + BLOCK).min(width) {
@@ -85,7 +102,7 @@ mod tests {
             Ok(vec![out?])
         };
         for axes in [[false; 2], [true, false], [false, true], [true; 2]] {
-            let out = each_axis(core::slice::from_ref(&raster), axes, sum).unwrap();
+            let out = each_axis(core::slice::from_ref(&raster), axes, &|| false, sum).unwrap();
             let expected = Raster::from_fn([3, 2], |x, y| {
                 let along = [x as f32, 100.0 * y as f32];
                 let added = along.iter().zip(axes).filter(|(_, repeats)| *repeats);

@@ -27,7 +27,7 @@
 //! All maps of a material have the same shares. Normals are blended as slopes, and the results are unit vectors. For
 //! normals that match the blended height, compute them from it by [`normal_map`](dapple_color::normal_map).
 
-use crate::error::check;
+use crate::error::{check, rows_cancellable};
 use crate::map::check_planes;
 use crate::{IsCancelled, Map, Pyramid, TileError, TileErrorKind, Weighting};
 use dapple_raster::Raster;
@@ -175,8 +175,8 @@ pub fn blend_by_tile(
     blend_cancellable(layers, Some(tile), how, &|| false)
 }
 
-/// Same as [`blend`], or [`blend_by_tile`] with a tile, but fails if `is_cancelled` returns true. It is called before the
-/// shares and before each plane of a map.
+/// Same as [`blend`], or [`blend_by_tile`] with a tile, but fails if `is_cancelled` returns true. It is called before each
+/// layer and each plane of a map, and once per 65,536 pixels of a pass over them.
 ///
 /// # Errors
 ///
@@ -189,10 +189,10 @@ pub fn blend_cancellable(
 ) -> Result<Vec<Map>, TileError> {
     check_layers(layers)?;
     check(is_cancelled)?;
-    let shares = how.weighting.shares(layers, tile)?;
+    let shares = how.weighting.shares(layers, tile, is_cancelled)?;
     // Shares for each band, finest first.
     let bands = match &how.mixing {
-        Mixing::Pyramid(pyramid) => pyramid.shares(shares)?,
+        Mixing::Pyramid(pyramid) => pyramid.shares(shares, is_cancelled)?,
         Mixing::Linear | Mixing::KeepVariance => vec![shares],
     };
     (0..layers[0].maps.len())
@@ -252,9 +252,9 @@ fn mix_map(
         check_planes(&planes)?;
         check(is_cancelled)?;
         blended.push(match mixing {
-            Mixing::Linear => linear(&planes, &bands[0])?,
-            Mixing::KeepVariance => keep_variance(&planes, &bands[0])?,
-            Mixing::Pyramid(pyramid) => pyramid.mix(&planes, bands)?,
+            Mixing::Linear => linear(&planes, &bands[0], is_cancelled)?,
+            Mixing::KeepVariance => keep_variance(&planes, &bands[0], is_cancelled)?,
+            Mixing::Pyramid(pyramid) => pyramid.mix(&planes, bands, is_cancelled)?,
         });
     }
 }
@@ -263,9 +263,10 @@ fn mix_map(
 pub(crate) fn linear(
     planes: &[Raster<f32>],
     shares: &[Raster<f32>],
+    is_cancelled: &IsCancelled,
 ) -> Result<Raster<f32>, TileError> {
     let size = planes[0].size();
-    Ok(Raster::from_rows(size, |row| {
+    rows_cancellable(size, is_cancelled, |row| {
         // For each pixel, compute the weighted sum, and the range of the values that have a share.
         let mut sums = vec![(0.0_f64, f32::INFINITY, f32::NEG_INFINITY); size[0] as usize];
         for (plane, shares) in planes.iter().zip(shares) {
@@ -281,14 +282,18 @@ pub(crate) fn linear(
         // Rounding of the sum of shares must not push the result out of the range.
         let mixed = |(sum, min, max): (f64, f32, f32)| (sum as f32).max(min).min(max);
         sums.into_iter().map(mixed)
-    })?)
+    })
 }
 
 /// Computes the variance-preserving blend `Σ w μ + Σ w (x - μ) / sqrt(Σ w²)`.
-fn keep_variance(planes: &[Raster<f32>], shares: &[Raster<f32>]) -> Result<Raster<f32>, TileError> {
+fn keep_variance(
+    planes: &[Raster<f32>],
+    shares: &[Raster<f32>],
+    is_cancelled: &IsCancelled,
+) -> Result<Raster<f32>, TileError> {
     let size = planes[0].size();
     let means: Vec<f64> = planes.iter().map(|plane| plane.statistics().mean).collect();
-    Ok(Raster::from_rows(size, |row| {
+    rows_cancellable(size, is_cancelled, |row| {
         // For each pixel, compute `Σ w μ`, `Σ w (x - μ)` and `Σ w²`.
         let mut sums = vec![[0.0_f64; 3]; size[0] as usize];
         for ((plane, shares), mean) in planes.iter().zip(shares).zip(&means) {
@@ -303,7 +308,7 @@ fn keep_variance(planes: &[Raster<f32>], shares: &[Raster<f32>]) -> Result<Raste
         // The sum of squares is at least one over the number of layers.
         let mixed = |[mean, offset, squares]: [f64; 3]| (mean + offset / squares.sqrt()) as f32;
         sums.into_iter().map(mixed)
-    })?)
+    })
 }
 
 #[cfg(test)]

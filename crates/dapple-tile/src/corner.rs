@@ -14,6 +14,7 @@
 //! depends only on the two colors on the left, and its end only on those on the right, so it continues in the next
 //! tile.
 
+use crate::axis::transpose_all;
 use crate::cut::{Band, Cut, Ends, mix, scales};
 use crate::error::{check, rows_cancellable};
 use crate::map::check_planes;
@@ -83,7 +84,7 @@ impl CornerTiles {
     }
 
     /// Same as [`new`](Self::new) and then [`with_width`](Self::with_width), but fails if `is_cancelled` returns true.
-    /// It is called before each of the C² + C⁴ cuts.
+    /// It is called before each of the C² + C⁴ cuts, before each plane of a cut, and once per 2^20 cells of a search.
     ///
     /// # Errors
     ///
@@ -200,7 +201,7 @@ impl CornerTiles {
     }
 
     /// Renders the same maps as [`render`](Self::render), unless `is_cancelled` returns true. The callback is called
-    /// once per 64 rows of a plane, from any thread.
+    /// once per 65,536 pixels of a plane, from any thread.
     ///
     /// # Errors
     ///
@@ -312,8 +313,9 @@ impl Cuts {
         let [along_x, along_y] = size.map(|side| band(side, size, width));
         let of_scales: Vec<_> = sources.iter().map(Vec::as_slice).collect();
         let scales = scales(&of_scales);
-        let turned = sources.iter().map(|planes| turned(planes));
-        let turned: Vec<_> = turned.collect::<Result<_, _>>()?;
+        let turned = |planes: &[Raster<f32>]| transpose_all(planes, is_cancelled);
+        let turned_sources = sources.iter().map(|planes| turned(planes));
+        let turned_sources: Vec<_> = turned_sources.collect::<Result<_, _>>()?;
         let n_colors = sources.len();
         // Cut each pair from top to bottom, and record where its cut from left to right starts and ends.
         let (mut beside, mut halves, mut ends) = (Vec::new(), Vec::new(), Vec::new());
@@ -322,16 +324,19 @@ impl Cuts {
             // Between equal sources, every cut is invisible.
             let cheapest = |of: &[Vec<Raster<f32>>], band| match a == b {
                 true => Ok(Cut::straight(band, of[a][0].height())),
-                false => Cut::cheapest([&of[a], &of[b]], &scales, band, Ends::Closed),
+                false => {
+                    let pair = [&of[a][..], &of[b]];
+                    Cut::cheapest(pair, &scales, band, Ends::Closed, is_cancelled)
+                }
             };
             let cut = cheapest(sources, along_x)?;
-            ends.push(cheapest(&turned, along_y)?.ends());
+            ends.push(cheapest(&turned_sources, along_y)?.ends());
             // Join the pair along its cut. Transpose it, since the next cut runs from left to right.
             let pairs = sources[a].iter().zip(&sources[b]);
             let joined: Vec<_> = pairs
                 .map(|(a, b)| cut.join([a, b]))
                 .collect::<Result<_, _>>()?;
-            halves.push(self::turned(&joined)?);
+            halves.push(turned(&joined)?);
             beside.push(cut);
         }
         // Cut the upper from the lower pair of each tile, between these ends.
@@ -343,7 +348,7 @@ impl Cuts {
             let at = Ends::At([ends[a + c * n_colors][0], ends[b + d * n_colors][1]]);
             across.push(match (a, b) == (c, d) {
                 true => Cut::straight(along_y, size[0]),
-                false => Cut::cheapest(pair, &scales, along_y, at)?,
+                false => Cut::cheapest(pair, &scales, along_y, at, is_cancelled)?,
             });
         }
         Ok(Self { beside, across })
@@ -361,10 +366,6 @@ fn band(side: u32, size: [u32; 2], width: f64) -> Band {
         first: (side - count) / 2,
         count,
     }
-}
-
-fn turned(planes: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
-    planes.iter().map(crate::axis::transpose).collect()
 }
 
 #[cfg(test)]

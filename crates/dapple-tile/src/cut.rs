@@ -11,8 +11,9 @@
 //! the cost of a cut is the variance that the mean loses: the sum over the ramp's pixels of the difference times w (1 -
 //! w), where w is the weight.
 
-use crate::TileError;
 use crate::cut_path::{closed_path, open_path, path_between};
+use crate::error::check;
+use crate::{IsCancelled, TileError};
 use dapple_raster::Raster;
 
 /// Half-width of the ramp across a cut between different tiles, in pixels.
@@ -52,6 +53,7 @@ impl Cut {
         scales: &[f64],
         band: Band,
         ends: Ends,
+        is_cancelled: &IsCancelled,
     ) -> Result<Self, TileError> {
         let half_width = half_width(band);
         // Even if the band has no columns, there is a column to its right.
@@ -62,17 +64,19 @@ impl Cut {
         // Sum the squared differences of all planes.
         let mut differences = Raster::filled(size, 0.0)?;
         for ((a, b), scale) in images[0].iter().zip(images[1]).zip(scales) {
+            check(is_cancelled)?;
             add_differences([a, b], band.first as usize, *scale, &mut differences);
         }
+        check(is_cancelled)?;
         // Find the path with the lowest total cost, among the columns in which the ramp fits into the band.
         let costs = costs(&differences, half_width)?;
         // Paths are relative to the columns at which the whole ramp fits into the band.
         let first = band.first + inset(half_width);
         let mut columns = match ends {
-            Ends::Free => open_path(&costs),
-            Ends::Closed => closed_path(&costs),
-            Ends::At(ends) => path_between(&costs, ends.map(|column| column - first)),
-        };
+            Ends::Free => open_path(&costs, is_cancelled),
+            Ends::Closed => closed_path(&costs, is_cancelled),
+            Ends::At(ends) => path_between(&costs, ends.map(|column| column - first), is_cancelled),
+        }?;
         columns.iter_mut().for_each(|column| *column += first);
         Ok(Self {
             columns,
@@ -256,7 +260,7 @@ mod tests {
                 let images = [seed, seed + 100].map(|seed| image(seed, size));
                 let [a, b] = [&images[..1], &images[1..]];
                 for ends in [Ends::Free, Ends::Closed, Ends::At([from, to.min(from + 2)])] {
-                    let found = Cut::cheapest([a, b], &[1.0], band, ends).unwrap();
+                    let found = Cut::cheapest([a, b], &[1.0], band, ends, &|| false).unwrap();
                     let holds = |cut: &Cut| match ends {
                         Ends::Free => true,
                         Ends::Closed => cut.ends()[0].abs_diff(cut.ends()[1]) <= 1,

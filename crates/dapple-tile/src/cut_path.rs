@@ -11,38 +11,51 @@
 //! cells need not cross, and the path of the middle cell bounds the search in both halves. This takes O(rows · width ·
 //! log width) and is exact.
 
+use crate::error::check;
+use crate::{IsCancelled, TileError};
 use dapple_raster::Raster;
 
 /// Returns the columns of the cheapest path, row by row. If several paths are equally cheap, returns the one with the
 /// smaller columns, compared from the last row up.
 ///
 /// Costs must be finite.
-pub(crate) fn open_path(costs: &Raster<f64>) -> Vec<u32> {
+pub(crate) fn open_path(
+    costs: &Raster<f64>,
+    is_cancelled: &IsCancelled,
+) -> Result<Vec<u32>, TileError> {
     let [left, right] = whole_band(costs);
-    Search::new(costs).cheapest(&left, &right, None).columns
+    let mut search = Search::new(costs, is_cancelled);
+    Ok(search.cheapest(&left, &right, None)?.columns)
 }
 
 /// Returns the columns of the cheapest closed path, row by row. If several paths are equally cheap, returns the one
 /// with the smallest first column.
-pub(crate) fn closed_path(costs: &Raster<f64>) -> Vec<u32> {
+pub(crate) fn closed_path(
+    costs: &Raster<f64>,
+    is_cancelled: &IsCancelled,
+) -> Result<Vec<u32>, TileError> {
     let [left, right] = whole_band(costs);
-    let mut search = Search::new(costs);
+    let mut search = Search::new(costs, is_cancelled);
     // Start with the first column. Its path bounds the paths of all other columns on the left.
-    let mut best = search.cheapest(&left, &right, Some(0));
+    let mut best = search.cheapest(&left, &right, Some(0))?;
     let left = best.columns.clone();
     // Search the other columns by bisection.
-    search.halve([1, costs.width()], &left, &right, &mut best);
-    best.columns
+    search.halve([1, costs.width()], &left, &right, &mut best)?;
+    Ok(best.columns)
 }
 
 /// Returns the columns of the cheapest path between the given columns of the first and the last row, row by row.
 ///
 /// The difference of the two columns must be less than the number of rows.
-pub(crate) fn path_between(costs: &Raster<f64>, [begin, end]: [u32; 2]) -> Vec<u32> {
+pub(crate) fn path_between(
+    costs: &Raster<f64>,
+    [begin, end]: [u32; 2],
+    is_cancelled: &IsCancelled,
+) -> Result<Vec<u32>, TileError> {
     let [left, right] = whole_band(costs);
-    let mut search = Search::new(costs);
-    search.spread(&left, &right, [begin; 2]);
-    search.trace(left.len() - 1, [end; 2]).columns
+    let mut search = Search::new(costs, is_cancelled);
+    search.spread(&left, &right, [begin; 2])?;
+    Ok(search.trace(left.len() - 1, [end; 2]).columns)
 }
 
 /// A path with its total cost.
@@ -71,60 +84,87 @@ struct Search<'a> {
     /// For each cell, the last step of the cheapest path to it: from the column before (0), the same column (1), or the
     /// column after (2).
     steps: Vec<u8>,
+    is_cancelled: &'a IsCancelled<'a>,
+    /// Number of cells computed since the last call of the callback.
+    n_cells: u32,
 }
+
+/// Number of cells between two calls of the callback, at most one row more.
+const CELLS: u32 = 1 << 20;
 
 /// Number of cells of infinite cost on either side of a band. A step moves one column, and the band of the next row may
 /// extend one column farther.
 const PAD: usize = 2;
 
 impl<'a> Search<'a> {
-    fn new(costs: &'a Raster<f64>) -> Self {
+    fn new(costs: &'a Raster<f64>, is_cancelled: &'a IsCancelled<'a>) -> Self {
         let prices = vec![f64::INFINITY; costs.width() as usize + 2 * PAD];
         Self {
             costs,
             prices: [prices.clone(), prices],
             steps: vec![1; costs.pixels().len()],
+            is_cancelled,
+            // Call the callback before the first row.
+            n_cells: CELLS,
         }
     }
 
     /// Searches closed paths that start in `first[0]..first[1]` and stay in the band, by bisection.
-    fn halve(&mut self, first: [u32; 2], left: &[u32], right: &[u32], best: &mut Path) {
+    fn halve(
+        &mut self,
+        first: [u32; 2],
+        left: &[u32],
+        right: &[u32],
+        best: &mut Path,
+    ) -> Result<(), TileError> {
         if first[0] >= first[1] {
-            return;
+            return Ok(());
         }
         // Find the cheapest path of the middle column.
         let middle = first[0] + (first[1] - first[0]) / 2;
-        let path = self.cheapest(left, right, Some(middle));
+        let path = self.cheapest(left, right, Some(middle))?;
         // Paths of columns on either side need not cross it, so it bounds both searches.
-        self.halve([first[0], middle], left, &path.columns, best);
-        self.halve([middle + 1, first[1]], &path.columns, right, best);
+        self.halve([first[0], middle], left, &path.columns, best)?;
+        self.halve([middle + 1, first[1]], &path.columns, right, best)?;
         // If costs are equal, prefer the smaller first column.
         if path.price < best.price || (path.price == best.price && path.first() < best.first()) {
             *best = path;
         }
+        Ok(())
     }
 
     /// Finds the cheapest path between the bounds `left` and `right`, both inclusive. With `begin`, the path is closed
     /// and starts in that column.
-    fn cheapest(&mut self, left: &[u32], right: &[u32], begin: Option<u32>) -> Path {
+    fn cheapest(
+        &mut self,
+        left: &[u32],
+        right: &[u32],
+        begin: Option<u32>,
+    ) -> Result<Path, TileError> {
         let last = left.len() - 1;
         let begins = begin.map_or([left[0], right[0]], |column| [column; 2]);
-        self.spread(left, right, begins);
+        self.spread(left, right, begins)?;
         let [mut from, mut to] = [left[last], right[last]];
         // A closed path ends at most one column from where it began.
         if let Some(column) = begin {
             from = from.max(column.saturating_sub(1));
             to = to.min(column + 1);
         }
-        self.trace(last, [from, to])
+        Ok(self.trace(last, [from, to]))
     }
 
     /// Computes the total costs of all cells of the band, for paths that start in a cell of `begins[0]..=begins[1]`.
-    fn spread(&mut self, left: &[u32], right: &[u32], begins: [u32; 2]) {
+    fn spread(&mut self, left: &[u32], right: &[u32], begins: [u32; 2]) -> Result<(), TileError> {
         self.begin([left[0], right[0]], begins);
         for row in 1..left.len() {
+            if self.n_cells >= CELLS {
+                check(self.is_cancelled)?;
+                self.n_cells = 0;
+            }
             self.advance(row, [left[row], right[row]]);
+            self.n_cells += right[row] - left[row] + 1;
         }
+        Ok(())
     }
 
     /// Computes the total costs of the first row, for paths that start in a cell of `from..=to`.
@@ -247,7 +287,7 @@ mod tests {
         for seed in 0..40 {
             for size in [[1, 1], [1, 9], [7, 1], [2, 5], [9, 13]] {
                 let costs = costs(seed, size);
-                let path = open_path(&costs);
+                let path = open_path(&costs, &|| false).unwrap();
                 let all: Vec<_> = (0..size[0]).collect();
                 assert!(steps_are_short(&path), "{path:?}");
                 assert_eq!(price(&costs, &path), brute_force(&costs, &all, |_| true));
@@ -260,7 +300,7 @@ mod tests {
         for seed in 0..60 {
             for size in [[1, 1], [1, 9], [7, 1], [2, 2], [5, 30], [16, 11], [13, 40]] {
                 let costs = costs(seed, size);
-                let path = closed_path(&costs);
+                let path = closed_path(&costs, &|| false).unwrap();
                 let ends = path[0].abs_diff(path[path.len() - 1]);
                 assert!(steps_are_short(&path) && ends <= 1, "{path:?}");
                 let best = (0..size[0])
@@ -277,7 +317,7 @@ mod tests {
             for size in [[1, 1], [1, 9], [4, 4], [9, 13], [13, 40]] {
                 let costs = costs(seed, size);
                 for ends in [[0, size[0] - 1], [size[0] - 1, 0], [size[0] / 2; 2]] {
-                    let path = path_between(&costs, ends);
+                    let path = path_between(&costs, ends, &|| false).unwrap();
                     assert!(steps_are_short(&path), "{path:?}");
                     assert_eq!([path[0], path[path.len() - 1]], ends);
                     let best = brute_force(&costs, &ends[..1], |end| end == ends[1]);
@@ -294,14 +334,15 @@ mod tests {
     #[test]
     fn paths_of_equal_costs_keep_to_the_smallest_column() {
         let flat = Raster::filled([6, 20], 1.0).unwrap();
-        assert_eq!(open_path(&flat), [0; 20]);
-        assert_eq!(closed_path(&flat), [0; 20]);
+        assert_eq!(open_path(&flat, &|| false).unwrap(), [0; 20]);
+        assert_eq!(closed_path(&flat, &|| false).unwrap(), [0; 20]);
     }
 
     #[test]
     fn value_stability_paths() {
         let costs = costs(3, [8, 12]);
-        assert_eq!(open_path(&costs), [2, 1, 2, 3, 2, 3, 2, 1, 1, 1, 1, 0]);
-        assert_eq!(closed_path(&costs), [3, 4, 5, 5, 5, 6, 6, 5, 4, 3, 4, 4]);
+        let [open, closed] = [open_path, closed_path].map(|path| path(&costs, &|| false).unwrap());
+        assert_eq!(open, [2, 1, 2, 3, 2, 3, 2, 1, 1, 1, 1, 0]);
+        assert_eq!(closed, [3, 4, 5, 5, 5, 6, 6, 5, 4, 3, 4, 4]);
     }
 }

@@ -116,7 +116,7 @@ impl Disturbance {
     }
 
     /// Renders the same maps as [`render_maps`](Self::render_maps), unless `is_cancelled` returns true. The callback is
-    /// called once for each copy and map.
+    /// called for each step of each copy and map.
     ///
     /// # Errors
     ///
@@ -154,7 +154,7 @@ impl Disturbance {
             let hash = CellHash::new(seed, [rows[row as usize].copy]);
             let copy = move |column: &Piece| {
                 check(is_cancelled)?;
-                self.copy(tile, hash.axis(column.copy))
+                self.copy(tile, hash.axis(column.copy), is_cancelled)
             };
             columns.iter().map(copy)
         })?;
@@ -170,7 +170,12 @@ impl Disturbance {
     }
 
     /// Computes the planes of the copy whose shift comes from `hash`.
-    fn copy(&self, tile: &[Raster<f32>], hash: CellHash) -> Result<Vec<Raster<f32>>, TileError> {
+    fn copy(
+        &self,
+        tile: &[Raster<f32>],
+        hash: CellHash,
+        is_cancelled: &IsCancelled,
+    ) -> Result<Vec<Raster<f32>>, TileError> {
         // Roll the tile by a random shift along each axis.
         let [x, y] = [0, 1].map(|axis| shift(hash.at(axis), tile[0].size()[axis as usize]));
         let shifted = tile.iter().map(|plane| rolled(plane, [x, y]));
@@ -179,7 +184,8 @@ impl Disturbance {
             band: self.margin,
         };
         // Surround it with the borders of the tile itself.
-        framed(&shifted.collect::<Result<Vec<_>, _>>()?, tile, width)
+        let shifted = shifted.collect::<Result<Vec<_>, _>>()?;
+        framed(&shifted, tile, width, is_cancelled)
     }
 
     /// Checks that the frozen pixels and the margin fit into half of a side.

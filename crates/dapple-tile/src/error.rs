@@ -2,38 +2,59 @@
 
 use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use dapple_color::ColorError;
-use dapple_raster::{Raster, RasterError};
-use dapple_wavelet::WaveletError;
+use dapple_raster::{Raster, RasterError, parallel};
+use dapple_wavelet::{WaveletError, WaveletErrorKind};
 
 /// Callback that returns whether the caller no longer needs the result. It may be called from any thread.
 pub type IsCancelled<'a> = dyn Fn() -> bool + Sync + 'a;
 
+/// Creates the error for work that the caller's callback canceled.
+fn cancelled() -> TileError {
+    TileError::new(TileErrorKind::Cancelled)
+}
+
 /// Returns an error if the caller's callback cancels.
 pub(crate) fn check(is_cancelled: &IsCancelled) -> Result<(), TileError> {
     match is_cancelled() {
-        true => Err(TileError::new(TileErrorKind::Cancelled)),
+        true => Err(cancelled()),
         false => Ok(()),
     }
 }
 
-/// Creates a raster from rows, unless the caller's callback, which is called once per 64 rows, cancels.
-pub(crate) fn rows_cancellable(
+/// Converts the result of a wavelet filter; a canceled filter gives [`TileErrorKind::Cancelled`].
+pub(crate) fn filtered<T>(made: Result<T, WaveletError>) -> Result<T, TileError> {
+    made.map_err(|error| match error.kind() {
+        WaveletErrorKind::Cancelled => cancelled(),
+        _ => error.into(),
+    })
+}
+
+/// Creates a raster from rows, unless the caller's callback, which is called once per 65,536 pixels, cancels.
+pub(crate) fn rows_cancellable<T: Send, I: IntoIterator<Item = T>>(
     size: [u32; 2],
     is_cancelled: &IsCancelled,
-    row: impl Fn(u32) -> Vec<f32> + Sync + Send,
-) -> Result<Raster<f32>, TileError> {
+    row: impl Fn(u32) -> I + Sync,
+) -> Result<Raster<T>, TileError> {
+    Raster::from_rows_cancellable(size, is_cancelled, row)?.ok_or_else(cancelled)
+}
+
+/// Collects the results of `make` for the numbers below `count`, in order, unless the caller's callback, which is called
+/// before each of them, cancels.
+pub(crate) fn map_cancellable<T: Send>(
+    count: usize,
+    is_cancelled: &IsCancelled,
+    make: impl Fn(usize) -> T + Sync,
+) -> Result<Vec<T>, TileError> {
     let is_over = AtomicBool::new(false);
-    let raster = Raster::from_rows(size, |index| {
-        if index % 64 == 0 && is_cancelled() {
+    let made = parallel::map(count, |index| {
+        if !is_over.load(Relaxed) && is_cancelled() {
             is_over.store(true, Relaxed);
         }
-        match is_over.load(Relaxed) {
-            true => vec![0.0; size[0] as usize],
-            false => row(index),
-        }
-    })?;
-    check(&|| is_over.load(Relaxed))?;
-    Ok(raster)
+        (!is_over.load(Relaxed)).then(|| make(index))
+    });
+    made.into_iter()
+        .collect::<Option<_>>()
+        .ok_or_else(cancelled)
 }
 
 dapple_raster::error! {

@@ -4,9 +4,9 @@
 //! result, the upper and the lower cut run from left to right. Where both sides of a cut show the frame, it costs
 //! nothing, so the four cuts join to one closed path around the middle.
 
-use crate::TileError;
-use crate::axis::{Axis, each_axis, transpose};
+use crate::axis::{Axis, each_axis, transpose_all};
 use crate::cut::{Band, Cut, Ends, scales};
+use crate::{IsCancelled, TileError};
 use dapple_raster::Raster;
 
 /// The width of a frame.
@@ -23,15 +23,22 @@ pub(crate) fn framed(
     planes: &[Raster<f32>],
     frame: &[Raster<f32>],
     width: Frame,
+    is_cancelled: &IsCancelled,
 ) -> Result<Vec<Raster<f32>>, TileError> {
-    framed_along(planes, width, |_, axis| in_axis(frame, axis))
+    framed_along(planes, width, is_cancelled, |_, axis| {
+        in_axis(frame, axis, is_cancelled)
+    })
 }
 
 /// Returns the frame's planes, transposed if needed so that their rows run along `axis`.
-pub(crate) fn in_axis(frame: &[Raster<f32>], axis: Axis) -> Result<Vec<Raster<f32>>, TileError> {
+pub(crate) fn in_axis(
+    frame: &[Raster<f32>],
+    axis: Axis,
+    is_cancelled: &IsCancelled,
+) -> Result<Vec<Raster<f32>>, TileError> {
     match axis {
         Axis::X => Ok(frame.to_vec()),
-        Axis::Y => frame.iter().map(transpose).collect(),
+        Axis::Y => transpose_all(frame, is_cancelled),
     }
 }
 
@@ -39,9 +46,10 @@ pub(crate) fn in_axis(frame: &[Raster<f32>], axis: Axis) -> Result<Vec<Raster<f3
 pub(crate) fn framed_along(
     planes: &[Raster<f32>],
     width: Frame,
+    is_cancelled: &IsCancelled,
     frame: impl Fn(&[Raster<f32>], Axis) -> Result<Vec<Raster<f32>>, TileError>,
 ) -> Result<Vec<Raster<f32>>, TileError> {
-    each_axis(planes, [true; 2], |planes, axis| {
+    each_axis(planes, [true; 2], is_cancelled, |planes, axis| {
         let mut frame = frame(planes, axis)?;
         let mut planes = planes.to_vec();
         let scales = scales(&[&planes, &frame]);
@@ -56,7 +64,7 @@ pub(crate) fn framed_along(
         };
         // Make the left cut, and then, on mirrored planes, the right one.
         for _ in 0..2 {
-            let cut = Cut::cheapest([&frame, &planes], &scales, band, ends)?;
+            let cut = Cut::cheapest([&frame, &planes], &scales, band, ends, is_cancelled)?;
             let pairs = frame.iter().zip(&planes);
             let joined = pairs.map(|(frame, plane)| mirrored(&cut.join([frame, plane])?));
             planes = joined.collect::<Result<_, _>>()?;
@@ -81,7 +89,8 @@ mod tests {
     use dapple_raster::Raster;
 
     fn in_frame(plane: &Raster<f32>, frame: &Raster<f32>, width: Frame) -> Raster<f32> {
-        let planes = framed(slice::from_ref(plane), slice::from_ref(frame), width);
+        let [plane, frame] = [plane, frame].map(slice::from_ref);
+        let planes = framed(plane, frame, width, &|| false);
         planes.unwrap().swap_remove(0)
     }
 

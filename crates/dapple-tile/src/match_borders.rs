@@ -110,7 +110,7 @@ impl MatchBorders {
     }
 
     /// Computes the same tiles as [`apply_maps`](Self::apply_maps), unless `is_cancelled` returns true. The callback is
-    /// called for each axis of each tile.
+    /// called for each step of each tile.
     ///
     /// # Errors
     ///
@@ -182,9 +182,8 @@ impl MatchBorders {
         };
         // Put the other tiles into the frame of that tile.
         let framed = |tile: &Vec<Raster<f32>>| {
-            framed_along(tile, self.frame(), |_, axis| {
-                check(is_cancelled)?;
-                in_axis(&donor, axis)
+            framed_along(tile, self.frame(), is_cancelled, |_, axis| {
+                in_axis(&donor, axis, is_cancelled)
             })
         };
         let others = tiles[1..].iter().map(framed);
@@ -218,7 +217,7 @@ impl MatchBorders {
         tile: &[Raster<f32>],
         is_cancelled: &IsCancelled,
     ) -> Result<Vec<Raster<f32>>, TileError> {
-        framed_along(tile, self.frame(), |planes, _: Axis| {
+        framed_along(tile, self.frame(), is_cancelled, |planes, _: Axis| {
             check(is_cancelled)?;
             // Roll the tile by half, which moves its middle to the borders.
             let half = planes[0].width() / 2;

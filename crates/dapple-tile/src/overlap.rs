@@ -1,7 +1,8 @@
 //! Blends the two ends of a row where they overlap.
 
 use crate::crossfade::Pair;
-use crate::{Crossfade, TileError, TileErrorKind};
+use crate::error::{check, rows_cancellable};
+use crate::{Crossfade, IsCancelled, TileError, TileErrorKind};
 use dapple_raster::Raster;
 
 /// Checks that a margin is at least one pixel, and at most half of each side that repeats.
@@ -40,10 +41,12 @@ pub(crate) fn overlap(
     planes: &[Raster<f32>],
     weights: &Raster<f64>,
     crossfade: Crossfade,
+    is_cancelled: &IsCancelled,
 ) -> Result<Vec<Raster<f32>>, TileError> {
     planes
         .iter()
         .map(|plane| {
+            check(is_cancelled)?;
             let margin = weights.width();
             // A weight of 0 shows the last columns, a weight of 1 the first ones.
             let [first, last] = ends(plane, margin)?;
@@ -52,21 +55,24 @@ pub(crate) fn overlap(
                 means: [plane.statistics().mean; 2],
             };
             let mixed = crossfade.mix(pair, weights)?;
-            join(&mixed, plane)
+            check(is_cancelled)?;
+            join(&mixed, plane, is_cancelled)
         })
         .collect()
 }
 
 /// Joins the blended columns and the columns outside of the overlap.
-fn join(mixed: &Raster<f32>, plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
+fn join(
+    mixed: &Raster<f32>,
+    plane: &Raster<f32>,
+    is_cancelled: &IsCancelled,
+) -> Result<Raster<f32>, TileError> {
     let margin = mixed.width();
     // Leave out the last columns, which are blended into the first ones.
     let rest = margin as usize..(plane.width() - margin) as usize;
-    Ok(Raster::from_rows(
-        [plane.width() - margin, plane.height()],
-        |row| {
-            let middle = &plane.row(row)[rest.clone()];
-            mixed.row(row).iter().chain(middle).copied()
-        },
-    )?)
+    let size = [plane.width() - margin, plane.height()];
+    rows_cancellable(size, is_cancelled, |row| {
+        let middle = &plane.row(row)[rest.clone()];
+        mixed.row(row).iter().chain(middle).copied()
+    })
 }

@@ -10,9 +10,10 @@
 //! sharpening is a power. In the band of level `l`, counted from 0 for the finest, the shares `w` become `w^p / Σ w^p`
 //! with `p = 1 + sharpness · (levels - l) / levels`. The coarse remainder is blended with `p = 1`.
 
-use crate::TileError;
 use crate::blend::linear;
+use crate::error::filtered;
 use crate::weighting::{normalize, zip};
+use crate::{IsCancelled, TileError};
 use dapple_raster::Raster;
 use dapple_wavelet::{Bands, Border, SplineFilter};
 
@@ -57,6 +58,7 @@ impl Pyramid {
     pub(crate) fn shares(
         &self,
         finest: Vec<Raster<f32>>,
+        is_cancelled: &IsCancelled,
     ) -> Result<Vec<Vec<Raster<f32>>>, TileError> {
         let (levels, sharpness) = (self.levels, self.sharpness);
         TileError::check(
@@ -73,12 +75,15 @@ impl Pyramid {
         for level in 0..levels {
             // Sharpen the shares by a power, the largest for the finest band.
             let part = f64::from(levels - level) / f64::from(levels);
-            bands.push(sharpen(&shares, 1.0 + sharpness * part)?);
-            let halved = shares.iter().map(|share| filter.down(share, self.borders));
+            bands.push(sharpen(&shares, 1.0 + sharpness * part, is_cancelled)?);
+            let halved = shares
+                .iter()
+                .map(|share| filter.down_cancellable(share, self.borders, is_cancelled));
+            let halved = halved.map(filtered);
             shares = halved.collect::<Result<_, _>>()?;
         }
         // The shares of the coarse remainder are not sharpened.
-        bands.push(sharpen(&shares, 1.0)?);
+        bands.push(sharpen(&shares, 1.0, is_cancelled)?);
         Ok(bands)
     }
 
@@ -87,33 +92,44 @@ impl Pyramid {
         &self,
         planes: &[Raster<f32>],
         shares: &[Vec<Raster<f32>>],
+        is_cancelled: &IsCancelled,
     ) -> Result<Raster<f32>, TileError> {
         let filter = SplineFilter::default();
         // Group the bands of all layers by band.
         let mut bands = vec![Vec::new(); shares.len()];
         for plane in planes {
-            let Bands { details, coarse } = filter.analyze(plane, self.levels, self.borders)?;
+            let Bands { details, coarse } = filtered(filter.analyze_cancellable(
+                plane,
+                self.levels,
+                self.borders,
+                is_cancelled,
+            ))?;
             for (band, detail) in bands.iter_mut().zip(details.into_iter().chain([coarse])) {
                 band.push(detail);
             }
         }
         let mixed = bands.iter().zip(shares);
         let mut details: Vec<_> = mixed
-            .map(|(layers, shares)| linear(layers, shares))
+            .map(|(layers, shares)| linear(layers, shares, is_cancelled))
             .collect::<Result<_, _>>()?;
         // The last element is the coarse remainder: `shares` has one element more than there are levels.
         let coarse = details.swap_remove(self.levels as usize);
-        Ok(filter.synthesize(&Bands { details, coarse }, self.borders)?)
+        let bands = Bands { details, coarse };
+        filtered(filter.synthesize_cancellable(&bands, self.borders, is_cancelled))
     }
 }
 
 /// Raises shares to a power, and normalizes them to a sum of 1. Slightly negative shares, which filters may cause,
 /// count as 0.
-fn sharpen(shares: &[Raster<f32>], power: f64) -> Result<Vec<Raster<f32>>, TileError> {
+fn sharpen(
+    shares: &[Raster<f32>],
+    power: f64,
+    is_cancelled: &IsCancelled,
+) -> Result<Vec<Raster<f32>>, TileError> {
     // Find the largest share of each pixel.
     let mut most = shares[0].clone();
     for shares in &shares[1..] {
-        most = zip(&most, shares, |most, share| share.max(*most))?;
+        most = zip(&most, shares, is_cancelled, |most, share| share.max(*most))?;
     }
     // Divide by the largest share, so that the power of at least one does not underflow.
     let power_of = |share: &f32, most: &f32| {
@@ -122,9 +138,9 @@ fn sharpen(shares: &[Raster<f32>], power: f64) -> Result<Vec<Raster<f32>>, TileE
     };
     let powers: Vec<_> = shares
         .iter()
-        .map(|shares| zip(shares, &most, power_of))
+        .map(|shares| zip(shares, &most, is_cancelled, power_of))
         .collect::<Result<_, _>>()?;
-    normalize(&powers.iter().collect::<Vec<_>>())
+    normalize(&powers.iter().collect::<Vec<_>>(), is_cancelled)
 }
 
 #[cfg(test)]

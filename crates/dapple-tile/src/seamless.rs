@@ -7,8 +7,9 @@ mod poisson;
 mod soft_cut;
 mod spline_project;
 
+use crate::error::check;
 use crate::map::{check_planes, color_from_planes, color_planes};
-use crate::{Map, TileError, TileErrorKind};
+use crate::{IsCancelled, Map, TileError, TileErrorKind};
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
 pub use feather::Feather;
@@ -116,7 +117,7 @@ impl Seamless {
     ///
     /// Same as [`apply_maps`](Self::apply_maps).
     pub fn apply(&self, image: &Raster<f32>) -> Result<Raster<f32>, TileError> {
-        let mut planes = self.planes(core::slice::from_ref(image), &[[1.0; 2]])?;
+        let mut planes = self.planes(core::slice::from_ref(image), &[[1.0; 2]], &|| false)?;
         Ok(planes.swap_remove(0))
     }
 
@@ -126,7 +127,7 @@ impl Seamless {
     ///
     /// Same as [`apply_maps`](Self::apply_maps).
     pub fn apply_color(&self, image: &Raster<LinearRgb>) -> Result<Raster<LinearRgb>, TileError> {
-        color_from_planes(self.planes(&color_planes(image), &[[1.0; 2]; 3])?)
+        color_from_planes(self.planes(&color_planes(image), &[[1.0; 2]; 3], &|| false)?)
     }
 
     /// Makes tiles from all maps of a material. All maps are cut along the same paths.
@@ -142,6 +143,20 @@ impl Seamless {
     /// * [`Wavelet`](TileErrorKind::Wavelet), [`Margin`](TileErrorKind::Margin) or [`Range`](TileErrorKind::Range) if
     ///   the method does not support the size or the options
     pub fn apply_maps(&self, maps: &[Map]) -> Result<Vec<Map>, TileError> {
+        self.apply_maps_cancellable(maps, &|| false)
+    }
+
+    /// Makes the same tiles as [`apply_maps`](Self::apply_maps), unless `is_cancelled` returns true. The callback is
+    /// called before each plane of a map and during long passes over a plane, from any thread.
+    ///
+    /// # Errors
+    ///
+    /// Same as [`apply_maps`](Self::apply_maps), and [`Cancelled`](TileErrorKind::Cancelled).
+    pub fn apply_maps_cancellable(
+        &self,
+        maps: &[Map],
+        is_cancelled: &IsCancelled,
+    ) -> Result<Vec<Map>, TileError> {
         let planes: Vec<_> = match self.method {
             // Center normals first. Otherwise, the code of a flat normal, which is slightly sloped, would change when
             // reflected.
@@ -152,7 +167,7 @@ impl Seamless {
             _ => maps.iter().flat_map(Map::planes).collect(),
         };
         let reflections: Vec<_> = maps.iter().flat_map(Map::reflections).copied().collect();
-        Map::all_with_planes(maps, self.planes(&planes, &reflections)?)
+        Map::all_with_planes(maps, self.planes(&planes, &reflections, is_cancelled)?)
     }
 
     /// Makes tiles from planes. `reflections` are the factors of each plane for reflection along x and along y.
@@ -160,7 +175,9 @@ impl Seamless {
         &self,
         planes: &[Raster<f32>],
         reflections: &[[f32; 2]],
+        is_cancelled: &IsCancelled,
     ) -> Result<Vec<Raster<f32>>, TileError> {
+        check(is_cancelled)?;
         let size = check_planes(planes)?;
         for (length, repeats) in size.into_iter().zip(self.axes) {
             if repeats && length < 2 {
@@ -168,16 +185,18 @@ impl Seamless {
             }
         }
         match &self.method {
-            Method::Periodic => periodic::tile(planes, self.axes),
-            Method::Poisson(wrap) => poisson::tile(planes, *wrap, self.axes),
-            Method::SoftCut(cut) => soft_cut::tile(planes, cut, self.axes),
-            Method::SplineProject(project) => spline_project::tile(planes, project, self.axes),
-            Method::PeriodicThenProject(project) => {
-                let planes = periodic::tile(planes, self.axes)?;
-                spline_project::tile(&planes, project, self.axes)
+            Method::Periodic => periodic::tile(planes, self.axes, is_cancelled),
+            Method::Poisson(wrap) => poisson::tile(planes, *wrap, self.axes, is_cancelled),
+            Method::SoftCut(cut) => soft_cut::tile(planes, cut, self.axes, is_cancelled),
+            Method::SplineProject(project) => {
+                spline_project::tile(planes, project, self.axes, is_cancelled)
             }
-            Method::Feather(feather) => feather::tile(planes, feather, self.axes),
-            Method::Mirror => mirror::tile(planes, reflections, self.axes),
+            Method::PeriodicThenProject(project) => {
+                let planes = periodic::tile(planes, self.axes, is_cancelled)?;
+                spline_project::tile(&planes, project, self.axes, is_cancelled)
+            }
+            Method::Feather(feather) => feather::tile(planes, feather, self.axes, is_cancelled),
+            Method::Mirror => mirror::tile(planes, reflections, self.axes, is_cancelled),
         }
     }
 }

@@ -10,8 +10,8 @@
 //! of the discrete cosine transform. Coarse samples are then at the centers of the pixels that they replace, whatever
 //! the phase, since only there the samples are mirrored as well.
 
-use crate::TileError;
 use crate::fourier::{BAND, Element, Fourier, map_columns, times};
+use crate::{IsCancelled, TileError};
 use core::f64::consts::TAU;
 use dapple_raster::Raster;
 use dapple_wavelet::Phase;
@@ -31,16 +31,24 @@ pub(crate) struct Axis {
 }
 
 /// Fits functions to the columns and rows of a plane, and samples them.
-pub(crate) fn coarse(plane: &Raster<f32>, axes: [Axis; 2]) -> Result<Raster<f32>, TileError> {
-    change(plane, axes.map(|axis| axis.coarse), |axis| {
+pub(crate) fn coarse(
+    plane: &Raster<f32>,
+    axes: [Axis; 2],
+    is_cancelled: &IsCancelled,
+) -> Result<Raster<f32>, TileError> {
+    change(plane, axes.map(|axis| axis.coarse), is_cancelled, |axis| {
         let sampling = Sampling::new(&axes[axis]);
         move |line| sampling.coarse(line)
     })
 }
 
 /// Evaluates the functions of the columns and rows of a coarse plane at the pixels.
-pub(crate) fn refine(plane: &Raster<f32>, axes: [Axis; 2]) -> Result<Raster<f32>, TileError> {
-    change(plane, axes.map(|axis| axis.fine), |axis| {
+pub(crate) fn refine(
+    plane: &Raster<f32>,
+    axes: [Axis; 2],
+    is_cancelled: &IsCancelled,
+) -> Result<Raster<f32>, TileError> {
+    change(plane, axes.map(|axis| axis.fine), is_cancelled, |axis| {
         let sampling = Sampling::new(&axes[axis]);
         move |line| sampling.refine(line)
     })
@@ -50,12 +58,14 @@ pub(crate) fn refine(plane: &Raster<f32>, axes: [Axis; 2]) -> Result<Raster<f32>
 fn change<C: Fn(Vec<Element>) -> Vec<Element> + Sync>(
     plane: &Raster<f32>,
     size: [u32; 2],
+    is_cancelled: &IsCancelled,
     along: impl Fn(usize) -> C,
 ) -> Result<Raster<f32>, TileError> {
     let values: Vec<_> = plane.pixels().iter().map(|&value| value.into()).collect();
     // Process the columns. The result is transposed, so the rows are the next columns.
-    let turned = map_columns(&values, plane.width() as usize, along(1));
-    let values = map_columns(&turned, size[1] as usize, along(0));
+    let width = plane.width() as usize;
+    let turned = map_columns(&values, width, is_cancelled, along(1))?;
+    let values = map_columns(&turned, size[1] as usize, is_cancelled, along(0))?;
     let pixels = values.into_iter().map(|value| value as f32).collect();
     Ok(Raster::from_vec(size, pixels)?)
 }

@@ -1,6 +1,8 @@
 //! Textures for tests, and measurements of them.
 
 use crate::axis::transpose;
+use crate::{IsCancelled, TileError, TileErrorKind};
+use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::Raster;
 use dapple_raster::glam::DVec2;
@@ -186,4 +188,26 @@ pub(crate) fn same_on_threads(result: impl Fn() -> Raster<f32> + Send + Sync) ->
     };
     let one = on(1);
     [2, 7].into_iter().all(|count| on(count) == one)
+}
+
+/// Checks that cancellation at each call gives the typed error, and that the result is unchanged without cancellation.
+/// Returns the number of calls.
+pub(crate) fn check_cancel<T: PartialEq + core::fmt::Debug>(
+    made: &T,
+    make: impl Fn(&IsCancelled) -> Result<T, TileError>,
+) -> usize {
+    let calls = AtomicUsize::new(0);
+    let count = |last| {
+        calls.store(0, Relaxed);
+        move |calls: &AtomicUsize| calls.fetch_add(1, Relaxed) >= last
+    };
+    let never = count(usize::MAX);
+    assert_eq!(make(&|| never(&calls)).as_ref(), Ok(made));
+    let n_calls = calls.load(Relaxed);
+    for last in 0..n_calls {
+        let is_over = count(last);
+        let error = make(&|| is_over(&calls)).unwrap_err();
+        assert_eq!(error.kind(), &TileErrorKind::Cancelled, "at call {last}");
+    }
+    n_calls
 }

@@ -17,8 +17,9 @@
 //!   the tile are evenly distributed, like those of [`rank_equalize`](crate::rank_equalize). A layer without weight has
 //!   no area.
 
+use crate::error::{check, rows_cancellable};
 use crate::map::check_finite;
-use crate::{Layer, TileError, TileErrorKind};
+use crate::{IsCancelled, Layer, TileError, TileErrorKind};
 use dapple_raster::Raster;
 
 /// Rule that converts the weights of layers to their shares. The shares of a pixel sum to 1.
@@ -84,43 +85,51 @@ impl Weighting {
         &self,
         layers: &[Layer<'_>],
         tile: Option<&Raster<f32>>,
+        is_cancelled: &IsCancelled,
     ) -> Result<Vec<Raster<f32>>, TileError> {
         if let (Some(tile), Some(layer)) = (tile, layers.first()) {
             layer.weight.check_same_size(tile.size())?;
             check_finite(tile)?;
         }
         for layer in layers {
+            check(is_cancelled)?;
             check_finite(layer.weight)?;
             let least = layer.weight.statistics().min;
             TileError::check(least >= 0.0, "smallest weight", least.into(), "at least 0")?;
         }
         let weights: Vec<_> = layers.iter().map(|layer| layer.weight).collect();
         match *self {
-            Self::Given => normalize(&weights),
+            Self::Given => normalize(&weights, is_cancelled),
             Self::Height { depth } => {
                 let holds = depth > 0.0 && depth.is_finite();
                 TileError::check(holds, "depth", depth, "above 0 and finite")?;
-                by_height(&normalize(&weights)?, &heights(layers, tile)?, depth)
+                let weights = normalize(&weights, is_cancelled)?;
+                by_height(&weights, &heights(layers, tile)?, depth, is_cancelled)
             }
             Self::Mask { gain } => {
                 let holds = gain > 0.0 && gain <= MOST_GAIN;
                 TileError::check(holds, "gain", gain, "above 0 and at most 1e9")?;
-                by_mask(&weights, checked_mask(tile)?, gain)
+                by_mask(&weights, checked_mask(tile)?, gain, is_cancelled)
             }
         }
     }
 }
 
 /// Divides weights by their sum, which must be above zero everywhere.
-pub(crate) fn normalize(weights: &[&Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
-    let sums = sums(weights)?;
+pub(crate) fn normalize(
+    weights: &[&Raster<f32>],
+    is_cancelled: &IsCancelled,
+) -> Result<Vec<Raster<f32>>, TileError> {
+    let sums = sums(weights, is_cancelled)?;
     let share = |&weight: &f32, sum: &f64| (f64::from(weight) / sum) as f32;
-    let shares = weights.iter().map(|weights| zip(weights, &sums, share));
+    let shares = weights
+        .iter()
+        .map(|weights| zip(weights, &sums, is_cancelled, share));
     shares.collect()
 }
 
 /// Returns the sums of the weights, added in the order of the layers. They must be above zero.
-fn sums(weights: &[&Raster<f32>]) -> Result<Raster<f64>, TileError> {
+fn sums(weights: &[&Raster<f32>], is_cancelled: &IsCancelled) -> Result<Raster<f64>, TileError> {
     let first = weights.first().ok_or(TileError::new(TileErrorKind::Count {
         what: "layers",
         count: 0,
@@ -128,7 +137,9 @@ fn sums(weights: &[&Raster<f32>]) -> Result<Raster<f64>, TileError> {
     }))?;
     let mut sums = first.map(|_| 0.0);
     for weights in weights {
-        sums = zip(&sums, weights, |sum, &weight| sum + f64::from(weight))?;
+        sums = zip(&sums, weights, is_cancelled, |sum, &weight| {
+            sum + f64::from(weight)
+        })?;
     }
     let least = sums.pixels().iter().copied().fold(f64::INFINITY, f64::min);
     TileError::check(least > 0.0, "sum of the weights", least, "above 0")?;
@@ -157,16 +168,17 @@ fn by_height(
     weights: &[Raster<f32>],
     heights: &[&Raster<f32>],
     depth: f64,
+    is_cancelled: &IsCancelled,
 ) -> Result<Vec<Raster<f32>>, TileError> {
     // Compute the level of each layer, and the largest level of each pixel.
     let levels: Vec<Raster<f64>> = weights
         .iter()
         .zip(heights)
-        .map(|(weights, heights)| zip(weights, heights, level))
+        .map(|(weights, heights)| zip(weights, heights, is_cancelled, level))
         .collect::<Result<_, _>>()?;
     let mut top = levels[0].clone();
     for levels in &levels[1..] {
-        top = zip(&top, levels, |top, level| level.max(*top))?;
+        top = zip(&top, levels, is_cancelled, |top, level| level.max(*top))?;
     }
     // Divide by the depth first. The highest layer then has a nearness of 1 even for the smallest depth.
     let nearness = |level: &f64, top: &f64| (1.0 - (top - level) / depth).max(0.0);
@@ -175,9 +187,12 @@ fn by_height(
     let shares: Vec<Raster<f32>> = weights
         .iter()
         .zip(&levels)
-        .map(|(weights, levels)| zip(weights, &zip(levels, &top, nearness)?, product))
+        .map(|(weights, levels)| {
+            let nearness = zip(levels, &top, is_cancelled, nearness)?;
+            zip(weights, &nearness, is_cancelled, product)
+        })
         .collect::<Result<_, _>>()?;
-    normalize(&shares.iter().collect::<Vec<_>>())
+    normalize(&shares.iter().collect::<Vec<_>>(), is_cancelled)
 }
 
 /// Returns the level of a layer for the shares by height. The highest layer is visible, and a layer without weight is
@@ -212,23 +227,26 @@ fn by_mask(
     weights: &[&Raster<f32>],
     mask: &Raster<f32>,
     gain: f64,
+    is_cancelled: &IsCancelled,
 ) -> Result<Vec<Raster<f32>>, TileError> {
     let half_width = Weighting::half_width(gain);
-    let sums = sums(weights)?;
+    let sums = sums(weights, is_cancelled)?;
     // Cumulative weights of the layers, and the ramp at the previous threshold.
     let mut part = mask.map(|_| 0.0);
     let mut below = mask.map(|_| 0.0);
     let mut shares = Vec::with_capacity(weights.len());
     for weights in weights {
-        part = zip(&part, weights, |part, &weight| part + f64::from(weight))?;
+        part = zip(&part, weights, is_cancelled, |part, &weight| {
+            part + f64::from(weight)
+        })?;
         // These sums are computed in the same way as the sums of all weights, so the last threshold is exactly 1.
-        let thresholds = zip(&part, &sums, |part, sum| part / sum)?;
+        let thresholds = zip(&part, &sums, is_cancelled, |part, sum| part / sum)?;
         // Parts of the mask below the threshold belong to this layer and those before it.
-        let up_to = zip(&thresholds, mask, |&threshold, &mask| {
+        let up_to = zip(&thresholds, mask, is_cancelled, |&threshold, &mask| {
             step(threshold, mask, half_width)
         })?;
         // The layer's share is the difference from the previous threshold.
-        shares.push(zip(&up_to, &below, |up_to, below| {
+        shares.push(zip(&up_to, &below, is_cancelled, |up_to, below| {
             (up_to - below).max(0.0) as f32
         })?);
         below = up_to;
@@ -254,14 +272,15 @@ fn step(threshold: f64, mask: f32, half_width: f64) -> f64 {
 pub(crate) fn zip<A: Sync, B: Sync, C: Send>(
     a: &Raster<A>,
     b: &Raster<B>,
+    is_cancelled: &IsCancelled,
     combine: impl Fn(&A, &B) -> C + Sync,
 ) -> Result<Raster<C>, TileError> {
     a.check_same_size(b.size())?;
     let combine = &combine;
-    Ok(Raster::from_rows(a.size(), |row| {
+    rows_cancellable(a.size(), is_cancelled, |row| {
         let pairs = a.row(row).iter().zip(b.row(row));
         pairs.map(move |(a, b)| combine(a, b))
-    })?)
+    })
 }
 
 #[cfg(test)]

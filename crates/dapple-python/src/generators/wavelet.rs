@@ -7,6 +7,7 @@ use crate::function::{Function, Made};
 use crate::grid::per_axis;
 use crate::seed::SeedArgument;
 use crate::shared::{Build, Shared};
+use crate::watch::Stop;
 use dapple::hash::Seed;
 use dapple::wavelet::{WaveletNoise2, WaveletNoise3};
 use pyo3::prelude::*;
@@ -25,15 +26,19 @@ impl Build for WaveletMade {
     type Built = Function;
 
     fn build(&self) -> Result<Function> {
+        let stop = Stop::current();
+        let is_over = || stop.is_set();
         match self.period.len() {
             2 => {
-                let noise = WaveletNoise2::of_size(array(&self.period)?, self.seed)?;
+                let size = array(&self.period)?;
+                let noise = WaveletNoise2::of_size_cancellable(size, self.seed, &is_over)?;
                 Ok(Function::Plane(Arc::new(
                     noise.with_weights(&self.weights)?,
                 )))
             }
             3 => {
-                let noise = WaveletNoise3::of_size(array(&self.period)?, self.seed)?;
+                let size = array(&self.period)?;
+                let noise = WaveletNoise3::of_size_cancellable(size, self.seed, &is_over)?;
                 Ok(Function::Space(Arc::new(
                     noise.with_weights(&self.weights)?,
                 )))

@@ -36,7 +36,7 @@ impl NodeKind for Tiled {
         };
         let inputs = vec![plan.any(&self.input)?];
         Ok(plan.global(inputs, [1; 2], move |tile| {
-            let tiled = seamless.apply_maps(&tile.maps()?)?;
+            let tiled = seamless.apply_maps_cancellable(&tile.maps()?, &tile.is_cancelled())?;
             if tiled[0].size() != tile.window.size {
                 let rule = "a tile in a recipe keeps its size, and this method does not";
                 return Err(RecipeError::new(RecipeErrorKind::Conflict { rule }));

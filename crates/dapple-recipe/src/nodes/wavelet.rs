@@ -92,7 +92,9 @@ pub(super) fn noise(
     let tile = plan.parts().get_or_make(
         |tile: &Tile| tile.noise.size() == size && tile.seed == seed,
         || {
-            let noise = WaveletNoise2::of_size(size, seed)?;
+            let watch = plan.watch();
+            let is_cancelled = || watch.is_cancelled();
+            let noise = WaveletNoise2::of_size_cancellable(size, seed, &is_cancelled)?;
             Ok::<_, RecipeError>(Tile { noise, seed })
         },
     )?;

@@ -146,3 +146,44 @@ fn usual_pictures_have_several_bands() {
         assert_eq!(bake.map(Result::unwrap).count(), n_bands, "{size:?}");
     }
 }
+
+/// Returns the number of calls in a pass while a recipe with the node `made` is planned and one of its rows is baked.
+fn n_calls_for(made: &str, pass: usize) -> usize {
+    let recipe = format!(
+        "dapple = 1\nextent = [32.0, 32.0]\n[nodes]\nclouds = {{ noise = {{ frequency = 0.25 }} }}\nmade = {made}\n\
+         [material]\nheight = \"made\"\n"
+    );
+    let recipe = Recipe::from_toml(&recipe).unwrap();
+    let n_calls = Arc::new(AtomicUsize::new(0));
+    let calls = n_calls.clone();
+    let count = move |progress: Progress| {
+        calls.fetch_add(usize::from(progress.pass == pass), Relaxed);
+        ControlFlow::Continue(())
+    };
+    let (images, limits) = (Images::new(), PlanLimits::default());
+    let plan = Plan::new_with_progress(&recipe, &images, 0.0, &limits, None, count).unwrap();
+    let options = BakeOptions {
+        size: [128, 128],
+        maps: vec![MapKind::Height],
+        ..BakeOptions::default()
+    };
+    Bake::new(&plan, &options).unwrap().whole_maps().unwrap();
+    n_calls.load(Relaxed)
+}
+
+#[test]
+fn tiles_and_wavelets_call_back_while_they_are_made() {
+    let plain = n_calls_for("{ noise = { frequency = 0.25 } }", 0);
+    let wavelets = n_calls_for("{ wavelet = { frequency = 8.0 } }", 0);
+    // A wavelet tile of 256 × 256 cells makes six calls, while it is filled, halved, doubled and subtracted.
+    assert!(wavelets >= plain + 6, "{wavelets} calls, {plain} for noise");
+    let tile = |method: &str| {
+        let node = format!("{{ tile = {{ input = \"clouds\", method = {method} }} }}");
+        n_calls_for(&node, 1)
+    };
+    let periodic = tile("\"periodic\"");
+    // Bands of 16 columns and 16 rows
+    assert!(periodic >= 8 + 8, "{periodic} calls");
+    let spline = tile("{ spline_project = {} }");
+    assert!(spline >= 4, "{spline} calls");
+}

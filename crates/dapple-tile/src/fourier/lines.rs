@@ -1,6 +1,7 @@
 //! Groups of lines that are transformed together, and their conversion from and to planes.
 
-use dapple_raster::parallel;
+use crate::error::map_cancellable;
+use crate::{IsCancelled, TileError};
 
 /// Number of complex lines that are transformed together. They fill vector registers, and lines of a few thousand
 /// elements stay in the second-level cache.
@@ -41,9 +42,10 @@ pub(crate) fn columns(plane: &[f64], width: usize, first: usize) -> Vec<Element>
 pub(crate) fn map_columns(
     plane: &[f64],
     width: usize,
+    is_cancelled: &IsCancelled,
     change: impl Fn(Vec<Element>) -> Vec<Element> + Sync,
-) -> Vec<f64> {
-    par_flat_map(width.div_ceil(BAND), |band| {
+) -> Result<Vec<f64>, TileError> {
+    par_flat_map(width.div_ceil(BAND), is_cancelled, |band| {
         let first = band * BAND;
         let elements = change(columns(plane, width, first));
         let line = |line| elements.iter().map(move |element: &Element| element[line]);
@@ -51,11 +53,12 @@ pub(crate) fn map_columns(
     })
 }
 
-/// Concatenates the results of `make` for the indices below `count`. With the feature `rayon`, they are computed in
-/// parallel.
+/// Concatenates the results of `make` for the indices below `count`, like [`map_cancellable`]. With the feature `rayon`,
+/// they are computed in parallel.
 pub(crate) fn par_flat_map<T: Copy + Send>(
     count: usize,
+    is_cancelled: &IsCancelled,
     make: impl Fn(usize) -> Vec<T> + Sync,
-) -> Vec<T> {
-    parallel::map(count, make).concat()
+) -> Result<Vec<T>, TileError> {
+    Ok(map_cancellable(count, is_cancelled, make)?.concat())
 }

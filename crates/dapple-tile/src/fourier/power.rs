@@ -1,7 +1,8 @@
 //! Computes the power spectrum of a plane.
 
 use super::lines::columns;
-use super::{BAND, Element, Fourier, LANES, par_flat_map};
+use super::{BAND, Element, Fourier, LANES};
+use dapple_raster::parallel;
 
 /// Returns the powers `|F(k)|²` of all frequencies of a plane, row by row, starting with frequency `[0, 0]`.
 ///
@@ -26,7 +27,7 @@ pub(crate) fn power_spectrum(values: &[f64], size: [usize; 2]) -> Vec<f64> {
 fn column_spectra(values: &[f64], width: usize, n_halves: usize) -> Vec<[f64; 2]> {
     let height = values.len() / width;
     let fourier = Fourier::new(height);
-    par_flat_map(width.div_ceil(BAND), |strip| {
+    let spectra = parallel::map(width.div_ceil(BAND), |strip| {
         let first = strip * BAND;
         let mut lines = columns(values, width, first);
         fourier.forward(&mut lines);
@@ -34,8 +35,10 @@ fn column_spectra(values: &[f64], width: usize, n_halves: usize) -> Vec<[f64; 2]
         let opposite = |row| (height - row) % height;
         let at = |row: usize, line| half_of_pair(&lines[row], &lines[opposite(row)], line);
         let spectrum = |line| (0..n_halves).map(move |row| at(row, line));
-        (0..BAND.min(width - first)).flat_map(spectrum).collect()
-    })
+        let spectra = (0..BAND.min(width - first)).flat_map(spectrum);
+        spectra.collect::<Vec<_>>()
+    });
+    spectra.concat()
 }
 
 /// Separates the spectrum of a real line that was transformed as the real or imaginary part of a complex line, given
@@ -55,7 +58,7 @@ fn half_of_pair(element: &Element, opposite: &Element, line: usize) -> [f64; 2] 
 /// Computes the powers of the rows up to the middle one, from the spectra of the columns.
 fn row_powers(spectra: &[[f64; 2]], width: usize, n_halves: usize) -> Vec<f64> {
     let fourier = Fourier::new(width);
-    par_flat_map(n_halves.div_ceil(LANES), |strip| {
+    let powers = parallel::map(n_halves.div_ceil(LANES), |strip| {
         let rows = strip * LANES..n_halves.min((strip + 1) * LANES);
         // Collect the spectra of these rows, one complex line for each row.
         let mut lines = vec![[0.0; BAND]; width];
@@ -71,6 +74,7 @@ fn row_powers(spectra: &[[f64; 2]], width: usize, n_halves: usize) -> Vec<f64> {
             re * re + im * im
         };
         let powers = |lane| lines.iter().map(move |element| power(element, lane));
-        (0..rows.len()).flat_map(powers).collect()
-    })
+        (0..rows.len()).flat_map(powers).collect::<Vec<_>>()
+    });
+    powers.concat()
 }

@@ -151,8 +151,8 @@ proptest! {
     #[test]
     fn map_columns_twice_gives_back_what_is_not_changed(width in 1_usize..50, height in 1_usize..50) {
         let plane = noise(width * height, 6);
-        let turned = map_columns(&plane, width, |lines| lines);
-        let back = map_columns(&turned, height, |lines| lines);
+        let turned = map_columns(&plane, width, &|| false, |lines| lines).unwrap();
+        let back = map_columns(&turned, height, &|| false, |lines| lines).unwrap();
         prop_assert_eq!(turned[height * (width - 1)], plane[width - 1], "it is transposed");
         prop_assert_eq!(back, plane);
     }

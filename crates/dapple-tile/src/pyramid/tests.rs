@@ -17,12 +17,12 @@ fn noise(size: [u32; 2], seed: u64) -> Raster<f32> {
 /// Returns two shares that sum to 1.
 fn shares(size: [u32; 2], seed: u64) -> Vec<Raster<f32>> {
     let weights = [seed, seed + 1].map(|seed| noise(size, seed));
-    weighting::normalize(&weights.each_ref()).unwrap()
+    weighting::normalize(&weights.each_ref(), &|| false).unwrap()
 }
 
 fn mix(pyramid: &Pyramid, planes: &[Raster<f32>], shares: &[Raster<f32>]) -> Raster<f32> {
-    let shares = pyramid.shares(shares.to_vec()).unwrap();
-    pyramid.mix(planes, &shares).unwrap()
+    let shares = pyramid.shares(shares.to_vec(), &|| false).unwrap();
+    pyramid.mix(planes, &shares, &|| false).unwrap()
 }
 
 fn difference(a: &Raster<f32>, b: &Raster<f32>) -> f32 {
@@ -39,7 +39,7 @@ fn pyramid_without_levels_is_the_mean() {
     };
     let off = difference(
         &mix(&pyramid, &planes, &shares),
-        &linear(&planes, &shares).unwrap(),
+        &linear(&planes, &shares, &|| false).unwrap(),
     );
     // The shares are divided by their maximum and by their sum once more.
     assert!(off < 1e-6, "{off}");
@@ -57,7 +57,7 @@ fn pyramid_with_shares_that_are_the_same_everywhere_is_a_mean_in_each_band() {
     };
     let off = difference(
         &mix(&soft, &planes, &shares),
-        &linear(&planes, &shares).unwrap(),
+        &linear(&planes, &shares, &|| false).unwrap(),
     );
     // Some roundings of `f32` per level.
     assert!(off < 2e-6, "{off}");
@@ -146,7 +146,7 @@ fn sharpened_shares_sum_to_one_for_any_power() {
     let share = noise([9, 9], 1).map(|value| 1.2 * value - 0.1);
     let shares = [share.map(|share| 1.0 - share), share];
     for power in [1.0, 2.5, 9.0, 1e6, 1e300] {
-        let sharp = sharpen(&shares, power).unwrap();
+        let sharp = sharpen(&shares, power, &|| false).unwrap();
         for (before, (a, b)) in shares[1]
             .pixels()
             .iter()
@@ -177,7 +177,11 @@ fn pyramid_with_mirrored_borders_takes_any_size_above_half_of_a_coarse_pixel() {
 #[test]
 fn pyramid_refuses_bad_numbers_and_sizes() {
     let refuse = |pyramid: Pyramid, size: [u32; 2]| {
-        pyramid.shares(shares(size, 1)).unwrap_err().kind().clone()
+        pyramid
+            .shares(shares(size, 1), &|| false)
+            .unwrap_err()
+            .kind()
+            .clone()
     };
     let default = Pyramid::default();
     let kind = refuse(

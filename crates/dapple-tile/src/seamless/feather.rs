@@ -12,8 +12,9 @@
 //! Reference: our own, modeled on these tools.
 
 use crate::axis::each_axis;
+use crate::error::rows_cancellable;
 use crate::overlap::{check_margin, overlap};
-use crate::{Crossfade, TileError, TileErrorKind};
+use crate::{Crossfade, IsCancelled, TileError, TileErrorKind};
 use dapple_raster::Raster;
 
 /// A crossfade between an image and itself.
@@ -49,26 +50,28 @@ pub(crate) fn tile(
     planes: &[Raster<f32>],
     feather: &Feather,
     axes: [bool; 2],
+    is_cancelled: &IsCancelled,
 ) -> Result<Vec<Raster<f32>>, TileError> {
     match *feather {
-        Feather::HalfShift => each_axis(planes, axes, |planes, _| {
-            planes.iter().map(half_shift).collect()
+        Feather::HalfShift => each_axis(planes, axes, is_cancelled, |planes, _| {
+            let shifted = planes.iter().map(|plane| half_shift(plane, is_cancelled));
+            shifted.collect()
         }),
         Feather::Margin { margin, crossfade } => {
             check_margin(planes, margin, axes)?;
-            each_axis(planes, axes, |planes, _| {
+            each_axis(planes, axes, is_cancelled, |planes, _| {
                 let height = planes.first().map_or(1, Raster::height);
                 // Weights rise linearly over the margin. They are sampled at the pixels' centers.
                 let share = |column: u32| (f64::from(column) + 0.5) / f64::from(margin);
                 let weights = Raster::from_fn([margin, height], |column, _| share(column))?;
-                overlap(planes, &weights, crossfade)
+                overlap(planes, &weights, crossfade, is_cancelled)
             })
         }
     }
 }
 
 /// Blends every row with itself rolled by half of the row's length.
-fn half_shift(plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
+fn half_shift(plane: &Raster<f32>, is_cancelled: &IsCancelled) -> Result<Raster<f32>, TileError> {
     let length = plane.width();
     if length < LEAST_SIDE {
         let least = LEAST_SIDE;
@@ -77,7 +80,7 @@ fn half_shift(plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     let weights: Vec<f32> = (0..length).map(|column| tent(column, length)).collect();
     let half = length as usize / 2;
     let weights = &weights;
-    Ok(Raster::from_rows(plane.size(), |row| {
+    rows_cancellable(plane.size(), is_cancelled, |row| {
         let row = plane.row(row);
         // Blend the row with itself, rolled by half. Weights of 0 and 1 give exact copies.
         let rolled = row[half..].iter().chain(&row[..half]);
@@ -87,7 +90,7 @@ fn half_shift(plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
             1.0 => *own,
             weight => weight * own + (1.0 - weight) * rolled,
         })
-    })?)
+    })
 }
 
 /// Returns the weight of the original image: 0 at the first and last pixel, 1 at both pixels where the rolled image has

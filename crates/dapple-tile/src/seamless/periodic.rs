@@ -15,20 +15,25 @@
 //!
 //! All arithmetic is `f64` up to the pixels of the result.
 
-use crate::TileError;
+use crate::error::map_cancellable;
 use crate::fourier::{BAND, Element, Fourier, LANES, par_flat_map, times};
+use crate::{IsCancelled, TileError};
 use core::f64::consts::PI;
-use dapple_raster::{Raster, parallel};
+use dapple_raster::Raster;
 
 /// Powers below this limit are replaced by zero. It is far below the rounding of all sums, and far above subnormal
 /// numbers, which are slow.
 const NEGLIGIBLE: f64 = 1e-40;
 
 /// Computes the periodic parts of all planes.
-pub(crate) fn tile(planes: &[Raster<f32>], axes: [bool; 2]) -> Result<Vec<Raster<f32>>, TileError> {
+pub(crate) fn tile(
+    planes: &[Raster<f32>],
+    axes: [bool; 2],
+    is_cancelled: &IsCancelled,
+) -> Result<Vec<Raster<f32>>, TileError> {
     let tile = |plane| {
         let jump = |axis: usize| axes[axis].then(|| jumps(plane, axis));
-        without_jumps(plane, &[jump(0), jump(1)])
+        without_jumps(plane, &[jump(0), jump(1)], is_cancelled)
     };
     planes.iter().map(tile).collect()
 }
@@ -61,15 +66,16 @@ pub(crate) fn border(
 pub(crate) fn without_jumps(
     plane: &Raster<f32>,
     jumps: &[Option<Vec<f64>>; 2],
+    is_cancelled: &IsCancelled,
 ) -> Result<Raster<f32>, TileError> {
     let [width, height] = plane.size().map(|length| length as usize);
-    let smooth = Smooth::new([width, height], jumps);
+    let smooth = Smooth::new([width, height], jumps, is_cancelled)?;
     // Subtract the smooth part, in bands of rows.
-    let pixels = par_flat_map(height.div_ceil(BAND), |band| {
+    let pixels = par_flat_map(height.div_ceil(BAND), is_cancelled, |band| {
         let values = plane.pixels()[band * BAND * width..].iter();
         let less = |(&value, smooth)| (f64::from(value) - smooth) as f32;
         values.zip(smooth.rows(band)).map(less).collect()
-    });
+    })?;
     Ok(Raster::from_vec(plane.size(), pixels)?)
 }
 
@@ -84,19 +90,24 @@ pub(crate) struct Smooth {
 }
 
 impl Smooth {
-    pub(crate) fn new(size: [usize; 2], jumps: &[Option<Vec<f64>>; 2]) -> Self {
+    pub(crate) fn new(
+        size: [usize; 2],
+        jumps: &[Option<Vec<f64>>; 2],
+        is_cancelled: &IsCancelled,
+    ) -> Result<Self, TileError> {
         let layer = |axis: usize| {
             let repeats = jumps[1 - axis].is_some();
             let jumps = jumps[axis].as_ref()?;
             Some(Layer::new(jumps, repeats, size[axis]))
         };
         // Jumps across x are solved column by column. Every row needs all columns, so they are computed now.
-        let bands = |layer: Layer| parallel::map(size[0].div_ceil(BAND), |band| layer.band(band));
-        Self {
+        let n_bands = size[0].div_ceil(BAND);
+        let bands = |layer: Layer| map_cancellable(n_bands, is_cancelled, |band| layer.band(band));
+        Ok(Self {
             size,
-            across_x: layer(0).map(bands).unwrap_or_default(),
+            across_x: layer(0).map(bands).transpose()?.unwrap_or_default(),
             across_y: layer(1),
-        }
+        })
     }
 
     /// Computes up to [`BAND`] rows, starting at row `band * BAND`.

@@ -13,7 +13,7 @@
 //! the error equals the jump, and both methods give the same bits.
 
 use super::periodic::{border, jumps, without_jumps};
-use crate::TileError;
+use crate::{IsCancelled, TileError};
 use dapple_raster::Raster;
 
 dapple_raster::named! {
@@ -34,10 +34,11 @@ pub(crate) fn tile(
     planes: &[Raster<f32>],
     wrap: WrapGradient,
     axes: [bool; 2],
+    is_cancelled: &IsCancelled,
 ) -> Result<Vec<Raster<f32>>, TileError> {
     let tile = |plane| {
         let error = |axis: usize| axes[axis].then(|| wrap_errors(plane, wrap, axis));
-        without_jumps(plane, &[error(0), error(1)])
+        without_jumps(plane, &[error(0), error(1)], is_cancelled)
     };
     planes.iter().map(tile).collect()
 }

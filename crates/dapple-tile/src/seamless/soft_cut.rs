@@ -18,8 +18,9 @@
 use crate::axis::{Axis, each_axis};
 use crate::cut::{add_differences, inset, weight};
 use crate::cut_path::{closed_path, open_path};
+use crate::error::check;
 use crate::overlap::{check_margin, ends, overlap};
-use crate::{Crossfade, TileError};
+use crate::{Crossfade, IsCancelled, TileError};
 use dapple_raster::Raster;
 
 /// Options for a soft cut. The tile is smaller than the image by the margin, along each axis that repeats.
@@ -86,6 +87,7 @@ pub(crate) fn tile(
     planes: &[Raster<f32>],
     cut: &SoftCut,
     axes: [bool; 2],
+    is_cancelled: &IsCancelled,
 ) -> Result<Vec<Raster<f32>>, TileError> {
     let margin = cut.margin_of(planes.first().map_or([1; 2], Raster::size));
     check_margin(planes, margin, axes)?;
@@ -99,25 +101,31 @@ pub(crate) fn tile(
         widths.half_width,
         "from 0 to half of the margin",
     )?;
-    each_axis(planes, axes, |planes, axis| {
+    each_axis(planes, axes, is_cancelled, |planes, axis| {
         // Find the path on which the two ends of the rows are most similar.
-        let differences = differences(planes, widths)?;
+        let differences = differences(planes, widths, is_cancelled)?;
         // If columns repeat, so must the cut across them.
         let path = match axis {
-            Axis::Y if axes[0] => closed_path(&differences),
-            Axis::X | Axis::Y => open_path(&differences),
-        };
-        overlap(planes, &weights(&path, widths)?, cut.crossfade)
+            Axis::Y if axes[0] => closed_path(&differences, is_cancelled),
+            Axis::X | Axis::Y => open_path(&differences, is_cancelled),
+        }?;
+        let weights = weights(&path, widths)?;
+        overlap(planes, &weights, cut.crossfade, is_cancelled)
     })
 }
 
 /// Returns the difference of the two ends of the planes, in the columns that the cut may pass through.
-fn differences(planes: &[Raster<f32>], cut: Widths) -> Result<Raster<f64>, TileError> {
+fn differences(
+    planes: &[Raster<f32>],
+    cut: Widths,
+    is_cancelled: &IsCancelled,
+) -> Result<Raster<f64>, TileError> {
     let height = planes.first().map_or(1, Raster::height);
     let inset = inset(cut.half_width);
     let width = cut.margin - 2 * inset;
     let mut sum = Raster::filled([width, height], 0.0)?;
     for plane in planes {
+        check(is_cancelled)?;
         let deviation = plane.statistics().deviation;
         // A plane with a single value has no differences.
         let scale = if deviation > 0.0 {

@@ -13,9 +13,10 @@
 //! Limitations: one level leaves 34 to 66 % of a step at the border, and removes most of the top octave. To remove the
 //! seam first, use [`Method::PeriodicThenProject`](crate::Method::PeriodicThenProject).
 
-use crate::TileError;
+use crate::error::filtered;
 use crate::map::check_finite;
 use crate::sines::{self, Axis};
+use crate::{IsCancelled, TileError};
 use dapple_raster::Raster;
 use dapple_wavelet::{Border, Degree, Fit, Phase, SplineFilter};
 
@@ -116,6 +117,15 @@ impl SplineProject {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn coarse(&self, image: &Raster<f32>, axes: [bool; 2]) -> Result<Raster<f32>, TileError> {
+        self.halved(image, axes, &|| false)
+    }
+
+    fn halved(
+        &self,
+        image: &Raster<f32>,
+        axes: [bool; 2],
+        is_cancelled: &IsCancelled,
+    ) -> Result<Raster<f32>, TileError> {
         check_finite(image)?;
         let sizes = self.sizes(image.size(), axes)?;
         match self.basis {
@@ -123,13 +133,13 @@ impl SplineProject {
             Basis::Spline(degree) => {
                 // Halve the coefficients level by level (equation 12).
                 let (filter, borders) = (self.filter(degree), borders(axes));
-                let mut coarse = self.coefficients(&filter, image, borders)?;
+                let mut coarse = self.coefficients(&filter, image, borders, is_cancelled)?;
                 for _ in 0..self.levels {
-                    coarse = filter.down(&coarse, borders)?;
+                    coarse = filtered(filter.down_cancellable(&coarse, borders, is_cancelled))?;
                 }
-                self.pixels(&filter, coarse, borders)
+                self.pixels(&filter, coarse, borders, is_cancelled)
             }
-            Basis::Sines => sines::coarse(image, self.sine_axes(&sizes, axes)),
+            Basis::Sines => sines::coarse(image, self.sine_axes(&sizes, axes), is_cancelled),
         }
     }
 
@@ -147,6 +157,16 @@ impl SplineProject {
         size: [u32; 2],
         axes: [bool; 2],
     ) -> Result<Raster<f32>, TileError> {
+        self.doubled(coarse, size, axes, &|| false)
+    }
+
+    fn doubled(
+        &self,
+        coarse: &Raster<f32>,
+        size: [u32; 2],
+        axes: [bool; 2],
+        is_cancelled: &IsCancelled,
+    ) -> Result<Raster<f32>, TileError> {
         check_finite(coarse)?;
         let sizes = self.sizes(size, axes)?;
         // Check the sizes before memory is allocated.
@@ -159,12 +179,13 @@ impl SplineProject {
                 let (filter, borders) = (self.filter(degree), borders(axes));
                 let mut fine = self.coefficients(&filter, coarse, borders)?;
                 // From the coarsest level up: each step doubles the grid to the size that it was halved from.
+                let mut fine = self.coefficients(&filter, coarse, borders, is_cancelled)?;
                 for &size in sizes[..self.levels as usize].iter().rev() {
-                    fine = filter.up(&fine, size, borders)?;
+                    fine = filtered(filter.up_cancellable(&fine, size, borders, is_cancelled))?;
                 }
-                self.pixels(&filter, fine, borders)
+                self.pixels(&filter, fine, borders, is_cancelled)
             }
-            Basis::Sines => sines::refine(coarse, self.sine_axes(&sizes, axes)),
+            Basis::Sines => sines::refine(coarse, self.sine_axes(&sizes, axes), is_cancelled),
         }
     }
 
@@ -192,11 +213,14 @@ impl SplineProject {
         filter: &SplineFilter,
         raster: &Raster<f32>,
         borders: [Border; 2],
+        is_cancelled: &IsCancelled,
     ) -> Result<Raster<f32>, TileError> {
-        Ok(match self.pixels {
-            Pixels::Coefficients => raster.clone(),
-            Pixels::Samples => filter.coefficients(raster, borders)?,
-        })
+        match self.pixels {
+            Pixels::Coefficients => Ok(raster.clone()),
+            Pixels::Samples => {
+                filtered(filter.coefficients_cancellable(raster, borders, is_cancelled))
+            }
+        }
     }
 
     /// Computes the pixels for a spline with the given coefficients.
@@ -205,11 +229,14 @@ impl SplineProject {
         filter: &SplineFilter,
         coefficients: Raster<f32>,
         borders: [Border; 2],
+        is_cancelled: &IsCancelled,
     ) -> Result<Raster<f32>, TileError> {
-        Ok(match self.pixels {
-            Pixels::Coefficients => coefficients,
-            Pixels::Samples => filter.samples(&coefficients, borders)?,
-        })
+        match self.pixels {
+            Pixels::Coefficients => Ok(coefficients),
+            Pixels::Samples => {
+                filtered(filter.samples_cancellable(&coefficients, borders, is_cancelled))
+            }
+        }
     }
 
     fn sine_axes(&self, sizes: &[[u32; 2]], axes: [bool; 2]) -> [Axis; 2] {
@@ -228,10 +255,11 @@ pub(crate) fn tile(
     planes: &[Raster<f32>],
     project: &SplineProject,
     axes: [bool; 2],
+    is_cancelled: &IsCancelled,
 ) -> Result<Vec<Raster<f32>>, TileError> {
     let tile = |plane: &Raster<f32>| {
-        let coarse = project.coarse(plane, axes)?;
-        project.refine(&coarse, plane.size(), axes)
+        let coarse = project.halved(plane, axes, is_cancelled)?;
+        project.doubled(&coarse, plane.size(), axes, is_cancelled)
     };
     planes.iter().map(tile).collect()
 }

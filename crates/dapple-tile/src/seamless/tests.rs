@@ -1,8 +1,9 @@
 //! Tests of properties of every method.
 
 use super::*;
-use crate::test_fields::fbm;
+use crate::test_fields::{check_cancel, fbm};
 use crate::{Crossfade, TileErrorKind};
+use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use dapple_color::{HeightPlane, Normal, normal_map};
 use dapple_raster::{RasterErrorKind, Wrap};
 use proptest::prelude::*;
@@ -43,6 +44,60 @@ fn every_method() -> Vec<Method> {
         Method::Mirror,
     ];
     methods().into_iter().chain(others).collect()
+}
+
+/// Returns all methods, with default widths, and with samples and sines in place of coefficients and splines.
+fn usual_methods() -> Vec<Method> {
+    let samples = SplineProject {
+        pixels: Pixels::Samples,
+        ..SplineProject::default()
+    };
+    let sines = SplineProject {
+        basis: Basis::Sines,
+        ..SplineProject::default()
+    };
+    let margin = Feather::Margin {
+        margin: 16,
+        crossfade: Crossfade::KeepVariance,
+    };
+    let others = [
+        Method::SoftCut(SoftCut::default()),
+        Method::SplineProject(samples),
+        Method::PeriodicThenProject(sines),
+        Method::Feather(Feather::HalfShift),
+        Method::Feather(margin),
+        Method::Mirror,
+    ];
+    methods().into_iter().chain(others).collect()
+}
+
+#[test]
+fn every_method_can_be_cancelled_at_every_call() {
+    let maps = [Map::Value(ramp([64, 48])), Map::Value(ramp([64, 48]))];
+    for method in usual_methods() {
+        let seamless = Seamless::new(method);
+        let made = seamless.apply_maps(&maps).expect("all is finite");
+        let n_calls = check_cancel(&made, |stop| seamless.apply_maps_cancellable(&maps, stop));
+        // One call comes first, and each plane has one pass at least.
+        assert!(n_calls > 2, "{n_calls} calls, {method:?}");
+    }
+}
+
+#[test]
+fn callbacks_come_once_for_65536_pixels_of_large_images() {
+    let maps = [Map::Value(ramp([1024, 1024]))];
+    for method in usual_methods() {
+        let n_calls = AtomicUsize::new(0);
+        let count = || {
+            n_calls.fetch_add(1, Relaxed);
+            false
+        };
+        let tiles = Seamless::new(method).apply_maps_cancellable(&maps, &count);
+        assert!(tiles.is_ok(), "{method:?}");
+        // A plane goes through two passes at least, one for each axis. One of them calls this often.
+        let n_calls = n_calls.into_inner();
+        assert!(n_calls >= 16, "{n_calls} calls, {method:?}");
+    }
 }
 
 #[test]

@@ -22,7 +22,8 @@ fn shares(
     heights: &[Raster<f32>],
     tile: Option<&Raster<f32>>,
 ) -> Vec<Raster<f32>> {
-    weighting.shares(&layers(weights, heights), tile).unwrap()
+    let layers = layers(weights, heights);
+    weighting.shares(&layers, tile, &|| false).unwrap()
 }
 
 fn layers<'a>(weights: &'a [Raster<f32>], heights: &'a [Raster<f32>]) -> Vec<Layer<'a>> {
@@ -289,7 +290,7 @@ fn the_blend_tile_is_the_height_of_layers_without_one() {
         shares(how, &weights, &heights, None)
     );
     let error = how
-        .shares(&layers(&weights, &heights[..1]), None)
+        .shares(&layers(&weights, &heights[..1]), None, &|| false)
         .unwrap_err();
     let expected = TileErrorKind::Count {
         what: "heights",
@@ -305,7 +306,7 @@ fn weighting_refuses_bad_numbers() {
     let tile = noise(SIZE, 1);
     let what = |weighting: Weighting, weights: &[Raster<f32>], tile: &Raster<f32>| {
         let error = weighting
-            .shares(&layers(weights, &[]), Some(tile))
+            .shares(&layers(weights, &[]), Some(tile), &|| false)
             .unwrap_err();
         match error.kind() {
             TileErrorKind::Range { what, .. } => (*what).to_owned(),
@@ -330,7 +331,8 @@ fn weighting_refuses_bad_numbers() {
     assert_eq!(what(mask, &negative, &tile), "smallest weight");
     let nothing = [tile.map(|_| 0.0)];
     assert_eq!(what(mask, &nothing, &tile), "sum of the weights");
-    let error = mask.shares(&layers(&weight, &[]), None).unwrap_err();
+    let error = mask.shares(&layers(&weight, &[]), None, &|| false);
+    let error = error.unwrap_err();
     assert!(
         matches!(
             error.kind(),
@@ -341,7 +343,7 @@ fn weighting_refuses_bad_numbers() {
         ),
         "{error}"
     );
-    let error = normalize(&[]).unwrap_err();
+    let error = normalize(&[], &|| false).unwrap_err();
     assert!(
         matches!(error.kind(), TileErrorKind::Count { what: "layers", .. }),
         "{error}"

@@ -1,13 +1,21 @@
 //! Tests of crossfades: their periods, kept detail, and cost.
 
-use super::{Feather, tent, tile};
+use super::{Feather, tent};
 use crate::test_fields::{fbm, gravel, seam_ratio};
-use crate::{Crossfade, TileErrorKind};
+use crate::{Crossfade, TileError, TileErrorKind};
 use core::slice;
 use dapple_raster::Raster;
 use proptest::prelude::*;
 
 const BOTH: [bool; 2] = [true; 2];
+
+fn tile(
+    planes: &[Raster<f32>],
+    feather: &Feather,
+    axes: [bool; 2],
+) -> Result<Vec<Raster<f32>>, TileError> {
+    super::tile(planes, feather, axes, &|| false)
+}
 
 fn margin(margin: u32, crossfade: Crossfade) -> Feather {
     Feather::Margin { margin, crossfade }

@@ -23,7 +23,7 @@ fn axis_jumps(plane: &Raster<f32>, axes: [bool; 2]) -> [Option<Vec<f64>>; 2] {
 
 fn smooth_of(plane: &Raster<f32>, axes: [bool; 2]) -> Vec<f64> {
     let size = plane.size().map(|length| length as usize);
-    let smooth = Smooth::new(size, &axis_jumps(plane, axes));
+    let smooth = Smooth::new(size, &axis_jumps(plane, axes), &|| false).unwrap();
     (0..size[1].div_ceil(BAND))
         .flat_map(|band| smooth.rows(band))
         .collect()

@@ -95,7 +95,8 @@ fn poisson_equals_the_solution_by_divergence() {
             for wrap in [WrapGradient::Zero, WrapGradient::Extrapolate] {
                 let plane = image(size, 1);
                 let errors = |axis: usize| axes[axis].then(|| wrap_errors(&plane, wrap, axis));
-                let smooth = Smooth::new(size.map(|n| n as usize), &[errors(0), errors(1)]);
+                let sides = size.map(|n| n as usize);
+                let smooth = Smooth::new(sides, &[errors(0), errors(1)], &|| false).unwrap();
                 let bands = 0..size[1].div_ceil(BAND as u32) as usize;
                 let smooth = bands.flat_map(|band| smooth.rows(band));
                 let wanted = by_divergence(&plane, wrap, axes);
