@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import dapple_textures as dp
-from dapple_textures import _coats, _native, _textures
+from dapple_textures import _native, _textures
 
 KINDS: dict[str, Any] = json.loads(_native._texture_defaults())
 #: The names of functions that are not those of the textures.
@@ -32,7 +32,7 @@ def made(kind: str, **options: Any) -> Any:
 
 
 def test_each_texture_is_a_function_and_each_function_a_texture() -> None:
-    assert sorted(FUNCTIONS.get(kind, kind) for kind in KINDS) == sorted(_textures.__all__ + _coats.__all__)
+    assert sorted(FUNCTIONS.get(kind, kind) for kind in KINDS) == _textures.__all__
 
 
 @pytest.mark.parametrize("kind", KINDS)

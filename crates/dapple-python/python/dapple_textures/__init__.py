@@ -88,7 +88,6 @@ from ._native import (
     write_maps,
     yao,
 )
-from ._coats import cow, cow_progression, giraffe_progression, space_giraffe
 from ._meshes import MeshFile
 from ._options import Atlas, Directions, Exemplar, Matching, Net, Shard
 from ._pictures import Bands, SeamReport
@@ -98,11 +97,15 @@ from ._textures import (
     cellular_noise,
     color_noise,
     control_points,
+    cow,
+    cow_progression,
+    giraffe_progression,
     iterated_reference,
     label_ramp,
     noise,
     octaves,
     reference_texture,
+    space_giraffe,
     turbulence,
 )
 from ._types import Axes, EmptyCircle, Features, MapInfo, Shader, Spectrum, Weights
