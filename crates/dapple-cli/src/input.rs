@@ -24,8 +24,8 @@ use crate::output::read_back;
 use anyhow::{Context, Error, Result, anyhow};
 use dapple::color::{Code, LinearRgb, LinearRgba};
 use dapple::image::{
-    Channels, ExrImage, Image, ImageError, ImageErrorKind, Limits, PngPixels, decode_exr_region,
-    decode_image, decode_png_region, read_image,
+    Channels, ExrImage, Format, Image, ImageError, ImageErrorKind, Limits, PngPixels,
+    decode_exr_region, decode_image, decode_png_region, read_image,
 };
 use dapple::mesh::EncodedImage;
 use dapple::raster::Raster;
@@ -39,7 +39,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Number of bytes at the beginning of a file that identify its image format.
-const SIGNATURE_MAX: u64 = 16;
+const SIGNATURE_MAX: u64 = 32;
 /// Maximum number of file names in a message.
 const NAMES_MAX: usize = 3;
 
@@ -94,7 +94,7 @@ pub(crate) struct Loaded {
     pub(crate) faults: Faults,
     /// Whether the file has more than 8 bits per channel.
     pub(crate) is_deep: bool,
-    /// Whether the file stores linear light, as OpenEXR does; other formats store sRGB codes.
+    /// Whether the file stores linear light, as OpenEXR does; codes are sRGB.
     is_linear: bool,
 }
 
@@ -248,9 +248,10 @@ fn image_or_region(path: &Path, region: Option<Region>) -> Result<(Image, bool)>
 fn region_of(bytes: &[u8], Region { first, size }: Region) -> Result<Image, ImageError> {
     match decode_png_region(bytes, first, size, &limits()) {
         Err(error) if matches!(error.kind(), ImageErrorKind::UnknownFormat) => {
-            decode_exr_region(bytes, first, size, &limits()).map(Image::Exr)
+            let part = decode_exr_region(bytes, first, size, &limits());
+            part.map(|image| Image::Planes(Format::Exr, image))
         }
-        part => part.map(Image::Png),
+        part => part.map(|image| Image::Codes(Format::Png, image)),
     }
 }
 
@@ -356,7 +357,7 @@ pub(crate) fn map_with_faults(
     read: &ReadArgs,
 ) -> Result<Loaded> {
     let (image, faults, is_part) = picture(path, region, read)?;
-    let has_colors = matches!(image, Image::Exr(_)) && image.channels() != Channels::Vectors;
+    let has_colors = matches!(image, Image::Planes(..)) && image.channels() != Channels::Vectors;
     if is_part && kind == Kind::Normals && has_colors {
         let name = name(path);
         let error = usage(format!(
@@ -380,7 +381,7 @@ pub(crate) fn map_with_faults(
 fn picture(path: &Path, region: Option<Region>, read: &ReadArgs) -> Result<(Image, Faults, bool)> {
     let (mut image, is_part) = image_or_region(path, region)?;
     let mut faults = Faults::default();
-    if let Image::Exr(exr) = &mut image {
+    if let Image::Planes(_, exr) = &mut image {
         let of_file = |error| advise(error).context(name(path));
         let has_layers = exr.planes.iter().any(|plane| plane.name.contains('.'));
         if let Some(layer) = &read.layer {
@@ -465,7 +466,7 @@ fn of_image(
     };
     let associated = match (image, alpha) {
         // Keep OpenEXR colors associated: light at alpha 0 has no straight color.
-        (Image::Exr(exr), Alpha::Keep | Alpha::Without(ImageAlpha::Over(_))) => {
+        (Image::Planes(_, exr), Alpha::Keep | Alpha::Without(ImageAlpha::Over(_))) => {
             Some(exr.associated().map_err(advise)?.0)
         }
         _ => None,
@@ -496,8 +497,8 @@ fn of_image(
 /// color.
 fn values_beside_alpha(image: &Image, pixels: &Raster<LinearRgba>) -> Option<Raster<f32>> {
     let png = match image {
-        Image::Png(png) => png,
-        Image::Exr(_) if image.channels() == Channels::GrayAlpha => {
+        Image::Codes(_, png) => png,
+        Image::Planes(..) if image.channels() == Channels::GrayAlpha => {
             return Some(pixels.map(|pixel| pixel.color.r));
         }
         _ => return None,
@@ -530,7 +531,7 @@ fn part(
     alpha: Option<Raster<f32>>,
 ) -> Result<Loaded> {
     let is_deep = image.bits() > 8;
-    let is_linear = matches!(image, Image::Exr(_));
+    let is_linear = matches!(image, Image::Planes(..));
     let Some(region) = region else {
         return Ok(Loaded {
             map,
@@ -587,7 +588,7 @@ pub(crate) fn exr(path: &Path, size: [u32; 2]) -> Result<ExrImage> {
     // Allow 20 bytes per pixel, more than four planes take, and 1 MiB for the header and the tile offsets.
     let bytes = pixels.saturating_mul(20).saturating_add(1 << 20);
     match read_image(path, &Limits { pixels, bytes }).map_err(advise)? {
-        Image::Exr(image) => Ok(image),
+        Image::Planes(Format::Exr, image) => Ok(image),
         _ => Err(anyhow!("{} is no EXR image", path.display())),
     }
 }
@@ -622,9 +623,9 @@ pub(crate) fn divided(&color: &LinearRgb, &alpha: &f32) -> LinearRgb {
 /// Adds a hint to common errors.
 fn advise(error: ImageError) -> Error {
     let hint = match error.kind() {
-        ImageErrorKind::UnknownFormat => {
-            Some("PNG, JPEG and OpenEXR images are read; convert it first")
-        }
+        ImageErrorKind::UnknownFormat => Some(
+            "PNG, JPEG, OpenEXR, TIFF, WebP, TGA and Radiance HDR images are read; convert it first",
+        ),
         ImageErrorKind::MissingPlane { .. } => {
             Some("the planes of an EXR image are R, G and B, or a single one")
         }
@@ -636,7 +637,7 @@ fn advise(error: ImageError) -> Error {
         }
         ImageErrorKind::TooManyPixels { .. } => Some(
             "add --max-pixels N to read larger images, or --region X,Y,W,H for a part of a PNG or OpenEXR image; \
-             a JPEG is decoded as a whole",
+             other formats are decoded as a whole",
         ),
         _ => None,
     };

@@ -44,13 +44,11 @@ impl fmt::Display for Channels {
 }
 
 impl Image {
-    /// Returns the name of the format: `PNG`, `JPEG` or `OpenEXR`.
+    /// Returns the name of the format, such as `PNG` or `OpenEXR`.
     #[must_use]
     pub const fn format(&self) -> &'static str {
         match self {
-            Self::Png(_) => "PNG",
-            Self::Jpeg(_) => "JPEG",
-            Self::Exr(_) => "OpenEXR",
+            Self::Codes(format, _) | Self::Planes(format, _) => format.name(),
         }
     }
 
@@ -58,17 +56,17 @@ impl Image {
     #[must_use]
     pub fn channels(&self) -> Channels {
         match self {
-            Self::Png(image) | Self::Jpeg(image) => image.channels(),
-            Self::Exr(image) => image.channels(),
+            Self::Codes(_, image) => image.channels(),
+            Self::Planes(_, image) => image.channels(),
         }
     }
 
-    /// Returns the bits per channel: 8 or 16, and 32 for OpenEXR, whose samples are all read as `f32`.
+    /// Returns the bits per channel: 8 or 16, and 32 for floating-point planes, whose samples are all read as `f32`.
     #[must_use]
     pub const fn bits(&self) -> u32 {
         match self {
-            Self::Png(image) | Self::Jpeg(image) => image.bits(),
-            Self::Exr(_) => 32,
+            Self::Codes(_, image) => image.bits(),
+            Self::Planes(..) => 32,
         }
     }
 }

@@ -24,11 +24,9 @@ pub(crate) const D65: [f64; 2] = [0.3127, 0.329];
 pub(crate) const BT709: Primaries = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], D65];
 
 /// Primaries of Adobe RGB (1998).
-#[cfg(feature = "jpeg")]
 pub(crate) const ADOBE_RGB: Primaries = [[0.64, 0.33], [0.21, 0.71], [0.15, 0.06], D65];
 
 /// Exponent of Adobe RGB (1998), 2 + 51 / 256.
-#[cfg(feature = "jpeg")]
 pub(crate) const ADOBE_GAMMA: f64 = 563.0 / 256.0;
 
 /// White point of the profile connection space, an approximation of D50 (ICC.1, section 6.3.4.3).
@@ -143,7 +141,6 @@ impl Curve {
 
 impl ColorSpace {
     /// Creates a color space that is declared to be sRGB.
-    #[cfg(any(feature = "png", feature = "jpeg"))]
     pub(crate) fn srgb(source: Source) -> Self {
         Self {
             source,
@@ -160,7 +157,6 @@ impl ColorSpace {
     }
 
     /// Creates a color space from its primaries and one curve for all channels.
-    #[cfg(any(feature = "png", feature = "jpeg"))]
     pub(crate) fn from_primaries(source: Source, primaries: Primaries, curve: Curve) -> Self {
         match bt709_from(&primaries) {
             Some(matrix) => {

@@ -188,6 +188,19 @@ impl ImageError {
     }
 }
 
+/// Runs a codec. In programs that unwind on panic (the default), a panic of the codec becomes
+/// [`ImageErrorKind::Damaged`].
+#[cfg(any(feature = "exr", feature = "jpeg", feature = "tiff", feature = "webp"))]
+pub(crate) fn guarded<T>(
+    format: crate::Format,
+    decode: impl FnOnce() -> Result<T, ImageError>,
+) -> Result<T, ImageError> {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+    // A panic leaves no inconsistent data behind: nothing mutable outlives the call.
+    catch_unwind(AssertUnwindSafe(decode))
+        .unwrap_or_else(|_| Err(ImageError::damaged(format.name(), "the codec gave up")))
+}
+
 impl fmt::Display for ImageError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(path) = &self.path {

@@ -28,6 +28,7 @@ pub(crate) use layers::Picture;
 use crate::color_space::{BT709, bt709_from, times};
 use crate::content::Pixel;
 use crate::image::transparent;
+use crate::orientation::Stored;
 use crate::{ImageError, ImageErrorKind};
 use dapple_color::{Code, LinearRgb, LinearRgba, Normal};
 use dapple_raster::Raster;
@@ -65,6 +66,26 @@ impl ExrPlane {
         Self::from_pixels(colors)
     }
 
+    /// Creates planes from samples, pixel by pixel: `Y`, or `R`, `G` and `B`, and `A` last if there is alpha.
+    pub(crate) fn from_samples(
+        stored: Stored,
+        n_channels: usize,
+        samples: &[f32],
+    ) -> Result<Vec<Self>, ImageError> {
+        let names: &[&str] = match n_channels {
+            1 | 2 => &["Y", "A"],
+            _ => &["R", "G", "B", "A"],
+        };
+        let planes = names.iter().take(n_channels).enumerate();
+        planes
+            .map(|(channel, name)| {
+                let samples = samples.iter().skip(channel).step_by(n_channels);
+                let values: Vec<f32> = samples.copied().collect();
+                Ok(Self::new(*name, stored.upright(&values)?))
+            })
+            .collect()
+    }
+
     fn from_pixels<T: Pixel>(raster: &Raster<T>) -> Vec<Self> {
         let names = T::CONTENT.planes().iter().enumerate().rev();
         names
@@ -74,6 +95,8 @@ impl ExrPlane {
 }
 
 /// The content of an OpenEXR file. Planes are in file order: part by part, and by name within each part.
+///
+/// Radiance HDR and floating-point TIFF files are decoded to the same type.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExrImage {
     /// The planes. A plane of a named part is named `part.channel`, unless the file has only one part.

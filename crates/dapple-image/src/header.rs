@@ -2,8 +2,7 @@
 //!
 //! Reference: PNG Specification, third edition (W3C, 2025), section 11.2.1; OpenEXR, "The OpenEXR File Layout".
 
-use crate::image::{EXR_SIGNATURE, JPEG_SIGNATURE, PNG_SIGNATURE};
-use crate::{ImageError, ImageErrorKind, Limits, file, read_image};
+use crate::{Format, ImageError, ImageErrorKind, Limits, file, read_image};
 use std::io::Read;
 use std::path::Path;
 
@@ -14,7 +13,7 @@ const PNG_HEADER: usize = 8 + 8 + 13;
 /// Size and format of an image, without its pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ImageHeader {
-    /// Name of the format: PNG, JPEG or OpenEXR.
+    /// Name of the format, such as PNG or OpenEXR.
     pub format: &'static str,
     /// Width and height in pixels.
     pub size: [u64; 2],
@@ -38,14 +37,9 @@ pub fn read_header(path: impl AsRef<Path>) -> Result<ImageHeader, ImageError> {
     file.take(PNG_HEADER as u64)
         .read_to_end(&mut first)
         .map_err(io)?;
-    let format = if first.starts_with(&PNG_SIGNATURE) {
-        return png(&first).map_err(|error| error.at(path));
-    } else if first.starts_with(&JPEG_SIGNATURE) {
-        "JPEG"
-    } else if first.starts_with(&EXR_SIGNATURE) {
-        "OpenEXR"
-    } else {
-        return Err(ImageError::new(ImageErrorKind::UnknownFormat).at(path));
+    let format = match Format::of(&first).map_err(|error| error.at(path))? {
+        Format::Png => return png(&first).map_err(|error| error.at(path)),
+        other => other.name(),
     };
     // With a limit of 0 pixels, decoding stops at the size.
     let limits = Limits {

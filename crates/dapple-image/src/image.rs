@@ -1,68 +1,35 @@
 //! Images whose format is recognized by their first bytes.
 
-use crate::{ColorSpace, ExrImage, ImageError, ImageErrorKind, Limits, PngImage, PngPixels, file};
+use crate::{
+    ColorSpace, ExrImage, Format, ImageError, ImageErrorKind, Limits, PngImage, PngPixels, file,
+};
 use dapple_color::{LinearRgb, LinearRgba, Normal};
 use dapple_raster::Raster;
 use std::path::Path;
-
-/// Signature of PNG files.
-pub(crate) const PNG_SIGNATURE: [u8; 8] = [0x89, b'P', b'N', b'G', b'\r', b'\n', 0x1a, b'\n'];
-
-/// Signature of JPEG files.
-pub(crate) const JPEG_SIGNATURE: [u8; 3] = [0xff, 0xd8, 0xff];
-
-/// Signature of OpenEXR files.
-pub(crate) const EXR_SIGNATURE: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// An image of one of the supported formats.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Image {
-    /// A PNG file.
-    Png(PngImage),
-    /// A JPEG file, decoded to the same type as a PNG image.
-    Jpeg(PngImage),
-    /// An OpenEXR file.
-    Exr(ExrImage),
+    /// Codes of 8 or 16 bits: PNG, JPEG, WebP, TGA and most TIFF files.
+    Codes(Format, PngImage),
+    /// Floating-point planes: OpenEXR, Radiance HDR and floating-point TIFF files.
+    Planes(Format, ExrImage),
 }
 
-/// Decodes an image file. The format is recognized by its signature.
+/// Decodes an image file. The format is recognized by its first bytes.
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::UnknownFormat`] if the signature is unknown, [`ImageErrorKind::Unsupported`] if the format's
-/// crate feature is disabled, or any error from `decode_png`, `decode_jpeg` and `decode_exr`.
+/// [`ImageErrorKind::UnknownFormat`] if the bytes are of no supported format, [`ImageErrorKind::Unsupported`] if the
+/// format's crate feature is disabled or the file uses a feature that is not read, [`ImageErrorKind::Damaged`] if the
+/// bytes violate the format's rules or end too soon, [`ImageErrorKind::TooManyPixels`] or
+/// [`ImageErrorKind::TooManyBytes`] beyond a limit.
 pub fn decode_image(bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> {
-    #[cfg(feature = "png")]
-    if bytes.starts_with(&PNG_SIGNATURE) {
-        return crate::decode_png(bytes, limits).map(Image::Png);
-    }
-    #[cfg(feature = "jpeg")]
-    if bytes.starts_with(&JPEG_SIGNATURE) {
-        return crate::decode_jpeg(bytes, limits).map(Image::Jpeg);
-    }
-    #[cfg(feature = "exr")]
-    if bytes.starts_with(&EXR_SIGNATURE) {
-        return crate::decode_exr(bytes, limits).map(Image::Exr);
-    }
-    let _ = limits;
-    let left_out = LEFT_OUT
-        .iter()
-        .find(|(signature, _)| bytes.starts_with(signature));
-    Err(ImageError::new(match left_out {
-        Some(&(_, feature)) => ImageErrorKind::Unsupported { feature },
-        None => ImageErrorKind::UnknownFormat,
-    }))
+    Format::of(bytes)?.decode(bytes, limits)
 }
 
-/// Signatures of formats whose codec may be compiled out, each with the text of the error for it.
-const LEFT_OUT: [(&[u8], &str); 3] = [
-    (&PNG_SIGNATURE, "PNG without the feature `png`"),
-    (&JPEG_SIGNATURE, "JPEG without the feature `jpeg`"),
-    (&EXR_SIGNATURE, "OpenEXR without the feature `exr`"),
-];
-
-/// Reads an image file. The format is recognized by its signature; the file name does not matter.
+/// Reads an image file. The format is recognized by its first bytes; the file name does not matter.
 ///
 /// # Errors
 ///
@@ -78,15 +45,15 @@ impl Image {
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         match self {
-            Self::Png(image) | Self::Jpeg(image) => image.pixels.size(),
-            Self::Exr(image) => image
+            Self::Codes(_, image) => image.pixels.size(),
+            Self::Planes(_, image) => image
                 .planes
                 .first()
                 .map_or([0, 0], |plane| plane.values.size()),
         }
     }
 
-    /// Returns the values of a gray image: from 0 to 1 in PNG and JPEG, of any magnitude in OpenEXR.
+    /// Returns the values of a gray image: from 0 to 1 for codes, of any magnitude for floating-point planes.
     ///
     /// Use this method for data such as heights and masks. No transfer curve is applied, regardless of the declared
     /// color space. Alpha is allowed if it is 1 everywhere.
@@ -96,25 +63,25 @@ impl Image {
     /// [`ImageErrorKind::Channels`] if the image is not gray, or partly transparent.
     pub fn gray(&self) -> Result<Raster<f32>, ImageError> {
         match self {
-            Self::Png(image) | Self::Jpeg(image) => image.gray(),
-            Self::Exr(image) => image.gray().cloned(),
+            Self::Codes(_, image) => image.gray(),
+            Self::Planes(_, image) => image.gray().cloned(),
         }
     }
 
     /// Returns the colors in linear light. Gray images become gray colors; alpha is allowed if it is 1 everywhere.
     ///
-    /// PNG and JPEG are converted from the color space that they declare; files without a declaration are sRGB, as on
-    /// the web.
+    /// Codes are converted from the color space that the file declares; files without a declaration are sRGB, as on the
+    /// web.
     ///
     /// # Errors
     ///
     /// [`ImageErrorKind::ColorSpace`] if the declared color space cannot be converted, [`ImageErrorKind::Channels`]
-    /// if the image is partly transparent, [`ImageErrorKind::MissingPlane`] or [`ImageErrorKind::SizeMismatch`] if an
-    /// OpenEXR file does not have three color planes.
+    /// if the image is partly transparent, [`ImageErrorKind::MissingPlane`] or [`ImageErrorKind::SizeMismatch`] if
+    /// floating-point planes are not three colors.
     pub fn color(&self) -> Result<Raster<LinearRgb>, ImageError> {
         match self {
-            Self::Png(image) | Self::Jpeg(image) => image.color(),
-            Self::Exr(image) => {
+            Self::Codes(_, image) => image.color(),
+            Self::Planes(_, image) => {
                 let pixels = image.color_alpha()?;
                 if pixels.pixels().iter().any(|pixel| pixel.alpha != 1.0) {
                     return Err(transparent("RGB"));
@@ -126,34 +93,34 @@ impl Image {
 
     /// Returns the colors in linear light with alpha, which is 1 if the file has none.
     ///
-    /// PNG and JPEG are converted from the color space that they declare; files without a declaration are sRGB, as on
-    /// the web.
+    /// Codes are converted from the color space that the file declares; files without a declaration are sRGB, as on the
+    /// web.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::MissingPlane`] or [`ImageErrorKind::SizeMismatch`] if an OpenEXR file does not have three
-    /// color planes.
+    /// [`ImageErrorKind::MissingPlane`] or [`ImageErrorKind::SizeMismatch`] if floating-point planes are not
+    /// three colors.
     pub fn color_alpha(&self) -> Result<Raster<LinearRgba>, ImageError> {
         match self {
-            Self::Png(image) | Self::Jpeg(image) => image.color_alpha(),
-            Self::Exr(image) => image.color_alpha(),
+            Self::Codes(_, image) => image.color_alpha(),
+            Self::Planes(_, image) => image.color_alpha(),
         }
     }
 }
 
 impl Image {
-    /// Returns the unit vectors of a normal map, regardless of the declared color space. The alpha channel of a PNG
-    /// file is ignored.
+    /// Returns the unit vectors of a normal map, regardless of the declared color space. The alpha channel of
+    /// codes is ignored.
     ///
-    /// The codes of PNG and JPEG are `(part + 1) / 2`; [`ExrImage::normals`] describes the values of OpenEXR.
+    /// Codes are `(part + 1) / 2`; [`ExrImage::normals`] describes the values of floating-point planes.
     ///
     /// # Errors
     ///
     /// [`ImageErrorKind::Channels`] if the image is gray, or any error from [`ExrImage::normals`].
     pub fn normals(&self) -> Result<Raster<Normal>, ImageError> {
         let png = match self {
-            Self::Png(png) | Self::Jpeg(png) => png,
-            Self::Exr(exr) => return exr.normals(),
+            Self::Codes(_, png) => png,
+            Self::Planes(_, exr) => return exr.normals(),
         };
         match &png.pixels {
             PngPixels::Rgb8(raster) => Ok(raster.map(|&codes| Normal::from_codes(codes))),
@@ -175,7 +142,7 @@ impl Image {
     /// textures.
     #[must_use]
     pub fn without_color_space(mut self) -> Self {
-        if let Self::Png(image) | Self::Jpeg(image) = &mut self {
+        if let Self::Codes(_, image) = &mut self {
             image.space = ColorSpace::default();
         }
         self
@@ -185,12 +152,12 @@ impl Image {
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::MissingLayer`] if there is no layer with this name, [`ImageErrorKind::NoLayers`] for a PNG
-    /// or JPEG file.
+    /// [`ImageErrorKind::MissingLayer`] if there is no layer with this name, [`ImageErrorKind::NoLayers`] for an
+    /// image of codes.
     pub fn layer(&self, name: &str) -> Result<Self, ImageError> {
         match self {
-            Self::Exr(image) => image.layer(name).map(Self::Exr),
-            Self::Png(_) | Self::Jpeg(_) => Err(ImageError::new(ImageErrorKind::NoLayers {
+            Self::Planes(format, image) => Ok(Self::Planes(*format, image.layer(name)?)),
+            Self::Codes(..) => Err(ImageError::new(ImageErrorKind::NoLayers {
                 format: self.format(),
             })),
         }

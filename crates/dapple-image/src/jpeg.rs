@@ -8,13 +8,8 @@
 //! In programs that unwind on panic (the default), a panic in the codec is caught here and becomes
 //! [`ImageErrorKind::Damaged`].
 
-mod exif;
-mod orientation;
-
-use crate::image::JPEG_SIGNATURE as SIGNATURE;
-use crate::{ImageError, ImageErrorKind, Limits, PngImage, PngPixels, Transfer, icc};
-use orientation::Orientation;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use crate::error::guarded;
+use crate::{Format, ImageError, ImageErrorKind, Limits, PngImage, PngPixels, Transfer, exif, icc};
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::errors::DecodeErrors;
 use zune_jpeg::zune_core::bytestream::ZCursor;
@@ -44,12 +39,8 @@ const SAMPLE_BYTES: u64 = 3;
 /// [`ImageErrorKind::TooManyBytes`] beyond a limit; each sample counts as three bytes, the most that decoding can
 /// take.
 pub fn decode_jpeg(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
-    if !bytes.starts_with(&SIGNATURE) {
-        return Err(ImageError::new(ImageErrorKind::UnknownFormat));
-    }
-    // A panic leaves no inconsistent data behind: nothing mutable outlives the call.
-    catch_unwind(AssertUnwindSafe(|| decode(bytes, limits)))
-        .unwrap_or_else(|_| Err(ImageError::damaged("JPEG", "the codec gave up")))
+    Format::Jpeg.check(bytes)?;
+    guarded(Format::Jpeg, || decode(bytes, limits))
 }
 
 fn decode(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
@@ -81,20 +72,14 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
     let mut samples = vec![0; n_samples];
     decoder.decode_into(&mut samples).map_err(refusal)?;
     let exif = decoder.exif().map(Vec::as_slice).unwrap_or_default();
-    let orientation = Orientation::from_exif(exif);
     let space = match decoder.icc_profile() {
         Some(profile) => icc::color_space(&profile),
         None => exif::color_space(exif),
     };
-    let pixels = match output {
-        ColorSpace::Luma => PngPixels::Gray8(orientation.raster([width, height], &samples)?),
-        _ => {
-            let (pixels, _) = samples.as_chunks::<3>();
-            PngPixels::Rgb8(orientation.raster([width, height], pixels)?)
-        }
-    };
+    let n_channels = output.num_components();
+    let stored = exif::orientation(exif).stored([width, height], Format::Jpeg);
     Ok(PngImage {
-        pixels,
+        pixels: PngPixels::from_codes8(stored, n_channels, &samples)?,
         transfer: Transfer::Srgb,
         space,
     })

@@ -6,10 +6,13 @@ use dapple_image::{
     encode_png,
 };
 use dapple_raster::Raster;
+use image_webp::WebPEncoder;
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use std::io::Cursor;
+use tiff::encoder::colortype::{Gray32Float, RGBA8};
+use tiff::encoder::{Compression, DeflateLevel, TiffEncoder};
 
 /// The limits for reading a damaged file.
 const LIMITS: Limits = Limits {
@@ -61,6 +64,42 @@ fn files() -> Vec<Vec<u8>> {
         encoder.encode(&samples, 21, 18, ColorType::Rgb).unwrap();
         files.push(bytes);
     }
+    files.extend(other_files(gray.pixels(), colors.pixels().as_flattened()));
+    files
+}
+
+/// Returns complete files of the formats that are only read.
+fn other_files(gray: &[f32], rgba: &[u8]) -> Vec<Vec<u8>> {
+    let mut files = Vec::new();
+    for compression in [
+        Compression::Uncompressed,
+        Compression::Lzw,
+        Compression::Packbits,
+    ] {
+        let mut sink = Cursor::new(Vec::new());
+        let encoder = TiffEncoder::new(&mut sink).unwrap();
+        let mut encoder = encoder.with_compression(compression);
+        encoder.write_image::<RGBA8>(21, 18, rgba).unwrap();
+        files.push(sink.into_inner());
+    }
+    let mut sink = Cursor::new(Vec::new());
+    let encoder = TiffEncoder::new(&mut sink).unwrap();
+    let mut encoder = encoder.with_compression(Compression::Deflate(DeflateLevel::Fast));
+    encoder.write_image::<Gray32Float>(21, 18, gray).unwrap();
+    files.push(sink.into_inner());
+    let mut bytes = Vec::new();
+    let encoder = WebPEncoder::new(&mut bytes);
+    encoder
+        .encode(rgba, 21, 18, image_webp::ColorType::Rgba8)
+        .unwrap();
+    files.push(bytes);
+    // Run-length encoded rows of TGA, and scan lines of Radiance HDR by channel.
+    let tga = [0, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 21, 0, 18, 0, 32, 40];
+    let rows = [[148, 1, 2, 3, 4]; 18];
+    files.push([tga.as_slice(), rows.as_flattened()].concat());
+    let lines = [[2, 2, 0, 21, 149, 9, 149, 9, 149, 9, 149, 130]; 18];
+    let start = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 18 +X 21\n";
+    files.push([start.as_slice(), lines.as_flattened()].concat());
     files
 }
 

@@ -1,4 +1,4 @@
-//! Reads and writes image files: PNG, OpenEXR, JPEG, NumPy arrays and raw heights.
+//! Reads and writes image files: PNG and OpenEXR, NumPy arrays and raw heights; other formats are only read.
 
 use crate::data;
 use crate::error::{DappleWarning, Error, Result};
@@ -102,7 +102,7 @@ impl Reading {
             // the color below.
             ImageAlpha::Over(below) => {
                 let covered = match image {
-                    Image::Exr(exr) => exr.associated()?.0,
+                    Image::Planes(_, exr) => exr.associated()?.0,
                     _ => pixels.map(|pixel| pixel.color * pixel.alpha),
                 };
                 let over =
@@ -122,8 +122,8 @@ fn channels(image: &Image) -> Result<Vec<Raster<f32>>> {
             .collect()
     }
     let png = match image {
-        Image::Png(png) | Image::Jpeg(png) => png,
-        Image::Exr(exr) => {
+        Image::Codes(_, png) => png,
+        Image::Planes(_, exr) => {
             let planes = exr.to_picture()?.planes.into_iter();
             return Ok(planes.map(|plane| plane.values).collect());
         }
@@ -146,9 +146,9 @@ fn channels(image: &Image) -> Result<Vec<Raster<f32>>> {
     })
 }
 
-/// Reads an image file as a float32 array: PNG, JPEG or OpenEXR, whatever its file extension.
+/// Reads an image file as a float32 array: PNG, JPEG, OpenEXR, TIFF, WebP, TGA or Radiance HDR, recognized by its content.
 ///
-/// Gray images are read without sRGB decoding, (rows, columns); PNG and JPEG values are from 0 to 1. Colors are
+/// Gray images are read without sRGB decoding, (rows, columns); values of 8 and 16 bits are from 0 to 1. Colors are
 /// linear BT.709 light, converted from the color space that the file declares, (rows, columns, 3), or (rows, columns,
 /// 4) if any pixel is not opaque; alpha is not multiplied into them. For OpenEXR, the array has the pixels of the
 /// display window.

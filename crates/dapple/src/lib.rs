@@ -40,7 +40,7 @@
 //! | their triangulation and other graphs | [`graph`] | [`delaunay`](graph::delaunay()) |
 //! | blurs, dilation, distances to a mask, connected regions | [`filter`] | [`gaussian`](filter::gaussian()), [`distances`](filter::distances()) |
 //! | colors, normals, occlusion, curvature of heights | [`color`] | [`Palette`](color::Palette), [`normal_map`](color::normal_map) |
-//! | files: PNG and OpenEXR | [`image`] | [`write_color_png`](image::write_color_png), [`read_image`](image::read_image) |
+//! | files: PNG, OpenEXR and others | [`image`] | [`write_color_png`](image::write_color_png), [`read_image`](image::read_image) |
 //! | meshes | [`mesh`] | [`Mesh`](mesh::Mesh), [`Surface`](mesh::Surface) |
 //! | mesh files: OBJ, PLY, glTF, OFF, STL | [`mesh_io`] | [`read_model`](mesh_io::read_model), [`write_model`](mesh_io::write_model) |
 //! | a lit image of a textured object | [`preview`] | [`Scene`](preview::Scene) |
@@ -198,6 +198,6 @@ pub use dapple_synth as synth;
 #[cfg(feature = "preview")]
 pub use dapple_preview as preview;
 
-/// Image files: PNG, OpenEXR and JPEG.
+/// Image files: PNG, OpenEXR, JPEG, TIFF, WebP, TGA and Radiance HDR.
 #[cfg(feature = "image")]
 pub use dapple_image as image;

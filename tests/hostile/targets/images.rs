@@ -1,4 +1,4 @@
-//! Targets for PNG, JPEG and OpenEXR.
+//! Target for all image formats.
 
 use super::accepted;
 use dapple::image::{
@@ -28,8 +28,8 @@ pub fn image(bytes: &[u8]) {
     let _ = accepted(image.color());
     let _ = accepted(image.color_alpha());
     match &image {
-        Image::Png(image) | Image::Jpeg(image) => check_png(image),
-        Image::Exr(image) => check_exr(image),
+        Image::Codes(_, image) => check_png(image),
+        Image::Planes(_, image) => check_exr(image),
         _ => {}
     }
 }
@@ -114,5 +114,51 @@ pub(super) fn seeds() -> Vec<Vec<u8>> {
             seeds.push(bytes);
         }
     }
+    seeds.extend(read_only());
     seeds
+}
+
+/// Frame of a lossy WebP image of 2 × 2 red pixels, encoded by libwebp.
+const WEBP_FRAME: [u8; 44] = [
+    0x90, 0x01, 0x00, 0x9d, 0x01, 0x2a, 0x02, 0x00, 0x02, 0x00, 0x02, 0xc0, 0x4c, 0x25, 0xa0, 0x02,
+    0x74, 0xba, 0x00, 0x03, 0x98, 0x00, 0xfe, 0xee, 0x43, 0x1f, 0xee, 0x6c, 0x73, 0x8b, 0x70, 0x57,
+    0xff, 0x6d, 0x0f, 0xff, 0x5a, 0x1f, 0xfe, 0xb4, 0x3f, 0xe9, 0x40, 0x00,
+];
+
+/// Returns files of the formats that have no encoder here.
+fn read_only() -> [Vec<u8>; 5] {
+    // TIFF: the entries of width, height, bits, interpretation, offset, rows and bytes of one strip of 5 × 3 pixels.
+    let entry = |tag: u16, value: u16| {
+        let numbers = [tag, 3, 1, 0, value, 0];
+        numbers.map(u16::to_le_bytes).concat()
+    };
+    let entries = [
+        (256, 5),
+        (257, 3),
+        (258, 8),
+        (262, 1),
+        (273, 98),
+        (278, 3),
+        (279, 15),
+    ];
+    let entries = entries.map(|(tag, value)| entry(tag, value)).concat();
+    let start = b"II*\0\x08\0\0\0\x07\0".as_slice();
+    let tiff = [start, &entries, &[0; 4], b"fifteen pixels."].concat();
+    let webp = [b"RIFF\x38\0\0\0WEBPVP8 \x2c\0\0\0".as_slice(), &WEBP_FRAME];
+    // TGA: raw colors, and runs of pixels with alpha.
+    let header = |kind, bits, descriptor| {
+        let zeros = [0; 9];
+        [
+            &[0, 0, kind],
+            zeros.as_slice(),
+            &[5, 0, 3, 0, bits, descriptor],
+        ]
+        .concat()
+    };
+    let raw = [header(2, 24, 32), vec![77; 45]].concat();
+    let runs = [header(10, 32, 8), [[132, 1, 2, 3, 4]; 3].concat()].concat();
+    // Radiance HDR: a scan line by channel.
+    let start = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 8\n\x02\x02\0\x08".as_slice();
+    let hdr = [start, &[136, 9, 136, 8, 4, 1, 2, 3, 4, 132, 7, 136, 128]].concat();
+    [tiff, webp.concat(), raw, runs, hdr]
 }

@@ -25,7 +25,7 @@ fn write(folder: &Folder, name: &str, planes: &[PlaneOf<'_>]) {
 /// Reads a plane of an OpenEXR file in a folder.
 fn read(folder: &Folder, name: &str, plane: &str) -> Raster<f32> {
     match read_image(folder.path(name), &Limits::default()).unwrap() {
-        dapple::image::Image::Exr(exr) => exr.plane(plane).unwrap().clone(),
+        dapple::image::Image::Planes(_, exr) => exr.plane(plane).unwrap().clone(),
         other => panic!("{name} is {}", other.format()),
     }
 }

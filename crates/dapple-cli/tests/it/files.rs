@@ -125,7 +125,7 @@ fn formats_follow_the_ending_and_what_is_written() {
         assert_done(&folder.run(&arguments), output);
         let image = read_image(folder.path(output), &Limits::default()).unwrap();
         match image {
-            Image::Png(_) => {
+            Image::Codes(..) => {
                 let info = stdout(&folder.run(&["info", output]));
                 let expected = format!("{} bits per channel", bits.unwrap_or(0));
                 assert!(info.contains(&expected), "{output}: {info}");

@@ -16,7 +16,7 @@ fn run(folder: &Folder, line: &str) -> std::process::Output {
 /// Returns the codes of an image with three channels of 8 bits.
 fn codes(image: Option<&EncodedImage>) -> Raster<[u8; 3]> {
     match decode_image(image.unwrap().bytes(), &Limits::default()).unwrap() {
-        Image::Png(png) => match png.pixels {
+        Image::Codes(_, png) => match png.pixels {
             PngPixels::Rgb8(raster) => raster,
             other => panic!("{:?} pixels without 8 bits", other.size()),
         },

@@ -36,7 +36,7 @@ fn cover(folder: &Folder, more: &str) {
 /// Returns the codes of an image with three channels of 16 bits.
 fn codes(image: &EncodedImage) -> Vec<[u16; 3]> {
     match decode_image(image.bytes(), &Limits::default()).unwrap() {
-        Image::Png(png) => match png.pixels {
+        Image::Codes(_, png) => match png.pixels {
             PngPixels::Rgb16(raster) => raster.into_pixels(),
             other => panic!("{:?} pixels without 16 bits", other.size()),
         },

@@ -9,8 +9,8 @@
 //! (the default), they are caught here and become [`ImageErrorKind::Damaged`].
 
 use super::{ExrImage, ExrPlane, layers};
-use crate::image::EXR_SIGNATURE as SIGNATURE;
-use crate::{ImageError, ImageErrorKind, Limits};
+use crate::error::guarded;
+use crate::{Format, ImageError, ImageErrorKind, Limits};
 use dapple_raster::Raster;
 use exr::block::BlockIndex;
 use exr::block::chunk::TileCoordinates;
@@ -26,7 +26,6 @@ use exr::meta::header::Header;
 use exr::prelude::f16;
 use std::io::Cursor;
 use std::ops::Range;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Decodes the bytes of an OpenEXR file.
 ///
@@ -39,7 +38,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// [`ImageErrorKind::Windows`] if the data and display windows have no pixel in common,
 /// [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`] beyond a limit.
 pub fn decode_exr(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError> {
-    guarded(bytes, || decode(bytes, limits))
+    Format::Exr.check(bytes)?;
+    guarded(Format::Exr, || decode(bytes, limits))
 }
 
 /// Decodes a region of the image in an OpenEXR file: `size` pixels starting at column and row `first` of the display
@@ -54,20 +54,8 @@ pub fn decode_exr_region(
     size: [u32; 2],
     limits: &Limits,
 ) -> Result<ExrImage, ImageError> {
-    guarded(bytes, || decode_region(bytes, first, size, limits))
-}
-
-/// Decodes bytes with the OpenEXR signature; a panic of the codec becomes an error.
-fn guarded(
-    bytes: &[u8],
-    decode: impl FnOnce() -> Result<ExrImage, ImageError>,
-) -> Result<ExrImage, ImageError> {
-    if !bytes.starts_with(&SIGNATURE) {
-        return Err(ImageError::new(ImageErrorKind::UnknownFormat));
-    }
-    // A panic leaves no inconsistent data behind: nothing mutable outlives the call.
-    catch_unwind(AssertUnwindSafe(decode))
-        .unwrap_or_else(|_| Err(ImageError::damaged("OpenEXR", "the codec gave up")))
+    Format::Exr.check(bytes)?;
+    guarded(Format::Exr, || decode_region(bytes, first, size, limits))
 }
 
 fn decode(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError> {

@@ -5,8 +5,7 @@
 //! the pixels is allocated.
 
 use super::{PngImage, PngPixel, PngPixels, Transfer, space};
-use crate::image::PNG_SIGNATURE as SIGNATURE;
-use crate::{ImageError, ImageErrorKind, Limits};
+use crate::{Format, ImageError, ImageErrorKind, Limits};
 use dapple_raster::Raster;
 use png::{BitDepth, ColorType, DecodingError};
 use std::io::Cursor;
@@ -19,9 +18,7 @@ use std::io::Cursor;
 /// the format's rules or end too soon, [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`] past a
 /// limit.
 pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
-    if !bytes.starts_with(&SIGNATURE) {
-        return Err(ImageError::new(ImageErrorKind::UnknownFormat));
-    }
+    Format::Png.check(bytes)?;
     let mut decoder = decoder(bytes, limits);
     let refuse = |error| refusal(error, limits);
     check_not_empty(bytes)?;
@@ -52,9 +49,7 @@ pub fn decode_png_region(
     size: [u32; 2],
     limits: &Limits,
 ) -> Result<PngImage, ImageError> {
-    if !bytes.starts_with(&SIGNATURE) {
-        return Err(ImageError::new(ImageErrorKind::UnknownFormat));
-    }
+    Format::Png.check(bytes)?;
     check_not_empty(bytes)?;
     let refuse = |error| refusal(error, limits);
     let mut reader = decoder(bytes, limits).read_info().map_err(refuse)?;

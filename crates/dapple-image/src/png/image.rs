@@ -1,7 +1,8 @@
-//! Content of a PNG file. JPEG files are decoded to the same type.
+//! Content of a PNG file. Other formats of 8 and 16 bits are decoded to the same type.
 
 use super::Transfer;
-use crate::ColorSpace;
+use crate::orientation::Stored;
+use crate::{ColorSpace, ImageError};
 use dapple_raster::Raster;
 
 /// Content of a PNG file.
@@ -38,6 +39,35 @@ pub enum PngPixels {
 }
 
 impl PngPixels {
+    /// Creates upright pixels from the 8-bit samples of a file, with 1 to 4 channels.
+    pub(crate) fn from_codes8(
+        stored: Stored,
+        n_channels: usize,
+        samples: &[u8],
+    ) -> Result<Self, ImageError> {
+        Ok(match n_channels {
+            1 => Self::Gray8(stored.upright(samples)?),
+            2 => Self::GrayAlpha8(stored.upright(samples.as_chunks().0)?),
+            3 => Self::Rgb8(stored.upright(samples.as_chunks().0)?),
+            _ => Self::Rgba8(stored.upright(samples.as_chunks().0)?),
+        })
+    }
+
+    /// Creates upright pixels from the 16-bit samples of a file, with 1 to 4 channels.
+    #[cfg(feature = "tiff")]
+    pub(crate) fn from_codes16(
+        stored: Stored,
+        n_channels: usize,
+        samples: &[u16],
+    ) -> Result<Self, ImageError> {
+        Ok(match n_channels {
+            1 => Self::Gray16(stored.upright(samples)?),
+            2 => Self::GrayAlpha16(stored.upright(samples.as_chunks().0)?),
+            3 => Self::Rgb16(stored.upright(samples.as_chunks().0)?),
+            _ => Self::Rgba16(stored.upright(samples.as_chunks().0)?),
+        })
+    }
+
     /// Returns the width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {

@@ -1,7 +1,7 @@
 //! Tests of the reported channels of images.
 
 use dapple_image::{
-    Channels, ColorSpace, ExrImage, ExrPlane, Image, Limits, PngImage, PngPixel, PngPixels,
+    Channels, ColorSpace, ExrImage, ExrPlane, Format, Image, Limits, PngImage, PngPixel, PngPixels,
     Transfer, decode_image, encode_png,
 };
 use dapple_raster::Raster;
@@ -25,11 +25,14 @@ fn files_say_what_they_hold() {
     check([1_u16; 4], Channels::Rgba, 16);
     let pixels = PngPixels::Gray8(Raster::filled([1, 1], 0).unwrap());
     let transfer = Transfer::Srgb;
-    let photo = Image::Jpeg(PngImage {
-        pixels,
-        transfer,
-        space: ColorSpace::default(),
-    });
+    let photo = Image::Codes(
+        Format::Jpeg,
+        PngImage {
+            pixels,
+            transfer,
+            space: ColorSpace::default(),
+        },
+    );
     assert_eq!((photo.format(), photo.bits()), ("JPEG", 8), "a photograph");
 }
 
@@ -45,10 +48,13 @@ fn planes_are_known_by_their_names() {
     ] {
         let plane = |name: &&str| ExrPlane::new(*name, Raster::filled([1, 1], 0.0).unwrap());
         let planes = names.iter().map(plane).collect();
-        let image = Image::Exr(ExrImage {
-            planes,
-            ..ExrImage::default()
-        });
+        let image = Image::Planes(
+            Format::Exr,
+            ExrImage {
+                planes,
+                ..ExrImage::default()
+            },
+        );
         let found = (image.format(), image.channels(), image.bits());
         assert_eq!(found, ("OpenEXR", channels, 32), "{names:?}");
         let has_alpha = channels == Channels::Rgba;

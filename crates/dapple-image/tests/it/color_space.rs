@@ -3,9 +3,14 @@
 
 use crate::png::{chunk, naive_png, stored};
 use dapple_color::LinearRgb;
-use dapple_image::{ExrImage, ExrPlane, Image, ImageErrorKind, Limits, decode_image};
+use dapple_image::{ExrImage, ExrPlane, Format, Image, ImageErrorKind, Limits, decode_image};
 use dapple_raster::Raster;
+use image_webp::WebPEncoder;
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
+use std::io::Cursor;
+use tiff::encoder::TiffEncoder;
+use tiff::encoder::colortype::RGB8;
+use tiff::tags::Tag;
 
 /// Test colors as 8-bit codes.
 const CODES: [[u8; 3]; 6] = [
@@ -152,6 +157,26 @@ fn png(colors: &[[u8; 3]], chunks: &[Vec<u8>]) -> Image {
     decode_image(&bytes, &Limits::default()).unwrap()
 }
 
+/// Decodes a TIFF file of one pixel with an ICC profile.
+fn tiff(color: [u8; 3], profile: &[u8]) -> Image {
+    let mut sink = Cursor::new(Vec::new());
+    let mut encoder = TiffEncoder::new(&mut sink).unwrap();
+    let mut image = encoder.new_image::<RGB8>(1, 1).unwrap();
+    image.encoder().write_tag(Tag::IccProfile, profile).unwrap();
+    image.write_data(&color).unwrap();
+    decode_image(&sink.into_inner(), &Limits::default()).unwrap()
+}
+
+/// Decodes a WebP file of one pixel with an ICC profile.
+fn webp(color: [u8; 3], profile: &[u8]) -> Image {
+    let mut bytes = Vec::new();
+    let mut encoder = WebPEncoder::new(&mut bytes);
+    encoder.set_icc_profile(profile.to_vec());
+    let rgb = image_webp::ColorType::Rgb8;
+    encoder.encode(&color, 1, 1, rgb).unwrap();
+    decode_image(&bytes, &Limits::default()).unwrap()
+}
+
 /// Decodes a JPEG file of one color, with an ICC profile or an Exif segment.
 fn jpeg(color: [u8; 3], profile: Option<&[u8]>, exif: Option<&[u8]>) -> Image {
     let mut bytes = Vec::new();
@@ -203,6 +228,10 @@ fn matrix_profiles_become_light_of_bt709() {
             // Profiles are rounded to 16 bits behind the point, and the constants to five digits.
             assert_near(colors.pixels()[at], expected, 5e-5, name);
             assert_eq!(alphas.pixels()[at].color, colors.pixels()[at], "{name}");
+            for image in [tiff(CODES[at], &profile), webp(CODES[at], &profile)] {
+                let found = image.color().unwrap();
+                assert_eq!(found.pixels(), [colors.pixels()[at]], "{name}");
+            }
             let photo = jpeg(CODES[at], Some(&profile), None).color().unwrap();
             // A step of a code of JPEG is up to 0.015 in the light of a power of 2.2, times 1.7 by the matrix.
             assert_near(photo.pixels()[20], expected, 0.03, name);
@@ -215,7 +244,7 @@ fn a_profile_of_srgb_changes_no_bit() {
     let plain = png(&CODES, &[]).color().unwrap();
     let image = png(&CODES, &[iccp(&icc(SRGB_COLUMNS, Curve::Srgb))]);
     assert_eq!(image.color().unwrap(), plain);
-    let Image::Png(image) = image else {
+    let Image::Codes(_, image) = image else {
         panic!("no PNG");
     };
     assert!(image.space.is_srgb() && image.space.to_string().contains("sRGB"));
@@ -306,7 +335,7 @@ fn what_cannot_be_converted_is_named() {
             );
             assert!(error.to_string().contains(part), "{error} names {part:?}");
         }
-        let Image::Png(png) = &image else {
+        let Image::Codes(_, png) = &image else {
             panic!("no PNG");
         };
         assert!(png.space.to_string().contains(part), "{}", png.space);
@@ -401,11 +430,14 @@ fn exr(parts: [f32; 3], chromaticities: [[f32; 2]; 4]) -> Image {
     let plane =
         |(name, value): (&str, f32)| ExrPlane::new(name, Raster::filled([1, 1], value).unwrap());
     let planes = ["R", "G", "B"].into_iter().zip(parts).chain([("A", 1.0)]);
-    Image::Exr(ExrImage {
-        planes: planes.map(plane).collect(),
-        chromaticities: Some(chromaticities),
-        ..ExrImage::default()
-    })
+    Image::Planes(
+        Format::Exr,
+        ExrImage {
+            planes: planes.map(plane).collect(),
+            chromaticities: Some(chromaticities),
+            ..ExrImage::default()
+        },
+    )
 }
 
 #[test]

@@ -2,7 +2,8 @@
 
 use dapple_color::{LinearRgb, LinearRgba};
 use dapple_image::{
-    Channels, ExrImage, ExrPlane, ImageErrorKind, Limits, decode_exr, decode_exr_region, encode_exr,
+    Channels, ExrImage, ExrPlane, Format, ImageErrorKind, Limits, decode_exr, decode_exr_region,
+    encode_exr,
 };
 use dapple_raster::Raster;
 use exr::compression::Compression;
@@ -281,7 +282,7 @@ fn the_only_part_is_read_whatever_its_name() {
         let image = decode(&colored_parts(&[name]));
         let names: Vec<_> = image.planes.iter().map(|plane| &plane.name).collect();
         assert_eq!(names, ["B", "G", "R"], "{name:?}");
-        let image = dapple_image::Image::Exr(image);
+        let image = dapple_image::Image::Planes(Format::Exr, image);
         assert_eq!(image.channels(), Channels::Rgb, "{name:?}");
         let colors = image.color().unwrap();
         assert_eq!(colors.pixels(), [LinearRgb::new(1.0, 2.0, 3.0); 2]);
@@ -303,7 +304,7 @@ fn of_several_parts_the_only_one_of_color_is_read() {
         alpha: 0.5,
     };
     assert_eq!(image.color_alpha().unwrap().pixels(), [half]);
-    let channels = dapple_image::Image::Exr(image).channels();
+    let channels = dapple_image::Image::Planes(Format::Exr, image).channels();
     assert_eq!(channels, Channels::Rgba, "as it is read");
     let layers = ["near", "far"].map(str::to_owned).to_vec();
     let two = decode(&colored_parts(&["near", "far"]));

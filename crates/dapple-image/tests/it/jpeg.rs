@@ -1,6 +1,8 @@
 //! Tests of JPEG files that can be read, and of those that are errors.
 
-use dapple_image::{Image, ImageErrorKind, Limits, PngPixels, Transfer, decode_image, decode_jpeg};
+use dapple_image::{
+    Format, Image, ImageErrorKind, Limits, PngPixels, Transfer, decode_image, decode_jpeg,
+};
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
 use proptest::prelude::*;
 
@@ -91,7 +93,7 @@ fn value_stability_jpeg() {
 fn a_file_is_known_by_its_first_bytes_and_read_as_srgb() {
     let bytes = encode([16, 16], ColorType::Luma, |_| ());
     let image = decode_image(&bytes, &Limits::default()).unwrap();
-    assert!(matches!(image, Image::Jpeg(_)), "{image:?}");
+    assert!(matches!(image, Image::Codes(Format::Jpeg, _)), "{image:?}");
     assert_eq!(image.size(), [16, 16], "columns and rows");
     let [gray, color] = [
         image.gray().unwrap().pixels()[0],

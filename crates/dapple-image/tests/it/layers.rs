@@ -2,7 +2,7 @@
 
 use dapple_color::{LinearRgb, Normal};
 use dapple_image::{
-    Channels, ExrImage, ExrPlane, Image, ImageErrorKind, Limits, decode_exr, encode_exr,
+    Channels, ExrImage, ExrPlane, Format, Image, ImageErrorKind, Limits, decode_exr, encode_exr,
 };
 use dapple_raster::Raster;
 
@@ -12,7 +12,7 @@ fn image(planes: &[(&str, f32)]) -> Image {
         |&(name, value): &(&str, f32)| ExrPlane::new(name, Raster::filled([1, 1], value).unwrap());
     let planes: Vec<_> = planes.iter().map(plane).collect();
     let bytes = encode_exr(&planes).unwrap();
-    Image::Exr(decode_exr(&bytes, &Limits::default()).unwrap())
+    Image::Planes(Format::Exr, decode_exr(&bytes, &Limits::default()).unwrap())
 }
 
 /// Returns an image of one pixel with several layers. Each is given as a prefix, the names of its channels, and the
@@ -103,14 +103,14 @@ fn gray_with_alpha_is_gray_where_it_is_opaque() {
 
 #[test]
 fn views_are_in_the_order_of_the_file() {
-    let Image::Exr(image) = layers(&[("left.", RGB, 1.0), ("right.", RGB, 0.25)]) else {
+    let Image::Planes(_, image) = layers(&[("left.", RGB, 1.0), ("right.", RGB, 0.25)]) else {
         panic!("no EXR");
     };
     let image = ExrImage {
         views: vec!["right".to_owned(), "left".to_owned()],
         ..image
     };
-    let color = Image::Exr(image).color().unwrap();
+    let color = Image::Planes(Format::Exr, image).color().unwrap();
     assert_eq!(color.pixels(), [LinearRgb::gray(0.25)]);
 }
 

@@ -3,10 +3,12 @@
 use dapple_image::{ImageErrorKind, Limits, decode_image};
 
 /// Signatures of formats, and the start of the error message for each.
-const LEFT_OUT: [(&[u8], &str); 3] = [
+const LEFT_OUT: [(&[u8], &str); 5] = [
     (b"\x89PNG\r\n\x1a\n", "PNG without the feature `png`"),
     (b"\xff\xd8\xff", "JPEG without the feature `jpeg`"),
     (b"\x76\x2f\x31\x01", "OpenEXR without the feature `exr`"),
+    (b"II*\0", "TIFF without the feature `tiff`"),
+    (b"RIFF\0\0\0\0WEBP", "WebP without the feature `webp`"),
 ];
 
 #[test]

@@ -4,16 +4,29 @@
 mod arrays;
 #[cfg(feature = "png")]
 mod channels;
-#[cfg(all(feature = "png", feature = "jpeg", feature = "exr"))]
+#[cfg(all(
+    feature = "png",
+    feature = "jpeg",
+    feature = "exr",
+    feature = "tiff",
+    feature = "webp"
+))]
 mod color_space;
 #[cfg(feature = "exr")]
 mod exr;
 mod file;
+mod hdr;
 #[cfg(feature = "jpeg")]
 mod jpeg;
 #[cfg(feature = "exr")]
 mod layers;
-#[cfg(not(any(feature = "png", feature = "jpeg", feature = "exr")))]
+#[cfg(not(any(
+    feature = "png",
+    feature = "jpeg",
+    feature = "exr",
+    feature = "tiff",
+    feature = "webp"
+)))]
 mod left_out;
 #[cfg(feature = "jpeg")]
 mod orientation;
@@ -27,5 +40,10 @@ mod round_trips;
 mod rows;
 #[cfg(feature = "png")]
 mod strips;
+mod tga;
+#[cfg(feature = "tiff")]
+mod tiff;
+#[cfg(feature = "webp")]
+mod webp;
 #[cfg(feature = "exr")]
 mod windows;

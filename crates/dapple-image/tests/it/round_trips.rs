@@ -51,7 +51,7 @@ fn covered() -> Raster<LinearRgba> {
 /// Returns the content of a PNG image; panics for other formats.
 fn png(image: Image) -> PngImage {
     match image {
-        Image::Png(png) => png,
+        Image::Codes(_, png) => png,
         _ => panic!("the file is not PNG"),
     }
 }

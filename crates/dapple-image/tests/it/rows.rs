@@ -312,7 +312,7 @@ fn a_file_of_rows_says_what_it_is() {
         (encode(&colors([3, 3]), png, &[1]), Transfer::Srgb),
         (encode(&covered([3, 3]), png, &[1]), Transfer::Srgb),
     ] {
-        let Image::Png(image) = read(&bytes) else {
+        let Image::Codes(_, image) = read(&bytes) else {
             panic!("the file is not PNG");
         };
         assert_eq!(image.transfer, transfer, "the chunk for color");

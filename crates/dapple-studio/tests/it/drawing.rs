@@ -29,7 +29,7 @@ fn baked(recipe: &str, kind: MapKind, side: u32) -> Vec<u8> {
     let mut writer = RowWriter::new(sink, [side; 2], kind.content(), coding).unwrap();
     rows.write(&mut writer).unwrap();
     let bytes = writer.finish().unwrap().into_inner();
-    let Image::Png(image) = decode_image(&bytes, &Limits::default()).unwrap() else {
+    let Image::Codes(_, image) = decode_image(&bytes, &Limits::default()).unwrap() else {
         panic!("it is a PNG file");
     };
     match image.pixels {

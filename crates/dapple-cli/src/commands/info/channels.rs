@@ -104,7 +104,7 @@ impl Channel {
 ///
 /// # Errors
 ///
-/// If an image in a format other than PNG, JPEG and OpenEXR cannot be converted to colors.
+/// If an image of neither codes nor floating-point planes cannot be converted to colors.
 pub(super) fn channels(content: &Content) -> Result<Vec<Channel>> {
     Ok(match content {
         Content::Raw(codes) => split(&codes.map(|&code| [code]), GRAY),
@@ -121,7 +121,7 @@ pub(super) fn channels(content: &Content) -> Result<Vec<Channel>> {
             };
             names.iter().zip(rasters).map(channel).collect()
         }
-        Content::Image(Image::Png(png) | Image::Jpeg(png)) => match &png.pixels {
+        Content::Image(Image::Codes(_, png)) => match &png.pixels {
             PngPixels::Gray8(raster) => split(&raster.map(|&code| [code]), GRAY),
             PngPixels::Gray16(raster) => split(&raster.map(|&code| [code]), GRAY),
             PngPixels::GrayAlpha8(raster) => split(raster, GRAY_ALPHA),
@@ -131,7 +131,7 @@ pub(super) fn channels(content: &Content) -> Result<Vec<Channel>> {
             PngPixels::Rgba8(raster) => split(raster, RGBA),
             PngPixels::Rgba16(raster) => split(raster, RGBA),
         },
-        Content::Image(Image::Exr(exr)) => {
+        Content::Image(Image::Planes(_, exr)) => {
             let channel = |plane: &dapple::image::ExrPlane| Channel {
                 name: plane.name.clone(),
                 values: plane.values.clone(),
@@ -151,10 +151,10 @@ pub(super) fn format(content: &Content) -> String {
     };
     let (name, bits) = (image.format(), image.bits());
     match image {
-        Image::Png(png) | Image::Jpeg(png) if png.space != ColorSpace::default() => {
+        Image::Codes(_, png) if png.space != ColorSpace::default() => {
             format!("{name}, {bits} bits per channel, {}", png.space)
         }
-        Image::Exr(exr) => {
+        Image::Planes(_, exr) => {
             let mut text = format!("{name}, read as 32-bit floating point");
             if exr.planes.iter().any(|plane| plane.name.contains('.')) {
                 text += &format!(", layers {}", exr.layers().join(", "));

@@ -189,7 +189,7 @@ fn read_sources(path: &Path) -> Result<Raster<[u32; 2]>> {
     let places = image.color().with_context(|| input::name(path))?;
     let is_place = |value: f32| (0.0..=MOST).contains(&value) && value.fract() == 0.0;
     let is_source = |color: &LinearRgb| is_place(color.r) && is_place(color.g);
-    if !matches!(image, Image::Exr(_)) || !places.pixels().iter().all(is_source) {
+    if !matches!(image, Image::Planes(..)) || !places.pixels().iter().all(is_source) {
         let error = usage(format!("{} has no sources of pixels", input::name(path)));
         return Err(error.hint("give a file that synth --sources wrote"));
     }

@@ -4,9 +4,13 @@
 //! Damaged data is treated as missing.
 
 use crate::color_space::{ADOBE_GAMMA, ADOBE_RGB, ColorSpace, Curve, Source};
+use crate::orientation::Orientation;
 
 /// Length of a directory entry, in bytes.
 const ENTRY: usize = 12;
+
+/// Tag of the orientation.
+const ORIENTATION: u16 = 274;
 
 /// Tag of the offset of the Exif directory.
 const EXIF: u16 = 0x8769;
@@ -19,7 +23,7 @@ const COLOR_SPACE: u16 = 0xa001;
 const INTEROPERABILITY: u16 = 0xa005;
 
 /// Returns the color space that a photograph's Exif data declares.
-pub(super) fn color_space(exif: &[u8]) -> ColorSpace {
+pub(crate) fn color_space(exif: &[u8]) -> ColorSpace {
     let is_adobe = || {
         let tiff = Tiff::new(exif)?;
         let directory = tiff.place(tiff.first()?, EXIF)?;
@@ -43,14 +47,23 @@ pub(super) fn color_space(exif: &[u8]) -> ColorSpace {
     }
 }
 
+/// Returns the orientation of a photograph. `exif` starts with the TIFF header.
+pub(crate) fn orientation(exif: &[u8]) -> Orientation {
+    let find = || {
+        let tiff = Tiff::new(exif)?;
+        tiff.short(tiff.entry(tiff.first()?, ORIENTATION)?)
+    };
+    Orientation::new(find().unwrap_or_default())
+}
+
 /// Exif bytes, starting at the TIFF header.
-pub(super) struct Tiff<'a> {
+struct Tiff<'a> {
     bytes: &'a [u8],
     is_little: bool,
 }
 
 impl<'a> Tiff<'a> {
-    pub(super) fn new(bytes: &'a [u8]) -> Option<Self> {
+    fn new(bytes: &'a [u8]) -> Option<Self> {
         let is_little = match bytes.get(..2)? {
             b"II" => true,
             b"MM" => false,
@@ -60,7 +73,7 @@ impl<'a> Tiff<'a> {
     }
 
     /// Returns the 16-bit integer at offset `at`.
-    pub(super) fn short(&self, at: usize) -> Option<u16> {
+    fn short(&self, at: usize) -> Option<u16> {
         let bytes = self.bytes.get(at..)?.first_chunk::<2>()?;
         Some(if self.is_little {
             u16::from_le_bytes(*bytes)
@@ -79,7 +92,7 @@ impl<'a> Tiff<'a> {
     }
 
     /// Returns the offset of the first directory.
-    pub(super) fn first(&self) -> Option<usize> {
+    fn first(&self) -> Option<usize> {
         self.long(4)
     }
 
@@ -89,7 +102,7 @@ impl<'a> Tiff<'a> {
     }
 
     /// Returns the offset of an entry's value. Values of at most four bytes are stored in the entry itself.
-    pub(super) fn entry(&self, directory: usize, tag: u16) -> Option<usize> {
+    fn entry(&self, directory: usize, tag: u16) -> Option<usize> {
         let n_entries = self.short(directory)?;
         let entries = (0..usize::from(n_entries)).map(|entry| directory + 2 + ENTRY * entry);
         // The value follows the tag, type and count.
