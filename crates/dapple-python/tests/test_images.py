@@ -177,6 +177,23 @@ def test_photographs_are_read_and_gray_with_alpha(tmp_path):
     assert dp.read_image(tmp_path / "la.png").shape == (16, 32, 4)
 
 
+@pytest.mark.parametrize("name", ["a.tif", "a.tga", "a.webp"])
+@pytest.mark.parametrize("mode", ["RGB", "RGBA"])
+def test_formats_that_are_only_read_have_the_codes_of_pillow(tmp_path, name, mode):
+    codes = RNG.integers(0, 256, (5, 7, len(mode)), dtype=np.uint8)
+    options = {"lossless": True, "exact": True} if name == "a.webp" else {}
+    Image.fromarray(codes, mode).save(tmp_path / name, **options)
+    np.testing.assert_array_equal(dp.read_image(tmp_path / name, content="data"), codes / np.float32(255))
+
+
+def test_heights_are_read_from_floating_point_tiff_and_radiance_hdr(tmp_path):
+    heights = RNG.normal(0, 1000, (5, 7)).astype(np.float32)
+    Image.fromarray(heights).save(tmp_path / "a.tif")
+    np.testing.assert_array_equal(dp.read_image(tmp_path / "a.tif"), heights)
+    pixel = dp.decode_image(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n" + bytes([128, 64, 0, 137]))
+    np.testing.assert_array_equal(pixel, [[[256, 128, 0]]])
+
+
 @pytest.mark.skipif(COMMAND is None, reason="the command dapple is not on PATH")
 @pytest.mark.parametrize(("array", "content", "ending", "depth", "error"), FILES)
 def test_bytes_are_those_of_the_command(tmp_path, array, content, ending, depth, error):

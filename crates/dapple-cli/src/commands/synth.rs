@@ -74,8 +74,8 @@ enough; in between they are interpolated.";
 pub(crate) struct Args {
     /// Example image, or a textured or vertex-colored mesh whose texture --mesh gets.
     ///
-    /// PNG and JPEG are sRGB unless they declare another color space; OpenEXR is linear. Color is matched in sRGB, gray as
-    /// it is. Maps of an example mesh are at its texture coordinates; its material goes to --mesh, too.
+    /// Images of 8 or 16 bits are sRGB unless they declare another color space; floating-point images are linear. Color is
+    /// matched in sRGB, gray as it is. Maps of an example mesh are at its texture coordinates; its material goes to --mesh, too.
     #[arg(value_name = "IMAGE|MESH")]
     exemplar: PathBuf,
 

@@ -81,6 +81,85 @@ fn columns_of_large_numbers_stay_below_their_titles() {
     }
 }
 
+/// Returns small files of the formats that are only read, each with its name and its description.
+fn read_only() -> [(&'static str, Vec<u8>, &'static str); 3] {
+    let tga = [
+        0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 1, 0, 24, 32, 0, 0, 255, 0, 255, 0,
+    ];
+    let start = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n";
+    let hdr = [start.as_slice(), &[128, 64, 0, 137, 1, 2, 3, 136]].concat();
+    // The entries of width, height, bits, interpretation, offset, rows and bytes of one strip.
+    let entries: [[u16; 2]; 7] = [
+        [256, 2],
+        [257, 1],
+        [258, 16],
+        [262, 1],
+        [273, 98],
+        [278, 1],
+        [279, 4],
+    ];
+    let entry = |[tag, value]: [u16; 2]| [tag, 3, 1, 0, value, 0].map(u16::to_le_bytes).concat();
+    let start = b"II*\0\x08\0\0\0\x07\0".as_slice();
+    let tiff = [
+        start,
+        &entries.map(entry).concat(),
+        &[0; 4],
+        &[0, 128, 255, 255],
+    ]
+    .concat();
+    [
+        (
+            "a.tga",
+            tga.to_vec(),
+            "2 × 1 pixels, TGA, 8 bits per channel\n",
+        ),
+        (
+            "a.hdr",
+            hdr,
+            "2 × 1 pixels, Radiance HDR, read as 32-bit floating point\n",
+        ),
+        ("a.tif", tiff, "2 × 1 pixels, TIFF, 16 bits per channel\n"),
+    ]
+}
+
+#[test]
+fn formats_that_are_only_read_are_described_and_baked() {
+    let folder = Folder::new("formats");
+    for (name, bytes, description) in read_only() {
+        fs::write(folder.path(name), bytes).unwrap();
+        let text = stdout(&run(&folder, &format!("info {name}")));
+        assert!(
+            text.starts_with(&format!("{name}: {description}")),
+            "{text}"
+        );
+        let text = stdout(&run(&folder, &format!("info {name} --max-pixels 1")));
+        let format = description.split([',', '\n']).nth(1).unwrap();
+        assert!(
+            text.contains(&format!("{name}: 2 × 1 pixels,{format}\n")),
+            "{text}"
+        );
+        let line = format!("tile {name} --method mirror --region 1,0,1,1 -o part-{name}.exr");
+        assert_done(&run(&folder, &line), &line);
+        let recipe = format!(
+            "dapple = 1\nname = \"r\"\n[nodes.a.image]\nfile = \"{name}\"\n[material]\nalbedo = \"a\"\n"
+        );
+        fs::write(folder.path("r.toml"), recipe).unwrap();
+        let line = format!("bake r.toml --size 2x1 --maps albedo -o {name}.exr");
+        assert_done(&run(&folder, &line), &line);
+        let file = read_image(folder.path(name), &Limits::default()).unwrap();
+        let baked = read_image(folder.path(&format!("{name}.exr")), &Limits::default()).unwrap();
+        assert_eq!(baked.color().unwrap(), file.color().unwrap(), "{name}");
+    }
+    fs::write(folder.path("a.gif"), b"GIF89a").unwrap();
+    let line = "info a.gif";
+    assert_refused(
+        &run(&folder, line),
+        1,
+        "TIFF, WebP, TGA and Radiance HDR images are read",
+        line,
+    );
+}
+
 #[test]
 fn regions_of_images_past_the_limit_are_read_by_rows() {
     let folder = Folder::new("rows");

@@ -31,7 +31,9 @@ pub(super) struct Folder {
 /// Maximum number of listed recipes.
 const MOST_RECIPES: usize = 500;
 /// File extensions of images.
-const IMAGES: [&str; 4] = ["png", "exr", "jpg", "jpeg"];
+const IMAGES: [&str; 9] = [
+    "png", "exr", "jpg", "jpeg", "tif", "tiff", "webp", "tga", "hdr",
+];
 /// Maximum size in bytes of an image sent to a page.
 const MOST_IMAGE_BYTES: u64 = 1 << 28;
 
@@ -325,7 +327,7 @@ fn check_ending(name: &str) -> Result<(), StudioError> {
         return Ok(());
     }
     Err(StudioError::new(format!(
-        "{name} is no image that can be read: PNG, JPEG or OpenEXR"
+        "{name} is no image that can be read: PNG, JPEG, OpenEXR, TIFF, WebP, TGA or Radiance HDR"
     )))
 }
 
