@@ -22,7 +22,7 @@ struct Example {
     most: usize,
 }
 
-const EXAMPLES: [Example; 6] = [
+const EXAMPLES: [Example; 7] = [
     Example {
         row: "a metric",
         words: &["Metric::Chebyshev", "Self::Chebyshev", "\"chebyshev\""],
@@ -39,6 +39,12 @@ const EXAMPLES: [Example; 6] = [
         row: "a tiling method",
         words: &["Method::SoftCut", "struct SoftCut", "mod soft_cut"],
         file: "soft_cut",
+        most: 3,
+    },
+    Example {
+        row: "an image format",
+        words: &["tga::", "Format::Tga", "Self::Tga", "mod tga;"],
+        file: "tga",
         most: 3,
     },
     Example {
