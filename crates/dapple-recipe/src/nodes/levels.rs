@@ -82,6 +82,9 @@ impl NodeKind for Levels {
             }
         };
         let (start, length) = (literal(to[0]), to[1] - to[0]);
+        if !length.is_finite() {
+            return Err(Refusal::new("the length of its range `to` is infinite"));
+        }
         let part = match length == 1.0 {
             true => t,
             false => format!("number_mul({}, {t}, zero)", literal(length)),

@@ -77,13 +77,17 @@ fn code(field: &dyn Field, shader: &mut NodeShader<'_, '_>) -> Result<Code, Refu
             length,
             to: [start, end],
         } => {
+            let rise = end - start;
+            if !rise.is_finite() {
+                return Err(Refusal::new("the length of a range is infinite"));
+            }
             let offset = format!(
                 "number_sub({}, {}, zero)",
                 number(field, shader)?,
                 literal(from)
             );
             let part = quotient(&offset, length);
-            let rise = format!("number_mul({}, {part}, zero)", literal(end - start));
+            let rise = format!("number_mul({}, {part}, zero)", literal(rise));
             format!("number_add({}, {rise}, zero)", literal(start))
         }
         FieldParts::Pair(first, second, operation) => {

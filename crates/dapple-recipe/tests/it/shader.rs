@@ -1,6 +1,10 @@
 //! Tests of the WGSL generated for materials. `dapple-wgsl-tests` runs the shaders.
 
-use dapple_recipe::{Images, MaterialShader, Plan, Recipe, RecipeErrorKind, ShaderOptions};
+use dapple_recipe::hash::Seed;
+use dapple_recipe::raster::FieldExt as _;
+use dapple_recipe::{
+    Images, MaterialShader, Plan, Recipe, RecipeErrorKind, ShaderOptions, field_to_wgsl,
+};
 
 const TEXTURES: ShaderOptions = ShaderOptions { textures: true };
 
@@ -169,5 +173,24 @@ fn nodes_that_move_have_no_shader_at_another_time_than_0() {
         let plan = Plan::new(&recipe, &Images::new(), time).expect("a plan");
         let shader = recipe.to_wgsl_with(&plan, &TEXTURES).expect("a shader");
         assert_eq!(shader.textures, textures, "at {time}");
+    }
+}
+
+#[test]
+fn ranges_that_are_longer_than_any_number_have_no_shader() {
+    let field = dapple_noise::GradientNoise2::new(Seed(1));
+    let field = field.remap([0.0, 1.0], [-3e38, 3e38]).expect("a field");
+    let text = "
+        nodes.joint.worley = {}
+        nodes.wide.levels = { input = 'joint', to = [-3e38, 3e38] }
+        material.height = 'wide'";
+    let node = recipe(text).to_wgsl(&Images::new(), &ShaderOptions::default());
+    let node = node.map(|_| ()).expect_err("an infinite length");
+    let field = field_to_wgsl(&field).expect_err("an infinite length");
+    for refused in [field, node] {
+        let RecipeErrorKind::NotInShader { nodes } = refused.kind() else {
+            panic!("{refused}");
+        };
+        assert!(nodes[0].1.ends_with("infinite"), "{refused}");
     }
 }
