@@ -8,6 +8,7 @@
 //! positions are computed with the 64 bits of the processor, in `u32`.
 
 mod field;
+mod numbers;
 mod writer;
 
 pub use field::{FieldShader, field_to_wgsl};
@@ -40,6 +41,10 @@ pub struct MaterialShader {
     /// hold the tiles of wavelet noise, the control points of PUPs, stamps and tables. Empty if the function has no such
     /// argument.
     pub data: Vec<u32>,
+    /// Words of the array `shader_numbers`, four for each vector, after [`with_numbers`](Self::with_numbers); empty otherwise.
+    pub numbers: Vec<u32>,
+    /// Number of bytes of `wgsl` before the modules of the library.
+    own: usize,
 }
 
 impl MaterialShader {
@@ -51,6 +56,33 @@ impl MaterialShader {
 
     /// Maximum number of words of the texture `data`: 8192 rows, which every device supports.
     pub const DATA_LIMIT: usize = 8192 * Self::DATA_ROW;
+
+    /// Moves the values of nodes from the text to [`numbers`](Self::numbers). A program that shows a recipe while its values
+    /// change then compiles one shader, and uploads the words. The results have the same bits.
+    ///
+    /// The text reads the words from an array of vectors that the program declares, here of 300 words:
+    ///
+    /// ```wgsl
+    /// @group(0) @binding(0) var<uniform> shader_numbers: array<vec4<u32>, 75>;
+    /// ```
+    ///
+    /// Choices of kinds and numbers of octaves, stops or layers stay in the text. So do simpler expressions for some values,
+    /// such as a product in the place of a quotient if the divisor is a power of two, and the sharing of expressions by
+    /// nodes with equal values.
+    #[must_use]
+    pub fn with_numbers(self) -> Self {
+        if !self.numbers.is_empty() {
+            return self;
+        }
+        let (own, library) = self.wgsl.split_at(self.own);
+        let (own, numbers) = numbers::moved(own);
+        Self {
+            wgsl: own.clone() + library,
+            numbers,
+            own: own.len(),
+            ..self
+        }
+    }
 }
 
 impl Recipe {
@@ -142,8 +174,11 @@ impl Recipe {
                 nodes: nodes.collect(),
             }));
         }
+        let own = writer.assemble(&material);
         Ok(MaterialShader {
-            wgsl: writer.assemble(&material),
+            own: own.len(),
+            wgsl: own + &writer.library(),
+            numbers: Vec::new(),
             textures: writer.textures().keys().cloned().collect(),
             data: writer.data(),
         })

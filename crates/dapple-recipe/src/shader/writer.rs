@@ -503,7 +503,7 @@ impl<'a> Writer<'a> {
         format!("{}    return Material({members});\n", scope.lines)
     }
 
-    /// Joins all parts to a module.
+    /// Joins all parts to a module, without the [library](Self::library).
     pub(super) fn assemble(&self, material: &str) -> String {
         let mut out = self.head();
         out += "\n";
@@ -568,10 +568,15 @@ impl<'a> Writer<'a> {
              fn field64(at: Position2d, {data}zero: u32) -> f32 {{\n{}    return {};\n}}\n\n",
             scope.lines, value.text
         );
-        Ok(text + &self.parts())
+        Ok(text + &self.parts() + &self.library())
     }
 
-    /// Joins functions, constants and modules.
+    /// Returns the modules that the functions use.
+    pub(super) fn library(&self) -> String {
+        source(&self.modules)
+    }
+
+    /// Joins functions and constants.
     fn parts(&self) -> String {
         let mut out = String::new();
         for function in &self.functions {
@@ -584,7 +589,7 @@ impl<'a> Writer<'a> {
         if !self.constants.is_empty() {
             out += "\n";
         }
-        out + &source(&self.modules)
+        out
     }
 
     /// Writes the comment at the beginning.

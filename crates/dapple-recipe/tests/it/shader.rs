@@ -194,3 +194,43 @@ fn ranges_that_are_longer_than_any_number_have_no_shader() {
         assert!(nodes[0].1.ends_with("infinite"), "{refused}");
     }
 }
+
+#[test]
+fn recipes_that_differ_in_values_have_one_text_without_numbers() {
+    let text = |frequency: f64, gain: f64, low: f64, radius: f64| {
+        format!(
+            "
+            nodes.joint.worley = {{ value = 'f2_minus_f1', frequency = {frequency}, metric = 'manhattan' }}
+            nodes.grain.noise = {{ basis = 'gradient', gain = {gain} }}
+            nodes.bumps.noise = {{ basis = 'pups', frequency = {frequency} }}
+            nodes.bands.wavelet = {{ frequency = {frequency} }}
+            nodes.dome.profile = {{ input = 'joint', shape = {{ spots = {{ radius = {radius} }} }} }}
+            nodes.color.ramp = {{ input = 'dome', colors = ['#204060', '#f0e0d0'] }}
+            nodes.sum.add = ['grain', 'bumps', 'bands', {low}]
+            material.height = 'sum'
+            material.albedo = 'color'"
+        )
+    };
+    let shaders = [
+        text(3.0, 0.6, 0.1, 0.3),
+        text(5.0, 0.7, 0.0, 0.4),
+        text(6.0, 0.3, -0.2, 0.7),
+    ];
+    let shaders = shaders.map(|text| shader(&text, &ShaderOptions::default()));
+    let moved = shaders.clone().map(MaterialShader::with_numbers);
+    let [first, ..] = &moved;
+    for (other, plain) in moved.iter().zip(&shaders) {
+        assert_eq!(other.wgsl, first.wgsl);
+        assert_eq!(other.numbers.len(), first.numbers.len());
+        assert_eq!(other.clone().with_numbers(), *other);
+        // The library is the same as in the text with numbers.
+        assert_ne!(plain.wgsl, other.wgsl);
+        let library = "fn worley_place_2d(";
+        let rest = |text: &str| text.split_once(library).expect("a library").1.to_owned();
+        assert_eq!(rest(&plain.wgsl), rest(&other.wgsl));
+    }
+    assert_ne!(moved[1].numbers, first.numbers);
+    let two_octaves = text(3.0, 0.6, 0.1, 0.3).replace("gain", "octaves = 2, gain");
+    let two_octaves = shader(&two_octaves, &ShaderOptions::default()).with_numbers();
+    assert_ne!(two_octaves.wgsl, first.wgsl);
+}
