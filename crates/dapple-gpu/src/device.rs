@@ -1,30 +1,54 @@
 //! Runs shaders on a device, and turns its failures into errors.
 
+use crate::pipelines::Pipelines;
 use crate::{GpuError, GpuErrorKind};
 use dapple_recipe::MaterialShader;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::mpsc;
+use std::sync::{Arc, mpsc};
 
 /// Columns of a workgroup.
 pub(crate) const WORKGROUP: u32 = 64;
 
-/// A device and its queue.
+/// A device and its queue, and the shaders that are compiled for it.
 #[derive(Clone, Debug)]
 pub(crate) struct Device {
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
+    pub(crate) pipelines: Arc<Pipelines>,
+    /// Whether shaders are compiled in the background, and needed ones that are not ready are an error.
+    pub(crate) is_background: bool,
+    /// Whether the values of nodes are uploaded and no part of the shaders.
+    pub(crate) uploads_values: bool,
 }
 
-/// A compute shader with the entry point `main`. It has four storage buffers: words that describe the job, positions,
-/// inputs, and the results. A fifth binding is the texture of the words that nodes look up.
+/// A compiled compute shader with the entry point `main`. It has four storage buffers: words that describe the job,
+/// positions, inputs, and the results. A fifth binding is the texture of the words that nodes look up, and a sixth one is
+/// the uniform buffer of the numbers of nodes.
 #[derive(Clone, Debug)]
-pub(crate) struct Program {
+pub(crate) struct Pipeline {
     pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
+}
+
+/// A compiled shader with the words of a recipe.
+#[derive(Clone, Debug)]
+pub(crate) struct Program {
+    pipeline: Pipeline,
     data: wgpu::TextureView,
+    numbers: wgpu::Buffer,
 }
 
 impl Device {
+    pub(crate) fn new(device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        Self {
+            device,
+            queue,
+            pipelines: Arc::default(),
+            is_background: false,
+            uploads_values: false,
+        }
+    }
+
     /// Opens the default adapter.
     pub(crate) fn headless() -> Result<Self, GpuError> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
@@ -47,7 +71,7 @@ impl Device {
             ..Default::default()
         }));
         let (device, queue) = device.map_err(|error| none(error.to_string()))?;
-        Ok(Self { device, queue })
+        Ok(Self::new(device, queue))
     }
 
     /// Runs commands, and returns the first error of the device. Without scopes, errors go to the handler of the caller,
@@ -99,10 +123,11 @@ impl Device {
         })
     }
 
-    /// Creates a storage buffer with these words; a single 0 in the place of none.
+    /// Creates a storage or uniform buffer with these words; a single 0 in the place of none.
     pub(crate) fn filled(&self, words: &[u32]) -> wgpu::Buffer {
         let words = if words.is_empty() { &[0] } else { words };
-        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM;
+        let usage = usage | wgpu::BufferUsages::COPY_DST;
         let buffer = self.buffer(4 * words.len() as u64, usage);
         let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
         self.queue.write_buffer(&buffer, 0, &bytes);
@@ -188,15 +213,18 @@ impl Device {
     }
 }
 
-impl Program {
-    /// Compiles a shader, and uploads the words that it looks up.
-    pub(crate) fn new(device: &Device, wgsl: &str, data: &[u32]) -> Result<Self, GpuError> {
+impl Pipeline {
+    /// Compiles a shader.
+    pub(crate) fn new(device: &Device, wgsl: &str) -> Result<Self, GpuError> {
         let buffer = |binding| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::COMPUTE,
             ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Storage {
-                    read_only: binding < 3,
+                ty: match binding {
+                    5 => wgpu::BufferBindingType::Uniform,
+                    _ => wgpu::BufferBindingType::Storage {
+                        read_only: binding < 3,
+                    },
                 },
                 has_dynamic_offset: false,
                 min_binding_size: None,
@@ -219,9 +247,10 @@ impl Program {
                 label: None,
                 source: wgpu::ShaderSource::Wgsl(wgsl.into()),
             });
+            let [job, positions, inputs, out] = [0, 1, 2, 3].map(buffer);
             let layout = on.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                 label: None,
-                entries: &[buffer(0), buffer(1), buffer(2), buffer(3), texture],
+                entries: &[job, positions, inputs, out, texture, buffer(5)],
             });
             let of_pipeline = on.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: None,
@@ -236,11 +265,26 @@ impl Program {
                 compilation_options: Default::default(),
                 cache: None,
             });
-            Self {
-                pipeline,
-                layout,
-                data: device.data(data),
-            }
+            Self { pipeline, layout }
+        })
+    }
+}
+
+impl Program {
+    /// Compiles a shader unless it is compiled already, and uploads the words that it looks up, and the numbers of nodes.
+    pub(crate) fn new(
+        device: &Device,
+        wgsl: &str,
+        [data, numbers]: [&[u32]; 2],
+    ) -> Result<Self, GpuError> {
+        let pipeline = Pipelines::get(device, wgsl)?;
+        device.checked("an upload", || Self {
+            pipeline,
+            data: device.data(data),
+            numbers: match numbers.is_empty() {
+                true => device.filled(&[0; 4]),
+                false => device.filled(numbers),
+            },
         })
     }
 
@@ -254,16 +298,17 @@ impl Program {
     ) {
         let buffers = buffers.map(wgpu::Buffer::as_entire_binding);
         let data = wgpu::BindingResource::TextureView(&self.data);
-        let resources = buffers.into_iter().chain([data]);
+        let numbers = self.numbers.as_entire_binding();
+        let resources = buffers.into_iter().chain([data, numbers]);
         let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
         let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
         let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
-            layout: &self.layout,
+            layout: &self.pipeline.layout,
             entries: &entries,
         });
         let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&self.pipeline);
+        pass.set_pipeline(&self.pipeline.pipeline);
         pass.set_bind_group(0, &group, &[]);
         pass.dispatch_workgroups(size[0].div_ceil(WORKGROUP), size[1], 1);
     }

@@ -30,6 +30,8 @@ pub enum GpuErrorKind {
         /// The name of the node.
         node: String,
     },
+    /// The device [compiles](crate::Gpu::compile_in_background) a shader in the background.
+    Compiling,
     /// One row of pixels needs more memory than a buffer of the device may have, or a texture has too many pixels along a
     /// side.
     TooLarge {
@@ -95,6 +97,7 @@ impl fmt::Display for GpuError {
                 )
             }
             GpuErrorKind::NotInShader { node } => write!(f, "no shader computes the node `{node}`"),
+            GpuErrorKind::Compiling => f.write_str("the GPU compiles a shader"),
             GpuErrorKind::TooLarge {
                 what,
                 needed,

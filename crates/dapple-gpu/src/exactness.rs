@@ -104,7 +104,7 @@ pub(crate) fn test(
 ) -> Result<Exactness, GpuError> {
     let numbers = numbers();
     let words = OPERATIONS.len() + 2;
-    let program = Program::new(device, &change(shader()), &[])?;
+    let program = Program::new(device, &change(shader()), [&[]; 2])?;
     let columns: Vec<u32> = numbers.iter().flatten().map(|x| x.to_bits()).collect();
     let out = program.run(
         device,
@@ -173,11 +173,12 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::{Exactness, OPERATIONS, numbers, test};
     use crate::device::Device;
 
-    fn device() -> Option<Device> {
+    /// Opens a device. Without an adapter the tests pass, unless `DAPPLE_NO_SKIP=1` is set.
+    pub(crate) fn device() -> Option<Device> {
         match Device::headless() {
             Ok(device) => Some(device),
             Err(error) => {

@@ -33,10 +33,7 @@ impl Gpu {
     ///
     /// [`Lost`](GpuErrorKind::Lost) or [`Refused`](GpuErrorKind::Refused) if the device fails.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, GpuError> {
-        Self::tested(Device {
-            device: device.clone(),
-            queue: queue.clone(),
-        })
+        Self::tested(Device::new(device.clone(), queue.clone()))
     }
 
     /// Opens the fastest adapter, without a window. On Linux without a GPU, Mesa's software implementation of Vulkan
@@ -68,6 +65,29 @@ impl Gpu {
     pub fn allow_inexact(mut self) -> Self {
         self.allows_inexact = true;
         self
+    }
+
+    /// Uploads the values of nodes. Recipes that differ in values then share shaders, and a step of a slider compiles none. The
+    /// first compilation takes longer, and the shaders are slower, because compilers do not know the values.
+    #[must_use]
+    pub fn upload_values(mut self) -> Self {
+        self.device.uploads_values = true;
+        self
+    }
+
+    /// Compiles shaders in the background. A bake that needs a shader which is not compiled yet fails with
+    /// [`Compiling`](GpuErrorKind::Compiling), so that a program can use the CPU until it is.
+    #[must_use]
+    pub fn compile_in_background(mut self) -> Self {
+        self.device.is_background = true;
+        self
+    }
+
+    /// Returns the number of shaders that were compiled for the device. Clones share shaders. The 64 that were used last are
+    /// kept.
+    #[must_use]
+    pub fn compiled_shaders(&self) -> u64 {
+        self.device.pipelines.n_compiled()
     }
 
     /// Returns the device.

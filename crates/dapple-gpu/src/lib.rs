@@ -27,6 +27,12 @@
 //! The GPU computes every node that has a shader. The CPU computes the other nodes, which are uploaded, and normals,
 //! occlusion and curvature. The bits are the same in either case.
 //!
+//! # Sliders
+//!
+//! A program that changes values of a recipe while it is shown calls [`Gpu::upload_values`]. The values are then no part of
+//! the shaders, which a [`Gpu`] and its clones keep, and a changed value compiles none, except where it changes the
+//! structure. [`Gpu::compile_in_background`] avoids waiting for the first shader.
+//!
 //! # Exactness
 //!
 //! WGSL does not require exact arithmetic. [`Gpu::new`] therefore compares the device with the CPU, and
@@ -52,6 +58,7 @@ mod device;
 mod error;
 mod exactness;
 mod gpu;
+mod pipelines;
 mod plan;
 mod shader;
 

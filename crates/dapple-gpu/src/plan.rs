@@ -274,7 +274,8 @@ impl Renderer for Shaders {
             return inputs.clone();
         }
         let mut nodes = Nodes::divided(&self.plan, &[node]);
-        let text = nodes.remove(0).text(&self.recipe, &self.plan).ok();
+        let nodes = nodes.remove(0);
+        let text = nodes.text(&self.gpu.device, &self.recipe, &self.plan).ok();
         let inputs = text.map(|text| text.inputs);
         all.insert(node.to_owned(), inputs.clone());
         inputs

@@ -4,7 +4,7 @@ use crate::device::{Device, Program, WORKGROUP};
 use crate::{GpuError, GpuErrorKind};
 use dapple_recipe::color::LinearRgb;
 use dapple_recipe::raster::Window;
-use dapple_recipe::{Input, Material, Plan, Recipe, ShaderOptions, Values};
+use dapple_recipe::{Input, Material, MaterialShader, Plan, Recipe, ShaderOptions, Values};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -13,6 +13,10 @@ const MAX_NUMBERS: usize = 3;
 
 /// Members of the structure `Material` with numbers, in the order of the nodes.
 const MEMBERS: [&str; MAX_NUMBERS] = ["height", "roughness", "metallic"];
+
+/// Maximum number of words of a uniform buffer, which every device supports. Shaders with more numbers are compiled for
+/// each value.
+const MAX_WORDS: usize = 1 << 14;
 
 /// Maximum number of pixels of a job. Drivers reset a GPU whose job takes seconds.
 const MAX_PIXELS: u64 = 1 << 22;
@@ -31,6 +35,8 @@ pub(crate) struct Text {
     wgsl: String,
     /// Words of the texture that it looks up.
     data: Vec<u32>,
+    /// Numbers of the nodes.
+    numbers: Vec<u32>,
 }
 
 /// A compiled shader.
@@ -80,7 +86,12 @@ impl Nodes {
     }
 
     /// Generates the shader that computes the nodes as a material. Fails if no shader computes one of them.
-    pub(crate) fn text(&self, recipe: &Recipe, plan: &Plan) -> Result<Text, GpuError> {
+    pub(crate) fn text(
+        &self,
+        device: &Device,
+        recipe: &Recipe,
+        plan: &Plan,
+    ) -> Result<Text, GpuError> {
         let number = |at: usize| match self.numbers.get(at) {
             Some(node) => Input::from(node.as_str()),
             None => Input::Number(0.0),
@@ -101,6 +112,10 @@ impl Nodes {
             ..recipe.clone()
         };
         let shader = recipe.to_wgsl_with(plan, &ShaderOptions { textures: true })?;
+        let shared = device.uploads_values;
+        let shared = shared.then(|| shader.clone().with_numbers());
+        let shared = shared.filter(|shared| shared.numbers.len() <= MAX_WORDS);
+        let shader = shared.unwrap_or(shader);
         // A node without a shader is its own input.
         if let Some(node) = self
             .names()
@@ -109,25 +124,25 @@ impl Nodes {
             let node = node.to_owned();
             return Err(GpuError::new(GpuErrorKind::NotInShader { node }));
         }
-        let has_data = !shader.data.is_empty();
-        let wgsl = shader.wgsl + &self.entry_point(plan, &shader.textures, has_data);
+        let wgsl = shader.wgsl.clone() + &self.entry_point(plan, &shader);
         Ok(Text {
             inputs: shader.textures,
             wgsl,
             data: shader.data,
+            numbers: shader.numbers,
         })
     }
 
     /// Writes the entry point. The job is `zero`, the numbers of columns and rows, and the length of a row of results.
     /// Every channel of an input is a separate block, and so are the results of a node.
-    fn entry_point(&self, plan: &Plan, inputs: &[String], has_data: bool) -> String {
+    fn entry_point(&self, plan: &Plan, shader: &MaterialShader) -> String {
         let mut textures = Vec::new();
         let mut block = 0;
         let mut channel = || {
             block += 1;
             format!("gpu_inputs[{}u * pixels + pixel]", block - 1)
         };
-        for input in inputs {
+        for input in &shader.textures {
             textures.push(match plan.is_color(input) {
                 true => format!("vec3({}, {}, {})", channel(), channel(), channel()),
                 false => channel(),
@@ -137,16 +152,24 @@ impl Nodes {
             true => String::new(),
             false => format!("Textures({}), ", textures.join(", ")),
         };
-        let [declared, data] = match has_data {
-            true => [
+        let [declared, data] = match shader.data.is_empty() {
+            false => [
                 "@group(0) @binding(4) var gpu_data: texture_2d<u32>;",
                 "gpu_data, ",
             ],
-            false => [""; 2],
+            true => [""; 2],
+        };
+        let numbers = match shader.numbers.len() {
+            0 => String::new(),
+            n => format!(
+                "@group(0) @binding(5) var<uniform> shader_numbers: array<vec4<u32>, {}>;",
+                n / 4
+            ),
         };
         let mut out = format!(
             "
 {declared}
+{numbers}
 @group(0) @binding(0) var<storage> gpu_job: array<u32>;
 @group(0) @binding(1) var<storage> gpu_positions: array<vec2<u32>>;
 @group(0) @binding(2) var<storage> gpu_inputs: array<f32>;
@@ -190,10 +213,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
         recipe: &Recipe,
         plan: &Plan,
     ) -> Result<Shader, GpuError> {
-        let text = self.text(recipe, plan)?;
+        let text = self.text(device, recipe, plan)?;
         let channels = |input: &String| if plan.is_color(input) { 3 } else { 1 };
         Ok(Shader {
-            program: Program::new(device, &text.wgsl, &text.data)?,
+            program: Program::new(device, &text.wgsl, [&text.data, &text.numbers])?,
             n_inputs: text.inputs.iter().map(channels).sum(),
             inputs: text.inputs,
             n_numbers: self.numbers.len() as u64,

@@ -13,7 +13,7 @@ const MAPS: [MapKind; 5] = [
     MapKind::Curvature,
 ];
 
-fn options(size: [u32; 2]) -> BakeOptions {
+pub(crate) fn options(size: [u32; 2]) -> BakeOptions {
     BakeOptions {
         size,
         maps: MAPS.to_vec(),
@@ -22,7 +22,7 @@ fn options(size: [u32; 2]) -> BakeOptions {
 }
 
 /// Returns the number of channels of maps whose bits differ.
-fn differing(on_gpu: &[(MapKind, MapRows)], on_cpu: &[(MapKind, MapRows)]) -> usize {
+pub(crate) fn differing(on_gpu: &[(MapKind, MapRows)], on_cpu: &[(MapKind, MapRows)]) -> usize {
     let words = |map: &MapRows| -> Vec<u32> {
         match map {
             MapRows::Gray(raster) => raster.pixels().iter().map(|x| x.to_bits()).collect(),
@@ -55,12 +55,12 @@ fn differing(on_gpu: &[(MapKind, MapRows)], on_cpu: &[(MapKind, MapRows)]) -> us
     differ.sum()
 }
 
-fn bake(plan: &Plan, options: &BakeOptions) -> Vec<(MapKind, MapRows)> {
+pub(crate) fn bake(plan: &Plan, options: &BakeOptions) -> Vec<(MapKind, MapRows)> {
     let bake = Bake::new(plan, options).expect("a bake");
     bake.whole_maps().expect("maps")
 }
 
-fn compare(gpu: &Gpu, recipe: &Recipe, options: &BakeOptions) {
+pub(crate) fn compare(gpu: &Gpu, recipe: &Recipe, options: &BakeOptions) {
     let plan = Plan::new(recipe, &Images::new(), 0.0).expect("a plan");
     let on_gpu = GpuPlan::new(gpu, recipe, &plan).expect("a plan on the GPU");
     let [made, expected] = [on_gpu.plan(), &plan].map(|plan| bake(plan, options));

@@ -2,6 +2,7 @@
 
 mod bakes;
 mod devices;
+mod sliders;
 mod windows;
 
 use dapple_gpu::{Gpu, GpuPlan};
