@@ -8,7 +8,7 @@ use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::recipe::{
     Bake, BakeOptions, Images, MapKind, Picture as Values, Plan, PlanCache, PlanLimits, Recipe,
-    RecipeError, Region,
+    RecipeError, RecipeErrorKind, Region, RendererError,
 };
 use std::sync::Arc;
 
@@ -89,6 +89,18 @@ pub trait RenderHost {
         Err(StudioError::new("lit previews cannot be drawn here"))
     }
 
+    /// Returns the plan of a recipe with all nodes on a GPU, with the same bits. By default and without a GPU, maps are
+    /// rendered on the CPU.
+    fn on_gpu(&self, recipe: &Recipe, plan: &Plan) -> Option<Plan> {
+        let _ = (recipe, plan);
+        None
+    }
+
+    /// Receives the error of a plan [on the GPU](Self::on_gpu). The renderer uses the CPU instead.
+    fn gpu_failed(&self, error: &RendererError) {
+        let _ = error;
+    }
+
     /// Returns the milliseconds since an arbitrary moment.
     fn now(&self) -> f64;
 
@@ -145,6 +157,8 @@ struct Planned {
     document: Arc<Document>,
     time: f64,
     plan: Arc<Plan>,
+    /// The plan with all nodes on a GPU.
+    on_gpu: Option<Plan>,
     /// The images that the plan was built with.
     images: Images,
 }
@@ -208,6 +222,10 @@ impl Renderer {
             job,
             world,
             plan: &plan,
+            on_gpu: self
+                .planned
+                .as_ref()
+                .and_then(|planned| planned.on_gpu.as_ref()),
             start,
             draft_side: self.draft_side,
         };
@@ -259,6 +277,7 @@ impl Renderer {
         self.planned = Some(Planned {
             document,
             time,
+            on_gpu: world.on_gpu(recipe, &plan),
             plan: plan.clone(),
             images,
         });
@@ -302,6 +321,8 @@ struct Pass<'a> {
     job: &'a Job,
     world: &'a dyn RenderHost,
     plan: &'a Plan,
+    /// The plan for the maps, until the GPU fails.
+    on_gpu: Option<&'a Plan>,
     start: f64,
     draft_side: u32,
 }
@@ -392,11 +413,11 @@ impl Pass<'_> {
         })
     }
 
-    fn draw_frame(&self, frame: Frame, is_draft: bool) -> Result<(), Stop> {
+    fn draw_frame(&mut self, frame: Frame, is_draft: bool) -> Result<(), Stop> {
         let nodes = match &self.job.view.node {
             Some(node) => Some(vec![self.node(node, frame, is_draft)?]),
             None => {
-                self.maps(frame, is_draft)?;
+                self.maps_on_any(frame, is_draft)?;
                 None
             }
         };
@@ -404,7 +425,23 @@ impl Pass<'_> {
         Ok(())
     }
 
-    fn maps(&self, frame: Frame, is_draft: bool) -> Result<(), Stop> {
+    /// Renders the maps on the GPU. Without a GPU, and after it fails, the CPU renders them. The bytes are the same, so parts may
+    /// be sent twice.
+    fn maps_on_any(&mut self, frame: Frame, is_draft: bool) -> Result<(), Stop> {
+        if let Some(plan) = self.on_gpu {
+            match self.maps(plan, frame, is_draft) {
+                Err(Stop::Refused(error)) => match error.kind() {
+                    RecipeErrorKind::Renderer(error) => self.world.gpu_failed(error),
+                    _ => return Err(Stop::Refused(error)),
+                },
+                drawn => return drawn,
+            }
+            self.on_gpu = None;
+        }
+        self.maps(self.plan, frame, is_draft)
+    }
+
+    fn maps(&self, plan: &Plan, frame: Frame, is_draft: bool) -> Result<(), Stop> {
         let options = BakeOptions {
             size: frame.size,
             region: Some(frame.region),
@@ -420,7 +457,7 @@ impl Pass<'_> {
         let mut parts: Vec<_> = options.maps.iter().map(|_| (0, Vec::new())).collect();
         // Rows accumulate for each map until a part is large enough to send.
         let mut sent = self.world.now();
-        for band in Bake::new(self.plan, &options)? {
+        for band in Bake::new(plan, &options)? {
             // A draft that has begun is finished. Otherwise no image would appear while changes arrive faster than
             // drafts.
             if !is_draft {

@@ -22,7 +22,7 @@ use axum::response::{IntoResponse as _, Response};
 use browser::Way;
 use dapple::color::LinearRgb;
 use dapple::raster::Raster;
-use dapple::recipe::{Images, PlanCache, Recipe};
+use dapple::recipe::{Images, Plan, PlanCache, Recipe, RendererError};
 use exports::Exports;
 use files::Folder;
 use gallery::Gallery;
@@ -63,6 +63,17 @@ pub trait Host: Send + Sync {
     ///
     /// If the bake is refused.
     fn preview(&self, lit: &Lit<'_>) -> Result<Raster<LinearRgb>, StudioError>;
+
+    /// Returns the plan of a recipe with all nodes on a GPU, as [`RenderHost::on_gpu`](crate::RenderHost::on_gpu).
+    fn on_gpu(&self, recipe: &Recipe, plan: &Plan) -> Option<Plan> {
+        let _ = (recipe, plan);
+        None
+    }
+
+    /// Receives the error of a GPU, as [`RenderHost::gpu_failed`](crate::RenderHost::gpu_failed).
+    fn gpu_failed(&self, error: &RendererError) {
+        let _ = error;
+    }
 
     /// Returns the export presets, one for each program that can import the files.
     fn presets(&self) -> Vec<Named>;

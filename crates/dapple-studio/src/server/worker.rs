@@ -8,7 +8,7 @@ use crate::{Lit, Shown, StudioError, Task, Variant};
 use dapple::color::LinearRgb;
 use dapple::image::FileStamp;
 use dapple::raster::Raster;
-use dapple::recipe::{Images, Recipe};
+use dapple::recipe::{Images, Plan, Recipe, RendererError};
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -319,6 +319,14 @@ impl RenderHost for Inside {
 
     fn preview(&self, lit: &Lit<'_>) -> Result<Raster<LinearRgb>, StudioError> {
         self.shared.host.preview(lit)
+    }
+
+    fn on_gpu(&self, recipe: &Recipe, plan: &Plan) -> Option<Plan> {
+        self.shared.host.on_gpu(recipe, plan)
+    }
+
+    fn gpu_failed(&self, error: &RendererError) {
+        self.shared.host.gpu_failed(error);
     }
 
     fn now(&self) -> f64 {

@@ -213,6 +213,27 @@ fn a_draft_that_was_begun_is_shown() {
 }
 
 #[test]
+fn maps_are_drawn_on_the_cpu_when_the_gpu_fails() {
+    let draw = |has_broken_gpu: bool| {
+        let mut page = Page::open("marble");
+        page.ask(view(512, &["albedo", "height"], true));
+        let world = TestWorld::default();
+        world.has_broken_gpu.set(has_broken_gpu);
+        page.renderer.draw(&page.session.job().unwrap(), &world);
+        (
+            split(world.outputs.into_inner()),
+            world.gpu_errors.into_inner(),
+        )
+    };
+    let (expected, none) = draw(false);
+    assert!(none.is_empty(), "{none:?}");
+    let (found, errors) = draw(true);
+    assert!(found == expected);
+    // The full images do not ask the GPU again.
+    assert_eq!(errors, ["it is broken"]);
+}
+
+#[test]
 fn a_view_that_shows_nothing_is_refused() {
     for view in [
         json!({ "type": "view", "size": [0, 64], "maps": ["albedo"], "paused": false }),

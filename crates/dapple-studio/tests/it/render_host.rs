@@ -1,9 +1,12 @@
 //! A render host for tests of sessions.
 
-use dapple::recipe::{Images, Recipe};
+use dapple::raster::Window;
+use dapple::recipe::{Images, Plan, Recipe, RendererError, Values};
 use dapple_studio::{Output, Picture, RenderHost, Renderer, Reply, Request, Session, StudioError};
 use serde_json::{Value, json};
 use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A host that collects outputs. Its job may be superseded after a number of outputs.
 #[derive(Default)]
@@ -15,11 +18,42 @@ pub(crate) struct TestWorld {
     /// Milliseconds that the clock advances at every query.
     pub(crate) pace: Cell<f64>,
     time: Cell<f64>,
+    /// Whether plans are on a GPU, which fails.
+    pub(crate) has_broken_gpu: Cell<bool>,
+    pub(crate) gpu_errors: RefCell<Vec<String>>,
+}
+
+/// A GPU that computes all nodes, and fails.
+#[derive(Debug)]
+struct BrokenGpu;
+
+impl dapple::recipe::Renderer for BrokenGpu {
+    fn inputs(&self, _: &str) -> Option<Vec<String>> {
+        Some(Vec::new())
+    }
+
+    fn render(
+        &self,
+        _: &[&str],
+        _: &Window,
+        _: &BTreeMap<&str, &Values>,
+    ) -> Result<Vec<Values>, RendererError> {
+        Err(RendererError::new(StudioError::new("it is broken")))
+    }
 }
 
 impl RenderHost for TestWorld {
     fn images(&self, _: &Recipe) -> Result<Images, StudioError> {
         Ok(Images::new())
+    }
+
+    fn on_gpu(&self, _: &Recipe, plan: &Plan) -> Option<Plan> {
+        let on_gpu = || plan.clone().with_renderer(Arc::new(BrokenGpu));
+        self.has_broken_gpu.get().then(on_gpu)
+    }
+
+    fn gpu_failed(&self, error: &RendererError) {
+        self.gpu_errors.borrow_mut().push(error.to_string());
     }
 
     fn now(&self) -> f64 {
