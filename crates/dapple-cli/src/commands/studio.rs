@@ -4,6 +4,8 @@ use super::bake;
 use crate::args::FiniteArgs;
 use crate::baking::read_images;
 use crate::error::{Exit, Hint, usage};
+#[cfg(feature = "gpu")]
+use crate::gpu::pages;
 use crate::job::{Context, eprintln_if_possible, say};
 use crate::preview::{self, Thing};
 use crate::words::with_dashes;
@@ -11,6 +13,8 @@ use anyhow::{Error, Result};
 use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::recipe::{Images, Recipe};
+#[cfg(feature = "gpu")]
+use dapple::recipe::{Plan, RendererError};
 use dapple_studio::{
     Export, ExportedFile, Host, Lit, Mode, Named, ServeOptions, Shape, StudioError, has_page, serve,
 };
@@ -122,6 +126,8 @@ impl PageArgs {
             context: context.silent(),
             finite,
         };
+        #[cfg(feature = "gpu")]
+        pages::open();
         let told = serve(options, Arc::new(bakes), |url| {
             if !has_page {
                 eprintln_if_possible(NO_PAGE);
@@ -196,6 +202,16 @@ impl Host for Bakes {
             Shape::Torus => Thing::Torus,
         };
         preview::picture(lit.recipe, lit.images, lit.time, thing).map_err(told)
+    }
+
+    #[cfg(feature = "gpu")]
+    fn on_gpu(&self, recipe: &Recipe, plan: &Plan) -> Option<Plan> {
+        pages::on_gpu(recipe, plan)
+    }
+
+    #[cfg(feature = "gpu")]
+    fn gpu_failed(&self, error: &RendererError) {
+        pages::failed(error);
     }
 
     fn presets(&self) -> Vec<Named> {

@@ -5,6 +5,9 @@
     reason = "tests look at the files that the command writes"
 )]
 
+#[cfg(feature = "studio")]
+mod pages;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
