@@ -1,9 +1,7 @@
 //! Divides large sets into independent tiles, whose triangulations fit the cache.
 //!
 //! Without wrapping, each tile also triangulates the corners of the hull, so that the stars of its points have gaps
-//! only on the hull.
-//! A tile of a set that does not wrap has the corners of the hull as well, so that no star of it has a wrong gap. On a
-//! cylinder, gaps at the borders are filled as in a single triangulation.
+//! only on the hull. On a cylinder, gaps at the borders are filled as in a single triangulation.
 
 use super::hull::Hull;
 use super::images::Cover;
