@@ -8,6 +8,11 @@
 //! around that position, with the weights 1-4-6-4-1 along both axes. A side of `n` pixels is reduced to `n / 2` pixels,
 //! rounded up. Values are not quantized between levels.
 //!
+//! If the exemplar has a mask, only usable pixels count in a mean (normalized convolution; Hans Knutsson and Carl-Fredrik
+//! Westin, "Normalized and Differential Convolution", CVPR 1993, DOI 10.1109/CVPR.1993.341081). A pixel is usable if the
+//! four pixels that it covers are usable. Requiring all 25 pixels would enlarge a hole by up to two pixels on each side
+//! of each level. On the third level of a 64 × 64 image, a hole of 12 columns would have 6 of the 16 columns.
+//!
 //! A wrapping level with an odd side has no coarser version that wraps: adjacent pixels would be two apart, but the
 //! last and the first only one apart. All coarser levels then have cut edges. [`Exemplar::edges`] returns the edge mode
 //! of a level.
@@ -467,7 +472,7 @@ impl Exemplar {
         let odd = self.size.iter().any(|side| side % 2 == 1);
         let grid = self.grid();
         let areas = self.areas();
-        // A coarser pixel is usable if all pixels that it averages are usable.
+        // A coarser pixel is usable if the four pixels that it covers are usable.
         let usable = self.usable.as_ref().map(|usable| {
             let is_usable = |x: u32, y: u32| {
                 let is_within = |area: &&Area| area.halved().contains([x, y]);
@@ -476,9 +481,8 @@ impl Exemplar {
                 };
                 let columns = area.taps(0, x, grid.wrap[0]);
                 let rows = area.taps(1, y, grid.wrap[1]);
-                let row = |row: usize| row * self.size[0] as usize;
-                rows.iter()
-                    .all(|&y| columns.iter().all(|&x| usable[row(y) + x]))
+                let pixel = |x: usize, y: usize| usable[y * self.size[0] as usize + x];
+                covered(rows).all(|y| covered(columns).all(|x| pixel(x, y)))
             };
             let row = |y| (0..half[0]).map(move |x| is_usable(x, y));
             (0..half[1]).flat_map(row).collect()
@@ -487,11 +491,39 @@ impl Exemplar {
             size: half,
             n_channels: self.n_channels,
             edges: if odd { Edges::Cut } else { self.edges },
-            pixels: halved(&grid, &areas),
+            pixels: match &self.usable {
+                Some(usable) => self.means_of_usable(usable, &areas),
+                None => halved(&grid, &areas),
+            },
             usable,
             areas: self.areas.iter().map(|area| area.halved()).collect(),
             guides: self.guides.halved(self.size, grid.wrap, &areas),
         }
+    }
+
+    /// Returns the values of the next coarser level: weighted means of the usable pixels alone.
+    fn means_of_usable(&self, usable: &[bool], areas: &[Area]) -> Vec<f32> {
+        let n = self.n_channels;
+        // Append the mask as a channel. Its mean is the total weight of the usable pixels.
+        let mut values = Vec::with_capacity(usable.len() * (n + 1));
+        for (color, &is_usable) in self.pixels.chunks_exact(n).zip(usable) {
+            let weight = f32::from(is_usable);
+            values.extend(color.iter().map(|value| value * weight));
+            values.push(weight);
+        }
+        let colors = Plain {
+            values: &values,
+            n_channels: n + 1,
+        };
+        let Grid { size, wrap, .. } = self.grid();
+        let means = halved(&Grid { colors, size, wrap }, areas);
+        // A total weight of 0 leaves a value of 0.
+        let mut pixels = Vec::with_capacity(means.len() / (n + 1) * n);
+        for mean in means.chunks_exact(n + 1) {
+            let weight = mean[n].max(f32::MIN_POSITIVE);
+            pixels.extend(mean[..n].iter().map(|value| value / weight));
+        }
+        pixels
     }
 }
 
@@ -602,6 +634,11 @@ pub(crate) fn halved(image: &Grid<Plain<'_>>, areas: &[Area]) -> Vec<f32> {
 pub(crate) fn taps(at: u32, side: u32, wrap: Wrap) -> [usize; 5] {
     let center = 2 * i64::from(at);
     [-2, -1, 0, 1, 2].map(|step| wrap.index(center + step, side) as usize)
+}
+
+/// Returns those of five [`taps`] that the position of the coarser level covers.
+pub(crate) fn covered(taps: [usize; 5]) -> impl Iterator<Item = usize> {
+    [taps[2], taps[3]].into_iter()
 }
 
 /// Appends the element-wise mean of five slices of equal length, with the weights 1-4-6-4-1.

@@ -256,34 +256,65 @@ proptest! {
 }
 
 #[test]
-fn a_mask_leaves_out_every_coarser_pixel_that_is_a_mean_of_what_it_leaves_out() {
-    for edges in [Edges::Cut, Edges::Wrap] {
-        let mask =
-            Raster::from_fn([20, 14], |x, y| (x, y) != (0, 5) && (x, y) != (13, 13)).unwrap();
-        let exemplar = noise([20, 14], 1, edges).with_mask(&mask).unwrap();
-        let pyramid = exemplar.pyramid(3).unwrap();
+fn masked_pixels_do_not_count_in_the_means_of_coarser_levels() {
+    for (size, edges) in [
+        ([20, 12], Edges::Cut),
+        ([20, 12], Edges::Wrap),
+        ([21, 13], Edges::Cut),
+    ] {
+        let whole = noise(size, 2, edges);
+        let is_whole = Raster::filled(size, true).unwrap();
+        let same = whole.clone().with_mask(&is_whole).unwrap();
+        for (a, b) in
+            (whole.pyramid(3).unwrap().levels().iter()).zip(same.pyramid(3).unwrap().levels())
+        {
+            assert_eq!(a.pixels, b.pixels, "all is usable");
+        }
+        let is_off = |x: u32, y: u32| (x, y) == (0, 5) || (9..15).contains(&x) && y > 7;
+        let mask = Raster::from_fn(size, |x, y| !is_off(x, y)).unwrap();
+        let pyramid = whole.with_mask(&mask).unwrap().pyramid(3).unwrap();
+        let mut n_usable = 0;
         for pair in pyramid.levels().windows(2) {
             let [finer, coarser] = pair else {
                 unreachable!()
             };
-            // All weights of a mean are positive, so the mean of masked marks is above zero exactly if one of them is
-            // averaged.
+            // Divide the weighted sum of the usable pixels by their total weight, the mean of the mask.
             let usable = finer.usable.as_ref().unwrap();
-            let marks = usable.iter().map(|&usable| f32::from(!usable)).collect();
+            let mut masked = finer.clone();
+            for (at, value) in masked.pixels.iter_mut().enumerate() {
+                *value *= f32::from(usable[at / 2]);
+            }
             let marks = Exemplar {
                 n_channels: 1,
-                pixels: marks,
+                pixels: usable.iter().map(|&usable| f32::from(usable)).collect(),
                 ..finer.clone()
             };
-            for (at, &usable) in (0..).zip(coarser.usable.as_ref().unwrap()) {
+            let wrap = finer.edges.wrap();
+            for (at, &is_usable) in (0..).zip(coarser.usable.as_ref().unwrap()) {
                 let place = [at % coarser.size[0], at / coarser.size[0]];
+                let covered = (0..4).map(|child| {
+                    let x = wrap.index((2 * place[0] + child % 2).into(), finer.size[0]);
+                    let y = wrap.index((2 * place[1] + child / 2).into(), finer.size[1]);
+                    usable[(y * finer.size[0] + x) as usize]
+                });
                 assert_eq!(
-                    usable,
-                    naive(&marks, place, 0) == 0.0,
-                    "{edges:?} {place:?}"
+                    is_usable,
+                    covered.fold(true, |all, one| all && one),
+                    "{place:?}"
                 );
+                for channel in (0..2).filter(|_| is_usable) {
+                    let value = f64::from(coarser.pixels[at as usize * 2 + channel]);
+                    let expected = naive(&masked, place, channel) / naive(&marks, place, 0);
+                    // Tolerance: ten roundings of f32 for values up to 1, divided by a weight above a third.
+                    assert!(
+                        (value - expected).abs() < 3e-6,
+                        "{place:?} {value} {expected}"
+                    );
+                    n_usable += 1;
+                }
             }
         }
+        assert!(n_usable > 100, "pixels beside the mask");
     }
 }
 

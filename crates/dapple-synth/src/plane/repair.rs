@@ -13,7 +13,7 @@
 use super::{PlaneDomain, PlaneTexture};
 use crate::domain::{Colors as _, Start, UNKNOWN};
 use crate::engine::Progress;
-use crate::exemplar::taps;
+use crate::exemplar::{covered, taps};
 use crate::{Exemplar, Options, Pyramid, Schedule, SynthError};
 use core::ops::ControlFlow;
 use dapple_raster::Raster;
@@ -212,8 +212,8 @@ impl PlaneTexture {
     }
 }
 
-/// Computes the sources and the mask of kept sites on the next coarser level. A coarser site is kept if all finer
-/// pixels that it averages are kept.
+/// Computes the sources and the mask of kept sites on the next coarser level. A coarser site is kept if the four finer
+/// sites that it covers are kept.
 fn coarser(
     sources: &Raster<[u32; 2]>,
     is_kept: &Raster<bool>,
@@ -225,8 +225,8 @@ fn coarser(
     let halved = |column: u32, row: u32| sources.row(2 * row)[2 * column as usize].map(|at| at / 2);
     let all_kept = |column, row| {
         let columns = taps(column, size[0], domain.wrap[0]);
-        let rows = taps(row, size[1], domain.wrap[1]).map(|row| is_kept.row(row as u32));
-        rows.iter().all(|row| columns.iter().all(|&at| row[at]))
+        let rows = taps(row, size[1], domain.wrap[1]);
+        covered(rows).all(|row| covered(columns).all(|column| is_kept.row(row as u32)[column]))
     };
     Ok((
         Raster::from_fn(half, halved)?,
