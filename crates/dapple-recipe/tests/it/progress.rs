@@ -147,43 +147,44 @@ fn usual_pictures_have_several_bands() {
     }
 }
 
-/// Returns the number of calls in a pass while a recipe with the node `made` is planned and one of its rows is baked.
-fn n_calls_for(made: &str, pass: usize) -> usize {
+/// Returns the number of calls while a recipe with the node `made` is planned, and in the pass over the whole tile while
+/// it is baked.
+fn n_calls_for(made: &str) -> [usize; 2] {
     let recipe = format!(
         "dapple = 1\nextent = [32.0, 32.0]\n[nodes]\nclouds = {{ noise = {{ frequency = 0.25 }} }}\nmade = {made}\n\
          [material]\nheight = \"made\"\n"
     );
     let recipe = Recipe::from_toml(&recipe).unwrap();
-    let n_calls = Arc::new(AtomicUsize::new(0));
+    let n_calls = Arc::new([0, 1, 2].map(|_| AtomicUsize::new(0)));
     let calls = n_calls.clone();
     let count = move |progress: Progress| {
-        calls.fetch_add(usize::from(progress.pass == pass), Relaxed);
+        calls[progress.pass].fetch_add(1, Relaxed);
         ControlFlow::Continue(())
     };
     let (images, limits) = (Images::new(), PlanLimits::default());
     let plan = Plan::new_with_progress(&recipe, &images, 0.0, &limits, None, count).unwrap();
+    let planned = n_calls[0].load(Relaxed);
     let options = BakeOptions {
         size: [128, 128],
         maps: vec![MapKind::Height],
         ..BakeOptions::default()
     };
     Bake::new(&plan, &options).unwrap().whole_maps().unwrap();
-    n_calls.load(Relaxed)
+    [planned, n_calls[1].load(Relaxed)]
 }
 
 #[test]
 fn tiles_and_wavelets_call_back_while_they_are_made() {
-    let plain = n_calls_for("{ noise = { frequency = 0.25 } }", 0);
-    let wavelets = n_calls_for("{ wavelet = { frequency = 8.0 } }", 0);
-    // A wavelet tile of 256 × 256 cells makes six calls, while it is filled, halved, doubled and subtracted.
-    assert!(wavelets >= plain + 6, "{wavelets} calls, {plain} for noise");
-    let tile = |method: &str| {
-        let node = format!("{{ tile = {{ input = \"clouds\", method = {method} }} }}");
-        n_calls_for(&node, 1)
-    };
-    let periodic = tile("\"periodic\"");
-    // Bands of 16 columns and 16 rows
-    assert!(periodic >= 8 + 8, "{periodic} calls");
-    let spline = tile("{ spline_project = {} }");
-    assert!(spline >= 4, "{spline} calls");
+    let [small, large] = [8.0, 64.0].map(|frequency| {
+        n_calls_for(&format!("{{ wavelet = {{ frequency = {frequency:?} }} }}"))[0]
+    });
+    // 2048 × 2048 cells are 64 times 65,536, which are filled and subtracted; 256 × 256 cells make a call for each.
+    assert!(large >= small + 2 * 63, "{small} and {large} calls");
+    let blend_map = n_calls_for("{ blend_map = { input = \"clouds\", feature_size = 4.0 } }")[1];
+    let tile = n_calls_for("{ tile = { input = \"clouds\", method = \"periodic\" } }")[1];
+    // A blend map makes five calls by itself, a tile one for each of eight bands of columns and eight of rows.
+    assert!(
+        tile + 5 >= blend_map + 8 + 8,
+        "{tile} calls, {blend_map} for a blend map"
+    );
 }
