@@ -31,8 +31,12 @@ impl Texture {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
-    pub fn gradient(&self, position: DVec2) -> DVec2 {
-        let Some(local) = self.pups().local(position) else {
+    pub fn gradient(&self, position: impl Into<[f64; 2]>) -> DVec2 {
+        self.gradient_at(position.into())
+    }
+
+    fn gradient_at(&self, position: [f64; 2]) -> DVec2 {
+        let Some(local) = self.pups().local(position.into()) else {
             return DVec2::NAN;
         };
         let net = &self.pups().net;

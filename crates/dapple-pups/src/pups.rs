@@ -170,8 +170,12 @@ impl Pups {
     /// If the position is in the supports of several periodic images of the control point, the largest weight counts.
     /// The weight is NaN at a position that is not finite, and 0 if the index has no control point.
     #[must_use]
-    pub fn weight(&self, point: PointIdx, position: DVec2) -> f32 {
-        let Some(position) = self.local(position) else {
+    pub fn weight(&self, point: PointIdx, position: impl Into<[f64; 2]>) -> f32 {
+        self.weight_at(point, position.into())
+    }
+
+    fn weight_at(&self, point: PointIdx, position: [f64; 2]) -> f32 {
+        let Some(position) = self.local(position.into()) else {
             return f32::NAN;
         };
         let points = &self.net.bins().points;
@@ -191,8 +195,12 @@ impl Pups {
     /// They are ordered by index. On a small torus a control point may occur several times, once for each periodic
     /// image. The list is empty at a position that is not finite.
     #[must_use]
-    pub fn weights(&self, position: DVec2) -> Vec<(PointIdx, f32)> {
-        let Some(position) = self.local(position) else {
+    pub fn weights(&self, position: impl Into<[f64; 2]>) -> Vec<(PointIdx, f32)> {
+        self.weights_at(position.into())
+    }
+
+    fn weights_at(&self, position: [f64; 2]) -> Vec<(PointIdx, f32)> {
+        let Some(position) = self.local(position.into()) else {
             return Vec::new();
         };
         // Collect the nonzero weights in the order of summation, and add them up.
@@ -220,8 +228,12 @@ impl Pups {
     ///
     /// Returns `None` at a position that is not finite.
     #[must_use]
-    pub fn strongest(&self, position: DVec2) -> Option<PointIdx> {
-        let position = self.local(position)?;
+    pub fn strongest(&self, position: impl Into<[f64; 2]>) -> Option<PointIdx> {
+        self.strongest_at(position.into())
+    }
+
+    fn strongest_at(&self, position: [f64; 2]) -> Option<PointIdx> {
+        let position = self.local(position.into())?;
         let points = &self.net.bins().points;
         // Only a larger weight replaces the best one, so the first of equal weights wins.
         let stronger = |best: (f32, Option<u32>), record: usize, weight: f32| {

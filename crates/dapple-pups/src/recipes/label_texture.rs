@@ -6,7 +6,6 @@
 use crate::{Pups, PupsError};
 use dapple_points::PointIdx;
 use dapple_raster::{Field, FieldParts, Raster, RasterError, RasterViewMut, Window};
-use glam::DVec2;
 
 /// A texture that gives every position the value of its strongest control point's label.
 ///
@@ -111,7 +110,7 @@ impl LabelTexture {
 
     /// Returns the label at `position`; `None` if the position is not finite.
     #[must_use]
-    pub fn label(&self, position: DVec2) -> Option<u32> {
+    pub fn label(&self, position: impl Into<[f64; 2]>) -> Option<u32> {
         let point = self.pups.strongest(position)?;
         Some(self.labels[point.index()])
     }
@@ -165,7 +164,7 @@ impl Field for LabelTexture {
     }
 
     fn value(&self, position: [f64; 2]) -> f32 {
-        self.of_point(self.pups.strongest(position.into()))
+        self.of_point(self.pups.strongest(position))
     }
 
     fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
@@ -195,7 +194,7 @@ impl<const N: usize> VectorLabelTexture<N> {
     /// Returns the vector at `position`; NaN if the position is not finite.
     #[must_use]
     pub fn sample(&self, position: impl Into<[f64; 2]>) -> [f32; N] {
-        self.of_point(self.pups.strongest(position.into().into()))
+        self.of_point(self.pups.strongest(position))
     }
 
     /// Renders the vectors at the pixel centers of a window into `out`.

@@ -21,4 +21,5 @@ mod shader;
 mod supersample;
 mod synth;
 mod text;
+mod vectors;
 mod words;

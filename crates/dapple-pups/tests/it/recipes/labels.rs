@@ -19,10 +19,7 @@ fn cells_of_one_point_have_a_label_for_each() {
         .zip(labels.pixels().iter().zip(values.pixels()))
     {
         assert_eq!(value, texture.values()[label as usize]);
-        assert_eq!(
-            texture.label(window.position(column, row).into()),
-            Some(label)
-        );
+        assert_eq!(texture.label(window.position(column, row)), Some(label));
     }
 }
 
