@@ -128,19 +128,30 @@ fn run(shell: &Shell, step: Step) -> anyhow::Result<()> {
 
 /// Search terms that are not names in the crates. The documentation search must find them; they are aliases of items on
 /// the front page of `dapple`.
-const LOOKED_FOR: [&str; 12] = [
+const LOOKED_FOR: [&str; 23] = [
     "blue noise",
     "cellular noise",
+    "chunk",
+    "domain warping",
     "fbm",
     "height map",
+    "heightmap",
     "inpaint",
     "normal map",
     "perlin",
     "poisson disc",
+    "poisson disk",
+    "ridged",
+    "seamless",
+    "signed distance",
     "simplex",
+    "splat map",
+    "terrain blending",
     "texture synthesis",
     "tileable",
+    "turbulence",
     "voronoi",
+    "wall",
 ];
 
 /// Builds the documentation, and checks that its search index contains the search terms. Stable rustdoc drops the

@@ -177,7 +177,6 @@ impl SplineProject {
             Basis::Spline(degree) => {
                 // Double the coefficients level by level (equation 13).
                 let (filter, borders) = (self.filter(degree), borders(axes));
-                let mut fine = self.coefficients(&filter, coarse, borders)?;
                 // From the coarsest level up: each step doubles the grid to the size that it was halved from.
                 let mut fine = self.coefficients(&filter, coarse, borders, is_cancelled)?;
                 for &size in sizes[..self.levels as usize].iter().rev() {
