@@ -50,6 +50,32 @@ pub struct Repair {
     pub cut_edges: usize,
 }
 
+impl Repair {
+    /// Returns, for each face of the repaired mesh `after`, the values that its corners had in the mesh `before`; `None`
+    /// for a corner that the repair has moved. `values` has the values of all corners before the repair.
+    ///
+    /// # Panics
+    ///
+    /// If `before` and `after` are not the meshes of this repair, or `values` has fewer faces than `before`.
+    pub fn corners_before<T: Copy>(
+        &self,
+        before: &Mesh,
+        after: &Mesh,
+        values: &[[T; 3]],
+    ) -> impl Iterator<Item = [Option<T>; 3]> {
+        let faces = after.faces().iter().zip(&self.face_before);
+        faces.map(move |(face, &at)| {
+            let corners = before.corners(at);
+            // Match corners by position: repair may have reversed the face, or merged vertices at equal positions.
+            face.map(|vertex| {
+                let here = after.positions()[vertex.index()];
+                let corner = corners.iter().position(|&other| other == here);
+                corner.map(|corner| values[at.index()][corner])
+            })
+        })
+    }
+}
+
 impl Mesh {
     /// Returns the mesh without duplicate vertices, unused vertices, degenerate faces and duplicate faces, and with
     /// consistent winding.

@@ -19,7 +19,7 @@ pub(crate) use along::synthesize_along;
 use dapple::color::{Code, LinearRgb, LinearRgba, NormalY};
 use dapple::image::{Depth, Encoding};
 use dapple::mesh::glam::{DVec2, DVec3};
-use dapple::mesh::{EncodedImage, FaceIdx, Mesh, Repair, Surface};
+use dapple::mesh::{EncodedImage, Mesh, Repair, Surface};
 use dapple::mesh_io::{self, MaterialPlace, MeshFormat};
 use dapple::raster::Raster;
 use dapple::synth::{
@@ -349,35 +349,14 @@ fn own_uvs(
         let message = "uv has another number of faces than the mesh";
         return Err(Error::new("uv", message));
     }
-    let uv = |face: FaceIdx, corner: usize| DVec2::from(uvs[face.index()][corner]);
-    at_corners(surface, before, repair, uv).ok_or_else(|| {
+    let own = repair.corners_before(before, surface.mesh(), uvs);
+    let whole = own.map(|[a, b, c]| Some([a?, b?, c?].map(DVec2::from)));
+    whole.collect::<Option<_>>().ok_or_else(|| {
         Error::new(
             "uv",
             "a face was cut in repair, and its texture coordinates are gone",
         )
     })
-}
-
-/// Returns, for each remaining face, the values that its corners had before the repair; `None` if any face was cut.
-fn at_corners<T: Copy>(
-    surface: &Surface,
-    before: &Mesh,
-    repair: &Repair,
-    value: impl Fn(FaceIdx, usize) -> T,
-) -> Option<Vec<[T; 3]>> {
-    let mesh = surface.mesh();
-    let faces = mesh.faces().iter().zip(&repair.face_before);
-    let whole = faces.map(|(face, &at)| {
-        // Match corners by position: repair may have reversed the face, or merged vertices at the same position.
-        let corners = before.corners(at);
-        let own = face.map(|vertex| {
-            let here = mesh.positions()[vertex.index()];
-            let corner = corners.iter().position(|&other| other == here)?;
-            Some(value(at, corner))
-        });
-        Some([own[0]?, own[1]?, own[2]?])
-    });
-    whole.collect()
 }
 
 /// Bakes the texture for the mesh that corresponds to a map of the example.

@@ -1,11 +1,10 @@
 //! The options `guides` and `scales` of synthesis on a mesh, which vary over the surface.
 
-use super::at_corners;
 use crate::error::{Error, Result};
 use crate::options::Guide;
 use crate::pictures;
 use dapple::mesh::glam::DVec2;
-use dapple::mesh::{FaceIdx, Mesh, Repair};
+use dapple::mesh::{VertexIdx, Mesh, Repair};
 use dapple::raster::{Raster, Wrap};
 use dapple::synth::{Exemplar, Synthesizer};
 use numpy::{AllowTypeChange, PyArrayLike1, PyArrayLikeDyn};
@@ -167,11 +166,12 @@ impl OfMesh {
         let points = sites.synthesizer.hierarchy().sites().points();
         match self {
             Self::Vertices(numbers) => {
-                let number = |face: FaceIdx, corner: usize| {
-                    let vertex = before.faces()[face.index()][corner];
-                    f64::from(numbers[vertex.index()])
-                };
-                let corners = at_corners(surface, before, repair, number).ok_or_else(|| {
+                let number = |vertex: VertexIdx| f64::from(numbers[vertex.index()]);
+                let faces = before.faces().iter();
+                let own: Vec<_> = faces.map(|face| face.map(number)).collect();
+                let own = repair.corners_before(before, surface.mesh(), &own);
+                let whole = own.map(|[a, b, c]| Some([a?, b?, c?]));
+                let corners: Vec<[f64; 3]> = whole.collect::<Option<_>>().ok_or_else(|| {
                     Error::new(
                         "guides",
                         "a face was cut in repair, and the numbers of its vertices are gone",

@@ -14,32 +14,11 @@ pub(super) fn own_uvs(
     let Some(uvs) = &model.uvs else {
         return Err(anyhow!("the mesh has no texture coordinates").hint("take --atlas charts"));
     };
-    let own = before_repair(surface, model, repair, uvs);
+    let own = repair.corners_before(&model.mesh, surface.mesh(), uvs);
     let whole = own.map(|[a, b, c]| Some([a?, b?, c?]));
     whole.collect::<Option<_>>().ok_or_else(|| {
         anyhow!("a face was cut in repair, and its texture coordinates are gone")
             .hint("take --atlas charts, or repair the mesh before")
-    })
-}
-
-/// Returns, for each face of the repaired mesh, the values of its corners before the repair. `column` has the values of
-/// all corners before the repair. A corner that the repair has moved gets `None`.
-fn before_repair<'a, T: Copy>(
-    surface: &'a Surface,
-    model: &'a Model,
-    repair: &'a Repair,
-    column: &'a [[T; 3]],
-) -> impl Iterator<Item = [Option<T>; 3]> + 'a {
-    let mesh = surface.mesh();
-    let faces = mesh.faces().iter().zip(&repair.face_before);
-    faces.map(move |(face, &before)| {
-        let corners_before = model.mesh.corners(before);
-        // Match corners by position: repair may have reversed the face, or merged vertices at equal positions.
-        face.map(|vertex| {
-            let at = mesh.positions()[vertex.index()];
-            let corner = corners_before.iter().position(|&other| other == at);
-            corner.map(|corner| column[before.index()][corner])
-        })
     })
 }
 
@@ -54,7 +33,7 @@ pub(super) fn shading(
     let mut normals = surface.mesh().corner_normals(crease.unwrap_or(CREASE));
     let own = model.normals_of_corners().filter(|_| crease.is_none());
     let Some(own) = own else { return normals };
-    let own = before_repair(surface, model, repair, &own);
+    let own = repair.corners_before(&model.mesh, surface.mesh(), &own);
     for ((face, corners), own) in (0..).map(FaceIdx).zip(&mut normals).zip(own) {
         let own = own.map(Option::unwrap_or_default);
         // Flip the normals of a face whose orientation the repair has reversed.
