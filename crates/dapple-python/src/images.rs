@@ -6,8 +6,8 @@ use crate::pictures::{Content, Kind, Pixels};
 use crate::recipe::content_of;
 use crate::threads;
 use crate::watch::{self, Stop};
-use dapple::color::{Code, LinearRgb, LinearRgba, Normal};
-use dapple::image::{self, Depth, Encoding, Image, Limits, PngPixels, RowWriter};
+use dapple::color::{LinearRgb, LinearRgba, Normal};
+use dapple::image::{self, Depth, Encoding, Image, Limits, RowWriter};
 use dapple::raster::{Raster, RasterView};
 use dapple::recipe::ImageAlpha;
 use dapple::tile::Map;
@@ -116,34 +116,17 @@ impl Reading {
 
 /// Reads each channel of an image as a raster of its codes, scaled to 0 to 1 without sRGB decoding.
 fn channels(image: &Image) -> Result<Vec<Raster<f32>>> {
-    fn codes<T: Code, const N: usize>(raster: &Raster<[T; N]>) -> Vec<Raster<f32>> {
-        (0..N)
-            .map(|channel| raster.map(|pixel| pixel[channel].to_unit()))
-            .collect()
-    }
-    let png = match image {
-        Image::Codes(_, png) => png,
+    match image {
+        Image::Codes(_, png) => Ok(png.pixels.planes()),
         Image::Planes(_, exr) => {
             let planes = exr.to_picture()?.planes.into_iter();
-            return Ok(planes.map(|plane| plane.values).collect());
+            Ok(planes.map(|plane| plane.values).collect())
         }
-        _ => {
-            return Err(Error::new(
-                "unsupported",
-                "the format has no channels of data",
-            ));
-        }
-    };
-    Ok(match &png.pixels {
-        PngPixels::Gray8(raster) => vec![raster.map(|code| code.to_unit())],
-        PngPixels::Gray16(raster) => vec![raster.map(|code| code.to_unit())],
-        PngPixels::GrayAlpha8(raster) => codes(raster),
-        PngPixels::GrayAlpha16(raster) => codes(raster),
-        PngPixels::Rgb8(raster) => codes(raster),
-        PngPixels::Rgb16(raster) => codes(raster),
-        PngPixels::Rgba8(raster) => codes(raster),
-        PngPixels::Rgba16(raster) => codes(raster),
-    })
+        _ => Err(Error::new(
+            "unsupported",
+            "the format has no channels of data",
+        )),
+    }
 }
 
 /// Reads an image file as a float32 array: PNG, JPEG, OpenEXR, TIFF, WebP, TGA or Radiance HDR, recognized by its content.

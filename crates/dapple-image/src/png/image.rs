@@ -3,6 +3,7 @@
 use super::Transfer;
 use crate::orientation::Stored;
 use crate::{ColorSpace, ImageError};
+use dapple_color::Code;
 use dapple_raster::Raster;
 
 /// Content of a PNG file.
@@ -80,6 +81,25 @@ impl PngPixels {
             Self::Rgb16(raster) => raster.size(),
             Self::Rgba8(raster) => raster.size(),
             Self::Rgba16(raster) => raster.size(),
+        }
+    }
+
+    /// Returns a raster for each channel, with the codes divided by the largest code. Alpha comes last.
+    #[must_use]
+    pub fn planes(&self) -> Vec<Raster<f32>> {
+        fn split<C: Code, const N: usize>(raster: &Raster<[C; N]>) -> Vec<Raster<f32>> {
+            let plane = |channel: usize| raster.map(|pixel| pixel[channel].to_unit());
+            (0..N).map(plane).collect()
+        }
+        match self {
+            Self::Gray8(raster) => vec![raster.map(|code| code.to_unit())],
+            Self::Gray16(raster) => vec![raster.map(|code| code.to_unit())],
+            Self::GrayAlpha8(raster) => split(raster),
+            Self::GrayAlpha16(raster) => split(raster),
+            Self::Rgb8(raster) => split(raster),
+            Self::Rgb16(raster) => split(raster),
+            Self::Rgba8(raster) => split(raster),
+            Self::Rgba16(raster) => split(raster),
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Computes statistics of an image's channels, as stored in its file.
 
 use crate::input::Content;
-use anyhow::Result;
+use anyhow::{Result, bail};
 use dapple::color::Code;
-use dapple::image::{ColorSpace, Image, PngPixels};
+use dapple::image::{ColorSpace, Image};
 use dapple::raster::Raster;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -16,11 +16,6 @@ const BARS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '
 
 /// Minimum width of the name column, in characters.
 const NAME_MIN: usize = 9;
-
-const GRAY: [&str; 1] = ["gray"];
-const GRAY_ALPHA: [&str; 2] = ["gray", "alpha"];
-const RGB: [&str; 3] = ["red", "green", "blue"];
-const RGBA: [&str; 4] = ["red", "green", "blue", "alpha"];
 
 /// A channel of an image, with its name.
 pub(super) struct Channel {
@@ -107,30 +102,9 @@ impl Channel {
 /// If an image of neither codes nor floating-point planes cannot be converted to colors.
 pub(super) fn channels(content: &Content) -> Result<Vec<Channel>> {
     Ok(match content {
-        Content::Raw(codes) => split(&codes.map(|&code| [code]), GRAY),
-        Content::Array(rasters) => {
-            let names: &[&str] = match rasters.len() {
-                1 => &GRAY,
-                2 => &GRAY_ALPHA,
-                3 => &RGB,
-                _ => &RGBA,
-            };
-            let channel = |(name, values): (&&str, &Raster<f32>)| Channel {
-                name: (*name).to_owned(),
-                values: values.clone(),
-            };
-            names.iter().zip(rasters).map(channel).collect()
-        }
-        Content::Image(Image::Codes(_, png)) => match &png.pixels {
-            PngPixels::Gray8(raster) => split(&raster.map(|&code| [code]), GRAY),
-            PngPixels::Gray16(raster) => split(&raster.map(|&code| [code]), GRAY),
-            PngPixels::GrayAlpha8(raster) => split(raster, GRAY_ALPHA),
-            PngPixels::GrayAlpha16(raster) => split(raster, GRAY_ALPHA),
-            PngPixels::Rgb8(raster) => split(raster, RGB),
-            PngPixels::Rgb16(raster) => split(raster, RGB),
-            PngPixels::Rgba8(raster) => split(raster, RGBA),
-            PngPixels::Rgba16(raster) => split(raster, RGBA),
-        },
+        Content::Raw(codes) => named(vec![codes.map(|code| code.to_unit())]),
+        Content::Array(rasters) => named(rasters.clone()),
+        Content::Image(Image::Codes(_, png)) => named(png.pixels.planes()),
         Content::Image(Image::Planes(_, exr)) => {
             let channel = |plane: &dapple::image::ExrPlane| Channel {
                 name: plane.name.clone(),
@@ -138,8 +112,23 @@ pub(super) fn channels(content: &Content) -> Result<Vec<Channel>> {
             };
             exr.planes.iter().map(channel).collect()
         }
-        Content::Image(other) => split(&other.color()?.map(|color| color.to_srgb::<u8>()), RGB),
+        Content::Image(other) => bail!("{} images have no channels", other.format()),
     })
+}
+
+/// Names channels by their number, from gray alone to red, green, blue and alpha.
+fn named(rasters: Vec<Raster<f32>>) -> Vec<Channel> {
+    let names: &[&str] = match rasters.len() {
+        1 => &["gray"],
+        2 => &["gray", "alpha"],
+        3 => &["red", "green", "blue"],
+        _ => &["red", "green", "blue", "alpha"],
+    };
+    let channel = |(name, values): (&&str, Raster<f32>)| Channel {
+        name: (*name).to_owned(),
+        values,
+    };
+    names.iter().zip(rasters).map(channel).collect()
 }
 
 /// Describes the format of an image as text.
@@ -229,14 +218,6 @@ fn number(number: f64) -> String {
     } else {
         format!("{number:.4}")
     }
-}
-
-fn split<C: Code, const N: usize>(raster: &Raster<[C; N]>, names: [&str; N]) -> Vec<Channel> {
-    let channel = |(index, name): (usize, &str)| Channel {
-        name: name.to_owned(),
-        values: raster.map(|codes| codes[index].to_unit()),
-    };
-    names.into_iter().enumerate().map(channel).collect()
 }
 
 #[cfg(test)]
