@@ -171,52 +171,33 @@ impl Pixel for LinearRgb {
     }
 }
 
-impl Pixel for [f32; 3] {
-    const CONTENT: Content = Content::Packed;
-    type Eight = [u8; 3];
-    type Sixteen = [u16; 3];
+/// Packed maps, three or four.
+impl<const N: usize> Pixel for [f32; N]
+where
+    [u8; N]: PngPixel,
+    [u16; N]: PngPixel,
+{
+    const CONTENT: Content = match N {
+        3 => Content::Packed,
+        _ => Content::PackedFour,
+    };
+    type Eight = [u8; N];
+    type Sixteen = [u16; N];
     type Numbers = Self;
 
     #[inline(always)]
-    fn eight(&self) -> [u8; 3] {
+    fn eight(&self) -> [u8; N] {
         self.map(u8::from_unit)
     }
 
     #[inline(always)]
-    fn sixteen(&self) -> [u16; 3] {
+    fn sixteen(&self) -> [u16; N] {
         self.map(u16::from_unit)
     }
 
     #[inline(always)]
     fn part(&self, plane: usize) -> f32 {
-        self[2 - plane]
-    }
-
-    #[inline(always)]
-    fn numbers(&self) -> Self {
-        *self
-    }
-}
-
-impl Pixel for [f32; 4] {
-    const CONTENT: Content = Content::PackedFour;
-    type Eight = [u8; 4];
-    type Sixteen = [u16; 4];
-    type Numbers = Self;
-
-    #[inline(always)]
-    fn eight(&self) -> [u8; 4] {
-        self.map(u8::from_unit)
-    }
-
-    #[inline(always)]
-    fn sixteen(&self) -> [u16; 4] {
-        self.map(u16::from_unit)
-    }
-
-    #[inline(always)]
-    fn part(&self, plane: usize) -> f32 {
-        self[[3, 2, 1, 0][plane]]
+        self[N - 1 - plane]
     }
 
     #[inline(always)]

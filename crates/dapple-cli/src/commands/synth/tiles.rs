@@ -2,6 +2,7 @@
 //! image, the sheet.
 
 use super::reading::joined;
+use crate::encode::map_raster;
 use crate::error::{Hint, usage};
 use crate::input::{self, Loaded};
 use anyhow::{Result, anyhow};
@@ -129,11 +130,7 @@ impl Sheet {
                 );
                 return Err(error.hint("scale the textures of all unit squares to one size"));
             }
-            tile.map = match &tile.map {
-                Map::Value(values) => Map::Value(bordered(values)?),
-                Map::Color(colors) => Map::Color(bordered(colors)?),
-                Map::Normal(normals) => Map::Normal(bordered(normals)?),
-            };
+            tile.map = map_raster!(&tile.map, raster => bordered(raster)?);
             tile.alpha = tile.alpha.as_ref().map(bordered).transpose()?;
         }
         joined(&self.layout, tiles)
@@ -152,11 +149,8 @@ impl Sheet {
 
     /// Crops a tile's map, with its alpha, from the sheet.
     pub(super) fn part_of(&self, sheet: &Loaded, tile: usize) -> Result<Loaded> {
-        let mut part = sheet.with_map(match &sheet.map {
-            Map::Value(values) => Map::Value(self.part(values, tile)?),
-            Map::Color(colors) => Map::Color(self.part(colors, tile)?),
-            Map::Normal(normals) => Map::Normal(self.part(normals, tile)?),
-        });
+        let map = map_raster!(&sheet.map, raster => self.part(raster, tile)?);
+        let mut part = sheet.with_map(map);
         let alpha = sheet.alpha.as_ref().map(|alpha| self.part(alpha, tile));
         part.alpha = alpha.transpose()?;
         part.is_associated = sheet.is_associated;
