@@ -486,6 +486,12 @@ impl Work {
     ) -> Result<Option<Raster<LinearRgb>>> {
         let recipe = &self.recipe;
         claimed.write_metas(&job, recipe)?;
+        if let Some(option) = args.left_out().filter(|_| args.is_first_frame()) {
+            job.note_work(&format!(
+                "note: {option} leaves out the material for Godot, {}.tres",
+                recipe.name
+            ));
+        }
         if let Some(note) = args.import_note(&recipe.material) {
             job.note_work(&note);
         }

@@ -23,10 +23,14 @@ impl Args {
     /// the images: frames, regions, corner samples, or normals whose green points down.
     pub(super) fn document(&self) -> Option<Document> {
         let document = self.preset()?.document?;
-        let is_left_out = document == Document::Tres
-            && !self.preset.is_empty()
-            && self.in_the_way(document).is_some();
-        (!is_left_out).then_some(document)
+        self.left_out().is_none().then_some(document)
+    }
+
+    /// Returns the option for which the Godot material of the preset is left out; `None` if it is not.
+    pub(super) fn left_out(&self) -> Option<&'static str> {
+        let document = self.preset.first()?.document?;
+        self.in_the_way(document)
+            .filter(|_| document == Document::Tres)
     }
 
     /// Returns whether the document embeds the images, so that they have no separate files.
