@@ -176,6 +176,8 @@ const FOLDER_HINT: &str = "let -o end with a slash, as in -o out/";
 
 /// One bake: a recipe with its options, the directory of its images and, for a shard, the list of shards.
 struct Work {
+    /// Images and nodes of earlier plans of the recipe.
+    made: Made,
     /// The options, with a single seed.
     args: Args,
     recipe: Recipe,
@@ -209,9 +211,9 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     // Bake each recipe.
     let rows = u64::from(args.n_rows()?) * u64::from(args.n_frames().unwrap_or(1));
     let progress = Progress::bar("baking", rows * works.len() as u64, context);
-    for (index, (name, work)) in (0..).zip(&works) {
+    for (index, (name, mut work)) in (0..).zip(works) {
         let baked = work.bake(context, &progress);
-        let preview = batch.checked(name, baked)?.flatten();
+        let preview = batch.checked(&name, baked)?.flatten();
         if let (Some(sheet), Some(preview)) = (&mut sheet, preview) {
             sheet.add(&preview)?;
         }
@@ -233,6 +235,8 @@ fn works(
     let variants = by_preset[0].material.variants();
     let mut works: Vec<(String, Work)> = Vec::new();
     for name in names {
+        // Read the recipe once for all variants, since standard input can be read only once.
+        let mut read = None;
         for (seed, material) in &variants {
             for args in by_preset {
                 let args = Args {
@@ -247,8 +251,16 @@ fn works(
                     title += &format!(" for {}", preset.name);
                 }
                 let files = args.files_for(names.len() * variants.len());
-                let work = files.and_then(|files| Work::read(name, args, files, seed.as_deref()));
-                let work = work.and_then(|work| {
+                let work = files.and_then(|files| {
+                    let read = match &mut read {
+                        Some(read) => read,
+                        none => none.insert(read_recipe(name)?),
+                    };
+                    let mut work = Work::new(name, read.clone(), args, files, seed.as_deref())?;
+                    if names.len() * variants.len() > 1 {
+                        // Do not hold the images and nodes of all bakes at once.
+                        work.made = work.args.made();
+                    }
                     for args in work.args.pictures() {
                         let mut job = Job::new(context, "bake", &work.files);
                         claim(&args, &work.files, &work, &mut job)?;
@@ -302,10 +314,10 @@ pub(super) fn bake_with(
     args.check_document()?;
     args.check_samples()?;
     args.material.check_single()?;
-    let works = Work::of_presets(&args, recipe, folder)?;
+    let works = Work::of_presets(&args, recipe, folder, None)?;
     let rows = u64::from(args.n_rows()?) * works.len() as u64;
     let progress = Progress::bar("baking", rows, context).until(stop);
-    for work in works {
+    for mut work in works {
         work.bake(context, &progress)?;
     }
     Ok(())
@@ -319,11 +331,12 @@ pub(super) fn presets() -> impl Iterator<Item = (&'static str, &'static str)> {
         .map(|preset| (preset.name, preset.about()))
 }
 
-/// Images and node values that the frames of a looping animation share.
+/// Images and node values that the plans of a bake share.
+#[derive(Default)]
 struct Made {
-    /// The recipe's images; `None` until the first frame needs them.
+    /// The recipe's images; `None` until the first plan needs them.
     images: Option<Images>,
-    /// The cache of node values; `None` for a single frame.
+    /// The cache of nodes and their values; `None` for a single plan.
     cache: Option<PlanCache>,
 }
 
@@ -331,13 +344,20 @@ struct Made {
 const MEMORY: usize = 1 << 28;
 
 impl Work {
-    /// Reads the recipe called `name` and applies the options to it. `seed` is the seed's label in file names, if there
-    /// are several seeds.
-    fn read(name: &str, mut args: Args, files: OutputArgs, seed: Option<&str>) -> Result<Self> {
-        let (mut recipe, folder) = read_recipe(name)?;
+    /// Applies the options to the recipe called `name`, which was read from `folder`. `seed` is the seed's label in file
+    /// names, if there are several seeds.
+    fn new(
+        name: &str,
+        (mut recipe, folder): (Recipe, &Path),
+        mut args: Args,
+        files: OutputArgs,
+        seed: Option<&str>,
+    ) -> Result<Self> {
         args.change(&mut recipe)?;
+        let mut made = args.made();
         if let Some(node) = args.node.clone() {
-            args.material.maps = Some(Maps(vec![args.show_node(&node, &mut recipe, folder)?]));
+            let map = args.show_node(&node, &mut recipe, folder, &mut made)?;
+            args.material.maps = Some(Maps(vec![map]));
         }
         if let Some(seed) = seed {
             recipe.name = format!("{}_{seed}", recipe.name);
@@ -355,6 +375,7 @@ impl Work {
         });
         let list = wanted.map(|wanted| List::new(name, &recipe, folder, &wanted));
         Ok(Self {
+            made,
             list: list.transpose()?,
             folder: folder.to_owned(),
             recipe,
@@ -363,12 +384,22 @@ impl Work {
         })
     }
 
-    /// Prepares one bake of `recipe` for each preset. `folder` is the directory of the recipe's images.
-    fn of_presets(args: &Args, recipe: &Recipe, folder: &Path) -> Result<Vec<Self>> {
+    /// Prepares one bake of `recipe` for each preset. `folder` is the directory of the recipe's images, unless `images`
+    /// are given.
+    fn of_presets(
+        args: &Args,
+        recipe: &Recipe,
+        folder: &Path,
+        images: Option<&Images>,
+    ) -> Result<Vec<Self>> {
         let work = |args: Args| {
             let mut recipe = recipe.clone();
             args.change(&mut recipe)?;
             Ok(Self {
+                made: Made {
+                    images: images.cloned(),
+                    ..args.made()
+                },
                 files: args.files_for(1)?,
                 args,
                 recipe,
@@ -381,21 +412,12 @@ impl Work {
 
     /// Bakes all frames of a looping animation, or a single image. Nodes that do not change with time are evaluated
     /// once. Returns the lit preview of the first frame if the options need one.
-    fn bake(&self, context: &Context, progress: &Progress) -> Result<Option<Raster<LinearRgb>>> {
-        let made = Made {
-            images: None,
-            cache: self.args.n_frames().map(|_| PlanCache::new(MEMORY)),
-        };
-        self.bake_with(made, context, progress)
-    }
-
-    /// Bakes all frames or a single image, like [`bake`](Self::bake), with images and node values in `made`.
-    fn bake_with(
-        &self,
-        mut made: Made,
+    fn bake(
+        &mut self,
         context: &Context,
         progress: &Progress,
     ) -> Result<Option<Raster<LinearRgb>>> {
+        let mut made = core::mem::take(&mut self.made);
         let mut preview = None;
         for args in self.args.pictures() {
             let job = Job::new(context, "bake", &self.files);
@@ -425,7 +447,7 @@ impl Work {
             return Ok(None);
         }
         let time = args.frame.map_or(0.0, Frame::time);
-        let images = self.images(&mut made.images)?;
+        let images = args.images_of(recipe, &self.folder, &mut made.images)?;
         progress.check()?;
         let plan = self.plan(images, made.cache.as_ref(), time, progress)?;
         if args.frames.is_some() && args.is_first_frame() && !plan.moves() {
@@ -442,17 +464,6 @@ impl Work {
         let bake = bake.map_err(|error| refused(error).wrong_value())?;
         claimed.write(&mut job, bake, recipe, progress)?;
         self.finish(args, job, &claimed, images, time)
-    }
-
-    /// Returns the recipe's images. They are read on the first call and stored in `images`.
-    fn images<'a>(&self, images: &'a mut Option<Images>) -> Result<&'a Images> {
-        Ok(match images {
-            Some(images) => images,
-            images => {
-                let finite = self.args.material.finite;
-                images.insert(read_images(&self.recipe, &self.folder, finite)?)
-            }
-        })
     }
 
     /// Builds the plan of a frame, on the GPU if the options ask for it.
@@ -697,10 +708,41 @@ impl Args {
         Ok(if self.sheet { 2 * size[1] } else { size[1] })
     }
 
-    /// Replaces the recipe's material by a single node, and returns the map that shows the node.
-    fn show_node(&self, node: &str, recipe: &mut Recipe, folder: &Path) -> Result<MapKind> {
-        let images = read_images(recipe, folder, self.material.finite)?;
-        let plan = Plan::new(recipe, &images, 0.0).map_err(|error| self.material.blame(error))?;
+    /// Returns an empty store for the images and node values that the plans of a bake share.
+    fn made(&self) -> Made {
+        Made {
+            images: None,
+            cache: self.n_frames().map(|_| PlanCache::new(MEMORY)),
+        }
+    }
+
+    /// Returns the images of a recipe. They are read on the first call and stored in `images`.
+    fn images_of<'a>(
+        &self,
+        recipe: &Recipe,
+        folder: &Path,
+        images: &'a mut Option<Images>,
+    ) -> Result<&'a Images> {
+        Ok(match images {
+            Some(images) => images,
+            none => none.insert(read_images(recipe, folder, self.material.finite)?),
+        })
+    }
+
+    /// Replaces the recipe's material by a single node, and returns the map that shows the node. The images and nodes
+    /// of the plan that finds it are stored in `made` for the bake.
+    fn show_node(
+        &self,
+        node: &str,
+        recipe: &mut Recipe,
+        folder: &Path,
+        made: &mut Made,
+    ) -> Result<MapKind> {
+        let images = self.images_of(recipe, folder, &mut made.images)?;
+        let cache = made.cache.get_or_insert_with(|| PlanCache::new(0));
+        let limits = PlanLimits::default();
+        let plan = Plan::new_with_cache(recipe, images, 0.0, &limits, cache);
+        let plan = plan.map_err(|error| self.material.blame(error))?;
         if !plan.node_names().any(|name| name == node) {
             let names: Vec<_> = plan.node_names().collect();
             return Err(usage(unknown("node", node, &names, "")));

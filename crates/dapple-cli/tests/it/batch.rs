@@ -149,6 +149,25 @@ fn a_node_is_baked_alone_as_heights_or_colors() {
 }
 
 #[test]
+fn variants_of_a_recipe_on_standard_input_equal_those_of_the_file() {
+    let folder = with_recipes("piped-variants");
+    let bake = |recipe: &str, options: &str| {
+        let line = format!("bake {recipe} --maps height --size 16 --seed 1-2 {options}");
+        let words: Vec<_> = line.split(' ').collect();
+        let mut command = folder.command(&words);
+        command.stdin(fs::File::open(folder.path("a-rock.toml")).unwrap());
+        assert_done(&command.output().unwrap(), &line);
+    };
+    bake("-", "-o piped/");
+    bake("a-rock.toml", "-o read/");
+    assert_eq!(names(&folder, "piped").len(), 2);
+    for name in names(&folder, "piped") {
+        let bytes = |inside: &str| fs::read(folder.path(inside).join(&name)).unwrap();
+        assert!(bytes("piped") == bytes("read"), "{name}");
+    }
+}
+
+#[test]
 fn a_batch_keeps_going_if_it_is_told_to() {
     let folder = with_recipes("keep-going");
     fs::write(folder.path("a-bad.toml"), "dapple = 1\nflowers = 3\n").unwrap();

@@ -1,6 +1,6 @@
 //! Reuses the options of `bake` for output files in subcommands that create a material without a recipe file.
 
-use super::{Args, Made, MaterialArgs, Work};
+use super::{Args, MaterialArgs, Work};
 use crate::args::{OutputArgs, Size};
 use crate::job::Context;
 use crate::progress::Progress;
@@ -90,15 +90,11 @@ impl MaterialFiles {
     ) -> Result<()> {
         let mut args = (*self.0).clone();
         args.material.size = Size(size);
-        let works = Work::of_presets(&args, &recipe, Path::new(""))?;
+        let works = Work::of_presets(&args, &recipe, Path::new(""), Some(&images))?;
         let rows = u64::from(args.n_rows()?) * works.len() as u64;
         let progress = Progress::bar("baking", rows, context);
-        for work in works {
-            let made = Made {
-                images: Some(images.clone()),
-                cache: None,
-            };
-            work.bake_with(made, context, &progress)?;
+        for mut work in works {
+            work.bake(context, &progress)?;
         }
         Ok(())
     }

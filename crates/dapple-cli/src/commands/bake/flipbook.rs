@@ -32,7 +32,7 @@ impl Work {
         let options = args.options(claimed.map_kinds())?;
         let frame = options.region.map_or(options.size, |region| region.size);
         let size = size_of(frame, grid)?;
-        let images = self.images(&mut made.images)?;
+        let images = args.images_of(&self.recipe, &self.folder, &mut made.images)?;
         let mut writer = GridWriter::new(&job, claimed.files(), size)?;
         let cache = made.cache.as_ref();
         let mut frames = Frame::all(args.n_frames());
