@@ -263,7 +263,7 @@ macro_rules! nodes {
 nodes! {
     /// Worley's cellular basis: distances to scattered feature points.
     "worley" Worley(WorleyNode) in "cells and noise" as "{}"
-        also "voronoi, cellular, cells, crystal",
+        also "voronoi, cellular, cells, crystal, cracks, stones, leather, scales",
     /// Partition-of-unity texture, such as cells, noise or an animal coat.
     "pups" Pups(PupsNode) in "cells and noise" as r#"{"cells":{}}"#
         also "grunge, spots, animal, giraffe, cow, cells",
@@ -275,22 +275,22 @@ nodes! {
         also "perlin, simplex, fbm, clouds, grunge, turbulence, fractal",
     /// Bricks, tiles or planks in a regular bond.
     "bricks" Bricks(BricksNode) in "patterns" as "{}"
-        also "brick, tile generator, planks, herringbone, wall",
+        also "brick, tile generator, planks, herringbone, hexagon, wall",
     /// Woven cloth: plain weave, twill, satin or basket weave.
     "weave" Weave(WeaveNode) in "patterns" as "{}"
         also "fabric, cloth, textile, twill",
     /// Simple shape, such as a star, as a signed distance or a mask.
     "shape" Shape(ShapeNode) in "patterns" as "{}"
-        also "sdf, circle, box, polygon, star, mask",
+        also "sdf, circle, box, square, polygon, star, dots, mask",
     /// Another value of a node that has several, such as the random number of a brick.
     "output" Output(Output) in "patterns" as r#"{"of":0.5}"#
         also "random, id, uv",
     /// Gabor noise: waves of about one length and direction, such as wood fiber or ripples.
     "gabor" Gabor(GaborNode) in "cells and noise" as "{}"
-        also "fiber, ripples, brushed, anisotropic noise",
+        also "fiber, wood grain, hair, fur, sand ripples, brushed metal, anisotropic noise",
     /// Shapes stamped at scattered points, such as gravel, leaves, rivets or scratches.
     "scatter" Scatter(ScatterNode) in "patterns" as "{}"
-        also "tile sampler, splatter, stamp, gravel, scratches, dirt",
+        also "tile sampler, splatter, stamp, dots, gravel, pebbles, stones, scratches, dirt",
     /// Coordinate of a position along a direction.
     "coordinate" Coordinate(Coordinate) in "position" as r#"{"along":[1.0,0.0]}"#
         also "gradient, linear, uv, position",
@@ -314,7 +314,7 @@ nodes! {
         also "minus, difference",
     /// Product of all inputs.
     "multiply" Multiply(Multiply) in "arithmetic" as "[1.0,1.0]"
-        also "times, product, math",
+        also "times, product, math, tint",
     /// First input divided by the second; 0 where the second is 0.
     "divide" Divide(Divide) in "arithmetic" as "[1.0,1.0]",
     /// Minimum of all inputs.
@@ -337,7 +337,7 @@ nodes! {
         also "gamma, exponent, contrast",
     /// Periodic wave of a number, such as a sine or a sawtooth.
     "wave" Wave(Wave) in "shape" as r#"{"input":0.5}"#
-        also "sine, sin, stripes, sawtooth, triangle",
+        also "sine, sin, stripes, checker, sawtooth, triangle, modulo, repeat",
     /// Number mapped from one range to another.
     "levels" Levels(Levels) in "shape" as r#"{"input":0.5}"#
         also "map range, remap, histogram, contrast, brightness, auto levels",
@@ -361,7 +361,7 @@ nodes! {
         also "bump, bevel",
     /// Interpolation between two inputs.
     "mix" Mix(Mix) in "shape" as r#"{"from":0.0,"to":1.0,"by":0.5}"#
-        also "lerp, blend, mask, interpolate, opacity",
+        also "lerp, blend, merge, composite, mask, interpolate, opacity",
     /// Number clamped to a range.
     "clamp" Clamp(Clamp) in "shape" as r#"{"input":0.5}"#
         also "saturate, limit",
@@ -379,13 +379,13 @@ nodes! {
         also "symmetry, flip",
     /// Another node, bent around a center.
     "polar" Polar(Polar) in "shape" as r#"{"input":0.5}"#
-        also "radial, cartesian to polar",
+        also "radial, circular, spiral, cartesian to polar",
     /// Sector of another node, repeated around a center.
     "kaleidoscope" Kaleidoscope(Kaleidoscope) in "shape" as r#"{"input":0.5}"#
         also "symmetry, mandala",
     /// Fractal sum of a node at several scales.
     "fractal" Fractal(FractalOf) in "shape" as r#"{"input":0.5}"#
-        also "fbm, octaves, turbulence",
+        also "fbm, octaves, turbulence, ridged, billow",
     /// Color for each number, from a color ramp.
     "ramp" Ramp(Ramped) in "color and images" as r##"{"input":0.5,"colors":["#202020","#f0f0f0"]}"##
         also "gradient map, color ramp, colorize, palette",
@@ -397,7 +397,7 @@ nodes! {
         also "erosion, flow",
     /// Input that flows along the slope or the contour lines of a height, in steps.
     "flow_warp" FlowWarp(FlowWarpNode) in "neighborhood" as r#"{"input":0.5,"height":0.5,"amount":0.1}"#
-        also "flow, swirl, curl, advect, eddy, marbling, vector warp",
+        also "flow, swirl, twirl, curl, advect, eddy, marbling, vector warp",
     /// Input sharpened by an unsharp mask.
     "sharpen" Sharpen(Sharpen) in "neighborhood" as r#"{"input":0.5,"radius":0.02}"#
         also "unsharp mask, high pass",
@@ -418,7 +418,7 @@ nodes! {
         also "normal, steepness, gradient",
     /// Curvature of a height: ½ where it is flat, more on edges, less in grooves.
     "curvature" Curvature(Curvature) in "neighborhood" as r#"{"input":0.5}"#
-        also "edge wear, convexity, cavity",
+        also "edge wear, convexity, cavity, emboss",
     /// Ambient occlusion of a height: the visible fraction of the sky.
     "occlusion" Occlusion(Occlusion) in "neighborhood" as r#"{"input":0.5}"#
         also "ao, ambient occlusion, cavity, dirt",
@@ -430,10 +430,10 @@ nodes! {
         also "region, island, id, random",
     /// Component of a color as a number, such as its luminance or hue.
     "channel" Channel(ChannelOf) in "color and images" as r##"{"input":"#808080"}"##
-        also "luminance, grayscale, split, separate rgb, hue",
+        also "luminance, grayscale, desaturate, split, separate rgb, swizzle, hue",
     /// Color with another hue, saturation and lightness.
     "hsl" Hsl(HslChange) in "color and images" as r##"{"input":"#808080"}"##
-        also "hue, saturation, lightness, color correct",
+        also "hue, saturation, lightness, hsv, tint, desaturate, replace color, color correct",
     /// Texture made to repeat seamlessly.
     "tile" Tile(Tiled) in "whole tile" as r#"{"input":0.5}"#
         also "seamless, make it tile, repeat",

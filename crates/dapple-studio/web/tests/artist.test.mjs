@@ -27,6 +27,13 @@ height = "sum"
 albedo = "fine"
 `;
 
+/** What somebody searches who does not know the names of nodes. */
+const WORDS = [
+  'voronoi', 'cellular', 'perlin', 'fbm', 'turbulence', 'ridged', 'brick', 'hexagon', 'fabric', 'stripes', 'checker', 'circle', 'square', 'dots', 'sdf',
+  'pebbles', 'scratches', 'cracks', 'wood grain', 'leather', 'animal', 'curve', 'blur', 'emboss', 'levels', 'histogram scan', 'tint', 'hsv', 'desaturate',
+  'gradient map', 'colorize', 'blend', 'merge', 'mask', 'invert', 'posterize', 'edge detect', 'edge wear', 'ao', 'erosion', 'swirl', 'rotate', 'modulo',
+];
+
 function folder(recipe = RECIPE) {
   const made = mkdtempSync(join(tmpdir(), 'dapple-artist-'));
   writeFileSync(join(made, 'mine.toml'), recipe);
@@ -184,7 +191,7 @@ describe('an artist', { skip, timeout: 240_000 }, () => {
   });
 
   test('finds nodes by the words of other programs', () => within(RECIPE, async (page) => {
-    for (const [word, kind] of [['voronoi', 'worley'], ['perlin', 'noise'], ['tile sampler', 'scatter'], ['gradient map', 'ramp'], ['map range', 'levels'], ['rotate', 'transform']]) {
+    for (const [word, kind] of [['voronoi', 'worley'], ['perlin', 'noise'], ['tile sampler', 'scatter'], ['gradient map', 'ramp'], ['map range', 'levels'], ['rotate', 'transform'], ['animal', 'pups cells']]) {
       await page.locator('body').press('a');
       await page.locator('dialog[open]').waitFor();
       await page.keyboard.type(word);
@@ -192,6 +199,16 @@ describe('an artist', { skip, timeout: 240_000 }, () => {
       await page.keyboard.press('Escape');
       await page.locator('dialog').waitFor({ state: 'detached' });
     }
+    await page.locator('body').press('a');
+    await page.locator('dialog[open]').waitFor();
+    const missing = [];
+    for (const word of WORDS) {
+      await page.locator('dialog input').fill(word);
+      if ((await page.locator('#choices li').count()) === 0) missing.push(word);
+    }
+    assert.deepEqual(missing, []);
+    await page.locator('dialog input').fill('normal map');
+    await page.getByText('No node of that name; the material has the map normal.').waitFor();
   }));
 
   test('exports any size, raw heights, and into a folder', () => within(RECIPE, async (page, studio) => {
