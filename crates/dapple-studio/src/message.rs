@@ -364,7 +364,7 @@ pub struct Hello {
     version: &'static str,
     /// The rights of the page.
     pub mode: Mode,
-    builtins: Vec<Named>,
+    builtins: Vec<Builtin>,
     /// The names of the recipes in the folder.
     pub(crate) files: Vec<String>,
     schema: &'static Json,
@@ -397,6 +397,14 @@ pub struct Named {
     pub about: String,
 }
 
+/// A built-in recipe, with the words by which it is found.
+#[derive(Clone, Debug, Serialize)]
+struct Builtin {
+    #[serde(flatten)]
+    named: Named,
+    tags: Vec<String>,
+}
+
 /// Limits on the requests of a page.
 #[derive(Clone, Debug, Serialize)]
 struct Limits {
@@ -415,11 +423,16 @@ impl Hello {
     }
 
     fn made() -> Self {
-        let builtin = |name: &'static str| Named {
-            name: name.to_owned(),
-            about: dapple::recipe::Recipe::builtin(name)
-                .map(|recipe| recipe.about)
-                .unwrap_or_default(),
+        let builtin = |name: &'static str| {
+            let recipe = dapple::recipe::Recipe::builtin(name);
+            let (about, tags) = recipe
+                .map(|recipe| (recipe.about, recipe.tags))
+                .unwrap_or_default();
+            let name = name.to_owned();
+            Builtin {
+                named: Named { name, about },
+                tags,
+            }
         };
         let map = |kind: &MapKind| Named {
             name: kind.name().to_owned(),

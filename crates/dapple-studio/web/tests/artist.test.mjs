@@ -230,6 +230,11 @@ describe('an artist', { skip, timeout: 240_000 }, () => {
     await dialog.getByText('is no name for a folder').waitFor();
   }));
 
+  test('finds recipes by their tags', () => within(RECIPE, async (page) => {
+    await page.getByRole('searchbox', { name: 'Search recipes' }).fill('volcano');
+    assert.deepEqual((await page.locator('.rail .card .name').allTextContents()), ['lava']);
+  }));
+
   test('files of another preset are not offered', () => within(RECIPE, async (page) => {
     await page.keyboard.press('Control+e');
     const dialog = page.locator('dialog');

@@ -113,7 +113,7 @@ export interface Hello {
   type: 'hello';
   version: string;
   mode: 'studio' | 'watch' | 'static';
-  builtins: Named[];
+  builtins: (Named & { tags: string[] })[];
   files: string[];
   schema: JsonSchema;
   kinds: Kind[];
