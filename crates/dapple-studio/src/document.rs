@@ -55,6 +55,17 @@ impl Document {
         self.table().map(json_of_table)
     }
 
+    /// Returns the keys of a table of the text, such as `nodes`, in the order of the text.
+    #[must_use]
+    pub fn keys(&self, table: &str) -> Vec<String> {
+        let table = self.table().and_then(|root| root.get(table));
+        let entries = table
+            .and_then(Item::as_table_like)
+            .map(|table| table.iter());
+        let keys = entries.into_iter().flatten();
+        keys.map(|(key, _)| key.to_owned()).collect()
+    }
+
     /// Returns the errors in the text. The list is empty if the text is a valid recipe.
     #[must_use]
     pub fn diagnostics(&self) -> Vec<Diagnostic> {

@@ -69,7 +69,7 @@ impl Graph {
             })
         };
         // List the nodes in the order of the text.
-        let names = names_in_order(document, &data);
+        let names = document.keys("nodes");
         let all = data.get("nodes").and_then(Json::as_object);
         let nodes = names
             .iter()
@@ -120,9 +120,11 @@ fn names_in_order(document: &Document, data: &Json) -> Vec<String> {
 }
 
 /// Converts an input of the recipe to an input of its node. The first `skipped` components of its path are removed.
+/// Converts a found input. The first `skipped` components of its path are removed.
 fn input(found: &Found<'_>, skipped: usize) -> GraphInput {
     let path = found.path[skipped..].to_vec();
-    let is_node = |text: &&str| !text.starts_with('#');
+    // A text can also be a color, or refer to a parameter.
+    let is_node = |text: &&str| !text.starts_with(['#', '$']);
     GraphInput {
         label: label(&path),
         path,

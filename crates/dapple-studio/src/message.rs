@@ -266,6 +266,8 @@ pub enum Reply {
         rev: u64,
         /// The recipe as JSON.
         recipe: Json,
+        /// The names of the parameters, in the order of the text.
+        parameters: Vec<String>,
     },
     /// Announces that the images of a new generation follow.
     Began {

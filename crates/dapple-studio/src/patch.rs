@@ -1,6 +1,7 @@
 //! Applies small edits to a recipe as small edits to its text. Comments, order and number formats are preserved.
 
 mod nodes;
+mod parameters;
 mod place;
 mod splice;
 
@@ -112,7 +113,7 @@ pub enum Op {
     },
 }
 
-/// Applies edits to a text, in order, and returns the new text.
+/// Applies edits to a text, in order, and returns the new text. Parameters that no option refers to any more are removed.
 ///
 /// # Errors
 ///
@@ -121,9 +122,11 @@ pub fn apply(text: &str, ops: &[Op]) -> Result<String, StudioError> {
     let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| {
         StudioError::new(format!("the text is no TOML yet: {}", error.message()))
     })?;
+    let used = parameters::used(&document);
     for op in ops {
         apply_one(&mut document, op)?;
     }
+    parameters::remove_unused(&mut document, &used);
     let new = document.to_string();
     // Parse the result again, so that no edit can break the text.
     let read: DocumentMut = new.parse().map_err(|_| not_here())?;

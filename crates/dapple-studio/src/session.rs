@@ -231,9 +231,11 @@ impl Session {
                 items,
             });
         } else if let Some(recipe) = self.document.data() {
+            let parameters = self.document.keys("parameters");
             replies.push(Reply::Values {
                 rev: self.rev,
                 recipe,
+                parameters,
             });
         }
         replies

@@ -1,6 +1,6 @@
 //! Navigates and edits a TOML document.
 
-use super::Part;
+use super::{Part, parameters};
 use crate::StudioError;
 use crate::data::{insert_element, json_of_item, remove_element, rewrite, table_of, value_of};
 use serde_json::{Map, Value as Json};
@@ -126,6 +126,11 @@ impl<'a> Place<'a> {
                 let item = if has_header {
                     let mut new = Table::new();
                     new.set_implicit(key == "nodes" || depth == 2);
+                    if depth == 1 && key == parameters::KEY {
+                        // Write the parameters before all other tables.
+                        new.set_position(Some(0));
+                        new.decor_mut().set_prefix("\n");
+                    }
                     Item::Table(new)
                 } else {
                     Item::Value(InlineTable::new().into())

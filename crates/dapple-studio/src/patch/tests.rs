@@ -339,6 +339,38 @@ fn points_are_on_lines_of_their_own() {
 }
 
 #[test]
+fn a_parameter_comes_and_goes_with_its_options() {
+    let shared = [
+        set("parameters.jitter", json!(0.65)),
+        set(
+            "nodes.cells.worley.scatter.jittered.jitter",
+            json!("$jitter"),
+        ),
+        set("nodes.sum.add.1", json!("$jitter")),
+    ];
+    let text = apply(TEXT, &shared).unwrap();
+    let with_table = "seed = 7\n\n[parameters]\njitter = 0.65\n\n# Cells.\n[nodes.cells.worley]";
+    assert!(text.contains(with_table), "{text}");
+    assert_eq!(
+        Recipe::from_toml(&text).unwrap().parameters.iter().count(),
+        1
+    );
+    // It stays while an option refers to it.
+    let text = apply(&text, &[set("nodes.sum.add.1", json!(0.5))]).unwrap();
+    assert!(text.contains("jitter = 0.65\n"), "{text}");
+    // The last option leaves, alone or with its node.
+    let own = set("nodes.cells.worley.scatter.jittered.jitter", json!(0.65));
+    assert_eq!(apply(&text, &[own]).unwrap(), TEXT);
+    let name = "cells".to_owned();
+    let text = apply(&text, &[Op::RemoveNode { name }]).unwrap();
+    assert!(!text.contains("parameters"), "{text}");
+    // A parameter that was not used before is left for the author.
+    let unused = format!("{TEXT}\n[parameters]\nnew = 1\n");
+    let edited = apply(&unused, &[set("seed", json!(8))]).unwrap();
+    assert!(edited.contains("[parameters]\nnew = 1\n"), "{edited}");
+}
+
+#[test]
 fn what_does_not_fit_is_refused_and_nothing_changes() {
     let hostile = [
         json!({ "op": "set", "path": [], "value": 1 }),

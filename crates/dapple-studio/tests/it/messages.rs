@@ -1,6 +1,7 @@
 //! Tests of the replies of a session.
 
 use crate::render_host::{Page, of_type};
+use dapple_studio::Graph;
 use serde_json::{Value, json};
 
 /// Returns the part of a text that JavaScript finds at the UTF-16 positions `from` and `to` of an item.
@@ -27,6 +28,23 @@ fn a_change_of_the_recipe_is_a_change_of_the_text() {
     assert_eq!(
         of_type(&replies, "values")[0]["recipe"]["nodes"]["plate"]["levels"]["from"],
         json!([0.06, 0.2])
+    );
+}
+
+#[test]
+fn parameters_are_listed_in_the_order_of_the_text_and_are_no_nodes() {
+    let text = "dapple = 1\n[parameters]\nwear = 0.25\namount = 0.5\n[nodes.sum]\nadd = [\"$wear\", \"$amount\"]\n\
+                [material]\nheight = \"sum\"\n";
+    let mut page = Page::default();
+    let replies = page.ask(json!({ "type": "doc", "rev": 1, "text": text }));
+    let values = of_type(&replies, "values")[0];
+    assert_eq!(values["parameters"], json!(["wear", "amount"]));
+    assert_eq!(values["recipe"]["nodes"]["sum"]["add"][0], "$wear");
+    let graph = serde_json::to_value(Graph::new(page.session.document(), None)).unwrap();
+    let inputs = &graph["nodes"][0]["inputs"];
+    assert_eq!(
+        (&inputs[0]["node"], &inputs[0]["value"]),
+        (&Value::Null, &json!("$wear"))
     );
 }
 

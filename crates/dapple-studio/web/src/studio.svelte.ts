@@ -5,6 +5,7 @@ import type { Pictures } from './core/pictures';
 import type { Frame, Graph, Hello, Json, Op, Path, Points, Problem, Reply, Request, Seam } from './core/protocol';
 import { MAP } from './core/protocol';
 import { at, entry, Schemas, type Range } from './core/schema';
+import { rangeAt, resolved, sourceOf } from './core/shared';
 import type { Transport } from './core/transport';
 import { recall, recallOpen, remember, rememberOpen, type Opening, type Unsaved } from './core/unsaved';
 import { placed, withPlaces } from './graph/placed';
@@ -34,7 +35,11 @@ export class Studio {
   readonly rendering = new Rendering();
   hello = $state.raw<Hello | null>(null);
   connection = $state<'waiting' | 'open' | 'closed' | 'refused'>('waiting');
+  /** The recipe as written. */
   recipe = $state.raw<Json>(null);
+  /** The names of the recipe's parameters, in the order of the text. */
+  parameters = $state.raw<string[]>([]);
+  readonly #resolved = $derived(resolved(this.recipe));
   graph = $state.raw<Graph | null>(null);
   problems = $state.raw<Problem[]>([]);
   seams = $state.raw<Seam[] | null>(null);
@@ -172,21 +177,28 @@ export class Studio {
     this.#editor?.redo();
   }
 
-  /** The value at a path of the recipe, if it is written there. */
+  /** The value at a path of the recipe as it is written there, which may refer to a parameter. */
   value(path: Path): Json | undefined {
     return at(this.recipe, path);
   }
 
-  /** Sets the optional maps of the lit view. A view is requested again only if they change. */
-  #showExtras(recipe: Json): void {
-    const extras = EXTRAS.filter((name) => (at(recipe, ['material', name]) ?? null) !== null);
-    if (extras.join() !== this.looking.extras.join()) this.looking.extras = extras;
+  /** The value at a path of the recipe, if it is written there. A reference has the value of its parameter. */
+  resolved(path: Path): Json | undefined {
+    return at(this.#resolved, path);
   }
 
-  /** The value of a named parameter. */
-  parameter(name: string): Json | undefined {
-    const given = this.value(['parameters', name]);
-    return typeof given === 'object' && given !== null && !Array.isArray(given) ? given['value'] : given;
+  /** The path at which the value is written that `resolved` returns: that of a parameter for a reference. */
+  source(path: Path): Path {
+    return sourceOf(this.recipe, path);
+  }
+
+  #values(recipe: Json, parameters: string[]): void {
+    this.recipe = recipe;
+    this.parameters = parameters;
+    this.looking.extent = extentOf(this.resolved(['extent']));
+    // A view is requested again only if the optional maps of the lit view change.
+    const extras = EXTRAS.filter((name) => (this.value(['material', name]) ?? null) !== null);
+    if (extras.join() !== this.looking.extras.join()) this.looking.extras = extras;
   }
 
   /** Changes the recipe from a widget. */
@@ -255,7 +267,9 @@ export class Studio {
 
   /** Sets a random seed. */
   shuffle(): void {
-    this.set(['seed'], Math.floor(Math.random() * 10_000), newGesture());
+    const path = this.source(['seed']);
+    const [low, high] = rangeAt(this.recipe, path) ?? [0, 9999];
+    this.set(path, low + Math.floor(Math.random() * (high - low + 1)), newGesture());
   }
 
   /** Selects a node, or the recipe. The caret moves to the node unless `follow` is false. */
@@ -438,10 +452,7 @@ export class Studio {
         if (this.selected !== null && !message.order.includes(this.selected)) this.selected = null;
         return;
       case 'values':
-        this.recipe = message.recipe;
-        this.looking.extent = extentOf(message.recipe);
-        this.#showExtras(message.recipe);
-        return;
+        return this.#values(message.recipe, message.parameters);
       case 'began':
         return this.rendering.began(message);
       case 'rendered':
@@ -593,7 +604,7 @@ function settle(now: Points, before: Points | null): Points {
 /** The optional maps that the lit view shows. */
 const EXTRAS = ['opacity', 'emission'];
 
-function extentOf(recipe: Json): [number, number] {
-  const [w, h] = (at(recipe, ['extent']) ?? [1, 1]) as number[];
+function extentOf(value: Json | undefined): [number, number] {
+  const [w, h] = (value ?? [1, 1]) as number[];
   return typeof w === 'number' && typeof h === 'number' && w > 0 && h > 0 ? [w, h] : [1, 1];
 }

@@ -107,6 +107,19 @@ export function text(page) {
   });
 }
 
+/** The schema of recipes that the page has: that of `dapple recipe --schema`, without references to parameters. */
+export function pageSchema() {
+  const plain = (value) => {
+    if (Array.isArray(value)) return value.map(plain);
+    if (typeof value !== 'object' || value === null) return value;
+    const [first, second] = value.anyOf ?? [];
+    const { anyOf: _, ...others } = value;
+    const inner = second?.$ref === '#/$defs/Reference' ? { ...first, ...others } : value;
+    return Object.fromEntries(Object.entries(inner).map(([key, one]) => [key, plain(one)]));
+  };
+  return plain(JSON.parse(execFileSync(DAPPLE, ['recipe', '--schema'], { maxBuffer: 1 << 26 }).toString()));
+}
+
 /** What the command prints or writes. */
 export function dapple(...args) {
   return execFileSync(DAPPLE, args, { encoding: 'utf8' });

@@ -217,7 +217,7 @@ export type Reply =
   | { type: 'stale'; rev: number }
   | { type: 'diagnostics'; rev: number; items: Problem[] }
   | Graph
-  | { type: 'values'; rev: number; recipe: Json }
+  | { type: 'values'; rev: number; recipe: Json; parameters: string[] }
   | Began
   | Rendered
   | { type: 'seams'; maps: Seam[] }

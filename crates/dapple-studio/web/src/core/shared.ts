@@ -1,6 +1,6 @@
 // The named parameters of a recipe, whose values options share as "$name".
 import type { Json, Path } from './protocol';
-import { entry, type JsonSchema, type Schemas } from './schema';
+import { at, entry, type JsonSchema, type Schemas } from './schema';
 
 /** A parameter of the recipe, with the schema of its value. */
 export interface Shared {
@@ -10,8 +10,8 @@ export interface Shared {
   value: Json;
   about: string;
   schema: JsonSchema;
-  /** The name of the first option that refers to it, which determines the usual range of its slider. */
-  option: string;
+  /** The paths of the options that refer to it. The first one determines the usual range of its slider. */
+  uses: Path[];
 }
 
 /** Returns the name of the parameter that a value refers to, or null. */
@@ -19,47 +19,90 @@ export function reference(value: Json | undefined): string | null {
   return typeof value === 'string' && /^\$./.test(value) ? value.slice(1) : null;
 }
 
-/** Returns the parameters of a recipe, in the order of its text. */
-export function sharedParameters(recipe: Json | undefined, schemas: Schemas): Shared[] {
-  const named = entry(recipe, 'parameters');
-  if (typeof named !== 'object' || named === null || Array.isArray(named)) return [];
-  return Object.entries(named).map(([name, given]) => {
-    const isTable = typeof given === 'object' && given !== null && !Array.isArray(given);
-    const value = isTable ? (given['value'] ?? null) : given;
-    const range = isTable && Array.isArray(given['range']) ? given['range'].map(Number) : null;
-    const use = firstUse(recipe, `$${name}`, []);
-    const found = use ? schemaAt(schemas, use) : null;
-    const option = String(use?.findLast((step) => typeof step === 'string') ?? name);
-    return {
+/** Returns a recipe in which references are replaced by the values of their parameters. */
+export function resolved(recipe: Json): Json {
+  const replaced = (value: Json): Json => {
+    const path = parameterPath(recipe, reference(value));
+    if (path) return at(recipe, path) ?? null;
+    if (typeof value !== 'object' || value === null) return value;
+    if (Array.isArray(value)) return value.map(replaced);
+    return Object.fromEntries(Object.entries(value).map(([key, inner]) => [key, replaced(inner)]));
+  };
+  return entry(recipe, 'parameters') === undefined ? recipe : replaced(recipe);
+}
+
+/** Returns the path at which a value is written: in a parameter, if the option or a list around it refers to one. */
+export function sourceOf(recipe: Json, path: Path): Path {
+  for (let length = 1; length <= path.length; length += 1) {
+    const source = parameterPath(recipe, reference(at(recipe, path.slice(0, length))));
+    if (source) return [...source, ...path.slice(length)];
+  }
+  return path;
+}
+
+/** Returns the smallest and the largest number that the parameter at a path of `sourceOf` allows, or null. */
+export function rangeAt(recipe: Json, path: Path): [number, number] | null {
+  const range = path[0] === 'parameters' ? at(recipe, [...path.slice(0, 2), 'range']) : undefined;
+  return Array.isArray(range) ? [Number(range[0]), Number(range[1])] : null;
+}
+
+/** The path of a parameter's value, or null if there is no parameter of this name. */
+function parameterPath(recipe: Json, name: string | null): Path | null {
+  const given = name === null ? undefined : at(recipe, ['parameters', name]);
+  if (name === null || given === undefined) return null;
+  return isTable(given) ? ['parameters', name, 'value'] : ['parameters', name];
+}
+
+function isTable(value: Json | undefined): value is { [key: string]: Json } {
+  return typeof value === 'object' && value !== null && !Array.isArray(value);
+}
+
+/** Returns the parameters of a recipe. `order` lists their names in the order of the text. */
+export function sharedParameters(recipe: Json, schemas: Schemas, order: string[]): Shared[] {
+  return order.flatMap((name) => {
+    const path = parameterPath(recipe, name);
+    if (!path) return [];
+    const given = at(recipe, ['parameters', name]);
+    const value = at(recipe, path) ?? null;
+    const uses = usesOf(recipe, `$${name}`, []);
+    const found = uses[0] ? schemaAt(schemas, uses[0]) : null;
+    const doc = entry(given, 'doc');
+    return [{
       name,
-      path: isTable ? ['parameters', name, 'value'] : ['parameters', name],
+      path,
       value,
-      about: isTable && typeof given['doc'] === 'string' ? given['doc'] : (found?.description ?? ''),
-      schema: within(found ? schemas.plain(found) : schemaOf(value), range),
-      option,
-    };
+      about: typeof doc === 'string' ? doc : (found?.description ?? ''),
+      schema: within(schemas, (found && variantFor(schemas, found, value)) ?? schemaOf(value), rangeAt(recipe, path)),
+      uses,
+    }];
   });
 }
 
-/** Narrows the schema of a number to the range of a parameter. */
-function within(schema: JsonSchema, range: number[] | null): JsonSchema {
-  const [min, max] = range ?? [];
-  if (min === undefined || max === undefined) return schema;
-  const { exclusiveMinimum: _low, exclusiveMaximum: _high, ...others } = schema;
-  return { ...others, minimum: min, maximum: max, 'x-dapple': { ...others['x-dapple'], soft: [min, max] } };
+/** The schema of the kind of value that a parameter has, among those that its option allows. Null if it can be any. */
+function variantFor(schemas: Schemas, schema: JsonSchema, value: Json): JsonSchema | null {
+  const shape = schemas.shape(schema);
+  if (shape.kind === 'input' && typeof value !== 'object') return null;
+  if (shape.kind !== 'union') return schema;
+  const variant = schemas.variantOf(shape.variants, value);
+  return variant?.key === null ? variantFor(schemas, variant.schema, value) : schema;
 }
 
-/** The path of the first option with this value, outside of the parameters. */
-function firstUse(value: Json | undefined, text: string, path: Path): Path | null {
-  if (value === text) return path;
-  if (typeof value !== 'object' || value === null) return null;
+/** Narrows the schema of a number to the range of a parameter. */
+function within(schemas: Schemas, schema: JsonSchema, range: [number, number] | null): JsonSchema {
+  if (!range) return schema;
+  const [min, max] = range;
+  const { exclusiveMinimum: _low, exclusiveMaximum: _high, ...others } = schemas.plain(schema);
+  // A slider with a logarithmic scale does not reach 0.
+  const scale = min > 0 ? {} : { scale: 'linear' };
+  return { ...others, minimum: min, maximum: max, 'x-dapple': { ...others['x-dapple'], soft: [min, max], ...scale } };
+}
+
+/** The paths of the options with this value, outside of the parameters. */
+function usesOf(value: Json, text: string, path: Path): Path[] {
+  if (value === text) return [path];
+  if (typeof value !== 'object' || value === null) return [];
   const entries: [string | number, Json][] = Array.isArray(value) ? value.map((inner, index) => [index, inner]) : Object.entries(value);
-  for (const [key, inner] of entries) {
-    if (path.length === 0 && key === 'parameters') continue;
-    const found = firstUse(inner, text, [...path, key]);
-    if (found) return found;
-  }
-  return null;
+  return entries.flatMap(([key, inner]) => (path.length === 0 && key === 'parameters' ? [] : usesOf(inner, text, [...path, key])));
 }
 
 /** The schema of the value at a path of the recipe, or null. */

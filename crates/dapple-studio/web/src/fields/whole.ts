@@ -13,13 +13,13 @@ function cells(kind: string, options: Json | undefined): { wavelet: boolean } | 
 }
 
 function wraps(studio: Studio): boolean[] {
-  return (studio.value(['wrap']) ?? [true, true]) as boolean[];
+  return (studio.resolved(['wrap']) ?? [true, true]) as boolean[];
 }
 
 /** The frequencies that a node may have. The path of the frequency ends with the axis if there is one for each. */
 export function wholeFrequency(studio: Studio, node: string, path: Path): Whole | null {
   const kind = String(path[2]);
-  const of = cells(kind, studio.value(['nodes', node, kind]));
+  const of = cells(kind, studio.resolved(['nodes', node, kind]));
   const axis = path.at(-1);
   const sides = studio.looking.extent.filter((_, index) => wraps(studio)[index] && (typeof axis !== 'number' || axis === index));
   return of && wholeCells(sides, of.wavelet);
@@ -30,7 +30,7 @@ export function wholeExtent(studio: Studio, axis: string | number | undefined): 
   if (typeof axis !== 'number' || !wraps(studio)[axis]) return null;
   const variants = studio.schemas?.variants({ $ref: '#/$defs/Node' }) ?? [];
   const frequencies = (studio.graph?.nodes ?? []).flatMap(({ name, kind }) => {
-    const options = studio.value(['nodes', name, kind]);
+    const options = studio.resolved(['nodes', name, kind]);
     const of = cells(kind, options);
     const variant = variants.find(({ key }) => key === kind);
     if (!of || !variant) return [];
