@@ -102,25 +102,7 @@ impl Graph {
     }
 }
 
-/// Returns the names of the nodes in the order of the text.
-fn names_in_order(document: &Document, data: &Json) -> Vec<String> {
-    let nodes = document
-        .table()
-        .and_then(|root| root.get("nodes")?.as_table_like());
-    match nodes {
-        Some(nodes) => nodes.iter().map(|(name, _)| name.to_owned()).collect(),
-        None => data
-            .get("nodes")
-            .and_then(Json::as_object)
-            .into_iter()
-            .flatten()
-            .map(|(name, _)| name.clone())
-            .collect(),
-    }
-}
-
 /// Converts an input of the recipe to an input of its node. The first `skipped` components of its path are removed.
-/// Converts a found input. The first `skipped` components of its path are removed.
 fn input(found: &Found<'_>, skipped: usize) -> GraphInput {
     let path = found.path[skipped..].to_vec();
     // A text can also be a color, or refer to a parameter.
