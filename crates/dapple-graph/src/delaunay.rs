@@ -177,7 +177,7 @@ fn whole(
     check(is_cancelled)?;
     let is_line = is_long_line(sites);
     let margin = match lattice.wrap {
-        // Images beside a line of sites make most triangles correct.
+        // Images next to a line of sites make most triangles correct.
         [true, false] if is_line => lattice.size.x,
         [false, true] if is_line => lattice.size.y,
         _ if is_line => lattice.size.min_element(),

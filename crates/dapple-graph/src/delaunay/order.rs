@@ -56,8 +56,7 @@ pub(super) fn farthest_first(images: &[Image]) -> Vec<Image> {
     sorted
 }
 
-/// Sorts images by random rounds, of which each is about twice as large as the one before, and in a round by Morton's
-/// space-filling curve.
+/// Returns the images in random rounds of doubling size. Within a round, they follow Morton's space-filling curve.
 pub(super) fn in_rounds(
     images: &[Image],
     is_cancelled: &IsCancelled,

@@ -46,7 +46,7 @@ fn every_method() -> Vec<Method> {
     methods().into_iter().chain(others).collect()
 }
 
-/// Returns all methods, with default widths, and with samples and sines in place of coefficients and splines.
+/// Returns all methods, with default widths, and with samples and sines.
 fn usual_methods() -> Vec<Method> {
     let samples = SplineProject {
         pixels: Pixels::Samples,
