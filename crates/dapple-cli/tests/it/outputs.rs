@@ -355,7 +355,7 @@ fn a_material_of_godot_names_its_images() {
         let words: Vec<_> = line.split(' ').collect();
         let run = folder.run(&words);
         assert_done(&run, line);
-        let note = "note: --frames leaves out the material for Godot, rock.tres\n";
+        let note = "note: --frames leaves out the material for Godot, varied.tres\n";
         let count = stderr(&run).matches(note).count();
         assert_eq!(count, usize::from(line.contains("--frames")), "{line}");
     }
