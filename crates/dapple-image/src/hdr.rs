@@ -5,7 +5,7 @@
 //! read it; Radiance itself adds half a step to the mantissa. Every value is an exact `f32`.
 //!
 //! Colors are linear, with the primaries that the header declares, or ITU-R BT.709. Pixels of XYZ are converted.
-//! `EXPOSURE` is ignored, so that values are those of the file.
+//! `EXPOSURE` is ignored: values are not divided by it.
 
 use crate::exr::{ExrImage, ExrPlane};
 use crate::orientation::Orientation;

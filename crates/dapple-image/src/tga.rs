@@ -102,7 +102,7 @@ impl Header {
             Kind::Palette => self.entry_bits,
             Kind::Color => self.bits,
         };
-        // A pixel of 15 or 24 bits has no room for alpha.
+        // Colors of 15 and 24 bits have no alpha.
         3 + usize::from(self.has_alpha && matches!(color_bits, 16 | 32))
     }
 }

@@ -115,7 +115,7 @@ fn channels(decoder: &mut Reader<'_>, limits: &Limits) -> Result<(usize, Alpha),
     })
 }
 
-/// Checks that there is no second page, other than masks and images of reduced resolution.
+/// Refuses files of several pages. Masks and images of reduced resolution do not count.
 fn check_pages(bytes: &[u8], limits: &Limits) -> Result<(), ImageError> {
     let refuse = |error| refusal(error, limits);
     let mut pages = Decoder::new(Cursor::new(bytes)).map_err(refuse)?;

@@ -10,7 +10,7 @@ use crate::{Format, ImageError, ImageErrorKind, Limits, PngImage, PngPixels, Tra
 use image_webp::{DecodingError, WebPDecoder};
 use std::io::Cursor;
 
-/// Memory per pixel, in bytes: four for the codes, four upright, and the most that the codec takes beside them.
+/// Maximum memory per pixel, in bytes: four for the codes, four for the upright image, and eight for the codec.
 const PIXEL_BYTES: u64 = 16;
 
 /// Decodes a file with a WebP signature.
