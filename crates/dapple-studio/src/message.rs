@@ -3,7 +3,7 @@
 use crate::render::{MAX_SIDE, MAX_TILE};
 use crate::schema::Kind;
 use crate::{Change, Diagnostic, Graph, Op, Picture, StudioError};
-use dapple::recipe::MapKind;
+use dapple::recipe::{MapKind, Material};
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 use std::sync::OnceLock;
@@ -372,6 +372,8 @@ pub struct Hello {
     schema: &'static Json,
     kinds: Vec<Kind>,
     maps: Vec<Named>,
+    /// The names of the maps that a material may lack.
+    optional_maps: Vec<&'static str>,
     pub(crate) presets: Vec<Named>,
     limits: Limits,
     pub(crate) open: Option<String>,
@@ -440,6 +442,8 @@ impl Hello {
             name: kind.name().to_owned(),
             about: about(*kind).to_owned(),
         };
+        let material = Material::default();
+        let optional = MapKind::ALL.iter().filter(|kind| !material.has(**kind));
         Self {
             version: env!("CARGO_PKG_VERSION"),
             mode: Mode::Studio,
@@ -450,6 +454,7 @@ impl Hello {
             schema: crate::schema::schema(),
             kinds: crate::schema::kinds(),
             maps: MapKind::ALL.iter().map(map).collect(),
+            optional_maps: optional.map(|kind| kind.name()).collect(),
             presets: Vec::new(),
             limits: Limits {
                 size: MAX_SIDE,

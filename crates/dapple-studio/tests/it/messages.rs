@@ -1,7 +1,7 @@
 //! Tests of the replies of a session.
 
 use crate::render_host::{Page, of_type};
-use dapple_studio::Graph;
+use dapple_studio::{Graph, Hello};
 use serde_json::{Value, json};
 
 /// Returns the part of a text that JavaScript finds at the UTF-16 positions `from` and `to` of an item.
@@ -45,6 +45,21 @@ fn parameters_are_listed_in_the_order_of_the_text_and_are_no_nodes() {
     assert_eq!(
         (&inputs[0]["node"], &inputs[0]["value"]),
         (&Value::Null, &json!("$wear"))
+    );
+}
+
+#[test]
+fn the_greeting_names_the_maps_that_a_material_may_lack() {
+    let hello = serde_json::to_value(Hello::new()).unwrap();
+    let optional = json!(["emission", "opacity", "specular", "clearcoat"]);
+    assert_eq!(hello["optional_maps"], optional);
+    let lava = |one: &&Value| one["name"] == "lava";
+    let lava = hello["builtins"].as_array().unwrap().iter().find(lava);
+    assert!(
+        lava.unwrap()["tags"]
+            .as_array()
+            .unwrap()
+            .contains(&json!("volcano"))
     );
 }
 

@@ -197,7 +197,7 @@ export class Studio {
     this.parameters = parameters;
     this.looking.extent = extentOf(this.resolved(['extent']));
     // A view is requested again only if the optional maps of the lit view change.
-    const extras = EXTRAS.filter((name) => (this.value(['material', name]) ?? null) !== null);
+    const extras = (this.hello?.optional_maps ?? []).filter((name) => (this.value(['material', name]) ?? null) !== null);
     if (extras.join() !== this.looking.extras.join()) this.looking.extras = extras;
   }
 
@@ -600,9 +600,6 @@ function settle(now: Points, before: Points | null): Points {
   });
   return { ...now, points };
 }
-
-/** The optional maps that the lit view shows. */
-const EXTRAS = ['opacity', 'emission'];
 
 function extentOf(value: Json | undefined): [number, number] {
   const [w, h] = (value ?? [1, 1]) as number[];

@@ -63,7 +63,7 @@ async function click(page, path, at) {
   await settled(page);
 }
 
-describe('an artist', { skip, timeout: 240_000 }, () => {
+describe('an artist', { skip, timeout: 480_000 }, () => {
   after(endBrowser);
 
   test('clicks into sliders, and each click lands', () => within(RECIPE, async (page) => {
@@ -191,7 +191,7 @@ describe('an artist', { skip, timeout: 240_000 }, () => {
   });
 
   test('finds nodes by the words of other programs', () => within(RECIPE, async (page) => {
-    for (const [word, kind] of [['voronoi', 'worley'], ['perlin', 'noise'], ['tile sampler', 'scatter'], ['gradient map', 'ramp'], ['map range', 'levels'], ['rotate', 'transform'], ['animal', 'pups cells']]) {
+    for (const [word, kind] of [['voronoi', 'worley'], ['perlin', 'noise'], ['tile sampler', 'scatter'], ['gradient map', 'ramp'], ['map range', 'levels'], ['rotate', 'transform']]) {
       await page.locator('body').press('a');
       await page.locator('dialog[open]').waitFor();
       await page.keyboard.type(word);
@@ -268,24 +268,36 @@ describe('an artist', { skip, timeout: 240_000 }, () => {
     }
   });
 
+  /** The picture of the lit view, reduced by `measure` to numbers, or null without WebGL. */
+  async function lit(page, measure, wait = () => settled(page, 60_000)) {
+    await page.locator('#tab-lit').click({ noWaitAfter: true });
+    await page.locator('.lit canvas').waitFor({ timeout: 60_000 });
+    await wait();
+    if ((await page.locator('.lit .wrong').count()) > 0) return null;
+    await page.waitForTimeout(1500);
+    const picture = (await page.locator('.lit canvas').screenshot()).toString('base64');
+    const { width, height, data } = await page.evaluate(async (data) => {
+      const image = await createImageBitmap(new Blob([Uint8Array.from(atob(data), (c) => c.charCodeAt(0))]));
+      const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
+      context.drawImage(image, 0, 0);
+      const { width, height, data: pixels } = context.getImageData(0, 0, image.width, image.height);
+      return { width, height, data: Array.from(pixels, (byte) => String.fromCharCode(byte)).join('') };
+    }, picture);
+    return measure((x, y) => [0, 1, 2].map((channel) => data.charCodeAt((Math.floor(y) * width + Math.floor(x)) * 4 + channel)), width, height);
+  }
+
+  /** The color in the center. */
+  const center = (at, width, height) => at(width / 2, height / 2);
+
+  /** The largest of the green values in the middle of the sphere. */
+  const brightest = (at, width, height) => {
+    let most = 0;
+    for (let y = -40; y <= 40; y += 1) for (let x = -40; x <= 40; x += 1) most = Math.max(most, at(width / 2 + (x * height) / 200, height / 2 + (y * height) / 200)[1]);
+    return most;
+  };
+  const litRecipe = (more) => `dapple = 1\n[material]\nheight = 0.5\nalbedo = "#000000"\n${more}\n`;
+
   test('the lit view shows opacity, blended and cut off, and emission', async () => {
-    const recipe = (more) => `dapple = 1\n[material]\nheight = 0.5\nalbedo = "#000000"\n${more}\n`;
-    // The color in the center of the sphere, or null without WebGL.
-    const center = async (page) => {
-      await page.locator('#tab-lit').click({ noWaitAfter: true });
-      await page.locator('.lit canvas').waitFor({ timeout: 60_000 });
-      await settled(page, 60_000);
-      if ((await page.locator('.lit .wrong').count()) > 0) return null;
-      await page.waitForTimeout(1500);
-      const picture = (await page.locator('.lit canvas').screenshot()).toString('base64');
-      return page.evaluate(async (data) => {
-        const image = await createImageBitmap(new Blob([Uint8Array.from(atob(data), (c) => c.charCodeAt(0))]));
-        const canvas = new OffscreenCanvas(image.width, image.height);
-        const context = canvas.getContext('2d');
-        context.drawImage(image, 0, 0);
-        return [...context.getImageData(image.width / 2, image.height / 2, 1, 1).data];
-      }, picture);
-    };
     const found = {};
     const glowing = 'emission = "#ff0000"\n';
     for (const [name, more] of Object.entries({
@@ -293,8 +305,8 @@ describe('an artist', { skip, timeout: 240_000 }, () => {
       half: `${glowing}opacity = 0.5`,
       cut: `${glowing}opacity = 0.5\nopacity_cutoff = 0.75`,
     })) {
-      await within(recipe(more), async (page) => {
-        found[name] = await center(page);
+      await within(litRecipe(more), async (page) => {
+        found[name] = await lit(page, center);
       });
       if (found[name] === null) return; // This browser has no WebGL, and the page says so.
     }
@@ -302,6 +314,32 @@ describe('an artist', { skip, timeout: 240_000 }, () => {
     assert.ok(red(found.solid) > 150, JSON.stringify(found));
     assert.ok(red(found.cut) < 10, JSON.stringify(found));
     assert.ok(red(found.half) > 30 && red(found.half) < red(found.solid) - 30, JSON.stringify(found));
+  });
+
+  test('the lit view does not glow before its maps have arrived', async () => {
+    const studio = await serve(['mine.toml'], 'studio', folder(litRecipe('emission = "#ff0000"\nemission_strength = 4')));
+    try {
+      const page = await open('about:blank');
+      let emission = -1;
+      await page.routeWebSocket(/\/ws/, (socket) => {
+        const server = socket.connectToServer();
+        server.onMessage((message) => {
+          if (typeof message === 'string') {
+            const reply = JSON.parse(message);
+            if (reply.type === 'hello') emission = reply.maps.findIndex(({ name }) => name === 'emission');
+          } else if (message.readUInt16LE(8) === emission) return; // Hold back the map.
+          socket.send(message);
+        });
+      });
+      await page.goto(studio.url);
+      await settled(page);
+      const dark = await lit(page, (at, width, height) => at(width / 2, height * 0.8), () => page.waitForTimeout(1000));
+      if (dark === null) return; // This browser has no WebGL, and the page says so.
+      assert.ok(Math.max(...dark) < 230, JSON.stringify(dark));
+      assert.deepEqual(page.wrong, []);
+    } finally {
+      studio.end();
+    }
   });
 
   test('an own model stays closed with relief', () => within('dapple = 1\n[material]\nheight = 1.0\nrelief = 0.1\nalbedo = "#400000"\n', async (page) => {

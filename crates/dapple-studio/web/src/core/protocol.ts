@@ -118,6 +118,8 @@ export interface Hello {
   schema: JsonSchema;
   kinds: Kind[];
   maps: Named[];
+  /** The names of the maps that a material may lack. */
+  optional_maps: string[];
   presets: (string | Named)[];
   limits: { size: number; whole?: number };
   open: string | null;

@@ -1,11 +1,12 @@
 // Renders the lit material with WebGL: received maps become textures of a physically based material.
 //
 // Normals are in tangent space. Occlusion, roughness and metallic are packed as in glTF. Albedo is sRGB, all other
-// maps are linear. Opacity is blended or cut off. Heights displace the surface by the relief of the recipe. The environment is generated: a sky that
-// gets brighter toward the top, and three soft boxes.
+// maps are linear. Opacity is blended or cut off. Heights displace the surface by the relief of the recipe. An optional map
+// has no effect until its image has arrived. The environment is generated: a sky that gets brighter toward the top, and
+// three soft boxes.
 import {
   AmbientLight, BackSide, BoxGeometry, type BufferGeometry, Color, DataTexture, DirectionalLight, DoubleSide, FrontSide,
-  LinearFilter, LinearMipmapLinearFilter, Mesh, MeshBasicMaterial, MeshStandardMaterial, NeutralToneMapping, NoColorSpace, PerspectiveCamera, PlaneGeometry,
+  LinearFilter, LinearMipmapLinearFilter, Mesh, MeshBasicMaterial, MeshPhysicalMaterial, NeutralToneMapping, NoColorSpace, PerspectiveCamera, PlaneGeometry,
   PMREMGenerator, RepeatWrapping, RGBAFormat, Scene, SphereGeometry, SRGBColorSpace, type Texture, UnsignedByteType,
   Vector2, WebGLRenderer,
 } from 'three';
@@ -25,8 +26,29 @@ export interface Lay {
   flipped: boolean;
 }
 
-/** The maps of the scene. */
+/** Numbers of the material that belong to its optional maps. */
+export interface Numbers {
+  /** The opacity below which pixels are transparent, or null to blend. */
+  cutoff: number | null;
+  /** The factor of the emission. */
+  strength: number;
+  coatRoughness: number;
+}
+
+/** The maps that every material has. */
 export const LIT = ['albedo', 'normal', 'orm', 'height'] as const;
+
+/** The textures of the material that show each map. */
+const SLOTS = new Map([
+  ['albedo', ['map']],
+  ['normal', ['normalMap']],
+  ['orm', ['aoMap', 'roughnessMap', 'metalnessMap']],
+  ['height', ['displacementMap']],
+  ['opacity', ['alphaMap']],
+  ['emission', ['emissiveMap']],
+  ['specular', ['specularIntensityMap']],
+  ['clearcoat', ['clearcoatMap']],
+] as const);
 
 /** A scene in a canvas, redrawn only after changes. */
 export class LitScene {
@@ -34,8 +56,8 @@ export class LitScene {
   readonly #scene = new Scene();
   readonly #camera = new PerspectiveCamera(35, 1, 0.01, 100);
   readonly #controls: OrbitControls;
-  readonly #material = new MeshStandardMaterial({ roughness: 1, metalness: 1, envMapIntensity: 0.75 });
-  readonly #mesh = new Mesh<BufferGeometry, MeshStandardMaterial>(new SphereGeometry(1, 64, 32), this.#material);
+  readonly #material = new MeshPhysicalMaterial({ roughness: 1, metalness: 1, envMapIntensity: 0.75 });
+  readonly #mesh = new Mesh<BufferGeometry, MeshPhysicalMaterial>(new SphereGeometry(1, 64, 32), this.#material);
   readonly #light = new DirectionalLight(0xfff4e2, 1.9);
   readonly #textures = new Map<string, DataTexture>();
   /** The mipmap level of the height map whose texels are as far apart as the vertices. */
@@ -72,8 +94,10 @@ attribute vec2 weldedUv;`);
 
   /** Updates the texture of a map. */
   take(name: string, picture: Picture | undefined): void {
-    const pixels = picture && joined(picture);
-    if (!pixels) return;
+    const whole = picture && joined(picture);
+    if (!picture || !whole) return;
+    // The material reads the strength of reflections from alpha.
+    const pixels = name === 'specular' ? withAlpha(whole) : whole;
     const [w, h] = picture.size;
     let texture = this.#textures.get(name);
     if (texture && texture.image.width === w && texture.image.height === h) texture.image.data = pixels;
@@ -124,23 +148,27 @@ attribute vec2 weldedUv;`);
     this.#shape = '';
   }
 
-  /**
-   * Shows the optional maps `extras` of the material. An opacity is blended, or cut off at `cutoff`. Emission is
-   * multiplied by `strength`.
-   */
-  show(extras: string[], cutoff: number | null, strength: number): void {
-    for (const [name, map] of [['opacity', 'alphaMap'], ['emission', 'emissiveMap']] as const) {
-      if (extras.includes(name)) continue;
+  /** Shows the optional maps `extras` of the material, and removes all others. */
+  show(extras: string[], { cutoff, strength, coatRoughness }: Numbers): void {
+    for (const [name, slots] of SLOTS) {
+      if (extras.includes(name) || LIT.some((one) => one === name)) continue;
       this.#textures.get(name)?.dispose();
       this.#textures.delete(name);
-      this.#material[map] = null;
+      for (const slot of slots) this.#material[slot] = null;
     }
     const isOpen = extras.includes('opacity');
     this.#material.transparent = isOpen && cutoff === null;
     this.#material.alphaTest = isOpen ? (cutoff ?? 0) : 0;
     this.#material.side = isOpen ? DoubleSide : FrontSide;
-    this.#material.emissive.set(extras.includes('emission') ? 0xffffff : 0x000000);
     this.#material.emissiveIntensity = strength;
+    this.#material.clearcoatRoughness = coatRoughness;
+    this.#weigh();
+  }
+
+  /** Sets the factors of the optional maps: 0 without the map. */
+  #weigh(): void {
+    this.#material.emissive.set(this.#material.emissiveMap ? 0xffffff : 0x000000);
+    this.#material.clearcoat = this.#material.clearcoatMap ? 1 : 0;
     this.#material.needsUpdate = true;
     this.later();
   }
@@ -199,15 +227,12 @@ attribute vec2 weldedUv;`);
   }
 
   #wear(name: string, texture: DataTexture): void {
-    if (name === 'albedo') this.#material.map = texture;
-    else if (name === 'normal') this.#material.normalMap = texture;
-    else if (name === 'height') this.#material.displacementMap = texture;
-    else if (name === 'opacity') this.#material.alphaMap = texture;
-    else if (name === 'emission') this.#material.emissiveMap = texture;
-    else Object.assign(this.#material, { aoMap: texture, roughnessMap: texture, metalnessMap: texture });
+    for (const [map, slots] of SLOTS) {
+      if (map === name) for (const slot of slots) this.#material[slot] = texture;
+    }
     const [other] = [...this.#textures.values()].filter((one) => one !== texture);
     if (other) texture.repeat.copy(other.repeat);
-    this.#material.needsUpdate = true;
+    this.#weigh();
   }
 }
 
@@ -243,6 +268,13 @@ function joined(picture: Picture): Uint8ClampedArray<ArrayBuffer> | null {
     }
   }
   return all;
+}
+
+/** A copy of gray pixels with their value as alpha. */
+function withAlpha(gray: Uint8ClampedArray<ArrayBuffer>): Uint8ClampedArray<ArrayBuffer> {
+  const pixels = gray.slice();
+  for (let i = 0; i < pixels.length; i += 4) pixels[i + 3] = pixels[i] as number;
+  return pixels;
 }
 
 function textureOf(pixels: Uint8ClampedArray<ArrayBuffer>, w: number, h: number, color: boolean): DataTexture {
