@@ -6,6 +6,7 @@ import type { Frame, Graph, Hello, Json, Op, Path, Points, Problem, Reply, Reque
 import { MAP } from './core/protocol';
 import { at, entry, Schemas, type Range } from './core/schema';
 import { rangeAt, resolved, sourceOf } from './core/shared';
+import { snapped, type Whole } from './core/range';
 import type { Transport } from './core/transport';
 import { recall, recallOpen, remember, rememberOpen, type Opening, type Unsaved } from './core/unsaved';
 import { placed, withPlaces } from './graph/placed';
@@ -218,9 +219,9 @@ export class Studio {
 
   /**
    * Called when a slider has set a number to `wanted`. If the recipe is refused then, sets the nearest accepted number
-   * between `good` and `wanted`. Another edit ends the search.
+   * between `good` and `wanted`, or the nearest one with a whole number of cells. Another edit ends the search.
    */
-  async settle(name: string, good: number, wanted: number, integer: boolean, set: (value: number) => void): Promise<void> {
+  async settle(name: string, good: number, wanted: number, { integer, whole }: { integer: boolean; whole: Whole | null }, set: (value: number) => void): Promise<void> {
     const accepts = (value: number): Promise<boolean | null> => {
       this.#judged?.(null);
       this.#trying = true;
@@ -235,7 +236,16 @@ export class Studio {
     let accepted = await accepts(wanted);
     if (accepted !== false) return;
     const why = this.problems[0]?.message ?? '';
-    for (let i = 0; i < TRIALS; i += 1) {
+    const unit = whole ? whole.unit / whole.side : 0;
+    for (let i = 0; whole && i < TRIALS; i += 1) {
+      // Some patterns alternate or repeat after several cells. Try numbers at increasing distances, first toward `good`.
+      const away = (Math.floor(i / 2) + 1) * unit * (i % 2 === 0 ? Math.sign(good - wanted) : Math.sign(wanted - good));
+      const other = snapped(wanted + away, whole);
+      accepted = await accepts(other);
+      if (accepted === null) return;
+      if (accepted) return this.say(`${name} stays at ${other}: ${why}`);
+    }
+    for (let i = 0; !whole && i < TRIALS; i += 1) {
       const middle = integer ? Math.trunc((good + bad) / 2) : Number(((good + bad) / 2).toPrecision(2));
       if (middle === good || middle === bad) break;
       accepted = await accepts(middle);

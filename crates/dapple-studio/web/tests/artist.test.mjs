@@ -86,6 +86,21 @@ describe('an artist', { skip, timeout: 480_000 }, () => {
     assert.equal(await text(page), before, 'one step of undo');
   }));
 
+  test('a slider of a pattern lands on a number of cells that repeats', () => {
+    const bricks = (more) => `dapple = 1\n\n[nodes.wall.bricks]\n${more}\n\n[material]\nheight = "wall"\n`;
+    return within(bricks('bond = "herringbone"\nfrequency = 8'), async (page) => {
+      await select(page, 'wall');
+      for (const at of [0.3, 0.45, 0.62, 0.7]) {
+        await click(page, 'nodes.wall.bricks.frequency', at);
+        await page.waitForFunction(() => document.querySelectorAll('.status .bad').length === 0);
+        await settled(page);
+        const frequency = Number((await text(page)).match(/frequency = ([\d.]+)/)[1]);
+        assert.equal(frequency % 4, 0, `${frequency} at ${at}`);
+      }
+      assert.notEqual((await text(page)).match(/frequency = ([\d.]+)/)[1], '8');
+    });
+  });
+
   test('moves a shared parameter first in the list, and detaches an option from it', () => {
     const recipe = RECIPE.replace('extent = [4, 4]\n', 'extent = [4, 4]\n\n[parameters]\nrough = { value = 0.25, range = [0, 1], doc = "Wear." }\nsize = 1.5\n')
       .replace('frequency = 1.5', 'frequency = "$size"')
