@@ -158,7 +158,8 @@ export class Editor implements TextHost {
         if (update.docChanged) {
           const ours = update.transactions.some((tr) => tr.annotation(remote));
           if (!ours) this.#gesture = null;
-          if (!ours) this.events.typed();
+          // A quotation mark typed over a completed one leaves the text as it is. The studio answers changed texts alone.
+          if (!ours && !update.startState.doc.eq(update.state.doc)) this.events.typed();
           this.events.changed();
         }
         if (update.selectionSet && !update.docChanged && !this.#quiet) {
