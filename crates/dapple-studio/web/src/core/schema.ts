@@ -83,7 +83,7 @@ const RATIOS = /^(frequency|spacing|density|distance|distances|count|relief|feat
 /** Largest angle of a slider, in degrees. */
 const HALF_TURN = 180;
 
-/** Maximum of an allowed range in units of the plane; small lengths in such a range need a logarithmic slider. */
+/** Maximum of an allowed range in units of the plane; small lengths in a larger range need a logarithmic slider. */
 const LONG = 1000;
 
 /** Properties that are listed first, in this order. */
@@ -127,7 +127,7 @@ export class Schemas {
     if (type === 'array' && all.items) {
       if (this.name(all.items) === 'ControlPoint') return { kind: 'points' };
       // Numbers of a list have the unit that the list's description names.
-      const item = all.items.type === 'number' && all.description !== undefined ? { description: all.description, ...all.items } : all.items;
+      const item = (all.items.type === 'number' || all.items.type === 'integer') && all.description !== undefined ? { description: all.description, ...all.items } : all.items;
       return { kind: 'list', item, min: all.minItems ?? 0, max: all.maxItems ?? Infinity };
     }
     if (!all.properties) return { kind: 'nothing' };
@@ -300,9 +300,9 @@ function numberShape(all: JsonSchema, key: string): Shape {
   const min = all.exclusiveMinimum ?? all.minimum ?? -Infinity;
   const max = all.exclusiveMaximum ?? all.maximum ?? Infinity;
   const open: [boolean, boolean] = [all.exclusiveMinimum !== undefined, all.exclusiveMaximum !== undefined];
-  const isLength = key === 'radius' && max > LONG;
-  const log = hint?.scale === 'log' || (hint?.scale === undefined && (RATIOS.test(key) || isLength) && min >= 0);
   const unit = hint?.unit ?? unitOf(all.description ?? '');
+  const isLength = (key === 'radius' && max > LONG) || (integer && unit === 'px' && max === Infinity);
+  const log = hint?.scale === 'log' || (hint?.scale === undefined && (RATIOS.test(key) || isLength) && min >= 0);
   const turn: [number, number] | null = unit === '°' ? [Math.max(min, -HALF_TURN), Math.min(max, HALF_TURN)] : null;
   return { kind: 'number', range: { min, max, open, integer, soft: hint?.soft ?? turn, log }, unit };
 }
