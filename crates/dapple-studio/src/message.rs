@@ -401,7 +401,7 @@ pub struct Named {
     pub about: String,
 }
 
-/// A built-in recipe, with the words by which it is found.
+/// A built-in recipe. Its tags are words for searching.
 #[derive(Clone, Debug, Serialize)]
 struct Builtin {
     #[serde(flatten)]

@@ -360,7 +360,8 @@ fn a_parameter_comes_and_goes_with_its_options() {
     assert!(text.contains("jitter = 0.65\n"), "{text}");
     // The last option leaves, alone or with its node.
     let own = set("nodes.cells.worley.scatter.jittered.jitter", json!(0.65));
-    assert_eq!(apply(&text, &[own]).unwrap(), TEXT);
+    let detached = with_line("0.50, #", "0.5, #");
+    assert_eq!(apply(&text, &[own]).unwrap(), detached);
     let name = "cells".to_owned();
     let text = apply(&text, &[Op::RemoveNode { name }]).unwrap();
     assert!(!text.contains("parameters"), "{text}");
