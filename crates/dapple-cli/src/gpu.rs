@@ -72,7 +72,7 @@ pub(crate) mod pages {
                     say(format!("the GPU computes {operation} with other bits"));
                 }
                 (_, info) if info.device_type == DeviceType::Cpu => {
-                    say(format!("{} runs on the CPU, too", info.name));
+                    say(format!("{} emulates one on the CPU", info.name));
                 }
                 _ => *gpu() = Some(opened.upload_values().compile_in_background()),
             },

@@ -116,7 +116,7 @@ mod tests {
         }
         let all = MAX_KEPT as u64;
         assert_eq!(n_compiled_after(&device, 0), all);
-        // The shader that was not used for the longest time makes room.
+        // The shader that was not used for the longest time is dropped.
         assert_eq!(n_compiled_after(&device, MAX_KEPT), all + 1);
         assert_eq!(n_compiled_after(&device, 0), all + 1);
         assert_eq!(n_compiled_after(&device, 1), all + 2);
