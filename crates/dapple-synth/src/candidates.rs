@@ -110,19 +110,17 @@ impl Candidates {
         Self::within(pyramid, pass, options.center, few(pass, options))
     }
 
-    /// Gathers the neighborhoods for a pass of a [repair](crate::PlaneTexture::repair). On all levels except the
-    /// finest, neighborhoods that reach past an edge are included.
+    /// Gathers the neighborhoods for a pass of a [repair](crate::PlaneTexture::repair), including those that reach past
+    /// an edge.
     ///
     /// The neighborhood of a repaired site near a side of the image contains that side. Only candidates near a side
-    /// contain it, too, and they let a border along the side continue. On the finest level this has already been
-    /// decided by the coarser level, and mirrored pieces would cause specks.
+    /// contain it, too, and they let a border along the side continue.
     pub(crate) fn of_repair(
         pyramid: &Pyramid,
         pass: &Pass,
         center: CoarserCenter,
     ) -> Result<Self, SynthError> {
-        let few = if pass.level > 0 { usize::MAX } else { FEW };
-        Self::within(pyramid, pass, center, few)
+        Self::within(pyramid, pass, center, usize::MAX)
     }
 
     /// Creates candidates from sites of a surface. `pixels` has the site of each row, in ascending order.

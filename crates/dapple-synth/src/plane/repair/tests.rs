@@ -470,15 +470,16 @@ fn strips_that_are_too_wide_or_too_narrow_are_refused() {
 
 /// Repairs holes across the border of an image that is 1 inside and 0 outside. The border is `margin` pixels from the
 /// right side; the test rotates the image to each side. Holes extend `half` pixels in each direction, and end at least
-/// two pixels before the side. Returns the number of wrong pixels for each side.
+/// `gap` pixels before the side. Returns the number of wrong pixels for each side.
 fn wrong_at_borders(
     side: u32,
     margin: u32,
     half: [u32; 2],
+    gap: u32,
     is_inside: fn(side: u32, margin: u32, at: [u32; 2]) -> bool,
 ) -> [usize; 4] {
     let border = side - margin;
-    let across = border - half[0]..(border + half[0]).min(side - 2);
+    let across = border - half[0]..(border + half[0]).min(side - gap);
     let along = side / 2 - half[1]..side / 2 + half[1];
     [0, 1, 2, 3].map(|turn| {
         let turned = |x: u32, y: u32| match turn {
@@ -509,7 +510,7 @@ fn wrong_at_borders(
 fn border_along_a_side_goes_on() {
     for margin in [4, 6, 8, 10, 12, 16, 20, 24] {
         // A shape on an empty background, `margin` pixels from all sides.
-        let wrong = wrong_at_borders(128, margin, [6, 4], |side, margin, at| {
+        let wrong = wrong_at_borders(128, margin, [6, 4], 2, |side, margin, at| {
             at.iter().all(|at| (margin..side - margin).contains(at))
         });
         assert_eq!(wrong, [0; 4], "margin {margin}");
@@ -528,8 +529,29 @@ fn border_along_a_side_of_a_small_image_goes_on() {
             (20, [6, 6]),
         ] {
             let is_inside = |side, margin, [x, _]: [u32; 2]| x < side - margin;
-            let wrong = wrong_at_borders(side, margin, half, is_inside);
+            let wrong = wrong_at_borders(side, margin, half, 2, is_inside);
             assert_eq!(wrong, [0; 4], "{side} pixels, margin {margin}, {half:?}");
+        }
+    }
+}
+
+#[test]
+fn leaves_and_borders_at_a_side_go_on() {
+    // Rows of leaves with sharp tips, each row shifted by half of a leaf.
+    let in_leaf = |_: u32, _: u32, at: [u32; 2]| {
+        let [x, y] = at.map(|at| f64::from(at) + 0.5);
+        let x = (x + 11.0 * (y / 14.0).floor()).rem_euclid(22.0) / 9.5 - 11.0 / 9.5;
+        let y = y.rem_euclid(14.0) / 6.0 - 7.0 / 6.0;
+        y.abs() < 1.0 - x * x
+    };
+    for side in [64, 66, 100] {
+        for half in [3, 6] {
+            // Holes of 6 and 12 pixels that touch the side.
+            let leaves = wrong_at_borders(side, half, [half; 2], 0, in_leaf);
+            assert_eq!(leaves, [0; 4], "leaves, {side} pixels, {half}");
+            let is_inside = |side, margin, [x, _]: [u32; 2]| x < side - margin;
+            let border = wrong_at_borders(side, half, [half; 2], 0, is_inside);
+            assert_eq!(border, [0; 4], "border, {side} pixels, {half}");
         }
     }
 }
