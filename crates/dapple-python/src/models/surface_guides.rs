@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::options::Guide;
 use crate::pictures;
 use dapple::mesh::glam::DVec2;
-use dapple::mesh::{VertexIdx, Mesh, Repair};
+use dapple::mesh::{Mesh, Repair, VertexIdx};
 use dapple::raster::{Raster, Wrap};
 use dapple::synth::{Exemplar, Synthesizer};
 use numpy::{AllowTypeChange, PyArrayLike1, PyArrayLikeDyn};
