@@ -331,6 +331,18 @@ describe('an artist', { skip, timeout: 480_000 }, () => {
     assert.ok(red(found.half) > 30 && red(found.half) < red(found.solid) - 30, JSON.stringify(found));
   });
 
+  test('the lit view shows a clear coat, and the strength of reflections', async () => {
+    const found = {};
+    for (const [name, more] of Object.entries({ rough: 'roughness = 1', coat: 'roughness = 1\nclearcoat = 1', shiny: 'roughness = 0.3', none: 'roughness = 0.3\nspecular = 0' })) {
+      await within(litRecipe(more), async (page) => {
+        found[name] = await lit(page, brightest);
+      });
+      if (found[name] === null) return; // This browser has no WebGL, and the page says so.
+    }
+    assert.ok(found.coat > found.rough + 80, JSON.stringify(found));
+    assert.ok(found.none < found.shiny - 40, JSON.stringify(found));
+  });
+
   test('the lit view does not glow before its maps have arrived', async () => {
     const studio = await serve(['mine.toml'], 'studio', folder(litRecipe('emission = "#ff0000"\nemission_strength = 4')));
     try {
