@@ -91,7 +91,7 @@ fn file(is_big: bool, pages: &[Vec<Entry>], pixels: &[u8]) -> Vec<u8> {
 
 fn read(bytes: &[u8]) -> Image {
     let image = decode_image(bytes, &Limits::default()).unwrap();
-    assert_eq!(image.format(), "TIFF");
+    assert_eq!(image.format(), "TIFF", "format");
     image
 }
 
@@ -206,13 +206,13 @@ fn both_byte_orders_and_separate_planes_are_read() {
     let rgb = page([2, 1], 2, &[16; 3]);
     let little = file(
         false,
-        &[rgb.clone()],
+        std::slice::from_ref(&rgb),
         &interleaved.map(u16::to_le_bytes).concat(),
     );
     assert_eq!(codes(&little), expected, "the low byte first");
     let big = file(
         true,
-        &[rgb.clone()],
+        std::slice::from_ref(&rgb),
         &interleaved.map(u16::to_be_bytes).concat(),
     );
     assert_eq!(codes(&big), expected, "the high byte first");
