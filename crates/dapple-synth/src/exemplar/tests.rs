@@ -292,16 +292,12 @@ fn masked_pixels_do_not_count_in_the_means_of_coarser_levels() {
             let wrap = finer.edges.wrap();
             for (at, &is_usable) in (0..).zip(coarser.usable.as_ref().unwrap()) {
                 let place = [at % coarser.size[0], at / coarser.size[0]];
-                let covered = (0..4).map(|child| {
+                let mut covered = (0..4).map(|child| {
                     let x = wrap.index((2 * place[0] + child % 2).into(), finer.size[0]);
                     let y = wrap.index((2 * place[1] + child / 2).into(), finer.size[1]);
                     usable[(y * finer.size[0] + x) as usize]
                 });
-                assert_eq!(
-                    is_usable,
-                    covered.fold(true, |all, one| all && one),
-                    "{place:?}"
-                );
+                assert_eq!(is_usable, covered.all(|one| one), "{place:?}");
                 for channel in (0..2).filter(|_| is_usable) {
                     let value = f64::from(coarser.pixels[at as usize * 2 + channel]);
                     let expected = naive(&masked, place, channel) / naive(&marks, place, 0);
