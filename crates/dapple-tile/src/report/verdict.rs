@@ -23,7 +23,7 @@ const CONTRAST: f64 = 0.9;
 const STRANGEST: f64 = 0.6;
 
 /// Maximum [`coarse_strangeness`](DetailKept::coarse_strangeness) of a tile that passes.
-const COARSE_STRANGEST: f64 = 0.75;
+const COARSE_STRANGEST: f64 = 0.9;
 
 /// Maximum share of clipped samples of a tile that passes.
 const CLIPPED: f64 = 0.04;
